@@ -1,0 +1,32 @@
+# What every target of relief shares: language level, warnings, sanitizers, and how tests are made.
+
+# GCC contracts a*b+c into fused instructions by default, Clang does so differently: off, so that
+# the same input gives the same bits from both.
+add_library(relief_flags INTERFACE)
+target_compile_features(relief_flags INTERFACE cxx_std_20)
+target_compile_options(
+    relief_flags INTERFACE $<$<COMPILE_LANGUAGE:CXX>:-Wall -Wextra -Wconversion -Wshadow>
+                           $<$<COMPILE_LANGUAGE:CXX>:-ffp-contract=off>)
+if(RELIEF_WERROR)
+    target_compile_options(relief_flags INTERFACE $<$<COMPILE_LANGUAGE:CXX>:-Werror>)
+endif()
+if(RELIEF_SANITIZE)
+    target_compile_options(relief_flags INTERFACE -fsanitize=address,undefined
+                                                  -fno-sanitize-recover=all -fno-omit-frame-pointer)
+    target_link_options(relief_flags INTERFACE -fsanitize=address,undefined)
+endif()
+
+# relief_add_tests(NAME sources... [LIBRARIES ...]): one GoogleTest program; each test is a ctest entry
+# called NAME/Suite.Test. A test that calls GTEST_SKIP shows as "Skipped" there.
+function(relief_add_tests name)
+    cmake_parse_arguments(ARG "" "" "LIBRARIES" ${ARGN})
+    add_executable(${name} ${ARG_UNPARSED_ARGUMENTS})
+    set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${RELIEF_TEST_DIRECTORY})
+    target_link_libraries(${name} PRIVATE relief_flags relief_test_support ${ARG_LIBRARIES}
+                                          GTest::gmock GTest::gtest_main)
+    gtest_discover_tests(
+        ${name}
+        TEST_PREFIX ${name}/
+        DISCOVERY_MODE PRE_TEST
+        PROPERTIES TIMEOUT 300)
+endfunction()

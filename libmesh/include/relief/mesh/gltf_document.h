@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// glTF and GLB files as documents: what is read is kept, and only what is processed changes.
+///
+/// Materials, animations, skins, morph targets, extensions, extras, names and images (their bytes,
+/// never re-encoded) come out of write() as they went into read().
+/// Tests: tests/mesh/io/gltf_document_test.cpp.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <filesystem>
+#include <glm/glm.hpp>
+#include <memory>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "relief/mesh/frames.h"
+#include "relief/mesh/mesh.h"
+#include "relief/mesh/mesh_file.h"
+#include "relief/mesh/report.h"
+
+namespace relief {
+
+/// One primitive of one mesh of a document.
+struct GltfPrimitiveId {
+    std::size_t mesh = 0;
+    std::size_t primitive = 0;
+
+    friend bool operator==(const GltfPrimitiveId&, const GltfPrimitiveId&) = default;
+};
+
+enum class TextureWrap { repeat, clamp, mirror };
+enum class TextureFilter { linear, nearest };
+
+/// A use of an image as a texture.
+struct GltfTexture {
+    std::size_t image = 0;  ///< Index into GltfView::images.
+    TextureWrap wrap_u = TextureWrap::repeat;
+    TextureWrap wrap_v = TextureWrap::repeat;
+    TextureFilter filter = TextureFilter::linear;
+    int texcoord_set = 0;
+    bool has_transform = false;  ///< Carries KHR_texture_transform.
+};
+
+/// An image in its encoded form: bytes from the document, or a file beside it.
+struct GltfImage {
+    std::string name;
+    std::variant<std::vector<std::byte>, std::filesystem::path> source;
+};
+
+/// A material as glTF defines it; colours linear.
+struct GltfMaterial {
+    std::string name;
+    glm::vec4 base_color{1.0F};
+    float metallic = 1.0F;
+    float roughness = 1.0F;
+    glm::vec3 emission{0.0F};  ///< emissiveFactor times KHR_materials_emissive_strength.
+    std::optional<GltfTexture> base_color_texture;
+    std::optional<GltfTexture> metallic_roughness_texture;  ///< Green roughness, blue metallic.
+    std::optional<GltfTexture> normal_texture;
+    std::optional<GltfTexture> emission_texture;
+    float normal_scale = 1.0F;
+    enum class AlphaMode { opaque, mask, blend } alpha_mode = AlphaMode::opaque;
+    bool double_sided = false;
+    bool unlit = false;  ///< KHR_materials_unlit
+};
+
+/// KHR_lights_punctual: looks along its node's -z.
+struct GltfLight {
+    enum class Type { directional, point, spot } type = Type::directional;
+    std::string name;
+    glm::vec3 color{1.0F};
+    float intensity = 1.0F;      ///< lux for directional, candela for the others
+    std::optional<float> range;  ///< Unit of length; absent: unlimited.
+    float inner_cone = 0.0F;     ///< Radians from the axis.
+    float outer_cone = 0.785398163F;
+};
+
+/// A perspective camera; looks along its node's -z.
+struct GltfCamera {
+    std::string name;
+    float vertical_fov = 0.8F;  ///< Radians.
+    float near = 0.1F;
+    std::optional<float> far;  ///< Absent: infinite.
+};
+
+/// A thing of the document at its place in the world (the default scene, or the first).
+template <typename T>
+struct GltfPlaced {
+    T what;
+    glm::mat4 world_from_object{1.0F};
+    std::string name;  ///< The node's.
+};
+
+/// What a renderer needs of a document, in plain data. Animations and skins are at rest.
+struct GltfView {
+    std::vector<GltfPlaced<GltfPrimitiveId>> primitives;  ///< Triangles only.
+    std::vector<GltfPlaced<GltfLight>> lights;
+    std::vector<GltfPlaced<GltfCamera>> cameras;
+    std::vector<GltfMaterial> materials;
+    std::vector<GltfImage> images;
+};
+
+class GltfDocument {
+  public:
+    /// Reads a .gltf or .glb file.
+    ///
+    /// \param report  counts what is unusual but harmless
+    /// \throws FileError if the file is unreadable; if an index, count, offset or length in it is
+    /// out of range; if
+    ///         nodes form a cycle; if it requires an extension that relief does not know how to
+    ///         keep or decode; or if it names a buffer that is missing or outside its folder
+    static GltfDocument read(const std::filesystem::path& file, Report& report);
+
+    /// A new document with one mesh, a primitive for each material range, and materials translated
+    /// from MTL: Kd to base colour, roughness = sqrt(2 / (Ns + 2)), metallic 0; the mesh must be
+    /// valid. Images are embedded as they are. \throws FileError if one is missing
+    static GltfDocument from_mesh(const MeshFile& contents);
+
+    GltfDocument(GltfDocument&&) noexcept;
+    GltfDocument& operator=(GltfDocument&&) noexcept;
+    ~GltfDocument();
+
+    /// Writes .glb (one self-contained file) or .gltf (JSON, with its buffer beside it as
+    /// NAME.bin), by extension. Written beside and renamed. \throws FileError
+    void write(const std::filesystem::path& file) const;
+
+    /// All primitives made of triangles (lists, strips, fans), each once, in document order.
+    [[nodiscard]] std::vector<GltfPrimitiveId> triangle_primitives() const;
+
+    /// "mesh 'Body' primitive 0", for messages.
+    [[nodiscard]] std::string describe(GltfPrimitiveId id) const;
+
+    /// A primitive in plain arrays: indices made explicit, strips and fans unrolled, sparse and
+    /// normalised-integer accessors made float; texture coordinate set 0, colour set 0. Its one
+    /// material range names the document's material. \throws InvalidInput if it cannot be read
+    [[nodiscard]] Mesh mesh(GltfPrimitiveId id) const;
+
+    /// Replaces a primitive's NORMAL and TANGENT by those of `framed`, which with_frames() made
+    /// from mesh(id). Where vertices were split, indices are rewritten and every other attribute
+    /// and morph target is carried along, in its own type. Attributes that did not change keep
+    /// their bytes.
+    void set_frames(GltfPrimitiveId id, const FramedMesh& framed);
+
+    /// The document as a scene. \throws InvalidInput if it cannot be read
+    [[nodiscard]] GltfView view() const;
+
+    /// What other formats cannot hold: "2 animations", "1 skin", "3 morph targets", ...
+    [[nodiscard]] std::vector<std::string> beyond_a_mesh() const;
+
+  private:
+    struct Contents;
+    explicit GltfDocument(std::unique_ptr<Contents> contents);
+    std::unique_ptr<Contents> contents_;
+};
+
+/// All primitives of the default scene in world space as one mesh, with materials translated to
+/// MTL (names, base colour, image paths where images are files), for OBJ and PLY. Negative scale
+/// turns the winding, so that faces stay counter-clockwise. \throws InvalidInput if it cannot be
+/// read
+MeshFile flattened(const GltfDocument& document);
+
+}  // namespace relief

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// Image files: PNG, JPEG, TIFF, EXR, HDR and what else OpenImageIO reads.
+///
+/// OpenImageIO stands behind a module that is loaded at the first call and not before, because
+/// loading it alone costs 0.2 s and 120 MB; a program that touches no image never pays that. The
+/// module is looked for in $RELIEF_MODULE_DIR, then in ../lib/relief beside the program.
+/// Tests: tests/mesh/io/image_file_test.cpp.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <map>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "relief/mesh/image.h"
+
+namespace relief {
+
+/// What an image is read for; files do not say it reliably themselves.
+enum class ImageUse {
+    color,  ///< Integer samples are sRGB-coded, float samples linear.
+    data,   ///< Samples are numbers: never colour-converted, whatever the file's tags say.
+};
+
+/// What is known of an image without decoding it.
+struct ImageInfo {
+    int width = 0;
+    int height = 0;
+    int channels = 0;
+    int bits = 0;  ///< 8, 16 or 32, as read_image would give them.
+    std::map<std::string, std::string>
+        metadata;  ///< Text entries; relief's own begin with "relief:".
+};
+
+/// Largest image that is read, in samples; larger headers are refused before memory is taken.
+inline constexpr std::size_t max_image_samples = std::size_t{1} << 31;
+
+/// Reads a whole image; the format is decided by content, not by name.
+///
+/// \return 8, 16 or 32 bits as stored (1, 2 and 4 bits widen to 8, palettes to RGB, half and 32-bit
+///         integers to float); samples exactly as stored, alpha never multiplied in; first subimage
+/// \throws FileError if it is missing, damaged, truncated, empty, of more than 4 channels, or over
+///         max_image_samples
+Image read_image(const std::filesystem::path& file, ImageUse use);
+
+/// The same from memory, as embedded in a glTF file. `name` is for messages.
+Image read_image(std::span<const std::byte> bytes, const std::string& name, ImageUse use);
+
+ImageInfo read_image_info(const std::filesystem::path& file);
+
+/// Writes a whole image; the format is decided by the extension: .png .tif .tiff .exr .hdr .jpg.
+///
+/// \param metadata  text entries, kept where the format can hold them (PNG, TIFF, EXR)
+/// \throws FileError if it cannot be written
+/// \throws InvalidInput if the format cannot hold these samples: linear colour in PNG or JPEG
+/// (encode
+///         with to_srgb first), sRGB colour in EXR or HDR, 32 bits in PNG, anything but 8 in JPEG
+///
+/// Written beside and renamed: a failure leaves no half file and the old one unharmed. Float is
+/// stored as float in EXR and TIFF.
+void write_image(const std::filesystem::path& file, const Image& image,
+                 const std::map<std::string, std::string>& metadata = {});
+
+}  // namespace relief

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// Mesh files without a scene: OBJ with MTL, PLY, STL, OFF. glTF has its own home: gltf_document.h.
+/// Tests: tests/mesh/io/mesh_file_test.cpp.
+#pragma once
+
+#include <filesystem>
+#include <glm/glm.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "relief/mesh/mesh.h"
+#include "relief/mesh/report.h"
+
+namespace relief {
+
+/// A material as an MTL file writes it: Phong's, colours linear as given.
+///
+/// Image paths are resolved against the MTL file's folder and not checked to exist.
+struct MtlMaterial {
+    std::string name;
+    glm::vec3 ambient{0.0F};                            ///< Ka
+    glm::vec3 diffuse{0.8F};                            ///< Kd
+    glm::vec3 specular{0.0F};                           ///< Ks
+    glm::vec3 emission{0.0F};                           ///< Ke
+    float shininess = 0.0F;                             ///< Ns
+    float opacity = 1.0F;                               ///< d, or 1 - Tr
+    int illumination_model = 2;                         ///< illum; 3 and above reflect
+    std::optional<std::filesystem::path> diffuse_map;   ///< map_Kd
+    std::optional<std::filesystem::path> emission_map;  ///< map_Ke
+    std::optional<std::filesystem::path> normal_map;    ///< norm
+    std::optional<std::filesystem::path> bump_map;      ///< map_bump, bump: heights
+    float bump_strength = 1.0F;                         ///< -bm of the bump map
+};
+
+/// A mesh and the materials that its ranges name.
+struct MeshFile {
+    Mesh mesh;
+    std::vector<MtlMaterial> materials;
+};
+
+/// Reads OBJ, PLY, STL or OFF, by extension.
+///
+/// Polygons are triangulated by this rule. A quad is cut along the diagonal that is shorter in
+/// texture space, or, where there are no texture coordinates or the two are equal, shorter in
+/// object space, and on a further tie from its first corner to its third (MikkTSpace's rule, so
+/// that tangents agree with those of the quad mesh); a concave quad is cut at its reflex corner.
+/// Larger polygons are cut into ears in the plane of their Newell normal. Corners that share
+/// position, texture coordinate, normal and colour become one vertex; OBJ's v is flipped to the
+/// upper left origin.
+///
+/// \param report  counts faces of fewer than three corners (left out), polygons that no ear cut
+/// fits
+///                (cut as fans), points and lines (left out), unknown materials
+/// \return a valid mesh (mesh.h); non-manifold, degenerate and non-finite parts are kept as they
+/// are.
+///         STL corners with equal positions become one vertex; its facet normals are not kept,
+///         since they follow from the positions
+/// \throws FileError if the file is missing, unreadable, names a vertex that does not exist, or has
+/// no
+///         triangle
+MeshFile read_mesh(const std::filesystem::path& file, Report& report);
+
+/// Writes OBJ (with MTL where there are materials) or binary PLY, by extension.
+///
+/// Positions, normals, texture coordinates (OBJ flips v back), colours and, in OBJ, materials;
+/// numbers in OBJ read back as the same floats. Tangents have no place in either and are left out.
+/// \throws FileError if it cannot be written; InvalidInput for another extension
+///
+/// Written beside and renamed: a failure leaves no half file and the old one unharmed.
+void write_mesh(const std::filesystem::path& file, const MeshFile& contents);
+
+}  // namespace relief

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// Tangent frames from texture coordinates. Tests: tests/mesh/geometry/tangents_test.cpp.
+#pragma once
+
+#include <glm/glm.hpp>
+#include <span>
+#include <vector>
+
+#include "relief/mesh/report.h"
+
+namespace relief {
+
+/// A tangent frame for every triangle corner, as MikkTSpace defines it.
+///
+/// \param positions  object space, any unit of length
+/// \param normals    object space, one per position; need not be unit
+/// \param texcoords  one per position, upper left origin, v down (see mesh.h)
+/// \param triangles  vertex indices, counter-clockwise seen from outside
+/// \param report     counts every fallback below
+/// \return three per triangle, in corner order: xyz unit and perpendicular to the corner's normal,
+///         w exactly +1 or -1, one w for all corners of a triangle;
+///         bitangent = w * cross(normal, xyz). Where the texture has no gradient (equal or
+///         collinear coordinates, a triangle without area, non-finite values) the frame is that of
+///         a neighbour sharing the vertex, or else any frame perpendicular to the normal by a fixed
+///         rule, w = +1.
+/// \throws InvalidInput if array lengths differ or a triangle names a vertex that does not exist
+///
+/// Corners of one vertex may differ (mirrored texture, hard texture seams): use split.h to turn the
+/// corners into vertices again. Feeding the result to the index list as it is would be wrong.
+///
+/// Source: [Mikkelsen 2008]; deviations from the reference implementation are marked in the code.
+std::vector<glm::vec4> mikktspace_tangents(std::span<const glm::vec3> positions,
+                                           std::span<const glm::vec3> normals,
+                                           std::span<const glm::vec2> texcoords,
+                                           std::span<const glm::uvec3> triangles, Report& report);
+
+}  // namespace relief

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "parallel.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/global_control.h>
+#include <tbb/parallel_for.h>
+
+#include <memory>
+
+#include "relief/mesh/threads.h"
+
+namespace relief {
+
+void parallel_for(std::size_t count, std::size_t grain,
+                  const std::function<void(std::size_t, std::size_t)>& body) {
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, grain),
+                      [&](const auto& piece) { body(piece.begin(), piece.end()); });
+}
+
+void set_thread_limit(unsigned count) {
+    static std::unique_ptr<tbb::global_control> limit;
+    limit.reset();
+    if (count > 0) {
+        limit = std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism,
+                                                      count);
+    }
+}
+
+}  // namespace relief

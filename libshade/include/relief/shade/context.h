@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// An OpenGL context without a window. Tests: tests/shade/gl/context_test.cpp.
+#pragma once
+
+#include <memory>
+#include <string>
+
+namespace relief {
+
+/// Which library gives the context. Each is loaded at run time; none is needed by another.
+enum class Backend {
+    automatic,  ///< A hardware EGL device where there is one, else OSMesa, else software EGL.
+    osmesa,
+    egl,
+};
+
+namespace gl {
+class Api;  // The table of entry points (libshade/src/gl/api.h).
+}
+
+/// One headless OpenGL 3.3 core context, current on the thread that made it until destroyed.
+///
+/// At most one exists at a time in a thread; it is released before another is made current, since
+/// OSMesa and EGL do not notice each other.
+class Context {
+  public:
+    /// \throws GpuError saying for every backend tried why it could not serve
+    explicit Context(Backend backend = Backend::automatic);
+    ~Context();
+    Context(const Context&) = delete;
+    Context& operator=(const Context&) = delete;
+
+    /// "OSMesa", "EGL (hardware)" or "EGL (software)".
+    [[nodiscard]] const std::string& backend_name() const;
+    /// "llvmpipe (LLVM 15.0.6, 256 bits), 4.5 (Core Profile) Mesa 22.3.6".
+    [[nodiscard]] const std::string& renderer_name() const;
+
+    [[nodiscard]] const gl::Api& api() const;
+
+  private:
+    struct Implementation;
+    std::unique_ptr<Implementation> implementation_;
+};
+
+}  // namespace relief

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "relief/mesh/error.h"
+
+namespace relief {
+
+/// OpenGL is missing, too old, out of memory, or refuses a shader; the message says which and what
+/// the driver said.
+class GpuError : public Error {
+  public:
+    using Error::Error;
+};
+
+}  // namespace relief

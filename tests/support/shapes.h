@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// Meshes whose true normals and tangents are known in closed form.
+#pragma once
+
+#include "relief/mesh/mesh.h"
+
+namespace relief::test {
+
+/// The unit square in the xy plane, facing +z, n x n cells; texture coordinates cover [0,1]^2 with
+/// the image upright: u along +x, v down along -y.
+Mesh grid(int cells);
+
+/// The unit sphere by longitude and latitude, with a texture seam and poles; normals are the
+/// positions, u eastwards, v from the north pole (+y) down.
+Mesh sphere(int slices, int stacks);
+
+/// A cube of edge 2 around the origin, 24 vertices: every face has its own, with its own normal and
+/// the whole texture upright on it.
+Mesh cube();
+
+}  // namespace relief::test
