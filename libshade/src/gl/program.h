@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// Shader source to linked program, and what the linked program really uses.
+/// Tests: tests/shade/gl/program_test.cpp.
+#pragma once
+
+#include <glm/glm.hpp>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "gl/handle.h"
+
+namespace relief::gl {
+
+/// The place of a vertex attribute or of a fragment output.
+struct Location {
+    std::string name;
+    GLuint location = 0;
+};
+
+/// What a program is made of.
+struct ProgramSources {
+    std::string name;  ///< For messages: "surface (normal map, 2 point lights)".
+    std::string vertex;
+    std::string fragment;
+    std::vector<Location> attributes;  ///< Others are placed by the driver.
+    std::vector<Location> outputs;     ///< Empty: the one output is at 0.
+};
+
+/// One active variable of a program. Arrays are named without "[0]".
+struct ActiveVariable {
+    std::string name;
+    GLenum type = 0;      ///< GL_FLOAT_VEC3, GL_SAMPLER_2D, ...
+    GLint size = 1;       ///< Elements of an array, else 1.
+    GLint location = -1;  ///< -1 where it has none.
+};
+
+/// What the driver kept of a program, each list sorted by name.
+struct ProgramInterface {
+    std::vector<ActiveVariable> attributes;  ///< Without gl_VertexID and its like.
+    std::vector<ActiveVariable> uniforms;    ///< Outside blocks, samplers apart.
+    std::vector<ActiveVariable> samplers;
+    std::vector<std::string> uniform_blocks;
+};
+
+/// A linked program. Uniforms are set by name; the program need not be current for looking up, but
+/// must be (use()) for setting.
+class LinkedProgram {
+  public:
+    /// \throws GpuError with the driver's log if a stage does not compile or the program does not
+    /// link: "program 'NAME': fragment shader: 0:12(3): error: ..."
+    LinkedProgram(const Api& api, const ProgramSources& sources);
+
+    [[nodiscard]] GLuint name() const { return program_.name(); }
+    [[nodiscard]] const ProgramInterface& interface() const { return interface_; }
+
+    /// Makes it current.
+    void use() const;
+
+    /// Sets a uniform of the current program. False, and nothing else, if the program has no such
+    /// uniform: an effect left out, or one that the driver found to be unused.
+    /// \throws GpuError if the uniform's type differs
+    bool set(std::string_view name, int value) const;  ///< int, or the unit of a sampler.
+    bool set(std::string_view name, float value) const;
+    bool set(std::string_view name, const glm::vec2& value) const;
+    bool set(std::string_view name, const glm::vec3& value) const;
+    bool set(std::string_view name, const glm::vec4& value) const;
+    bool set(std::string_view name, const glm::mat3& value) const;
+    bool set(std::string_view name, const glm::mat4& value) const;
+    bool set(std::string_view name, std::span<const glm::vec4> values) const;
+
+    /// Connects a uniform block to a binding point; false if the program has no such block.
+    bool bind_block(std::string_view name, GLuint binding) const;
+
+  private:
+    const ActiveVariable* uniform(std::string_view name, GLenum type) const;
+
+    const Api* api_;
+    std::string label_;
+    Program program_;
+    ProgramInterface interface_;
+};
+
+}  // namespace relief::gl
