@@ -5,6 +5,7 @@
 /// Tests: tests/shade/gl/texture_test.cpp.
 #pragma once
 
+#include <optional>
 #include <string_view>
 
 #include "gl/handle.h"
@@ -35,7 +36,8 @@ enum class FloatStorage { full, half };
 /// \throws GpuError if it is larger than the context's limit, or memory runs out
 /// \throws InvalidInput if the image is empty
 ///
-/// The texture's own sampling is Sampling's default; a Sampler object overrides it.
+/// The texture's own sampling is Sampling's default, without mipmaps if it has none; a Sampler
+/// object overrides it. Nothing is left bound to the active texture unit.
 Texture make_texture(const Api& api, const Image& image, std::string_view name, bool mipmaps = true,
                      FloatStorage storage = FloatStorage::full);
 
@@ -48,23 +50,33 @@ void set_sampling(const Api& api, GLenum target, const Sampling& sampling);
 /// A buffer seen as an array of texels (samplerBuffer).
 ///
 /// \param format  GL_RGBA32F and the like
-/// \param bytes  the buffer's size
+/// \param texels  the buffer's size in texels of this format
 /// \throws GpuError if it has more texels than the context allows
-Texture make_buffer_texture(const Api& api, const Buffer& buffer, GLenum format, std::size_t bytes,
+Texture make_buffer_texture(const Api& api, const Buffer& buffer, GLenum format, std::size_t texels,
                             std::string_view name);
 
-/// Reads one level of a 2D texture or of a cube face back, as it is stored: for tests.
-///
-/// \param target  GL_TEXTURE_2D or GL_TEXTURE_CUBE_MAP_POSITIVE_X and so on
-/// \param like  channels, bits and colour space of the result
-Image read_texture(const Api& api, const Texture& texture, GLenum target, int level,
-                   const Image& like);
-
-/// How an image is laid out on the GPU; shared with cube_map.h.
+/// How samples lie in memory and on the GPU; also used by cube_map.h.
 struct TexelFormat {
     GLenum internal = 0;  ///< GL_SRGB8, GL_RGBA16F, ...
-    GLenum format = 0;    ///< GL_RED, GL_RG, GL_RGB, GL_RGBA of the samples in memory.
-    GLenum type = 0;      ///< GL_UNSIGNED_BYTE, GL_UNSIGNED_SHORT, GL_FLOAT.
+    GLenum format = 0;    ///< GL_RED, GL_RG, GL_RGB or GL_RGBA, of the samples in memory.
+    GLenum type = 0;      ///< GL_UNSIGNED_BYTE, GL_UNSIGNED_SHORT or GL_FLOAT.
 };
+
+/// The format that holds this image without loss (but for FloatStorage::half), if there is one.
+TexelFormat texel_format(const Image& image, FloatStorage storage);
+
+/// The image in a form for which there is a texel format: sRGB grey as RGB, sRGB of 16 and 32 bits
+/// as linear float. Empty where the image has one already.
+std::optional<Image> converted_for_upload(const Image& image);
+
+/// The image's samples as level 0 of the texture bound to `target`, which may be a cube's face.
+void upload_level_0(const Api& api, GLenum target, const TexelFormat& format, const Image& image);
+
+/// Reads a level of a texture back, coded as it is stored.
+///
+/// \param target  GL_TEXTURE_2D, or GL_TEXTURE_CUBE_MAP_POSITIVE_X and the five after it
+/// \param bits  8, 16 or 32: what samples are converted to
+Image read_texture(const Api& api, const Texture& texture, GLenum target, int level, int channels,
+                   int bits, ColorSpace color_space);
 
 }  // namespace relief::gl
