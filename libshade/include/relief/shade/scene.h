@@ -52,40 +52,53 @@ struct NormalMap {
     std::optional<FlatCode> flat;
 };
 
-/// A Phong material. Outgoing radiance, with L_i a light's irradiance at normal incidence:
+/// A Phong material. Everything happens in world space, with unit vectors n (the normal, bent by
+/// the normal map), v (to the eye), and for every light i: l (to the light), h = (l + v) / |l + v|,
+/// r = 2 (n.l) n - l, and L its irradiance at normal incidence. Products of colours are by channel.
 ///
-///     ambient * diffuse' * scene.ambient + sum_i L_i (diffuse' n.l_i + specular s_i [n.l_i > 0])
-///     + emission', the first sum mixed with the reflected environment by Schlick's Fresnel term
-///     F = reflectivity + (1 - reflectivity)(1 - n.v)^5
+///     radiance = (1 - F) (ambient * tint * scene.ambient + sum_i L diffuse * tint max(n.l, 0))
+///              + sum_i L specular s [n.l > 0]
+///              + F * environment(2 (n.v) n - v)
+///              + emission * emission_texture
 ///
-/// where diffuse' = diffuse * texture * vertex colour and emission' = emission * texture.
-/// libshade/src/render/README section of ARCHITECTURE.md has the exact formula.
+///     tint = diffuse_texture * vertex colour
+///     s    = max(n.h, 0)^shininess (Blinn-Phong) or max(r.v, 0)^shininess (Phong); x^0 is 1
+///     F    = reflectivity + (grazing_reflectivity - reflectivity) (1 - n.v)^5, n.v within [0,1];
+///            0 where reflectivity is zero or the scene has no environment
+///
+/// A highlight is the mirror image of its light, so F does not dim it. An unlit material shows
+/// diffuse * tint and nothing else.
+/// Source: [Phong 1975], [Blinn 1977], [Schlick 1994]; the CPU twin is in
+/// tests/shade/render/phong_reference.h.
 struct Material {
     std::string name;
-    glm::vec3 ambient{1.0F};  ///< Share of scene.ambient that is scattered, times diffuse.
+    glm::vec3 ambient{0.8F};  ///< Share of scene.ambient that is scattered.
     glm::vec3 diffuse{0.8F};
     glm::vec3 specular{0.0F};
     glm::vec3 emission{0.0F};
-    float shininess = 32.0F;
+    float shininess = 32.0F;  ///< 0 to 1e6.
     SpecularModel specular_model = SpecularModel::blinn_phong;
     glm::vec3 reflectivity{0.0F};  ///< At normal incidence; zero: no environment reflection at all.
+    glm::vec3 grazing_reflectivity{1.0F};     ///< Equal to reflectivity: no Fresnel effect.
     std::optional<Texture> diffuse_texture;   ///< sRGB colour.
     std::optional<Texture> emission_texture;  ///< sRGB colour.
     std::optional<NormalMap> normal_map;
-    bool double_sided = false;
-    bool unlit = false;  ///< The diffuse colour as it is, without any light.
+    bool double_sided = false;  ///< Else back faces are not drawn.
+    bool unlit = false;         ///< The diffuse colour as it is, without any light.
 };
 
 /// Light from infinitely far away.
 struct DirectionalLight {
     glm::vec3 direction_world{0.0F, -1.0F, 0.0F};  ///< The way the light travels; any length but 0.
-    glm::vec3 irradiance{1.0F};                    ///< On a surface facing it.
+    /// Of a surface facing it, over pi: a white one then shows this radiance.
+    glm::vec3 irradiance{1.0F};
 };
 
-/// Light from a point, falling off with the squared distance.
+/// Light from a point, falling off with the squared distance. It does not reach a point that it
+/// touches, and no surface gets more than max_light from it.
 struct PointLight {
     glm::vec3 position_world{0.0F};
-    glm::vec3 intensity{1.0F};   ///< Irradiance at distance 1.
+    glm::vec3 intensity{1.0F};   ///< Irradiance (over pi, as above) at distance 1.
     std::optional<float> range;  ///< Fades to 0 there, as KHR_lights_punctual says.
 };
 
@@ -94,8 +107,14 @@ struct SpotLight {
     PointLight point;
     glm::vec3 direction_world{0.0F, -1.0F, 0.0F};  ///< The cone's axis; any length but 0.
     float inner_cone = 0.0F;          ///< Full intensity within, radians from the axis.
-    float outer_cone = 0.785398163F;  ///< None beyond; must be larger than inner_cone.
+    float outer_cone = 0.785398163F;  ///< None beyond; larger than inner_cone, at most pi / 2.
 };
+
+/// The most irradiance, intensity or ambient radiance that a scene may name, and that a surface
+/// gets from one light however close: products with it stay finite.
+inline constexpr float max_light = 1e18F;
+/// The largest value of a material's colour.
+inline constexpr float max_reflectance = 1e9F;
 
 /// A perspective camera that looks along its own -z.
 struct Camera {
@@ -105,8 +124,9 @@ struct Camera {
     float far = 100.0F;
 };
 
-/// Six square images, in OpenGL's order and orientation: +x -x +y -y +z -z (README of data/ says
-/// which way up each stands).
+/// Six square images of one size, in OpenGL's order and orientation: +x -x +y -y +z -z, each
+/// looked up by the world direction as it is. Seen from inside, OpenGL's faces are those of a
+/// left-handed world: sets drawn for the right-handed eye show mirrored.
 struct CubeFaces {
     std::array<ImageSource, 6> faces;
 };
@@ -141,8 +161,7 @@ struct Scene {
     std::vector<SpotLight> spot_lights;
     std::optional<Environment> environment;
     std::optional<Camera> camera;  ///< Absent: framed() decides.
-    glm::vec4 background{0.0F, 0.0F, 0.0F,
-                         0.0F};  ///< Linear, premultiplied; where no skybox shows.
+    glm::vec4 background{0.0F};    ///< Linear, alpha not multiplied in; where no skybox shows.
 };
 
 /// The box of all instances in world space.
@@ -153,14 +172,20 @@ Bounds world_bounds(const Scene& scene);
 /// \param azimuth    radians from +z towards +x, from where the camera looks
 /// \param elevation  radians above the horizon
 /// \param aspect     width / height of the picture
-/// \return near and far enclose the box closely; for an empty box or one without extent, a camera
-/// at
-///         distance 1 from its centre
+/// \return near and far enclose the box's sphere closely; for an empty box or one without extent, a
+///         camera at distance 1 from its centre (of an empty one: the origin)
+/// \throws InvalidInput if an angle or the aspect is not finite, the aspect is not positive, or the
+///         field of view is not within (0, pi)
 Camera framed(const Bounds& world, float azimuth, float elevation, float vertical_fov,
               float aspect);
 
-/// Checks every index and number that drawing relies on.
-/// \throws InvalidInput naming the first offence
+/// Checks every index and number that drawing relies on: indices name something, numbers are
+/// finite, colours and lights are within [0, max_reflectance] and [0, max_light], directions have a
+/// length, cones open, the camera has a depth range, meshes are valid. Vertex data may hold
+/// anything (NaN included); matrices may be singular. \throws InvalidInput naming the first offence
 void validate(const Scene& scene);
+
+/// The same for a camera alone.
+void validate(const Camera& camera);
 
 }  // namespace relief

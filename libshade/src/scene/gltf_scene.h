@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// A glTF document as a scene. Tests: tests/shade/scene/scene_file_test.cpp.
+#pragma once
+
+#include "relief/mesh/gltf_document.h"
+#include "relief/mesh/report.h"
+#include "relief/shade/scene.h"
+
+namespace relief {
+
+/// The document's default scene; see load_scene for what is translated and how.
+/// \throws InvalidInput if a primitive cannot be read
+Scene scene_from(const GltfDocument& document, Report& report);
+
+}  // namespace relief

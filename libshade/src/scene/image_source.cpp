@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+// The one place where a scene's images are decoded. Bad files throw as read_image does.
+// Tests: tests/shade/scene/image_source_test.cpp.
+#include "scene/image_source.h"
+
+#include <span>
+
+namespace relief {
+
+namespace {
+
+struct Decoder {
+    const std::string& name;
+    ImageUse use;
+
+    Image operator()(const std::filesystem::path& file) const { return read_image(file, use); }
+    Image operator()(const std::vector<std::byte>& bytes) const {
+        return read_image(std::span(bytes), name, use);
+    }
+    Image operator()(const Image& image) const {
+        Image copy = image;
+        if (use == ImageUse::data) copy.color_space = ColorSpace::data;
+        return copy;
+    }
+};
+
+}  // namespace
+
+Image decode(const ImageSource& source, ImageUse use) {
+    return std::visit(Decoder{source.name, use}, source.source);
+}
+
+}  // namespace relief

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// An image of a scene, decoded: from its file, its bytes, or as it is.
+/// Tests: tests/shade/scene/image_source_test.cpp.
+#pragma once
+
+#include "relief/mesh/image.h"
+#include "relief/mesh/image_file.h"
+#include "relief/shade/scene.h"
+
+namespace relief {
+
+/// \return the image; one that is decoded already keeps its samples, and for ImageUse::data its
+///         numbers are taken as numbers whatever its colour space says
+/// \throws FileError as read_image does
+Image decode(const ImageSource& source, ImageUse use);
+
+}  // namespace relief

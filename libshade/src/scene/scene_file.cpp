@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+// Scenes from model files, by extension: glTF as a document with places, lights and cameras, the
+// others as one mesh with MTL materials. World space is the file's. Bad files throw FileError.
+// Tests: tests/shade/scene/scene_file_test.cpp.
+#include "relief/shade/scene_file.h"
+
+#include <algorithm>
+#include <cctype>
+#include <map>
+#include <string>
+#include <utility>
+
+#include "relief/mesh/error.h"
+#include "relief/mesh/frames.h"
+#include "scene/gltf_scene.h"
+
+namespace relief {
+
+namespace {
+
+std::string lower_extension(const std::filesystem::path& file) {
+    std::string extension = file.extension().string();
+    std::transform(extension.begin(), extension.end(), extension.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return extension;
+}
+
+/// The scene's images by path, each once.
+class ImagesByPath {
+  public:
+    explicit ImagesByPath(std::vector<ImageSource>& images) : images_(images) {}
+
+    Texture texture(const std::filesystem::path& file) {
+        const auto [entry, is_new] = index_of_.try_emplace(file, images_.size());
+        if (is_new) images_.push_back({file.string(), file});
+        return {entry->second};
+    }
+
+  private:
+    std::vector<ImageSource>& images_;
+    std::map<std::filesystem::path, std::size_t> index_of_;
+};
+
+Material material_from(const MtlMaterial& material, std::size_t index, ImagesByPath& images,
+                       Report& report) {
+    Material phong = phong_from_mtl(material);
+    if (material.diffuse_map) phong.diffuse_texture = images.texture(*material.diffuse_map);
+    if (material.emission_map) {
+        phong.emission_texture = images.texture(*material.emission_map);
+        // map_Ke alone means the map as it is.
+        if (phong.emission == glm::vec3(0.0F)) phong.emission = glm::vec3(1.0F);
+    }
+    if (material.normal_map) {
+        phong.normal_map =
+            NormalMap{images.texture(*material.normal_map), 1.0F, Green::up, std::nullopt};
+    }
+    if (material.bump_map) {
+        report.add("bump map", "material", index,
+                   "not drawn: make a normal map of it with relief-bake bump");
+    }
+    if (material.opacity < 1.0F) report.add("transparency", "material", index, "drawn opaque");
+    return phong;
+}
+
+/// Gives every range that names no material one that both sides show.
+void name_missing_materials(Scene& scene) {
+    Mesh& mesh = scene.meshes.front();
+    if (mesh.material_ranges.empty()) {
+        mesh.material_ranges = {
+            {0, static_cast<std::uint32_t>(mesh.triangles.size()), std::nullopt}};
+    }
+    const auto fallback = static_cast<std::uint32_t>(scene.materials.size());
+    bool used = false;
+    for (MaterialRange& range : mesh.material_ranges) {
+        if (range.material) continue;
+        range.material = fallback;
+        used = true;
+    }
+    if (!used) return;
+    Material material;
+    material.name = "default";
+    material.double_sided = true;
+    scene.materials.push_back(std::move(material));
+}
+
+Scene scene_from(MeshFile contents, Report& report) {
+    Scene scene;
+    ImagesByPath images(scene.images);
+    for (std::size_t i = 0; i < contents.materials.size(); ++i) {
+        scene.materials.push_back(material_from(contents.materials[i], i, images, report));
+    }
+    FrameOptions options;  // Angle-weighted normals where there are none.
+    scene.meshes.push_back(with_frames(std::move(contents.mesh), options, report).mesh);
+    scene.instances.push_back({0, glm::mat4(1.0F), scene.meshes.front().name});
+    name_missing_materials(scene);
+    return scene;
+}
+
+}  // namespace
+
+Scene load_scene(const std::filesystem::path& file, Report& report) {
+    const std::string extension = lower_extension(file);
+    Scene scene;
+    try {
+        if (extension == ".gltf" || extension == ".glb") {
+            scene = scene_from(GltfDocument::read(file, report), report);
+        } else {
+            scene = scene_from(read_mesh(file, report), report);
+        }
+        validate(scene);
+    } catch (const InvalidInput& error) {
+        throw FileError(file, error.what());
+    }
+    return scene;
+}
+
+}  // namespace relief
