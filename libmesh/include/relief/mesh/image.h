@@ -64,8 +64,8 @@ Image to_linear(const Image& image);
 /// display does with them, and NaN becomes 0. \throws InvalidInput for data images and other depths
 Image to_srgb(const Image& linear, int bits);
 
-/// The sRGB transfer function and its inverse, on [0,1]; odd continuation below 0, linear in light
-/// above 1 is not clamped. Source: IEC 61966-2-1.
+/// The sRGB transfer function and its inverse: the formulas of the standard on [0,1] and on above
+/// 1, continued oddly below 0. Source: [IEC 61966-2-1].
 float srgb_from_linear(float linear);
 float linear_from_srgb(float coded);
 

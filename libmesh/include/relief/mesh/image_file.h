@@ -38,29 +38,39 @@ struct ImageInfo {
 /// Largest image that is read, in samples; larger headers are refused before memory is taken.
 inline constexpr std::size_t max_image_samples = std::size_t{1} << 31;
 
-/// Reads a whole image; the format is decided by content, not by name.
+/// Reads a whole image: PNG, JPEG, TIFF, EXR, HDR, BMP, TGA, PNM, DDS, PSD or WebP. The format is
+/// decided by content, not by name (but for TGA, which has no signature).
 ///
-/// \return 8, 16 or 32 bits as stored (1, 2 and 4 bits widen to 8, palettes to RGB, half and 32-bit
-///         integers to float); samples exactly as stored, alpha never multiplied in; first subimage
-/// \throws FileError if it is missing, damaged, truncated, empty, of more than 4 channels, or over
-///         max_image_samples
+/// \return 8, 16 or 32 bits as stored (1, 2 and 4 bits widen to 8, 10 and 12 to 16, palettes to
+///         RGB, transparent colours of PNG to alpha; half becomes float; signed and 32-bit integers
+///         become float, divided by their maximum); samples exactly as stored, alpha never
+///         multiplied in or out; CMYK and YCbCr become RGB. First subimage, first mip level; of EXR
+///         the data window, wherever it lies in the display window. gAMA, iCCP, Exif and their like
+///         change nothing.
+/// \throws FileError if it is missing, damaged, truncated, empty, of more than 4 channels, over
+///         max_image_samples, a volume, or announces more samples than its bytes can hold
 Image read_image(const std::filesystem::path& file, ImageUse use);
 
 /// The same from memory, as embedded in a glTF file. `name` is for messages.
 Image read_image(std::span<const std::byte> bytes, const std::string& name, ImageUse use);
 
+/// What a file's header says; throws as read_image does, as far as headers tell.
 ImageInfo read_image_info(const std::filesystem::path& file);
 
 /// Writes a whole image; the format is decided by the extension: .png .tif .tiff .exr .hdr .jpg.
 ///
-/// \param metadata  text entries, kept where the format can hold them (PNG, TIFF, EXR)
-/// \throws FileError if it cannot be written
-/// \throws InvalidInput if the format cannot hold these samples: linear colour in PNG or JPEG
-/// (encode
-///         with to_srgb first), sRGB colour in EXR or HDR, 32 bits in PNG, anything but 8 in JPEG
+/// \param metadata  text entries, kept where the format can hold them: PNG (tEXt), EXR, TIFF (lines
+///                  "key=value" of its description, read back where the key begins with "relief:");
+///                  keys have 1 to 79 letters
+/// \throws FileError if it cannot be written, or if the extension is another
+/// \throws InvalidInput if the format cannot hold these samples: float in PNG, anything but 8 bits
+///         of 1 or 3 channels in JPEG, anything but float in EXR and HDR, anything but 3 channels
+///         in HDR; or if they would read back as something else: linear colour in integers (encode
+///         it with to_srgb first), sRGB colour in float
 ///
-/// Written beside and renamed: a failure leaves no half file and the old one unharmed. Float is
-/// stored as float in EXR and TIFF.
+/// Written beside and renamed: a failure leaves no half file and the old one unharmed. The same
+/// image gives the same bytes. PNG, TIFF and EXR keep every sample (EXR and TIFF as float); HDR
+/// keeps 8 bits of precision and no negative values; JPEG is written at quality 95.
 void write_image(const std::filesystem::path& file, const Image& image,
                  const std::map<std::string, std::string>& metadata = {});
 

@@ -26,31 +26,42 @@ enum class FlatCode {
 };
 
 struct NormalMapFormat {
-    int bits = 16;  ///< 8, 16, or 32 (float: n = 2 * value - 1 for neither; stored as (n + 1) / 2).
+    /// 8, 16, or 32. Float samples hold (n + 1) / 2, as the EXR and TIFF maps of other bakers do:
+    /// zero is exactly 0.5 there, and `flat` has no say.
+    int bits = 16;
     Green green = Green::up;
     FlatCode flat = FlatCode::middle;
 };
 
 /// Stores unit normals as a three-channel data image.
 ///
-/// \param normals  three float channels, unit, y up
+/// \param normals  three float channels, y up; any length, only the direction counts
 /// \param report   counts normals that are not finite or zero: stored as flat
 /// \return round-to-nearest codes; with FlatCode::middle, (0,0,1) decodes to exactly (0,0,1) and n
-///         and -n get mirrored codes, so that mirrored texture seams cannot show
+///         and -n get mirrored codes, so that mirrored texture seams cannot show; with
+///         FlatCode::half, 0 becomes the upper of its two codes
+/// \throws InvalidInput if the image is empty or not three float channels, or bits is not 8, 16 or
+///         32
 Image encode_normal_map(const Image& normals, const NormalMapFormat& format, Report& report);
 
 /// Reads unit normals back: three float channels, unit, y up.
 ///
 /// \param map  three or four channels (a fourth is ignored); bits are the image's own
+/// \param flat    for 8 and 16 bits
 /// \param report  counts texels that decode to nothing or to non-finite: read as flat
+/// \throws InvalidInput if the image is empty or has fewer than three channels
 Image decode_normal_map(const Image& map, Green green, FlatCode flat, Report& report);
 
-/// The flat code that a map most likely uses: `half` where flat-ish texels favour 127 or the
-/// metadata says so, else `middle`.
+/// The flat code that a map most likely uses: what the metadata says; else `half` where texels that
+/// are flat in x and y, to within the two codes around zero, hold the lower one (127) more often;
+/// else `middle`. A float map is `middle`.
+///
+/// \throws InvalidInput if the image is empty or has fewer than three channels
 FlatCode detect_flat_code(const Image& map,
                           const std::map<std::string, std::string>& metadata = {});
 
-/// Text entries that say what a map holds ("relief:green" = "up", "relief:flat" = "128", ...).
+/// Text entries that say what a map holds: "relief:content", "relief:green" = "up" or "down",
+/// "relief:flat" = the code of zero: "128", "127.5", "32768", "32767.5", or "0.5" for float.
 std::map<std::string, std::string> normal_map_metadata(const NormalMapFormat& format);
 
 }  // namespace relief

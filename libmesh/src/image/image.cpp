@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: Apache-2.0
+// Pictures in memory, and the sRGB transfer function [IEC 61966-2-1] between coded values and
+// light. The function is evaluated in double by the standard's own formula and rounded once to
+// float, so that every 8- and 16-bit code survives decoding and encoding exactly. Bad sizes and
+// depths throw; NaN encodes as 0. Tests: tests/mesh/image/image_test.cpp.
+#include "relief/mesh/image.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string_view>
+#include <type_traits>
+
+#include "parallel.h"
+#include "relief/mesh/error.h"
+
+namespace relief {
+namespace {
+
+constexpr std::size_t samples_per_piece = 1 << 14;
+
+// The constants as the standard prints them. The two branches do not quite meet: between the codes
+// 0.04045 and its light 0.0031308 lies a step of 1e-7, which no 16-bit code can see.
+double decoded(double coded) {
+    return coded <= 0.04045 ? coded / 12.92 : std::pow((coded + 0.055) / 1.055, 2.4);
+}
+
+double encoded(double light) {
+    return light <= 0.0031308 ? 12.92 * light : 1.055 * std::pow(light, 1.0 / 2.4) - 0.055;
+}
+
+/// Light of every 8- or 16-bit code.
+template <typename Code>
+std::vector<float> decoding_table() {
+    constexpr std::size_t largest = std::numeric_limits<Code>::max();
+    std::vector<float> table(largest + 1);
+    for (std::size_t code = 0; code <= largest; ++code)
+        table[code] =
+            static_cast<float>(decoded(static_cast<double>(code) / static_cast<double>(largest)));
+    return table;
+}
+
+float light_of(std::uint8_t code) {
+    static const std::vector<float> table = decoding_table<std::uint8_t>();
+    return table[code];
+}
+
+float light_of(std::uint16_t code) {
+    static const std::vector<float> table = decoding_table<std::uint16_t>();
+    return table[code];
+}
+
+float light_of(float coded) {
+    return linear_from_srgb(coded);
+}
+
+template <typename Code>
+float unit_of(Code code) {
+    return static_cast<float>(code) / static_cast<float>(std::numeric_limits<Code>::max());
+}
+
+float unit_of(float value) {
+    return value;
+}
+
+/// A value as a code; NaN fails every comparison and so becomes 0.
+template <typename Code>
+Code code_of(double value) {
+    constexpr double largest = std::numeric_limits<Code>::max();
+    if (!(value > 0.0)) return 0;
+    return static_cast<Code>(std::min(value, 1.0) * largest + 0.5);
+}
+
+bool has_alpha(const Image& image) {
+    return image.channels == 2 || image.channels == 4;
+}
+
+/// Every sample through `color`, but alpha samples through `alpha`.
+template <typename To, typename From, typename Color, typename Alpha>
+std::vector<To> converted(const Image& image, const std::vector<From>& from, Color color,
+                          Alpha alpha) {
+    std::vector<To> to(from.size());
+    const auto channels = static_cast<std::size_t>(image.channels);
+    const std::size_t alpha_channel = has_alpha(image) ? channels - 1 : channels;
+    parallel_for(from.size(), samples_per_piece, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i)
+            to[i] = i % channels == alpha_channel ? alpha(from[i]) : color(from[i]);
+    });
+    return to;
+}
+
+Image::Samples zeros(int bits, std::size_t count) {
+    switch (bits) {
+        case 8:
+            return std::vector<std::uint8_t>(count);
+        case 16:
+            return std::vector<std::uint16_t>(count);
+        case 32:
+            return std::vector<float>(count);
+        default:
+            throw InvalidInput(fmt::format("{} bits: a sample has 8, 16 or 32", bits));
+    }
+}
+
+}  // namespace
+
+int Image::bits() const {
+    return std::visit([](const auto& all) { return static_cast<int>(sizeof(all[0]) * 8); },
+                      samples);
+}
+
+Image make_image(int width, int height, int channels, int bits, ColorSpace color_space) {
+    if (width < 1 || height < 1 || channels < 1 || channels > 4) {
+        throw InvalidInput(
+            fmt::format("an image of {} x {} texels with {} channels: sizes start "
+                        "at 1, and channels end at 4",
+                        width, height, channels));
+    }
+    Image image{width, height, channels, color_space, {}};
+    image.samples = zeros(bits, image.sample_count());
+    return image;
+}
+
+Image to_float(const Image& image) {
+    Image result{image.width, image.height, image.channels, image.color_space, {}};
+    result.samples = std::visit(
+        [&](const auto& from) {
+            const auto same = [](auto sample) { return unit_of(sample); };
+            return converted<float>(image, from, same, same);
+        },
+        image.samples);
+    return result;
+}
+
+Image to_linear(const Image& image) {
+    if (image.color_space != ColorSpace::srgb) return to_float(image);
+    Image result{image.width, image.height, image.channels, ColorSpace::linear, {}};
+    result.samples = std::visit(
+        [&](const auto& from) {
+            return converted<float>(
+                image, from, [](auto sample) { return light_of(sample); },
+                [](auto sample) { return unit_of(sample); });
+        },
+        image.samples);
+    return result;
+}
+
+Image to_srgb(const Image& linear, int bits) {
+    if (linear.color_space != ColorSpace::linear || linear.bits() != 32)
+        throw InvalidInput("only linear float images can be encoded as sRGB");
+    if (bits != 8 && bits != 16)
+        throw InvalidInput(fmt::format("sRGB of {} bits: there are 8 and 16", bits));
+    Image result{linear.width, linear.height, linear.channels, ColorSpace::srgb, {}};
+    const auto encode_as = [&]<typename Code>(std::type_identity<Code>) {
+        result.samples = converted<Code>(
+            linear, std::get<std::vector<float>>(linear.samples),
+            [](float light) { return code_of<Code>(encoded(light)); },
+            [](float alpha) { return code_of<Code>(alpha); });
+    };
+    if (bits == 8) encode_as(std::type_identity<std::uint8_t>{});
+    if (bits == 16) encode_as(std::type_identity<std::uint16_t>{});
+    return result;
+}
+
+float srgb_from_linear(float linear) {
+    return static_cast<float>(std::copysign(encoded(std::abs(linear)), linear));
+}
+
+float linear_from_srgb(float coded) {
+    return static_cast<float>(std::copysign(decoded(std::abs(coded)), coded));
+}
+
+}  // namespace relief

@@ -1,0 +1,218 @@
+// SPDX-License-Identifier: Apache-2.0
+// Unit normals in tangent space (y up) to stored codes and back, under either meaning of zero; see
+// normal_map.h. Directions of any length are normalised in double before they are rounded, halves
+// away from zero, which keeps n and -n mirrored. What is no direction is flat, and counted.
+// Tests: tests/mesh/image/normal_map_test.cpp.
+#include "relief/mesh/normal_map.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <mutex>
+
+#include "parallel.h"
+#include "relief/mesh/error.h"
+
+namespace relief {
+namespace {
+
+constexpr std::size_t texels_per_piece = 1 << 14;
+
+struct Direction {
+    double x, y, z;
+};
+
+/// A direction at length 1, or flat where there is none; says which.
+bool make_unit(Direction& direction) {
+    const double largest =
+        std::max({std::abs(direction.x), std::abs(direction.y), std::abs(direction.z)});
+    const bool usable = largest > 0.0 && std::isfinite(direction.x + direction.y + direction.z);
+    if (!usable) {
+        direction = {0.0, 0.0, 1.0};
+        return false;
+    }
+    const double length = std::sqrt(direction.x * direction.x + direction.y * direction.y +
+                                    direction.z * direction.z);
+    direction = {direction.x / length, direction.y / length, direction.z / length};
+    return true;
+}
+
+/// Calls each(texel, report) for every texel in parallel; the findings come together in `report`.
+template <typename Each>
+void for_each_texel(std::size_t count, Report& report, Each each) {
+    std::mutex mutex;
+    parallel_for(count, texels_per_piece, [&](std::size_t begin, std::size_t end) {
+        Report piece;
+        for (std::size_t texel = begin; texel < end; ++texel)
+            each(texel, piece);
+        const std::lock_guard lock(mutex);
+        report.merge(piece);
+    });
+}
+
+/// Codes of 8 or 16 bits under one of the two meanings of zero.
+template <typename Code>
+struct Coding {
+    static constexpr double largest = std::numeric_limits<Code>::max();
+    static constexpr double middle = (largest + 1.0) / 2.0;
+    FlatCode flat;
+
+    [[nodiscard]] Code encoded(double component) const {
+        // `half` has its zero between two codes, so that only a sum can be rounded; there and here
+        // the cast cuts off, which is a nearest code after adding a half.
+        if (flat == FlatCode::half)
+            return static_cast<Code>(largest / 2.0 + largest / 2.0 * component + 0.5);
+        const double steps = (middle - 1.0) * component;
+        return static_cast<Code>(static_cast<int>(middle) +
+                                 static_cast<int>(steps + std::copysign(0.5, steps)));
+    }
+
+    [[nodiscard]] double decoded(Code code) const {
+        if (flat == FlatCode::middle) return std::max((code - middle) / (middle - 1.0), -1.0);
+        return 2.0 * code / largest - 1.0;
+    }
+};
+
+/// Float samples are scaled to [0,1], where zero is exactly 0.5 and no question of codes arises.
+template <>
+struct Coding<float> {
+    FlatCode flat;
+
+    [[nodiscard]] static float encoded(double component) {
+        return static_cast<float>((component + 1.0) / 2.0);
+    }
+    [[nodiscard]] static double decoded(float sample) { return 2.0 * sample - 1.0; }
+};
+
+template <typename Sample>
+void encode(std::span<const float> normals, const NormalMapFormat& format, Image& result,
+            Report& report) {
+    const std::span<Sample> samples = result.as<Sample>();
+    const Coding<Sample> coding{format.flat};
+    const double green = format.green == Green::up ? 1.0 : -1.0;
+    for_each_texel(normals.size() / 3, report, [&](std::size_t texel, Report& found) {
+        const float* normal = &normals[texel * 3];
+        Direction direction{normal[0], normal[1] * green, normal[2]};
+        if (!make_unit(direction))
+            found.add("normal without direction", "texel", texel, "stored as flat");
+        samples[texel * 3] = coding.encoded(direction.x);
+        samples[texel * 3 + 1] = coding.encoded(direction.y);
+        samples[texel * 3 + 2] = coding.encoded(direction.z);
+    });
+}
+
+template <typename Sample>
+void decode(const Image& map, Green green, FlatCode flat, std::span<float> normals,
+            Report& report) {
+    const std::span<const Sample> samples = map.as<Sample>();
+    const auto channels = static_cast<std::size_t>(map.channels);
+    const Coding<Sample> coding{flat};
+    const double up = green == Green::up ? 1.0 : -1.0;
+    for_each_texel(normals.size() / 3, report, [&](std::size_t texel, Report& found) {
+        const Sample* sample = &samples[texel * channels];
+        Direction direction{coding.decoded(sample[0]), coding.decoded(sample[1]) * up,
+                            coding.decoded(sample[2])};
+        if (!make_unit(direction))
+            found.add("normal without direction", "texel", texel, "read as flat");
+        // Adding zero turns -0 into 0: flat is (0,0,1) to the bit.
+        normals[texel * 3] = static_cast<float>(direction.x + 0.0);
+        normals[texel * 3 + 1] = static_cast<float>(direction.y + 0.0);
+        normals[texel * 3 + 2] = static_cast<float>(direction.z + 0.0);
+    });
+}
+
+/// Whether the lower of the two codes around zero is the commoner among texels that are flat in
+/// both x and y, to within those two codes.
+template <typename Code>
+FlatCode commoner_zero(const Image& map) {
+    constexpr Code upper = std::numeric_limits<Code>::max() / 2 + 1;
+    constexpr Code lower = upper - 1;
+    const std::span<const Code> samples = map.as<Code>();
+    const auto channels = static_cast<std::size_t>(map.channels);
+    const auto flat = [](Code code) { return code == lower || code == upper; };
+    std::size_t lower_count = 0;
+    std::size_t upper_count = 0;
+    for (std::size_t first = 0; first + 2 < samples.size(); first += channels) {
+        if (!flat(samples[first]) || !flat(samples[first + 1])) continue;
+        for (std::size_t channel = 0; channel < 2; ++channel)
+            ++(samples[first + channel] == lower ? lower_count : upper_count);
+    }
+    return lower_count > upper_count ? FlatCode::half : FlatCode::middle;
+}
+
+std::string zero_code(const NormalMapFormat& format) {
+    if (format.bits == 32) return "0.5";
+    const double largest = format.bits == 8 ? 255.0 : 65535.0;
+    return fmt::format("{}",
+                       format.flat == FlatCode::middle ? (largest + 1.0) / 2.0 : largest / 2.0);
+}
+
+void check_map(const Image& map) {
+    if (map.empty()) throw InvalidInput("an empty image holds no normals");
+    if (map.channels < 3) {
+        throw InvalidInput(fmt::format("a normal map has 3 or 4 channels, not {}", map.channels));
+    }
+}
+
+}  // namespace
+
+Image encode_normal_map(const Image& normals, const NormalMapFormat& format, Report& report) {
+    if (normals.empty()) throw InvalidInput("an empty image holds no normals");
+    if (normals.channels != 3 || normals.bits() != 32) {
+        throw InvalidInput(fmt::format("normals have 3 float channels, not {} of {} bits",
+                                       normals.channels, normals.bits()));
+    }
+    Image result = make_image(normals.width, normals.height, 3, format.bits, ColorSpace::data);
+    const std::span<const float> all = normals.as<float>();
+    switch (format.bits) {
+        case 8:
+            encode<std::uint8_t>(all, format, result, report);
+            break;
+        case 16:
+            encode<std::uint16_t>(all, format, result, report);
+            break;
+        default:
+            encode<float>(all, format, result, report);
+            break;
+    }
+    return result;
+}
+
+Image decode_normal_map(const Image& map, Green green, FlatCode flat, Report& report) {
+    check_map(map);
+    Image result = make_image(map.width, map.height, 3, 32, ColorSpace::data);
+    const std::span<float> normals = result.as<float>();
+    switch (map.bits()) {
+        case 8:
+            decode<std::uint8_t>(map, green, flat, normals, report);
+            break;
+        case 16:
+            decode<std::uint16_t>(map, green, flat, normals, report);
+            break;
+        default:
+            decode<float>(map, green, flat, normals, report);
+            break;
+    }
+    return result;
+}
+
+FlatCode detect_flat_code(const Image& map, const std::map<std::string, std::string>& metadata) {
+    check_map(map);
+    if (const auto said = metadata.find("relief:flat"); said != metadata.end()) {
+        if (said->second == "127.5" || said->second == "32767.5") return FlatCode::half;
+        if (said->second == "128" || said->second == "32768") return FlatCode::middle;
+    }
+    if (map.bits() == 8) return commoner_zero<std::uint8_t>(map);
+    if (map.bits() == 16) return commoner_zero<std::uint16_t>(map);
+    return FlatCode::middle;
+}
+
+std::map<std::string, std::string> normal_map_metadata(const NormalMapFormat& format) {
+    return {{"relief:content", "normal map, tangent space"},
+            {"relief:green", format.green == Green::up ? "up" : "down"},
+            {"relief:flat", zero_code(format)}};
+}
+
+}  // namespace relief
