@@ -20,16 +20,20 @@ namespace relief {
 enum class SpecularTerm : std::uint8_t { none, phong, blinn_phong };
 
 /// How the finished radiance is stored: part of the program, since it is its last line.
-enum class OutputCoding : std::uint8_t { linear, srgb };
+enum class OutputCoding : std::uint8_t {
+    linear,   ///< Radiance as it is.
+    clamped,  ///< Linear, no more than 1: what multisampled srgb frames average.
+    srgb,     ///< No more than 1, as sRGB codes.
+};
 
 /// What one draw needs. Two draws with equal Features share one program.
 struct Features {
-    // Where the diffuse colour comes from, besides the material's factor.
+    // What multiplies the colours that are scattered.
     bool diffuse_texture = false;
     bool vertex_colors = false;
     // The normal: the interpolated one, or bent by a tangent-space map.
     bool normal_map = false;
-    bool double_sided = false;
+    bool double_sided = false;  ///< Back faces show the opposite of their normal.
     // The light.
     bool unlit = false;  ///< No light at all: the diffuse colour is the picture.
     bool ambient = false;
@@ -47,6 +51,9 @@ struct Features {
 
     friend auto operator<=>(const Features&, const Features&) = default;
 };
+
+/// "normal map, 2 directional lights, diffuse, Blinn-Phong, sRGB", for messages.
+std::string describe(const Features& features);
 
 /// One effect, on or off, and the reason in words that name the thing that decided it.
 struct EffectReason {
@@ -72,15 +79,29 @@ struct FramePlan {
     std::vector<EffectReason> reasons;  ///< Of the frame-wide effects.
 };
 
-/// What a draw of this material and mesh in this scene needs.
-Features features_of(const Scene& scene, const Material& material, const Mesh& mesh);
+/// What a draw of this material and mesh in this scene needs; a canonical value.
+Features features_of(const Scene& scene, const Material& material, const Mesh& mesh,
+                     OutputCoding output = OutputCoding::srgb);
 
-/// The whole scene's plan.
+/// The whole scene's plan; the scene must be valid.
 FramePlan plan_effects(const Scene& scene, OutputCoding output);
 
 /// Drops what cannot show: without light no normal, without normal no normal map, and so on.
 /// features_of() already returns canonical values; canonical(canonical(f)) == canonical(f).
 Features canonical(Features features);
+
+/// Everything that a draw's program takes from outside, by GLSL name, each list sorted.
+struct PlannedInterface {
+    std::vector<std::string> attributes;
+    std::vector<std::string> uniforms;
+    std::vector<std::string> uniform_blocks;
+    std::vector<std::string> samplers;
+
+    friend bool operator==(const PlannedInterface&, const PlannedInterface&) = default;
+};
+
+/// What the program for these features takes: exactly what is active in it once linked.
+PlannedInterface planned_interface(const Features& features);
 
 /// The default material, of meshes that name none.
 const Material& default_material();

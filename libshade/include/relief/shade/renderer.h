@@ -3,11 +3,7 @@
 /// From a scene to a picture. Tests: tests/shade/render/renderer_test.cpp.
 #pragma once
 
-#include <filesystem>
 #include <memory>
-#include <optional>
-#include <string>
-#include <vector>
 
 #include "relief/mesh/image.h"
 #include "relief/mesh/report.h"
@@ -20,8 +16,11 @@ namespace relief {
 struct FrameSettings {
     int width = 1024;
     int height = 1024;
-    int samples = 4;  ///< Per pixel: 1 or 4 (multisampling; edges only).
-    /// srgb: 8-bit RGBA, ready for a screen. linear: float RGBA radiance.
+    /// Per pixel: 1 or 4 (multisampling; edges only). Samples are averaged in linear light, each no
+    /// brighter than what the output can show.
+    int samples = 4;
+    /// srgb: 8-bit RGBA, ready for a screen. linear: float RGBA radiance. clamped: the same up
+    /// to 1.
     OutputCoding output = OutputCoding::srgb;
 };
 
@@ -29,12 +28,15 @@ struct FrameSettings {
 struct FrameTimes {
     double decode_images = 0;  ///< Reading and decoding the textures that the plan calls for.
     double prepare = 0;        ///< Tangents where missing, uploads, programs.
-    double draw = 0;           ///< The frame itself, including shader compilation at first use.
+    double draw =
+        0;  ///< The frame itself; the driver may compile shaders to machine code at first.
     double read_back = 0;
 };
 
 struct Frame {
-    Image image;  ///< Four channels, row 0 at the top, alpha not multiplied in.
+    /// Four channels, row 0 at the top, alpha not multiplied in; always finite: where a scene's
+    /// data is not (NaN vertices or texels), a pixel that it reaches is black or the largest value.
+    Image image;
     FrameTimes times;
     std::size_t programs = 0;  ///< Linked for this scene.
     std::size_t textures = 0;  ///< Uploaded for this scene.
@@ -42,23 +44,33 @@ struct Frame {
 
 /// Holds one scene on the GPU and draws it.
 ///
-/// Only what plan_effects() names is decoded, computed and uploaded. The context must outlive it
-/// and be current.
+/// Only what the effect plan names is decoded, computed and uploaded. The scene is not needed any
+/// more afterwards. The context must outlive the renderer, and be current in every call.
 class Renderer {
   public:
-    /// \param report  counts fallbacks of tangent computation and of image decoding
-    /// \throws InvalidInput if the scene is not valid; FileError if an image that is needed cannot
-    /// be
-    ///         read; GpuError
+    /// Draws as plan_effects() plans.
+    ///
+    /// \param report  counts fallbacks of tangent and normal computation and of image decoding, and
+    ///                textures that do not show because a mesh has no texture coordinates
+    /// \throws InvalidInput if the scene or the settings are not valid, FileError if an image that
+    /// is
+    ///         needed cannot be read, GpuError if OpenGL refuses something; a shader's errors are
+    ///         named by file and line
     Renderer(const Context& context, const Scene& scene, const FrameSettings& settings,
              Report& report);
+
+    /// Draws by another plan of the same scene: a plan_effects() plan with effects added, which
+    /// changes no pixel, or taken away. Sets that contradict themselves are made canonical.
+    Renderer(const Context& context, const Scene& scene, FramePlan plan,
+             const FrameSettings& settings, Report& report);
     ~Renderer();
     Renderer(const Renderer&) = delete;
     Renderer& operator=(const Renderer&) = delete;
 
     [[nodiscard]] const FramePlan& plan() const;
 
-    /// Draws the scene as the camera sees it. \throws GpuError
+    /// Draws the scene as the camera sees it. \throws InvalidInput if the camera is not valid
+    /// (scene.h); GpuError
     Frame draw(const Camera& camera);
 
   private:

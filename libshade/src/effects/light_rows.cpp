@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+// Lights as numbers for the shaders, in world space; see light_rows.h for the layout. Directions
+// are made unit in double precision, so that any length a float holds will do.
+// Tests: tests/shade/effects/light_rows_test.cpp.
+#include "effects/light_rows.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace relief {
+
+namespace {
+
+glm::vec3 unit(const glm::vec3& direction) {
+    return glm::vec3(glm::normalize(glm::dvec3(direction)));
+}
+
+glm::vec4 place_of(const PointLight& light) {
+    return {light.position_world, light.range ? 1.0F / *light.range : 0.0F};
+}
+
+void add(std::vector<glm::vec4>& rows, const DirectionalLight& light) {
+    rows.emplace_back(-unit(light.direction_world), 0.0F);
+    rows.emplace_back(light.irradiance, 0.0F);
+}
+
+void add(std::vector<glm::vec4>& rows, const PointLight& light) {
+    rows.push_back(place_of(light));
+    rows.emplace_back(light.intensity, 0.0F);
+}
+
+void add(std::vector<glm::vec4>& rows, const SpotLight& light) {
+    // Cones closer together than this are one sharp edge (KHR_lights_punctual).
+    constexpr double least_difference = 1e-3;
+    const double outer = std::cos(static_cast<double>(light.outer_cone));
+    const double inner = std::cos(static_cast<double>(light.inner_cone));
+    const double scale = 1.0 / std::max(inner - outer, least_difference);
+    rows.push_back(place_of(light.point));
+    rows.emplace_back(light.point.intensity, static_cast<float>(scale));
+    rows.emplace_back(unit(light.direction_world), static_cast<float>(-outer * scale));
+}
+
+/// Rows of the shining lights of one kind, and black rows up to the planned count.
+template <typename Light>
+void add_all(std::vector<glm::vec4>& rows, const std::vector<Light>& lights, std::size_t end) {
+    for (const Light& light : lights) {
+        if (shines(light) && rows.size() < end) add(rows, light);
+    }
+    rows.resize(end, glm::vec4(0.0F));
+}
+
+bool any(const glm::vec3& color) {
+    return color != glm::vec3(0.0F);
+}
+
+}  // namespace
+
+LightRowLayout light_row_layout(const Features& features) {
+    LightRowLayout layout;
+    layout.first_point = 2 * features.directional_lights;
+    layout.first_spot = layout.first_point + 2 * features.point_lights;
+    layout.count = layout.first_spot + 3 * features.spot_lights;
+    return layout;
+}
+
+bool shines(const DirectionalLight& light) {
+    return any(light.irradiance);
+}
+bool shines(const PointLight& light) {
+    return any(light.intensity);
+}
+bool shines(const SpotLight& light) {
+    return any(light.point.intensity);
+}
+
+std::vector<glm::vec4> light_rows(const Scene& scene, const Features& features) {
+    const LightRowLayout layout = light_row_layout(features);
+    std::vector<glm::vec4> rows;
+    rows.reserve(layout.count);
+    add_all(rows, scene.directional_lights, layout.first_point);
+    add_all(rows, scene.point_lights, layout.first_spot);
+    add_all(rows, scene.spot_lights, layout.count);
+    return rows;
+}
+
+}  // namespace relief

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+// Programs, linked once for each set of features and bound alike. A shader that does not compile is
+// GpuError, with lines named by file. Tests: tests/shade/render/programs_test.cpp.
+#include "render/program_cache.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <utility>
+
+#include "effects/surface_program.h"
+#include "relief/shade/error.h"
+
+namespace relief {
+
+namespace {
+
+std::vector<gl::Location> attribute_locations() {
+    const auto at = [](const char* name, Attribute attribute) {
+        return gl::Location{name, static_cast<GLuint>(attribute)};
+    };
+    return {at("position_object", Attribute::position_object),
+            at("normal_object", Attribute::normal_object), at("texcoord", Attribute::texcoord),
+            at("tangent_object", Attribute::tangent_object),
+            at("color_linear", Attribute::color_linear)};
+}
+
+constexpr std::array<std::pair<const char*, TextureUnit>, 6> texture_units{{
+    {"diffuse_texture", TextureUnit::diffuse_texture},
+    {"normal_texture", TextureUnit::normal_texture},
+    {"emission_texture", TextureUnit::emission_texture},
+    {"environment", TextureUnit::environment},
+    {"light_buffer", TextureUnit::light_buffer},
+    {"averaged", TextureUnit::averaged},
+}};
+
+}  // namespace
+
+gl::LinkedProgram link(const gl::Api& api, const std::string& name, const ShaderSource& vertex,
+                       const ShaderSource& fragment) {
+    try {
+        gl::LinkedProgram program(api,
+                                  {name, vertex.text, fragment.text, attribute_locations(), {}});
+        program.use();
+        for (const auto& [sampler, unit] : texture_units) {
+            program.set(sampler, static_cast<int>(unit));
+        }
+        program.bind_block("Lights", lights_binding);
+        return program;
+    } catch (const GpuError& error) {
+        const std::string message = error.what();
+        const bool in_vertex = message.find("vertex shader:") != std::string::npos;
+        throw GpuError(with_file_names(message, in_vertex ? vertex : fragment));
+    }
+}
+
+const DrawProgram& ProgramCache::get(const Features& features) {
+    std::unique_ptr<DrawProgram>& entry = programs_[features];
+    if (!entry) {
+        const SurfaceProgram source = surface_program(features);
+        entry = std::make_unique<DrawProgram>(
+            DrawProgram{link(*api_, fmt::format("surface ({})", describe(features)), source.vertex,
+                             source.fragment),
+                        planned_interface(features)});
+    }
+    return *entry;
+}
+
+}  // namespace relief

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// Linked programs by the value of their Features, and what all of them agree on: attribute
+/// locations, texture units, the binding point of the lights.
+/// Tests: tests/shade/render/programs_test.cpp.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "effects/shader_source.h"
+#include "gl/program.h"
+#include "relief/shade/effects.h"
+
+namespace relief {
+
+/// Vertex attributes, by their GLSL names.
+enum class Attribute : GLuint {
+    position_object,
+    normal_object,
+    texcoord,
+    tangent_object,
+    color_linear
+};
+
+/// Texture units, by the samplers' GLSL names.
+enum class TextureUnit : GLint {
+    diffuse_texture,
+    normal_texture,
+    emission_texture,
+    environment,
+    light_buffer,
+    averaged,
+};
+
+/// The binding point of the uniform block Lights.
+inline constexpr GLuint lights_binding = 0;
+
+/// A program and the uniforms to set for every draw.
+struct DrawProgram {
+    gl::LinkedProgram linked;
+    PlannedInterface planned;
+};
+
+/// Links two stages with everything bound as above.
+/// \throws GpuError with the driver's log, its lines named by shader file
+gl::LinkedProgram link(const gl::Api& api, const std::string& name, const ShaderSource& vertex,
+                       const ShaderSource& fragment);
+
+class ProgramCache {
+  public:
+    explicit ProgramCache(const gl::Api& api) : api_(&api) {}
+
+    /// The program for these (canonical) features, linked at first use. \throws GpuError
+    const DrawProgram& get(const Features& features);
+
+    [[nodiscard]] std::size_t size() const { return programs_.size(); }
+
+  private:
+    const gl::Api* api_;
+    std::map<Features, std::unique_ptr<DrawProgram>> programs_;
+};
+
+}  // namespace relief

@@ -1,0 +1,6 @@
+// SPDX-License-Identifier: Apache-2.0
+// Radiance as it is, as far as a float goes.
+
+#include "common/displayable.glsl"
+
+vec3 coded(vec3 radiance) { return limited(radiance, 3e38); }
