@@ -4,8 +4,8 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
-
+#include "geometry/check_triangles.h"
+#include "geometry/direction.h"
 #include "relief/mesh/error.h"
 
 namespace relief {
@@ -38,10 +38,7 @@ void check_ranges(const Mesh& mesh) {
 Bounds bounds_of(const Mesh& mesh) {
     Bounds bounds;
     for (const glm::vec3& position : mesh.positions) {
-        if (!std::isfinite(position.x) || !std::isfinite(position.y) ||
-            !std::isfinite(position.z)) {
-            continue;
-        }
+        if (!is_finite(position)) continue;
         bounds.min = glm::min(bounds.min, position);
         bounds.max = glm::max(bounds.max, position);
     }
@@ -53,15 +50,7 @@ void validate(const Mesh& mesh) {
     check_length(mesh, mesh.texcoords.size(), "texture coordinates");
     check_length(mesh, mesh.tangents.size(), "tangents");
     check_length(mesh, mesh.colors.size(), "colours");
-    for (std::size_t triangle = 0; triangle < mesh.triangles.size(); ++triangle) {
-        for (int corner = 0; corner < 3; ++corner) {
-            const std::uint32_t vertex = mesh.triangles[triangle][corner];
-            if (vertex >= mesh.positions.size()) {
-                throw InvalidInput(fmt::format("triangle {} names vertex {}, but there are only {}",
-                                               triangle, vertex, mesh.positions.size()));
-            }
-        }
-    }
+    check_triangles(mesh.triangles, mesh.positions.size());
     check_ranges(mesh);
 }
 

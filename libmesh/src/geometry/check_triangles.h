@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// The one check that triangles name vertices that exist. Linear; done before anything is computed.
+/// Tests: tests/mesh/geometry/mesh_test.cpp.
+#pragma once
+
+#include <cstddef>
+#include <glm/glm.hpp>
+#include <span>
+
+namespace relief {
+
+/// \throws InvalidInput naming the first offence: "triangle 7 names vertex 12, but there are only
+/// 8"
+void check_triangles(std::span<const glm::uvec3> triangles, std::size_t vertex_count);
+
+}  // namespace relief

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// Directions in double precision, safe for every length that a float can have.
+///
+/// Differences of floats, their products and the products of those stay within the range of double
+/// (1e-45 to 1e38 to the fourth power), so that nothing here has to rescale.
+/// Tests: tests/mesh/geometry/normals_test.cpp, tangents_test.cpp.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <glm/glm.hpp>
+#include <vector>
+
+namespace relief {
+
+template <int N, typename T>
+bool is_finite(const glm::vec<N, T>& vector) {
+    for (int i = 0; i < N; ++i) {
+        if (!std::isfinite(vector[i])) return false;
+    }
+    return true;
+}
+
+/// The unit vector along `vector`, or zero where it has no direction (zero or not finite).
+inline glm::dvec3 direction_or_zero(const glm::dvec3& vector) {
+    const double length = glm::length(vector);
+    return length > 0.0 && std::isfinite(length) ? vector / length : glm::dvec3(0.0);
+}
+
+/// What is left of `vector` in the plane with this unit normal (or all of it if `normal` is zero).
+inline glm::dvec3 in_plane(const glm::dvec3& vector, const glm::dvec3& normal) {
+    return vector - normal * glm::dot(normal, vector);
+}
+
+/// The angle between two vectors of any length, 0 to pi; by atan2, which is exact where acos is
+/// not.
+inline double angle_between(const glm::dvec3& a, const glm::dvec3& b) {
+    return std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b));
+}
+
+/// Rounded to float; -0 becomes +0, so that equal directions have equal bits.
+inline glm::vec3 rounded(const glm::dvec3& vector) {
+    return glm::vec3(vector) + 0.0F;
+}
+
+/// A unit vector perpendicular to a normal of any length, by a fixed rule: the x axis, or if the
+/// normal is near that the y axis, turned into the plane of the normal.
+inline glm::vec3 perpendicular_to(const glm::vec3& normal) {
+    constexpr double near_axis = 0.9;
+    const glm::dvec3 unit = direction_or_zero(glm::dvec3(normal));
+    const glm::dvec3 axis =
+        std::abs(unit.x) < near_axis ? glm::dvec3(1.0, 0.0, 0.0) : glm::dvec3(0.0, 1.0, 0.0);
+    return rounded(direction_or_zero(in_plane(axis, unit)));
+}
+
+/// A sum that does not depend on the order of its terms, and how long it could have been at most.
+struct StableSum {
+    glm::dvec3 vector{0.0};
+    double longest = 0.0;  ///< Sum of the terms' lengths.
+
+    /// The terms cancel to less than `fraction` of what they are.
+    [[nodiscard]] bool cancels(double fraction) const {
+        return !(glm::length(vector) > fraction * longest);
+    }
+};
+
+/// Sorts the terms by value and adds them up in that order: same terms, same bits.
+inline StableSum stable_sum(std::vector<glm::dvec3>& terms) {
+    std::sort(terms.begin(), terms.end(), [](const glm::dvec3& a, const glm::dvec3& b) {
+        if (a.x != b.x) return a.x < b.x;
+        if (a.y != b.y) return a.y < b.y;
+        return a.z < b.z;
+    });
+    StableSum sum;
+    for (const glm::dvec3& term : terms) {
+        sum.vector += term;
+        sum.longest += glm::length(term);
+    }
+    return sum;
+}
+
+}  // namespace relief

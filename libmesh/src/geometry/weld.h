@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// Which vertices are the same one, stored several times: the one home of exact welding.
+///
+/// Vertices are equal when all their numbers are equal as numbers: +0 equals -0, an infinity equals
+/// itself, and a vertex with a NaN in it equals no other. No tolerance. Linear expected time.
+/// Tests: tests/mesh/geometry/weld_test.cpp.
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <span>
+#include <vector>
+
+namespace relief {
+
+/// For every vertex, the smallest index of a vertex with an equal position (its position class).
+std::vector<std::uint32_t> weld_positions(std::span<const glm::vec3> positions);
+
+/// The same for vertices that are equal in position, normal and texture coordinate. The spans are
+/// equally long.
+std::vector<std::uint32_t> weld_vertices(std::span<const glm::vec3> positions,
+                                         std::span<const glm::vec3> normals,
+                                         std::span<const glm::vec2> texcoords);
+
+/// Triangles over class representatives instead of over vertices.
+std::vector<glm::uvec3> welded_triangles(std::span<const glm::uvec3> triangles,
+                                         std::span<const std::uint32_t> representatives);
+
+}  // namespace relief
