@@ -33,7 +33,7 @@ struct Limits {
     int uniform_block_bytes = 0;  ///< Of one uniform block.
     int texture_units = 0;        ///< Of a fragment shader.
     int samples = 0;              ///< Per pixel.
-    float anisotropy = 1.0F;      ///< 1 where filtering is isotropic only.
+    float anisotropy = 1.0F;      ///< 1 where filtering is isotropic only, or wrong otherwise.
 };
 
 /// The table of one context: `api->Clear(...)`.

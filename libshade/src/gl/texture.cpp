@@ -66,6 +66,13 @@ GLenum binding_target(GLenum target) {
     return target == GL_TEXTURE_2D ? GL_TEXTURE_2D : GL_TEXTURE_CUBE_MAP;
 }
 
+/// What is asked for, as far as it goes; with nearest texels there is nothing to average.
+float usable_anisotropy(const Api& api, const Sampling& sampling) {
+    const bool is_linear =
+        sampling.magnify == GL_LINEAR && sampling.minify == GL_LINEAR_MIPMAP_LINEAR;
+    return is_linear ? std::min(sampling.anisotropy, api.limits().anisotropy) : 1.0F;
+}
+
 void check_size(const Api& api, const Image& image, std::string_view name) {
     if (image.empty()) throw InvalidInput(fmt::format("texture '{}' has no texels", name));
     const int limit = api.limits().texture_size;
@@ -117,8 +124,7 @@ void set_sampling(const Api& api, GLenum target, const Sampling& sampling) {
     api->TexParameteri(target, GL_TEXTURE_MIN_FILTER, static_cast<GLint>(sampling.minify));
     api->TexParameteri(target, GL_TEXTURE_MAG_FILTER, static_cast<GLint>(sampling.magnify));
     if (api.limits().anisotropy > 1.0F) {
-        api->TexParameterf(target, GL_TEXTURE_MAX_ANISOTROPY,
-                           std::min(sampling.anisotropy, api.limits().anisotropy));
+        api->TexParameterf(target, GL_TEXTURE_MAX_ANISOTROPY, usable_anisotropy(api, sampling));
     }
 }
 
@@ -133,7 +139,7 @@ Sampler make_sampler(const Api& api, const Sampling& sampling) {
     set(GL_TEXTURE_MAG_FILTER, sampling.magnify);
     if (api.limits().anisotropy > 1.0F) {
         api->SamplerParameterf(sampler.name(), GL_TEXTURE_MAX_ANISOTROPY,
-                               std::min(sampling.anisotropy, api.limits().anisotropy));
+                               usable_anisotropy(api, sampling));
     }
     return sampler;
 }

@@ -19,7 +19,9 @@ struct Sampling {
     GLenum wrap_t = GL_REPEAT;
     GLenum minify = GL_LINEAR_MIPMAP_LINEAR;
     GLenum magnify = GL_LINEAR;
-    float anisotropy = 16.0F;  ///< The most that is asked for; cut to what the context can.
+    /// The most that is asked for; cut to what the context can, and 1 unless both filters are
+    /// linear.
+    float anisotropy = 16.0F;
 };
 
 /// How float samples are stored.

@@ -1,0 +1,397 @@
+// SPDX-License-Identifier: Apache-2.0
+// Cube maps: every direction finds what stands there, from six images and from panoramas.
+#include "gl/cube_map.h"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <numbers>
+#include <vector>
+
+#include "gl/buffer.h"
+#include "gl/framebuffer.h"
+#include "gl/texture.h"
+#include "relief/mesh/error.h"
+#include "relief/shade/error.h"
+#include "relief/shade/image_compare.h"
+#include "support/angle.h"
+#include "support/gl_environment.h"
+
+namespace relief::gl {
+namespace {
+
+using test::degrees_between;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+class CubeMaps : public test::GlTest {};
+RELIEF_ON_EACH_BACKEND(CubeMaps);
+
+/// The directions of OpenGL's table 3.10: s to the right, t downwards, both from -1 to 1.
+glm::vec3 face_direction(std::size_t face, float s, float t) {
+    switch (face) {
+        case 0:
+            return {1, -t, -s};
+        case 1:
+            return {-1, -t, s};
+        case 2:
+            return {s, 1, t};
+        case 3:
+            return {s, -1, -t};
+        case 4:
+            return {s, -t, 1};
+        default:
+            return {-s, -t, -1};
+    }
+}
+
+/// Six faces whose texels hold what `radiance` says of their direction.
+std::vector<Image> faces_of(int size, const std::function<glm::vec3(glm::vec3)>& radiance) {
+    std::vector<Image> faces;
+    for (std::size_t face = 0; face < 6; ++face) {
+        Image image = make_image(size, size, 3, 32, ColorSpace::linear);
+        std::size_t i = 0;
+        for (int y = 0; y < size; ++y) {
+            for (int x = 0; x < size; ++x) {
+                const float s = 2.0F * (static_cast<float>(x) + 0.5F) / static_cast<float>(size);
+                const float t = 2.0F * (static_cast<float>(y) + 0.5F) / static_cast<float>(size);
+                const glm::vec3 value = radiance(face_direction(face, s - 1.0F, t - 1.0F));
+                for (int c = 0; c < 3; ++c)
+                    image.as<float>()[i++] = value[c];
+            }
+        }
+        faces.push_back(std::move(image));
+    }
+    return faces;
+}
+
+/// A panorama whose texels hold what `radiance` says of their direction.
+Image panorama_of(int width, const std::function<glm::vec3(glm::vec3)>& radiance) {
+    const int height = width / 2;
+    Image image = make_image(width, height, 3, 32, ColorSpace::linear);
+    std::size_t i = 0;
+    for (int y = 0; y < height; ++y) {
+        for (int x = 0; x < width; ++x) {
+            const double longitude = 2.0 * std::numbers::pi * ((x + 0.5) / width - 0.5);
+            const double latitude = std::numbers::pi * (0.5 - (y + 0.5) / height);
+            const glm::vec3 value =
+                radiance(glm::dvec3(std::sin(longitude) * std::cos(latitude), std::sin(latitude),
+                                    -std::cos(longitude) * std::cos(latitude)));
+            for (int c = 0; c < 3; ++c)
+                image.as<float>()[i++] = value[c];
+        }
+    }
+    return image;
+}
+
+/// What lookups in these directions give, at one level of detail.
+std::vector<glm::vec3> look_up(const Api& api, const CubeMap& cube,
+                               const std::vector<glm::vec3>& directions, float level = 0.0F) {
+    std::vector<glm::vec4> padded;
+    for (const glm::vec3& direction : directions)
+        padded.emplace_back(direction, 0.0F);
+    const Buffer buffer = make_buffer(api, padded, "directions");
+    const Texture list = make_buffer_texture(api, buffer, GL_RGBA32F, padded.size(), "directions");
+    const RenderTarget target(api, static_cast<int>(padded.size()), 1, ColorFormat::rgba32f, 1);
+    api->ActiveTexture(GL_TEXTURE1);
+    api->BindTexture(GL_TEXTURE_BUFFER, list.name());
+    api->ActiveTexture(GL_TEXTURE0);
+    api->BindTexture(GL_TEXTURE_CUBE_MAP, cube.texture.name());
+    test::cover(api,
+                "uniform samplerCube cube;\nuniform samplerBuffer directions;\n"
+                "uniform float level;\nout vec4 color;\nvoid main() {\n"
+                "    vec3 direction = texelFetch(directions, int(gl_FragCoord.x)).xyz;\n"
+                "    color = textureLod(cube, direction, level);\n}\n",
+                [&](const LinkedProgram& program) {
+                    program.set("cube", 0);
+                    program.set("directions", 1);
+                    program.set("level", level);
+                });
+    api->BindTexture(GL_TEXTURE_CUBE_MAP, 0);
+    const Image image = target.read(ColorSpace::linear);
+    std::vector<glm::vec3> result;
+    for (std::size_t i = 0; i < directions.size(); ++i) {
+        const auto texel = image.as<float>().subspan(4 * i, 3);
+        result.emplace_back(texel[0], texel[1], texel[2]);
+    }
+    return result;
+}
+
+/// Directions spread evenly over the sphere (Fibonacci's spiral).
+std::vector<glm::vec3> spread_directions(int count) {
+    std::vector<glm::vec3> directions;
+    for (int i = 0; i < count; ++i) {
+        const double y = 1.0 - (2.0 * i + 1.0) / count;
+        const double across = std::sqrt(1.0 - y * y);
+        const double turn = i * std::numbers::pi * (3.0 - std::sqrt(5.0));
+        directions.emplace_back(across * std::cos(turn), y, across * std::sin(turn));
+    }
+    return directions;
+}
+
+/// Directions close to where the panorama wraps (+z), on both sides, from pole to pole.
+std::vector<glm::vec3> directions_at_the_wrap() {
+    std::vector<glm::vec3> directions;
+    for (int i = 1; i < 1000; ++i) {
+        const double polar = std::numbers::pi * i / 1000.0;
+        const double offset = 0.001 * (i % 21 - 10);
+        directions.emplace_back(std::sin(polar) * std::sin(offset), std::cos(polar),
+                                std::sin(polar) * std::cos(offset));
+    }
+    return directions;
+}
+
+double worst_degrees(const std::vector<glm::vec3>& a, const std::vector<glm::vec3>& b) {
+    double worst = 0.0;
+    for (std::size_t i = 0; i < a.size(); ++i) {
+        worst = std::max(worst, degrees_between(glm::dvec3(a[i]), glm::dvec3(b[i])));
+    }
+    return worst;
+}
+
+/// Those whose bilinear lookup reads one face only.
+std::vector<glm::vec3> inside_faces(const std::vector<glm::vec3>& directions, int size) {
+    std::vector<glm::vec3> inside;
+    for (const glm::vec3& direction : directions) {
+        std::array<float, 3> axes{std::abs(direction.x), std::abs(direction.y),
+                                  std::abs(direction.z)};
+        std::ranges::sort(axes);
+        if (axes[1] / axes[2] < 1.0F - 1.0F / static_cast<float>(size)) inside.push_back(direction);
+    }
+    return inside;
+}
+
+const auto direction_itself = [](glm::vec3 direction) { return direction; };
+
+TEST_P(CubeMaps, EveryDirectionFindsItsTexelOfTheSixImages) {
+    Report report;
+    const CubeMap cube = make_cube_map(api(), faces_of(64, direction_itself), "axes", report);
+    EXPECT_EQ(cube.size, 64);
+    EXPECT_EQ(cube.levels, 7);
+    EXPECT_TRUE(report.empty());
+    const std::vector<glm::vec3> all = spread_directions(5000);
+    const std::vector<glm::vec3> inside = inside_faces(all, 64);
+    ASSERT_GT(inside.size(), 4500U);
+    // Within a face, direction is linear in s and t, which bilinear lookups keep; half floats leave
+    // 2^-12 in each component, 0.02 degrees.
+    EXPECT_LT(worst_degrees(look_up(api(), cube, inside), inside), 0.02);
+    // At a corner three faces meet and what stands there is their mean: a part of a texel, which is
+    // 0.6 degrees there.
+    EXPECT_LT(worst_degrees(look_up(api(), cube, all), all), 0.25);
+}
+
+TEST_P(CubeMaps, AxesFindTheMiddlesOfTheirFaces) {
+    const auto name_of = [](glm::vec3 d) {
+        const glm::vec3 size = glm::abs(d);
+        const float axis = size.x >= 1.0F ? 1.0F : (size.y >= 1.0F ? 2.0F : 3.0F);
+        return glm::vec3(axis * glm::sign(d[static_cast<int>(axis) - 1]), 0, 0);
+    };
+    Report report;
+    const CubeMap cube = make_cube_map(api(), faces_of(4, name_of), "names", report);
+    const auto seen =
+        look_up(api(), cube, {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}});
+    std::vector<float> names;
+    for (const glm::vec3& value : seen)
+        names.push_back(value.x);
+    EXPECT_THAT(names, ElementsAre(1, -1, 2, -2, 3, -3));
+}
+
+TEST_P(CubeMaps, EdgesBetweenFacesAreBlendedAcross) {
+    // A seamless lookup at the edge of +x and +z is the mean of both faces; without, one of them.
+    const auto only_x = [](glm::vec3 d) { return glm::vec3(d.x == 1.0F ? 1.0F : 0.0F); };
+    Report report;
+    const CubeMap cube = make_cube_map(api(), faces_of(8, only_x), "half", report);
+    EXPECT_NEAR(look_up(api(), cube, {{1, 0, 1}})[0].x, 0.5F, 0.01F);
+}
+
+TEST_P(CubeMaps, CodedFacesAreDecodedAtLookup) {
+    std::vector<Image> faces;
+    for (int face = 0; face < 6; ++face) {
+        faces.push_back(make_image(2, 2, 3, 8, ColorSpace::srgb));
+        for (auto& sample : faces.back().as<std::uint8_t>()) {
+            sample = static_cast<std::uint8_t>(40 * face);
+        }
+    }
+    Report report;
+    const CubeMap cube = make_cube_map(api(), faces, "coded", report);
+    const auto seen = look_up(api(), cube, {{1, 0, 0}, {0, 0, -1}});
+    EXPECT_EQ(seen[0].x, 0.0F);
+    EXPECT_NEAR(seen[1].y, linear_from_srgb(200.0F / 255.0F), 2e-3F);
+    for (std::size_t face = 0; face < 6; ++face) {
+        const Image read = read_texture(api(), cube.texture,
+                                        GL_TEXTURE_CUBE_MAP_POSITIVE_X + static_cast<GLenum>(face),
+                                        0, 3, 8, ColorSpace::srgb);
+        EXPECT_EQ(compare(read, faces[face]).max, 0.0);
+    }
+}
+
+TEST_P(CubeMaps, APanoramaIsFoundInEveryDirection) {
+    Report report;
+    const CubeMap cube =
+        make_cube_map_from_panorama(api(), panorama_of(512, direction_itself), "axes", report);
+    EXPECT_EQ(cube.size, 128);
+    EXPECT_EQ(cube.levels, 8);
+    EXPECT_TRUE(report.empty());
+    const std::vector<glm::vec3> all = spread_directions(5000);
+    const std::vector<glm::vec3> inside = inside_faces(all, 128);
+    const double worst = worst_degrees(look_up(api(), cube, inside), inside);
+    RecordProperty("worst_degrees", std::to_string(worst));
+    // Of a texel's 0.9 degrees in the middle of a face; half floats leave 0.02.
+    EXPECT_LT(worst, 0.03);
+    EXPECT_LT(worst_degrees(look_up(api(), cube, all), all), 0.125);  // At corners, as above.
+}
+
+TEST_P(CubeMaps, APanoramaHasNoSeamWhereItWraps) {
+    Report report;
+    const CubeMap cube =
+        make_cube_map_from_panorama(api(), panorama_of(512, direction_itself), "axes", report);
+    const std::vector<glm::vec3> directions = directions_at_the_wrap();
+    const double worst = worst_degrees(look_up(api(), cube, directions), directions);
+    RecordProperty("worst_degrees", std::to_string(worst));
+    // As anywhere else. Clamping instead of wrapping would be wrong by half a texel, 0.35 degrees.
+    EXPECT_LT(worst, 0.03);
+}
+
+TEST_P(CubeMaps, APanoramasPolesAndOddFacesHaveNoHole) {
+    Report report;
+    // With odd faces and an odd grid, one lookup is the pole itself, where longitude is undefined.
+    for (const int size : {1, 3, 5}) {
+        const CubeMap cube = make_cube_map_from_panorama(
+            api(), panorama_of(16 * size, [](glm::vec3) { return glm::vec3(0.5F, 2, 8); }), "even",
+            report, size);
+        for (const glm::vec3& seen : look_up(api(), cube, spread_directions(500))) {
+            // Filtering weights add up to 1 but for rounding; a hole would be far off.
+            EXPECT_LT(glm::length(seen - glm::vec3(0.5F, 2, 8)), 1e-5F);
+        }
+    }
+}
+
+TEST_P(CubeMaps, SmallFacesMissNoTexelAtTheHorizon) {
+    // One bright column; faces far coarser than the panorama must still receive its light.
+    Image panorama = make_image(256, 128, 3, 32, ColorSpace::linear);
+    for (std::size_t y = 0; y < 128; ++y)
+        panorama.as<float>()[3 * (256 * y + 130)] = 64.0F;
+    Report report;
+    const CubeMap cube = make_cube_map_from_panorama(api(), panorama, "line", report, 4);
+    const Image face = read_texture(api(), cube.texture, GL_TEXTURE_CUBE_MAP_NEGATIVE_Z, 0, 3, 32,
+                                    ColorSpace::linear);
+    double sum = 0.0;
+    for (std::size_t x = 0; x < 4; ++x)
+        sum += face.as<float>()[3 * (4 * 1 + x)];
+    // A texel beside the middle spans atan(1/2) of 2 pi, 18.9 columns, of which one is lit.
+    const double expected = 64.0 / (256.0 * std::atan(0.5) / (2.0 * std::numbers::pi));
+    EXPECT_NEAR(sum, expected, 0.15 * expected);  // The grid has 21 lookups in that span.
+}
+
+TEST_P(CubeMaps, TheSmallestLevelIsTheMeanOfAll) {
+    Report report;
+    const auto half_bright = [](glm::vec3 d) { return glm::vec3(d.y > 0.0F ? 2.0F : 0.0F); };
+    const CubeMap cube = make_cube_map(api(), faces_of(16, half_bright), "sky", report);
+    const auto seen = look_up(api(), cube, {{1, 0, 0}, {0, 1, 0}, {0, -1, 0}}, 4.0F);
+    EXPECT_NEAR(seen[0].x, 1.0F, 1e-3F);
+    EXPECT_NEAR(seen[1].x, 2.0F, 1e-3F);
+    EXPECT_NEAR(seen[2].x, 0.0F, 1e-3F);
+}
+
+TEST_P(CubeMaps, RadianceThatHalfFloatsCannotHoldIsClampedAndCounted) {
+    const float inf = std::numeric_limits<float>::infinity();
+    Image panorama = make_image(4, 2, 3, 32, ColorSpace::linear);
+    panorama.as<float>()[3] = 1e6F;
+    panorama.as<float>()[6] = inf;
+    panorama.as<float>()[9] = -inf;
+    panorama.as<float>()[10] = std::nanf("");
+    Report report;
+    const CubeMap cube = make_cube_map_from_panorama(api(), panorama, "sun", report, 8);
+    EXPECT_EQ(report.count("radiance beyond half floats"), 1U);
+    EXPECT_EQ(report.count("radiance that is not finite"), 3U);
+    float brightest = 0.0F;
+    for (std::size_t face = 0; face < 6; ++face) {
+        const Image read = read_texture(api(), cube.texture,
+                                        GL_TEXTURE_CUBE_MAP_POSITIVE_X + static_cast<GLenum>(face),
+                                        0, 3, 32, ColorSpace::linear);
+        for (const float sample : read.as<float>()) {
+            ASSERT_TRUE(std::isfinite(sample));
+            brightest = std::max(brightest, sample);
+        }
+    }
+    EXPECT_GT(brightest, 60000.0F);
+    std::vector<Image> faces = faces_of(2, direction_itself);
+    faces[4].as<float>()[0] = 70000.0F;
+    Report of_faces;
+    make_cube_map(api(), faces, "sun", of_faces);
+    EXPECT_EQ(of_faces.count("radiance beyond half floats"), 1U);
+}
+
+TEST_P(CubeMaps, FacesThatDoNotFitTogetherAreRefusedByName) {
+    Report report;
+    const auto error_of = [&](const std::vector<Image>& faces) -> std::string {
+        try {
+            make_cube_map(api(), faces, "room", report);
+            return "no error";
+        } catch (const InvalidInput& error) {
+            return error.what();
+        }
+    };
+    std::vector<Image> faces = faces_of(4, direction_itself);
+    EXPECT_EQ(error_of({faces.begin(), faces.begin() + 5}),
+              "cube map 'room' has 5 faces, but needs 6");
+    faces[3] = make_image(4, 5, 3, 32, ColorSpace::linear);
+    EXPECT_EQ(error_of(faces), "cube map 'room': face -y has 4 x 5 texels, but must be square");
+    faces[3] = make_image(8, 8, 3, 32, ColorSpace::linear);
+    EXPECT_EQ(error_of(faces), "cube map 'room': face -y has 8 x 8 texels, but face +x has 4 x 4");
+    faces[3] = make_image(4, 4, 3, 8, ColorSpace::srgb);
+    EXPECT_EQ(error_of(faces),
+              "cube map 'room': face -y differs from face +x in channels, bits or colour space");
+    faces[0] = Image{};
+    EXPECT_EQ(error_of(faces), "cube map 'room': face +x has no texels");
+}
+
+TEST_P(CubeMaps, SizesThatCannotBeAreRefusedWithTheLimit) {
+    Report report;
+    const Image panorama = make_image(4, 2, 3, 32, ColorSpace::linear);
+    const int limit = api().limits().cube_size;
+    try {
+        make_cube_map_from_panorama(api(), panorama, "vast", report, limit + 1);
+        FAIL() << "was accepted";
+    } catch (const GpuError& error) {
+        EXPECT_THAT(error.what(), HasSubstr("cube map 'vast' has faces of"));
+        EXPECT_THAT(error.what(), HasSubstr(fmt::format("at most {}", limit)));
+    }
+    EXPECT_THROW(make_cube_map_from_panorama(api(), panorama, "negative", report, -1),
+                 InvalidInput);
+    EXPECT_THROW(make_cube_map_from_panorama(api(), Image{}, "nothing", report), InvalidInput);
+}
+
+TEST_P(CubeMaps, ConvertingDisturbsNoDrawingState) {
+    const RenderTarget target(api(), 7, 5, ColorFormat::rgba8, 1);
+    GLint framebuffer = 0;
+    api()->GetIntegerv(GL_FRAMEBUFFER_BINDING, &framebuffer);
+    api()->Enable(GL_DEPTH_TEST);
+    api()->Enable(GL_SCISSOR_TEST);
+    api()->Scissor(0, 0, 1, 1);
+    Report report;
+    const CubeMap cube = make_cube_map_from_panorama(
+        api(), panorama_of(32, [](glm::vec3) { return glm::vec3(3); }), "even", report);
+    GLint bound = 0;
+    std::array<GLint, 4> viewport{};
+    api()->GetIntegerv(GL_FRAMEBUFFER_BINDING, &bound);
+    api()->GetIntegerv(GL_VIEWPORT, viewport.data());
+    EXPECT_EQ(bound, framebuffer);
+    EXPECT_THAT(viewport, ElementsAre(0, 0, 7, 5));
+    EXPECT_EQ(api()->IsEnabled(GL_DEPTH_TEST), GL_TRUE);
+    EXPECT_EQ(api()->IsEnabled(GL_SCISSOR_TEST), GL_TRUE);
+    EXPECT_EQ(api()->IsEnabled(GL_BLEND), GL_FALSE);
+    api()->Disable(GL_DEPTH_TEST);
+    api()->Disable(GL_SCISSOR_TEST);
+    // Nor has the scissor cut the faces.
+    EXPECT_LT(glm::length(look_up(api(), cube, {{0.9F, 0.8F, -1}})[0] - glm::vec3(3)), 1e-5F);
+}
+
+}  // namespace
+}  // namespace relief::gl
