@@ -5,9 +5,11 @@
 // search. Tests: tests/mesh/geometry/tangents_test.cpp.
 #include "geometry/tangent_groups.h"
 
+#include <algorithm>
 #include <numbers>
 
 #include "geometry/direction.h"
+#include "geometry/opposite_tangents.h"
 #include "parallel.h"
 
 namespace relief {
@@ -87,33 +89,88 @@ class GroupAverager {
     }
 
   private:
-    /// The triangle's tangent in the plane of the vertex normal.
-    [[nodiscard]] glm::dvec3 own_tangent(Corner corner) const {
-        const std::uint32_t triangle = triangle_of(corner);
-        return direction_in_plane(glm::dvec3(input_.gradients.along_u[triangle]), normal_);
-    }
+    /// A corner whose triangle has a gradient, and its texture directions in the normal's plane.
+    struct Member {
+        glm::dvec3 along_u;
+        glm::dvec3 along_v;
+        double angle;
+        std::uint32_t triangle;
+    };
 
-    void settle(Corner corner, const glm::dvec3& tangent) {
+    void settle(Corner corner, const glm::dvec3& tangent, CornerState state) {
+        result_.states[corner] = state;
         if (tangent == glm::dvec3(0.0)) return;
         result_.values[corner] =
             glm::vec4(rounded(tangent), static_cast<float>(signs_[triangle_of(corner)]));
     }
 
+    /// Gives a corner the direction of a sum, or if that cancels its own triangle's.
+    void settle(Corner corner, const StableSum& sum, const glm::dvec3& own) {
+        if (sum.cancels(cancelled)) {
+            settle(corner, own, CornerState::cancelled);
+        } else {
+            settle(corner, direction_or_zero(in_plane(sum.vector, normal_)), CornerState::agreed);
+        }
+    }
+
     void settle_group() {
+        collect_members();
+        if (members_.empty()) return;
         terms_.clear();
+        for (const Member& member : members_)
+            terms_.push_back(member.angle * member.along_u);
+        const StableSum all = stable_sum(terms_);
+        const std::vector<StableSum> parted =
+            can_oppose() ? parted_sums() : std::vector<StableSum>();
+        std::size_t member = 0;
         for (const Corner corner : group_) {
-            if (has_gradient(input_.gradients.kinds[triangle_of(corner)])) {
-                terms_.push_back(seen_angle(corner, normal_, input_) * own_tangent(corner));
+            if (!has_gradient(input_.gradients.kinds[triangle_of(corner)])) {
+                settle(corner, all, glm::dvec3(0.0));
+                continue;
             }
+            settle(corner, parted.empty() ? all : parted[member], members_[member].along_u);
+            ++member;
         }
-        if (terms_.empty()) return;
-        const StableSum sum = stable_sum(terms_);
-        const bool agreed = !sum.cancels(cancelled);
-        const glm::dvec3 tangent = direction_or_zero(in_plane(sum.vector, normal_));
+    }
+
+    void collect_members() {
+        members_.clear();
         for (const Corner corner : group_) {
-            result_.states[corner] = agreed ? CornerState::agreed : CornerState::cancelled;
-            settle(corner, agreed ? tangent : own_tangent(corner));
+            const std::uint32_t triangle = triangle_of(corner);
+            if (!has_gradient(input_.gradients.kinds[triangle])) continue;
+            members_.push_back(
+                {direction_in_plane(glm::dvec3(input_.gradients.along_u[triangle]), normal_),
+                 direction_in_plane(glm::dvec3(input_.gradients.along_v[triangle]), normal_),
+                 seen_angle(corner, normal_, input_), triangle});
         }
+    }
+
+    /// Whether any two members can be opposite. Not if all are on one side of the first.
+    [[nodiscard]] bool can_oppose() const {
+        const Member& first = members_.front();
+        return std::any_of(members_.begin(), members_.end(), [&](const Member& member) {
+            return !(glm::dot(first.along_u, member.along_u) > 0.0 &&
+                     glm::dot(first.along_v, member.along_v) > 0.0);
+        });
+    }
+
+    [[nodiscard]] std::vector<StableSum> parted_sums() const {
+        const glm::vec3 normal = float_normal();
+        std::vector<SidedTerm> sided;
+        sided.reserve(members_.size());
+        for (const Member& member : members_) {
+            const TriangleGradients& gradients = input_.gradients;
+            sided.push_back({member.angle * member.along_u,
+                             float_direction_in_plane(gradients.along_u[member.triangle], normal),
+                             float_direction_in_plane(gradients.along_v[member.triangle], normal)});
+        }
+        return sums_without_opposites(sided, normal_);
+    }
+
+    /// The normal as it was given where that is unit as far as float can be, to the last bit.
+    [[nodiscard]] glm::vec3 float_normal() const {
+        const glm::vec3 given = input_.normals[vertex_of(group_.front(), input_.triangles)];
+        return std::abs(glm::length(glm::dvec3(given)) - 1.0) < 1e-6 ? given : glm::vec3(normal_);
     }
 
     const TangentInput& input_;
@@ -121,6 +178,7 @@ class GroupAverager {
     CornerTangents& result_;
     glm::dvec3 normal_{0.0};
     std::vector<Corner> group_;
+    std::vector<Member> members_;
     std::vector<glm::dvec3> terms_;
 };
 

@@ -28,8 +28,8 @@ struct TangentInput {
 };
 
 /// The w of every triangle: its own, or for one without a gradient that of most of the neighbours
-/// that have one first, +1 if they balance; 0 where no triangle with a gradient can be reached. (The
-/// reference implementation takes that of the first to come in the list.)
+/// that have one first, +1 if they balance; 0 where no triangle with a gradient can be reached.
+/// (The reference implementation takes that of the first to come in the list.)
 std::vector<std::int8_t> triangle_signs(const TangentInput& input);
 
 /// How a corner came by its tangent.

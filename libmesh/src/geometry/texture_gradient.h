@@ -35,6 +35,7 @@ inline bool takes_part(Gradient gradient) {
 struct TriangleGradients {
     std::vector<Gradient> kinds;
     std::vector<glm::vec3> along_u;  ///< Unit, in the triangle's plane; zero where there is none.
+    std::vector<glm::vec3> along_v;  ///< The same for v, upwards in the image.
 };
 
 /// \param texcoords  upper left origin, v down; the gradient is that of the upright image, v up
