@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: Apache-2.0
+// The planner's decisions and their reasons, by hand, without OpenGL.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "relief/shade/effects.h"
+#include "support/shapes.h"
+
+namespace relief {
+namespace {
+
+Material gray(const char* name = "body") {
+    Material material;
+    material.name = name;
+    return material;
+}
+
+/// One grid under one directional light.
+Scene lit_scene(const Material& material) {
+    Scene scene;
+    scene.meshes = {test::grid(1)};
+    scene.meshes[0].name = "plane";
+    scene.meshes[0].material_ranges = {{0, 2, 0}};
+    scene.materials = {material};
+    scene.instances = {{0, glm::mat4(1), "node"}};
+    scene.directional_lights = {{{0, 0, -1}, {1, 1, 1}}};
+    return scene;
+}
+
+const EffectReason& reason(const std::vector<EffectReason>& reasons, const char* effect) {
+    const auto found = std::find_if(reasons.begin(), reasons.end(),
+                                    [&](const EffectReason& r) { return r.effect == effect; });
+    if (found == reasons.end()) throw std::runtime_error(std::string("no reason for ") + effect);
+    return *found;
+}
+
+Features features(const Scene& scene) {
+    return plan_effects(scene, OutputCoding::srgb).draws.at(0).features;
+}
+
+TEST(EffectPlan, OfAGreySurfaceIsDiffuseLightAlone) {
+    Features expected;
+    expected.directional_lights = 1;
+    expected.diffuse = true;
+    EXPECT_EQ(features(lit_scene(gray())), expected);
+}
+
+TEST(EffectPlan, WithoutLightIsNothing) {
+    Scene scene = lit_scene(gray());
+    scene.directional_lights.clear();
+    scene.materials[0].normal_map = NormalMap{};
+    EXPECT_EQ(features(scene), Features{});
+    const FramePlan plan = plan_effects(scene, OutputCoding::srgb);
+    EXPECT_EQ(reason(plan.draws[0].reasons, "diffuse").reason, "no light reaches the surface");
+    EXPECT_EQ(reason(plan.draws[0].reasons, "normal map").reason,
+              "neither light nor reflection shows the normal");
+    EXPECT_FALSE(plan.draws[0].needs_tangents);
+}
+
+TEST(EffectPlan, LeavesBlackLightsOut) {
+    Scene scene = lit_scene(gray());
+    scene.directional_lights.push_back({{0, -1, 0}, {0, 0, 0}});
+    scene.point_lights.push_back({{0, 0, 1}, {0, 0, 0}, 3.0F});
+    EXPECT_EQ(features(scene), features(lit_scene(gray())));
+    const FramePlan plan = plan_effects(scene, OutputCoding::srgb);
+    EXPECT_EQ(reason(plan.draws[0].reasons, "directional lights").reason,
+              "the scene has 2, 1 of them black");
+    EXPECT_FALSE(reason(plan.draws[0].reasons, "point lights").on);
+}
+
+TEST(EffectPlan, NeedsTextureCoordinatesForTextures) {
+    Scene scene = lit_scene(gray());
+    scene.images = {{"image", Image{}}};
+    scene.materials[0].diffuse_texture = Texture{};
+    scene.materials[0].normal_map = NormalMap{};
+    EXPECT_TRUE(features(scene).diffuse_texture);
+    EXPECT_TRUE(features(scene).normal_map);
+    FramePlan plan = plan_effects(scene, OutputCoding::srgb);
+    EXPECT_EQ(reason(plan.draws[0].reasons, "normal map").reason,
+              "material 'body' has one and the mesh has texture coordinates");
+    EXPECT_TRUE(plan.draws[0].needs_tangents);
+
+    scene.meshes[0].texcoords.clear();
+    EXPECT_FALSE(features(scene).diffuse_texture);
+    EXPECT_FALSE(features(scene).normal_map);
+    plan = plan_effects(scene, OutputCoding::srgb);
+    EXPECT_EQ(reason(plan.draws[0].reasons, "normal map").reason,
+              "material 'body' has one, but mesh 'plane' has no texture coordinates");
+}
+
+TEST(EffectPlan, ComputesTangentsOnlyWhereThereAreNone) {
+    Scene scene = lit_scene(gray());
+    scene.materials[0].normal_map = NormalMap{};
+    scene.meshes[0].tangents.assign(4, glm::vec4(1, 0, 0, 1));
+    const FramePlan plan = plan_effects(scene, OutputCoding::srgb);
+    EXPECT_TRUE(plan.draws[0].features.normal_map);
+    EXPECT_FALSE(plan.draws[0].needs_tangents);
+    EXPECT_EQ(reason(plan.draws[0].reasons, "computed tangents").reason,
+              "mesh 'plane' has its own");
+}
+
+TEST(EffectPlan, TakesOnlyVertexColoursThatTint) {
+    Scene scene = lit_scene(gray());
+    scene.meshes[0].colors.assign(4, glm::vec4(1, 1, 1, 0.5F));
+    EXPECT_FALSE(features(scene).vertex_colors);
+    scene.meshes[0].colors[2] = glm::vec4(1, 0.5F, 1, 1);
+    EXPECT_TRUE(features(scene).vertex_colors);
+}
+
+TEST(EffectPlan, HasAmbientLightOnlyWhereChannelsMeet) {
+    Scene scene = lit_scene(gray());
+    scene.ambient = {0.2F, 0, 0};
+    EXPECT_TRUE(features(scene).ambient);
+    scene.materials[0].ambient = {0, 1, 1};
+    EXPECT_FALSE(features(scene).ambient);
+}
+
+TEST(EffectPlan, OfAnUnlitMaterialDropsEverythingButItsColours) {
+    Material material = gray();
+    material.unlit = true;
+    material.specular = {1, 1, 1};
+    material.emission = {1, 0, 0};
+    material.diffuse_texture = Texture{};
+    Scene scene = lit_scene(material);
+    scene.ambient = {1, 1, 1};
+    Features expected;
+    expected.unlit = true;
+    expected.diffuse_texture = true;
+    EXPECT_EQ(features(scene), expected);
+    EXPECT_EQ(reason(plan_effects(scene, OutputCoding::srgb).draws[0].reasons, "emission").reason,
+              "the material is unlit");
+}
+
+TEST(EffectPlan, ReflectsOnlyWithAnEnvironmentAndReflectivity) {
+    Material mirror = gray();
+    mirror.reflectivity = {0, 0, 0.5F};
+    Scene scene = lit_scene(mirror);
+    EXPECT_FALSE(features(scene).reflection);
+    scene.environment = Environment{Equirectangular{}, 1.0F, false};
+    FramePlan plan = plan_effects(scene, OutputCoding::srgb);
+    EXPECT_TRUE(plan.draws[0].features.reflection);
+    EXPECT_TRUE(plan.environment_map);
+    EXPECT_FALSE(plan.skybox);
+    EXPECT_EQ(reason(plan.reasons, "environment map").reason, "a material reflects it");
+
+    scene.materials[0].reflectivity = {0, 0, 0};
+    plan = plan_effects(scene, OutputCoding::srgb);
+    EXPECT_FALSE(plan.environment_map);
+    EXPECT_EQ(reason(plan.reasons, "environment map").reason, "nothing shows it");
+}
+
+TEST(EffectPlan, ShowsTheSkyboxOnRequest) {
+    Scene scene = lit_scene(gray());
+    scene.environment = Environment{Equirectangular{}, 1.0F, true};
+    const FramePlan plan = plan_effects(scene, OutputCoding::srgb);
+    EXPECT_TRUE(plan.skybox);
+    EXPECT_TRUE(plan.environment_map);
+    EXPECT_EQ(reason(plan.reasons, "environment map").reason, "the skybox shows it");
+}
+
+TEST(EffectPlan, KnowsHighlightsAndRanges) {
+    Material shiny = gray();
+    shiny.specular = {0.5F, 0.5F, 0.5F};
+    Scene scene = lit_scene(shiny);
+    EXPECT_EQ(features(scene).specular, SpecularTerm::blinn_phong);
+    scene.materials[0].specular_model = SpecularModel::phong;
+    EXPECT_EQ(features(scene).specular, SpecularTerm::phong);
+    scene.point_lights = {{{0, 0, 1}, {1, 1, 1}, std::nullopt}};
+    EXPECT_FALSE(features(scene).light_ranges);
+    scene.point_lights[0].range = 5.0F;
+    EXPECT_TRUE(features(scene).light_ranges);
+}
+
+TEST(EffectPlan, HasOneDrawForEachRangeOfEachInstance) {
+    Scene scene = lit_scene(gray("first"));
+    Material second = gray("second");
+    second.specular = {1, 1, 1};
+    scene.materials.push_back(second);
+    scene.meshes[0].material_ranges = {{0, 1, 1}, {1, 1, std::nullopt}};
+    scene.instances.push_back({0, glm::mat4(2), "again"});
+    const FramePlan plan = plan_effects(scene, OutputCoding::linear);
+    ASSERT_EQ(plan.draws.size(), 4U);
+    EXPECT_EQ(plan.draws[0].features.specular, SpecularTerm::blinn_phong);
+    EXPECT_EQ(plan.draws[1].features.specular, SpecularTerm::none);  // The default material.
+    EXPECT_EQ(plan.draws[3].instance, 1U);
+    EXPECT_EQ(plan.draws[3].range, (MaterialRange{1, 1, std::nullopt}));
+    EXPECT_EQ(plan.draws[0].features.output, OutputCoding::linear);
+}
+
+TEST(EffectPlan, SaysForEveryEffectWhetherItIsOnAndWhy) {
+    const FramePlan plan = plan_effects(lit_scene(gray()), OutputCoding::srgb);
+    EXPECT_EQ(plan.draws[0].reasons.size(), 17U);
+    for (const EffectReason& r : plan.draws[0].reasons)
+        EXPECT_FALSE(r.reason.empty()) << r.effect;
+    const auto on = std::count_if(plan.draws[0].reasons.begin(), plan.draws[0].reasons.end(),
+                                  [](const EffectReason& r) { return r.on; });
+    EXPECT_EQ(on, 2);  // Directional lights and diffuse.
+}
+
+TEST(FeaturesOf, AgreeWithThePlan) {
+    const Scene scene = lit_scene(gray());
+    EXPECT_EQ(features_of(scene, scene.materials[0], scene.meshes[0]), features(scene));
+}
+
+}  // namespace
+}  // namespace relief
