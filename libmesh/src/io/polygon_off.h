@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// OFF files in text form, with normals, colours and texture coordinates.
+/// Tests: tests/mesh/io/off_test.cpp.
+#pragma once
+
+#include <filesystem>
+
+#include "relief/mesh/mesh_file.h"
+#include "relief/mesh/report.h"
+
+namespace relief {
+
+/// See read_mesh in mesh_file.h. Vertices are kept as they are; v is upwards in the file, as in
+/// PLY.
+///
+/// Why not OpenMesh's reader: version 9 gives 32718 faces without vertices for a file of two faces
+/// with a NaN in it, takes gigabytes for a wrong count, and nothing if counts stand behind "OFF".
+MeshFile read_off(const std::filesystem::path& file, Report& report);
+
+}  // namespace relief
