@@ -49,7 +49,7 @@ struct NormalMap {
     float scale = 1.0F;  ///< Multiplies x and y before normalising.
     Green green = Green::up;
     /// Absent: decided from the image by detect_flat_code.
-    std::optional<FlatCode> flat;
+    std::optional<FlatCode> flat = std::nullopt;
 };
 
 /// A Phong material. Everything happens in world space, with unit vectors n (the normal, bent by
@@ -98,8 +98,8 @@ struct DirectionalLight {
 /// touches, and no surface gets more than max_light from it.
 struct PointLight {
     glm::vec3 position_world{0.0F};
-    glm::vec3 intensity{1.0F};   ///< Irradiance (over pi, as above) at distance 1.
-    std::optional<float> range;  ///< Fades to 0 there, as KHR_lights_punctual says.
+    glm::vec3 intensity{1.0F};                  ///< Irradiance (over pi, as above) at distance 1.
+    std::optional<float> range = std::nullopt;  ///< Fades to 0 there, as KHR_lights_punctual says.
 };
 
 /// A point light within a cone.
