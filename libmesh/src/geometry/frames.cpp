@@ -103,6 +103,8 @@ void make_tangents(FramedMesh& framed, Report& report) {
     const std::vector<glm::vec4> tangents =
         mikktspace_tangents(mesh.positions, mesh.normals, mesh.texcoords, mesh.triangles, report);
     store_corners(framed, tangents, &Mesh::tangents, [&](std::size_t vertex) {
+        report.add("tangent of an isolated vertex", "vertex", vertex,
+                   "is a fixed one perpendicular to its normal");
         return glm::vec4(perpendicular_to(framed.mesh.normals[vertex]), -1.0F);
     });
 }

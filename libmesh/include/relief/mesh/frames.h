@@ -43,7 +43,9 @@ struct FramedMesh {
 /// Normals, then tangents, then splits vertices where corners differ.
 ///
 /// \return every attribute carried along; results as normals.h and tangents.h promise. Kept normals
-///         are passed through bit for bit; those not unit or not finite are counted in the report.
+///         are passed through bit for bit; those not finite, or further from unit length than
+///         8-bit storage leaves them (0.007), are counted in the report. Vertices without a
+///         triangle keep their place, with frames by the fallbacks named there.
 /// \throws InvalidInput if the mesh is not valid (mesh.h), if tangents are asked for without
 /// texture
 ///         coordinates, or if `if_missing` is keep

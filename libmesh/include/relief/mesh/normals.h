@@ -28,8 +28,10 @@ enum class NormalWeight {
 ///         only degenerate triangles, opinions that cancel, non-finite position) it is (0,0,1).
 /// \throws InvalidInput if a triangle names a vertex that does not exist
 ///
-/// Same input, same bits: each vertex sums its triangles in an order fixed by their values, not by
-/// where they stand in the list. Any scale from 1e-30 to 1e30 gives the same normals.
+/// Triangles narrower than 1e-12 of their longest edge are degenerate; opinions cancel where their
+/// sum is less than 1e-9 of their sizes. Same input, same bits: each vertex sums its triangles in
+/// an order fixed by their values, not by where they stand in the list, and the corner that a
+/// triangle begins with does not matter. Any scale from 1e-30 to 1e30 gives the same normals.
 ///
 /// Source: [Thürmer and Wüthrich 1998] (angle weights), [Gouraud 1971] (averaging).
 std::vector<glm::vec3> vertex_normals(std::span<const glm::vec3> positions,

@@ -23,9 +23,13 @@ struct VertexSplit {
     std::vector<glm::uvec3> triangles;
 };
 
-/// Splits vertices until all corners that share one also share a value, bit for bit.
+/// Splits vertices until all corners that share one also share a value, as few times as that takes.
 ///
-/// \param corner_values  three per triangle, in corner order
+/// \param corner_values  three per triangle, in corner order. Values are equal if they are as
+///                       numbers: -0 equals +0. NaNs are equal if their bits are.
+/// \return the smallest value of a vertex stays with it, the others go to copies in ascending
+/// order;
+///         so the vertices do not depend on the order of triangles
 /// \throws InvalidInput if a triangle names a vertex that does not exist, or the lengths disagree
 VertexSplit split_where_corners_differ(std::size_t vertex_count,
                                        std::span<const glm::uvec3> triangles,

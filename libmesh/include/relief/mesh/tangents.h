@@ -21,10 +21,18 @@ namespace relief {
 /// \return three per triangle, in corner order: xyz unit and perpendicular to the corner's normal,
 ///         w exactly +1 or -1, one w for all corners of a triangle;
 ///         bitangent = w * cross(normal, xyz). Where the texture has no gradient (equal or
-///         collinear coordinates, a triangle without area, non-finite values) the frame is that of
-///         a neighbour sharing the vertex, or else any frame perpendicular to the normal by a fixed
-///         rule, w = +1.
+///         collinear coordinates, a triangle without area) the frame is that of the neighbours.
+///         Where two corners of a triangle coincide or a value is not finite, it is one that other
+///         triangles have at the vertex. Where there is none, it is the x axis (the y axis if the
+///         normal is near x) turned into the plane of the normal, w = -1, which is what the
+///         reference implementation has there. A normal without direction (zero, not finite) binds
+///         nothing: the tangent follows the texture alone. Where averaged tangents cancel, each
+///         corner keeps its own triangle's.
 /// \throws InvalidInput if array lengths differ or a triangle names a vertex that does not exist
+///
+/// Same input, same bits, for any order of triangles. Vertices equal in position, normal and
+/// texture coordinate count as one, and identical triangles count once. Near-linear time on every
+/// shape.
 ///
 /// Corners of one vertex may differ (mirrored texture, hard texture seams): use split.h to turn the
 /// corners into vertices again. Feeding the result to the index list as it is would be wrong.

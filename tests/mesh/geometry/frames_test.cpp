@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: Apache-2.0
+// The whole step from a mesh to a mesh with frames.
+#include "relief/mesh/frames.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "hard_meshes.h"
+#include "relief/mesh/error.h"
+#include "relief/mesh/tangents.h"
+#include "support/angle.h"
+#include "support/shapes.h"
+
+namespace relief {
+namespace {
+
+using testing::StrEq;
+using testing::ThrowsMessage;
+
+FramedMesh framed(const Mesh& mesh, const FrameOptions& options) {
+    Report report;
+    return with_frames(mesh, options, report);
+}
+
+FrameOptions with_tangents(NormalMode normals) {
+    return {normals, NormalMode::angle, TangentMode::mikktspace};
+}
+
+/// What holds for every result: valid, sources in range, the input's vertices first and unchanged.
+void expect_carried(const Mesh& before, const FramedMesh& after) {
+    EXPECT_NO_THROW(validate(after.mesh));
+    ASSERT_EQ(after.source_vertex.size(), after.mesh.positions.size());
+    ASSERT_EQ(after.mesh.triangles.size(), before.triangles.size());
+    for (std::size_t v = 0; v < after.source_vertex.size(); ++v) {
+        const std::uint32_t source = after.source_vertex[v];
+        if (v < before.positions.size()) {
+            ASSERT_EQ(source, v);
+        }
+        ASSERT_TRUE(test::same_bits(std::vector{after.mesh.positions[v]},
+                                    std::vector{before.positions[source]}));
+    }
+    for (std::size_t t = 0; t < before.triangles.size(); ++t) {
+        for (int i = 0; i < 3; ++i)
+            ASSERT_EQ(after.source_vertex[after.mesh.triangles[t][i]], before.triangles[t][i]);
+    }
+}
+
+TEST(Frames, KeptNormalsPassThroughBitForBit) {
+    Mesh mesh = test::grid(2);
+    mesh.normals[0] = {-0.0F, 0.0F, 1.0F};
+    mesh.normals[1] = {0.0F, 0.0F, 3.0F};
+    mesh.normals[2] = {std::nanf("7"), 0.0F, 1.0F};
+    mesh.tangents.assign(9, {1, 0, 0, -1});
+    Report report;
+    const FramedMesh result = with_frames(mesh, {}, report);
+    EXPECT_TRUE(test::same_bits(result.mesh.normals, mesh.normals));
+    EXPECT_TRUE(test::same_bits(result.mesh.tangents, mesh.tangents));
+    EXPECT_EQ(result.mesh.triangles, mesh.triangles);
+    EXPECT_EQ(report.count("normal not of unit length"), 1U);
+    EXPECT_EQ(report.count("non-finite normal"), 1U);
+}
+
+TEST(Frames, NormalsFromEightBitsCountAsUnit) {
+    Mesh mesh = test::grid(1);
+    mesh.normals.assign(4, glm::round(glm::normalize(glm::vec3(1, 2, 3)) * 127.0F) / 127.0F);
+    Report report;
+    with_frames(mesh, {}, report);
+    EXPECT_TRUE(report.empty());
+}
+
+TEST(Frames, MissingNormalsAreMadeAsAsked) {
+    Mesh mesh = test::cube();
+    mesh.normals.clear();
+    const FramedMesh smooth =
+        framed(mesh, {NormalMode::keep, NormalMode::angle, TangentMode::keep});
+    const FramedMesh flat = framed(mesh, {NormalMode::keep, NormalMode::flat, TangentMode::keep});
+    for (std::size_t v = 0; v < 24; ++v) {
+        EXPECT_LE(test::degrees_between(smooth.mesh.normals[v], mesh.positions[v]), 4e-6);
+        EXPECT_EQ(flat.mesh.normals[v], test::cube().normals[v]);
+    }
+}
+
+TEST(Frames, FlatNormalsSplitOnlyWhereTrianglesBend) {
+    Mesh cube = test::cube();
+    EXPECT_EQ(framed(cube, {NormalMode::flat}).mesh.positions.size(), 24U);
+    // A roof: four vertices in a plane, two beyond the ridge; only the ridge is split.
+    Mesh roof;
+    roof.positions = {{0, 0, 0},  {0, 1, 0},  {-1, 1, 0}, {-1, 0, 0},
+                      {1, 1, -1}, {1, 0, -1}, {9, 9, 9}};
+    roof.triangles = {{0, 1, 2}, {0, 2, 3}, {0, 5, 4}, {0, 4, 1}};
+    Report report;
+    const FramedMesh result = with_frames(roof, {NormalMode::flat}, report);
+    expect_carried(roof, result);
+    EXPECT_EQ(result.mesh.positions.size(), 9U);
+    for (std::size_t t = 0; t < 4; ++t) {
+        const glm::dvec3 expected = t < 2 ? glm::dvec3(0, 0, 1) : glm::dvec3(1, 0, 1);
+        for (int i = 0; i < 3; ++i) {
+            const glm::vec3& normal = result.mesh.normals[result.mesh.triangles[t][i]];
+            EXPECT_LE(test::degrees_between(normal, expected), 4e-6);
+        }
+    }
+    EXPECT_EQ(result.mesh.normals[6], glm::vec3(0, 0, 1));
+    EXPECT_EQ(report.count("isolated vertex"), 1U);
+}
+
+TEST(Frames, ComputedNormalsDropTheTangentsMadeForOthers) {
+    Mesh mesh = test::grid(1);
+    mesh.tangents.assign(4, {1, 0, 0, 1});
+    EXPECT_TRUE(framed(mesh, {NormalMode::area}).mesh.tangents.empty());
+    EXPECT_TRUE(framed(mesh, {NormalMode::keep, NormalMode::angle, TangentMode::none})
+                    .mesh.tangents.empty());
+    mesh.normals.clear();
+    EXPECT_TRUE(framed(mesh, {}).mesh.tangents.empty()) << "tangents without normals";
+}
+
+TEST(Frames, TangentsReplaceThoseOfTheInput) {
+    Mesh mesh = test::grid(2);
+    mesh.tangents.assign(9, {0, 1, 0, -1});
+    const FramedMesh result = framed(mesh, with_tangents(NormalMode::keep));
+    EXPECT_THAT(result.mesh.tangents, testing::Each(glm::vec4(1, 0, 0, 1)));
+    EXPECT_EQ(result.mesh.positions.size(), 9U);
+}
+
+TEST(Frames, AMirroredTextureSplitsTheVerticesOfItsAxisAndNoOther) {
+    Mesh mesh = test::grid(4);
+    for (glm::vec2& texcoord : mesh.texcoords)
+        texcoord.x = std::abs(texcoord.x - 0.5F);
+    const FramedMesh result = framed(mesh, with_tangents(NormalMode::keep));
+    expect_carried(mesh, result);
+    ASSERT_EQ(result.mesh.positions.size(), 25U + 5U);
+    for (std::size_t copy = 25; copy < 30; ++copy)
+        EXPECT_EQ(mesh.positions[result.source_vertex[copy]].x, 0.5F);
+    for (const glm::uvec3& triangle : result.mesh.triangles) {
+        const float w = result.mesh.tangents[triangle.x].w;
+        EXPECT_EQ(result.mesh.tangents[triangle.y].w, w);
+        EXPECT_EQ(result.mesh.tangents[triangle.z].w, w);
+    }
+}
+
+TEST(Frames, AnIsolatedVertexStillHasAFrame) {
+    Mesh mesh = test::grid(1);
+    mesh.positions.emplace_back(7, 7, 7);
+    mesh.normals.emplace_back(1, 0, 0);
+    mesh.texcoords.emplace_back(0, 0);
+    Report report;
+    const FramedMesh result = with_frames(mesh, with_tangents(NormalMode::keep), report);
+    EXPECT_EQ(result.mesh.tangents.back(), glm::vec4(0, 1, 0, -1));
+    EXPECT_EQ(report.count("tangent of an isolated vertex"), 1U);
+}
+
+TEST(Frames, EveryHardMeshComesOutUsable) {
+    for (const test::NamedMesh& hard : test::hard_meshes()) {
+        SCOPED_TRACE(hard.name);
+        for (const NormalMode mode :
+             {NormalMode::keep, NormalMode::flat, NormalMode::area, NormalMode::angle}) {
+            const FramedMesh result = framed(hard.mesh, with_tangents(mode));
+            expect_carried(hard.mesh, result);
+            std::vector<glm::vec4> at_corners;
+            for (const glm::uvec3& triangle : result.mesh.triangles) {
+                for (int i = 0; i < 3; ++i)
+                    at_corners.push_back(result.mesh.tangents[triangle[i]]);
+            }
+            test::expect_tangent_invariants(result.mesh, at_corners);
+        }
+    }
+}
+
+TEST(Frames, TheOrderOfTrianglesChangesNoVertex) {
+    const Mesh mesh = test::sphere(16, 8);
+    const auto order = test::shuffled(mesh.triangles.size());
+    for (const NormalMode mode : {NormalMode::flat, NormalMode::angle}) {
+        const FramedMesh one = framed(mesh, with_tangents(mode));
+        const FramedMesh other =
+            framed(test::with_triangle_order(mesh, order), with_tangents(mode));
+        EXPECT_EQ(other.source_vertex, one.source_vertex);
+        EXPECT_TRUE(test::same_bits(other.mesh.normals, one.mesh.normals));
+        EXPECT_TRUE(test::same_bits(other.mesh.tangents, one.mesh.tangents));
+    }
+}
+
+TEST(Frames, WhatCannotBeDoneIsRefusedWithAReason) {
+    Mesh mesh = test::grid(1);
+    EXPECT_THAT(
+        [&] {
+            framed(mesh, {NormalMode::keep, NormalMode::keep});
+        },
+        ThrowsMessage<InvalidInput>(
+            StrEq("normals that are missing cannot be kept: if_missing must name a mode")));
+    mesh.texcoords.clear();
+    EXPECT_THAT([&] { framed(mesh, with_tangents(NormalMode::keep)); },
+                ThrowsMessage<InvalidInput>(
+                    StrEq("tangents need texture coordinates, but the mesh has none")));
+    mesh.triangles[0].x = 99;
+    EXPECT_THROW(framed(mesh, {}), InvalidInput);
+    EXPECT_NO_THROW(framed(Mesh{}, with_tangents(NormalMode::keep)));
+}
+
+}  // namespace
+}  // namespace relief

@@ -1,0 +1,213 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "hard_meshes.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <random>
+
+#include "support/shapes.h"
+
+namespace relief::test {
+namespace {
+
+constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+constexpr float infinity = std::numeric_limits<float>::infinity();
+
+/// Facing +z, texture laid on from above.
+Mesh flat(std::vector<glm::vec3> positions, std::vector<glm::uvec3> triangles) {
+    Mesh mesh;
+    for (const glm::vec3& p : positions) {
+        mesh.normals.emplace_back(0.0F, 0.0F, 1.0F);
+        mesh.texcoords.emplace_back(p.x, 1.0F - p.y);
+    }
+    mesh.positions = std::move(positions);
+    mesh.triangles = std::move(triangles);
+    return mesh;
+}
+
+/// A bumpy grid whose normals lean, so that nothing is aligned by luck.
+Mesh wavy() {
+    Mesh mesh = grid(6);
+    for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
+        const auto t = static_cast<float>(i);
+        mesh.positions[i].z = 0.1F * std::sin(1.7F * t);
+        mesh.normals[i] =
+            glm::normalize(glm::vec3(0.3F * std::cos(t), 0.3F * std::sin(2.0F * t), 1.0F));
+    }
+    return mesh;
+}
+
+template <typename Change>
+NamedMesh changed(std::string name, const Change& change) {
+    NamedMesh named{std::move(name), wavy()};
+    change(named.mesh);
+    return named;
+}
+
+void add_shapes(std::vector<NamedMesh>& meshes) {
+    const glm::vec3 o(0, 0, 0);
+    const glm::vec3 x(1, 0, 0);
+    const glm::vec3 y(0, 1, 0);
+    const glm::vec3 xy(1, 1, 0);
+    meshes.push_back({"empty", Mesh{}});
+    meshes.push_back({"vertices without triangles", flat({o, x, y}, {})});
+    meshes.push_back({"one triangle", flat({o, x, y}, {{0, 1, 2}})});
+    meshes.push_back(
+        {"triangle with a repeated index", flat({o, x, y, xy}, {{0, 1, 1}, {1, 3, 2}})});
+    meshes.push_back({"only repeated indices", flat({o, x}, {{0, 0, 0}, {0, 1, 1}})});
+    meshes.push_back({"collinear", flat({o, x, 2.0F * x, y}, {{0, 1, 2}, {0, 2, 3}})});
+    meshes.push_back(
+        {"needle", flat({o, x, {0.5F, 1e-6F, 0}, {0.5F, -1, 0}}, {{0, 1, 2}, {1, 0, 3}})});
+    meshes.push_back({"fold-over", flat({o, x, y, {0.9F, 0.9F, 0}}, {{0, 1, 2}, {1, 2, 3}})});
+    meshes.push_back(
+        {"double-sided sheet", flat({o, x, xy, y}, {{0, 1, 2}, {0, 2, 3}, {2, 1, 0}, {3, 2, 0}})});
+    meshes.push_back(
+        {"repeated triangle", flat({o, x, xy, y}, {{0, 1, 2}, {1, 2, 0}, {0, 1, 2}, {0, 2, 3}})});
+    meshes.push_back({"three triangles on an edge", flat({o, x, y, {0.5F, -1, 0}, {0.5F, 0, 1}},
+                                                         {{0, 1, 2}, {1, 0, 3}, {0, 1, 4}})});
+    meshes.push_back({"bow-tie", flat({o, x, y, -x, -y}, {{0, 1, 2}, {0, 3, 4}})});
+}
+
+void add_scales(std::vector<NamedMesh>& meshes) {
+    for (const float scale : {1e-30F, 1e-18F, 1e20F, 1e30F}) {
+        meshes.push_back(changed(fmt::format("positions times {}", scale), [&](Mesh& mesh) {
+            for (glm::vec3& position : mesh.positions)
+                position *= scale;
+        }));
+    }
+    for (const float scale : {1e-38F, 1e-25F, 1e-18F, 1e30F}) {
+        meshes.push_back(changed(fmt::format("texture times {}", scale), [&](Mesh& mesh) {
+            for (glm::vec2& texcoord : mesh.texcoords)
+                texcoord *= scale;
+        }));
+    }
+    meshes.push_back(changed("far from the origin", [](Mesh& mesh) {
+        for (glm::vec3& position : mesh.positions)
+            position += glm::vec3(1e6F, -1e6F, 1e6F);
+    }));
+    meshes.push_back(changed("texture far from its origin", [](Mesh& mesh) {
+        for (glm::vec2& texcoord : mesh.texcoords)
+            texcoord += 1e6F;
+    }));
+    meshes.push_back(changed("the largest floats", [](Mesh& mesh) {
+        for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
+            mesh.positions[i] = (mesh.positions[i] - 0.5F) * 2.0F * 3.4e38F;
+            mesh.texcoords[i] = (mesh.texcoords[i] - 0.5F) * 2.0F * 3.4e38F;
+        }
+    }));
+}
+
+void add_non_finite(std::vector<NamedMesh>& meshes) {
+    meshes.push_back(changed("NaN position", [](Mesh& m) { m.positions[17].y = nan; }));
+    meshes.push_back(changed("infinite position", [](Mesh& m) { m.positions[17].x = infinity; }));
+    meshes.push_back(changed("NaN texture coordinate", [](Mesh& m) { m.texcoords[17].x = nan; }));
+    meshes.push_back(
+        changed("infinite texture coordinate", [](Mesh& m) { m.texcoords[17].y = -infinity; }));
+    meshes.push_back(changed("NaN normal", [](Mesh& m) { m.normals[17].z = nan; }));
+    meshes.push_back(changed("infinite normal", [](Mesh& m) { m.normals[17].z = infinity; }));
+    meshes.push_back(changed("everything NaN", [](Mesh& m) {
+        std::fill(m.positions.begin(), m.positions.end(), glm::vec3(nan));
+        std::fill(m.normals.begin(), m.normals.end(), glm::vec3(nan));
+        std::fill(m.texcoords.begin(), m.texcoords.end(), glm::vec2(nan));
+    }));
+}
+
+void add_textures_and_normals(std::vector<NamedMesh>& meshes) {
+    meshes.push_back(changed("no texture gradient", [](Mesh& m) {
+        std::fill(m.texcoords.begin(), m.texcoords.end(), glm::vec2(0.0F));
+    }));
+    meshes.push_back(changed("texture on a line", [](Mesh& m) {
+        for (glm::vec2& t : m.texcoords)
+            t.y = t.x;
+    }));
+    meshes.push_back(changed("texture gradient on one side only", [](Mesh& m) {
+        for (glm::vec2& t : m.texcoords)
+            t.x = std::max(t.x, 0.5F);
+    }));
+    meshes.push_back(changed("mirrored texture", [](Mesh& m) {
+        for (glm::vec2& t : m.texcoords)
+            t.x = std::abs(t.x - 0.5F);
+    }));
+    meshes.push_back(changed("texture without order", [](Mesh& m) {
+        for (std::size_t i = 0; i < m.texcoords.size(); ++i)
+            m.texcoords[i] = glm::fract(glm::vec2(0.7F, 0.3F) * static_cast<float>(i * i));
+    }));
+    meshes.push_back(changed("zero normals", [](Mesh& m) {
+        std::fill(m.normals.begin(), m.normals.end(), glm::vec3(0.0F));
+    }));
+    meshes.push_back(changed("normals in the surface", [](Mesh& m) {
+        std::fill(m.normals.begin(), m.normals.end(), glm::vec3(1.0F, 0.0F, 0.0F));
+    }));
+    for (const float scale : {1e-30F, 0.1F, 7.0F, 1e30F}) {
+        meshes.push_back(changed(fmt::format("normals of length {}", scale), [&](Mesh& m) {
+            for (glm::vec3& n : m.normals)
+                n *= scale;
+        }));
+    }
+}
+
+void expect_tangent(const glm::vec4& tangent, const glm::vec3& vertex_normal, std::size_t corner) {
+    constexpr double tolerance = 1e-6;
+    const glm::dvec3 direction(tangent);
+    ASSERT_TRUE(std::abs(glm::length(direction) - 1.0) <= tolerance)
+        << "corner " << corner << " has length " << glm::length(direction);
+    ASSERT_EQ(std::abs(tangent.w), 1.0F) << "corner " << corner;
+    const double length = glm::length(glm::dvec3(vertex_normal));
+    if (!(length > 0.0) || !std::isfinite(length)) return;
+    const double cosine = glm::dot(direction, glm::dvec3(vertex_normal) / length);
+    ASSERT_LE(std::abs(cosine), tolerance) << "corner " << corner;
+}
+
+}  // namespace
+
+std::vector<NamedMesh> hard_meshes() {
+    std::vector<NamedMesh> meshes;
+    add_shapes(meshes);
+    add_scales(meshes);
+    add_non_finite(meshes);
+    add_textures_and_normals(meshes);
+    return meshes;
+}
+
+Mesh with_triangle_order(const Mesh& mesh, const std::vector<std::size_t>& order) {
+    Mesh result = mesh;
+    for (std::size_t i = 0; i < order.size(); ++i)
+        result.triangles[i] = mesh.triangles[order[i]];
+    return result;
+}
+
+std::vector<glm::vec4> corners_in_order(const std::vector<glm::vec4>& values,
+                                        const std::vector<std::size_t>& order) {
+    std::vector<glm::vec4> result;
+    for (const std::size_t triangle : order) {
+        const auto first = values.begin() + static_cast<std::ptrdiff_t>(3 * triangle);
+        result.insert(result.end(), first, first + 3);
+    }
+    return result;
+}
+
+std::vector<std::size_t> shuffled(std::size_t count) {
+    std::vector<std::size_t> order(count);
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::mt19937 generator(20240229);
+    for (std::size_t i = count; i > 1; --i)
+        std::swap(order[i - 1], order[generator() % i]);
+    return order;
+}
+
+void expect_tangent_invariants(const Mesh& mesh, const std::vector<glm::vec4>& tangents) {
+    ASSERT_EQ(tangents.size(), 3 * mesh.triangles.size());
+    for (std::size_t corner = 0; corner < tangents.size(); ++corner) {
+        const glm::uvec3& triangle = mesh.triangles[corner / 3];
+        const std::uint32_t vertex = triangle[static_cast<int>(corner % 3)];
+        ASSERT_NO_FATAL_FAILURE(expect_tangent(tangents[corner], mesh.normals[vertex], corner));
+        ASSERT_EQ(tangents[corner].w, tangents[corner / 3 * 3].w) << "corner " << corner;
+    }
+}
+
+}  // namespace relief::test

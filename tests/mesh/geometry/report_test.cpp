@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+// Counting findings: counts, the smallest indices, and one line for people.
+#include "relief/mesh/report.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace relief {
+namespace {
+
+using testing::ElementsAre;
+
+TEST(Report, IsEmptyUntilSomethingIsAdded) {
+    Report report;
+    EXPECT_TRUE(report.empty());
+    EXPECT_EQ(report.count("isolated vertex"), 0U);
+    report.add("isolated vertex", "vertex", 3, "gets the normal (0,0,1)");
+    EXPECT_FALSE(report.empty());
+    EXPECT_EQ(report.count("isolated vertex"), 1U);
+}
+
+TEST(Report, KeepsTheEightSmallestIndicesWhateverTheOrder) {
+    Report descending;
+    Report ascending;
+    for (std::size_t i = 0; i < 20; ++i) {
+        ascending.add("kind", "vertex", i, "outcome");
+        descending.add("kind", "vertex", 19 - i, "outcome");
+    }
+    ASSERT_EQ(ascending.findings().size(), 1U);
+    EXPECT_EQ(ascending.findings()[0].count, 20U);
+    EXPECT_THAT(ascending.findings()[0].first, ElementsAre(0, 1, 2, 3, 4, 5, 6, 7));
+    EXPECT_EQ(ascending.findings()[0], descending.findings()[0]);
+}
+
+TEST(Report, ListsKindsInOrderOfFirstAppearanceAndKeepsTheFirstOutcome) {
+    Report report;
+    report.add("second by name", "vertex", 1, "first outcome");
+    report.add("another", "triangle", 2, "other");
+    report.add("second by name", "vertex", 0, "later outcome");
+    ASSERT_EQ(report.findings().size(), 2U);
+    EXPECT_EQ(report.findings()[0].kind, "second by name");
+    EXPECT_EQ(report.findings()[0].outcome, "first outcome");
+    EXPECT_EQ(report.findings()[1].element, "triangle");
+}
+
+TEST(Report, MergesCountsAndIndices) {
+    Report a;
+    Report b;
+    for (std::size_t i = 0; i < 10; ++i) {
+        a.add("kind", "vertex", 2 * i, "outcome");
+        b.add("kind", "vertex", 2 * i + 1, "outcome");
+    }
+    b.add("only in b", "texel", 5, "outcome");
+    a.merge(b);
+    EXPECT_EQ(a.count("kind"), 20U);
+    EXPECT_THAT(a.findings()[0].first, ElementsAre(0, 1, 2, 3, 4, 5, 6, 7));
+    EXPECT_EQ(a.count("only in b"), 1U);
+}
+
+TEST(Report, SaysAFindingInOneLine) {
+    Report report;
+    report.add("degenerate triangle", "triangle", 17, "has no say");
+    report.add("degenerate triangle", "triangle", 3, "has no say");
+    EXPECT_EQ(to_string(report.findings()[0]),
+              "2 x degenerate triangle (triangle 3, 17): has no say");
+    for (std::size_t i = 100; i < 110; ++i)
+        report.add("degenerate triangle", "triangle", i, "has no say");
+    EXPECT_EQ(to_string(report.findings()[0]),
+              "12 x degenerate triangle (triangle 3, 17, 100, 101, 102, 103, 104, 105, ...): has "
+              "no say");
+}
+
+}  // namespace
+}  // namespace relief

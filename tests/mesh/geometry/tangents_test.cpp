@@ -1,0 +1,421 @@
+// SPDX-License-Identifier: Apache-2.0
+// Tangents: by hand, invariants for every hard mesh, changes that must not matter, shapes that make
+// careless grouping slow. Agreement with the reference is tangents_golden_test.cpp's.
+#include "relief/mesh/tangents.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cmath>
+#include <numbers>
+
+#include "hard_meshes.h"
+#include "relief/mesh/error.h"
+#include "relief/mesh/mesh.h"
+#include "relief/mesh/threads.h"
+#include "support/angle.h"
+#include "support/shapes.h"
+
+namespace relief {
+namespace {
+
+using test::degrees_between;
+using testing::Each;
+
+constexpr glm::vec4 along_x(1.0F, 0.0F, 0.0F, 1.0F);
+
+// A unit vector in floats is off by up to 6e-8 in all, or 3.4e-6 degrees.
+constexpr double float_degrees = 4e-6;
+
+std::vector<glm::vec4> tangents_of(const Mesh& mesh, Report& report) {
+    return mikktspace_tangents(mesh.positions, mesh.normals, mesh.texcoords, mesh.triangles,
+                               report);
+}
+
+std::vector<glm::vec4> tangents_of(const Mesh& mesh) {
+    Report report;
+    return tangents_of(mesh, report);
+}
+
+std::uint32_t vertex_at(const Mesh& mesh, std::size_t corner) {
+    return mesh.triangles[corner / 3][static_cast<int>(corner % 3)];
+}
+
+TEST(Tangents, AnUprightTextureHasTangentsAlongUAndPositiveW) {
+    // u along +x, the image upright: v down along -y. So the bitangent, w * cross(n, t), is +y: up.
+    Report report;
+    EXPECT_THAT(tangents_of(test::grid(3), report), Each(along_x));
+    EXPECT_TRUE(report.empty());
+}
+
+TEST(Tangents, AMirroredTextureHasNegativeW) {
+    Mesh mesh = test::grid(3);
+    for (glm::vec2& texcoord : mesh.texcoords)
+        texcoord.x = 1.0F - texcoord.x;
+    EXPECT_THAT(tangents_of(mesh), Each(glm::vec4(-1, 0, 0, -1)));
+}
+
+TEST(Tangents, ATextureUpsideDownIsMirroredToo) {
+    Mesh mesh = test::grid(3);
+    for (glm::vec2& texcoord : mesh.texcoords)
+        texcoord.y = 1.0F - texcoord.y;
+    EXPECT_THAT(tangents_of(mesh), Each(glm::vec4(1, 0, 0, -1)));
+}
+
+TEST(Tangents, EachFaceOfACubeFollowsItsOwnTexture) {
+    const Mesh cube = test::cube();
+    const auto tangents = tangents_of(cube);
+    const glm::vec3 rights[] = {{1, 0, 0}, {0, 0, -1}, {-1, 0, 0}, {0, 0, 1}, {1, 0, 0}, {1, 0, 0}};
+    for (std::size_t corner = 0; corner < tangents.size(); ++corner)
+        EXPECT_EQ(tangents[corner], glm::vec4(rights[corner / 6], 1.0F));
+}
+
+TEST(Tangents, OnTheSphereTheyPointEast) {
+    const Mesh sphere = test::sphere(64, 32);
+    const auto tangents = tangents_of(sphere);
+    for (std::size_t corner = 0; corner < tangents.size(); ++corner) {
+        const glm::dvec3 n(sphere.normals[vertex_at(sphere, corner)]);
+        EXPECT_EQ(tangents[corner].w, 1.0F);
+        if (std::abs(n.y) > 0.99) continue;  // East means little near a pole.
+        // Seam vertices see one side only: half a cell of 360/64 degrees at most.
+        EXPECT_LE(degrees_between(tangents[corner], {n.z, 0.0, -n.x}), 3.0);
+    }
+}
+
+TEST(Tangents, AverageByTheAngleOfTheCornerAsTheNormalSeesIt) {
+    // Around vertex 0, a corner of 90 degrees whose u runs along x, and one of 45 whose u is
+    // turned.
+    Mesh mesh;
+    mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {-1, 1, 0}};
+    mesh.normals.assign(4, {0, 0, 1});
+    mesh.texcoords = {{0, 0}, {1, 0}, {0, -1}, {-3, -1}};
+    mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
+    // Second triangle: u = 3x with v up = y: its gradient still runs along x. Turn it by the third
+    // vertex: v up = y + x there.
+    mesh.texcoords[3] = {-1, -2};
+    // In triangle 1, moving along y changes (u, v up) by (0,1), along -x + y by (-1,2); so along -x
+    // by (-1,1), and u alone grows along x + y.
+    const auto tangents = tangents_of(mesh);
+    const glm::dvec3 first(1, 0, 0);
+    const glm::dvec3 second = glm::normalize(glm::dvec3(1, 1, 0));
+    EXPECT_LE(degrees_between(tangents[0], 2.0 * first + second), float_degrees);
+    EXPECT_EQ(tangents[0], tangents[3]);
+    EXPECT_LE(degrees_between(tangents[1], first), float_degrees);
+    EXPECT_LE(degrees_between(tangents[5], second), float_degrees);
+    // At vertex 2: 45 degrees in the first triangle, 90 in the second.
+    EXPECT_LE(degrees_between(tangents[2], first + 2.0 * second), float_degrees);
+}
+
+TEST(Tangents, AreAveragedInThePlaneOfTheNormal) {
+    Mesh mesh = test::grid(1);
+    for (glm::vec3& normal : mesh.normals)
+        normal = {3, 0, 4};  // Not unit, and not perpendicular to the surface.
+    for (const glm::vec4& tangent : tangents_of(mesh))
+        EXPECT_LE(degrees_between(tangent, {4, 0, -3}), float_degrees);
+}
+
+TEST(Tangents, DifferBetweenCornersOfAVertexWhereTheTextureIsMirrored) {
+    Mesh mesh = test::grid(2);
+    for (glm::vec2& texcoord : mesh.texcoords)
+        texcoord.x = std::abs(texcoord.x - 0.5F);
+    const auto tangents = tangents_of(mesh);
+    for (std::size_t corner = 0; corner < tangents.size(); ++corner) {
+        // Cells left of the middle are mirrored.
+        const bool left = corner / 3 % 4 < 2;
+        EXPECT_EQ(tangents[corner], left ? glm::vec4(-1, 0, 0, -1) : along_x);
+    }
+}
+
+TEST(Tangents, AreTheSameForSeveralCopiesOfAVertex) {
+    Mesh mesh = test::grid(3);
+    for (std::size_t i = 0; i < mesh.positions.size(); ++i)
+        mesh.positions[i].z = 0.2F * std::sin(static_cast<float>(i));
+    const auto expected = tangents_of(mesh);
+    Mesh loose;  // Three vertices for every triangle; zeros written as -0 in half of them.
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+        for (int i = 0; i < 3; ++i) {
+            const std::uint32_t v = mesh.triangles[t][i];
+            const float zero = t % 2 == 0 ? 0.0F : -0.0F;
+            const auto copied = [&](float x) { return x == 0.0F ? zero : x; };
+            const glm::vec3& p = mesh.positions[v];
+            loose.positions.emplace_back(copied(p.x), copied(p.y), copied(p.z));
+            loose.normals.emplace_back(zero, zero, 1.0F);
+            loose.texcoords.emplace_back(copied(mesh.texcoords[v].x), copied(mesh.texcoords[v].y));
+        }
+        const auto first = static_cast<std::uint32_t>(3 * t);
+        loose.triangles.emplace_back(first, first + 1, first + 2);
+    }
+    EXPECT_TRUE(test::same_bits(tangents_of(loose), expected));
+}
+
+TEST(Tangents, HoldTheInvariantsOnEveryHardMesh) {
+    for (const test::NamedMesh& hard : test::hard_meshes()) {
+        SCOPED_TRACE(hard.name);
+        test::expect_tangent_invariants(hard.mesh, tangents_of(hard.mesh));
+    }
+}
+
+TEST(Tangents, PermutingTrianglesChangesNoBit) {
+    std::vector<test::NamedMesh> meshes = test::hard_meshes();
+    meshes.push_back({"sphere", test::sphere(20, 10)});
+    for (const test::NamedMesh& hard : meshes) {
+        SCOPED_TRACE(hard.name);
+        const auto order = test::shuffled(hard.mesh.triangles.size());
+        const auto permuted = tangents_of(test::with_triangle_order(hard.mesh, order));
+        EXPECT_TRUE(
+            test::same_bits(permuted, test::corners_in_order(tangents_of(hard.mesh), order)));
+    }
+}
+
+TEST(Tangents, TheNumberOfThreadsChangesNoBit) {
+    const Mesh sphere = test::sphere(200, 100);
+    set_thread_limit(1);
+    const auto expected = tangents_of(sphere);
+    set_thread_limit(0);
+    EXPECT_TRUE(test::same_bits(tangents_of(sphere), expected));
+}
+
+TEST(Tangents, TheScaleOfPositionsNormalsAndTextureChangesNothing) {
+    Mesh mesh = test::grid(6);
+    for (std::size_t i = 0; i < mesh.positions.size(); ++i)
+        mesh.positions[i].z = 0.1F * std::sin(1.7F * static_cast<float>(i));
+    const auto expected = tangents_of(mesh);
+    // Powers of two, so that the floats keep their digits, up to the ends of their range.
+    for (const int exponent : {-120, -60, -30, 30, 60, 120}) {
+        SCOPED_TRACE(exponent);
+        const float factor = std::ldexp(1.0F, exponent);
+        Mesh scaled = mesh;
+        for (glm::vec3& position : scaled.positions)
+            position *= factor;
+        EXPECT_TRUE(test::same_bits(tangents_of(scaled), expected)) << "positions";
+        scaled = mesh;
+        for (glm::vec3& normal : scaled.normals)
+            normal *= factor;
+        EXPECT_TRUE(test::same_bits(tangents_of(scaled), expected)) << "normals";
+        scaled = mesh;
+        for (glm::vec2& texcoord : scaled.texcoords)
+            texcoord *= factor;
+        EXPECT_TRUE(test::same_bits(tangents_of(scaled), expected)) << "texture";
+    }
+}
+
+TEST(Tangents, AnOffsetOfTheTextureCostsOnlyWhatItTakesFromTheFloats) {
+    Mesh mesh = test::grid(8);  // Multiples of 1/8 stay exact at an offset of 2^20.
+    const auto expected = tangents_of(mesh);
+    for (glm::vec2& texcoord : mesh.texcoords)
+        texcoord += 1048576.0F;
+    EXPECT_TRUE(test::same_bits(tangents_of(mesh), expected));
+}
+
+TEST(Tangents, RotateWithTheMesh) {
+    const glm::dmat3 rotation(0.6, 0.8, 0.0, -0.8, 0.6, 0.0, 0.0, 0.0, 1.0);
+    Mesh mesh = test::grid(6);
+    for (std::size_t i = 0; i < mesh.positions.size(); ++i)
+        mesh.positions[i].z = 0.1F * std::sin(1.7F * static_cast<float>(i));
+    Mesh rotated = mesh;
+    for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
+        rotated.positions[i] = rotation * glm::dvec3(mesh.positions[i]);
+        rotated.normals[i] = rotation * glm::dvec3(mesh.normals[i]);
+    }
+    const auto before = tangents_of(mesh);
+    const auto after = tangents_of(rotated);
+    for (std::size_t corner = 0; corner < before.size(); ++corner) {
+        EXPECT_EQ(after[corner].w, before[corner].w);
+        // Rounding of positions near 1 by 6e-8 against edges of 1/6: 4e-7, or 2e-5 degrees.
+        EXPECT_LE(degrees_between(after[corner], rotation * glm::dvec3(before[corner])), 1e-4);
+    }
+}
+
+TEST(Tangents, ATriangleWithoutGradientTakesItsNeighboursFrames) {
+    Mesh mesh = test::grid(2);
+    // The last triangle, at the lower right, loses its texture by a vertex of its own.
+    glm::uvec3& triangle = mesh.triangles.back();
+    const std::uint32_t doubled = triangle.y;
+    mesh.texcoords[doubled] = mesh.texcoords[triangle.x];
+    Report report;
+    const auto tangents = tangents_of(mesh, report);
+    EXPECT_GE(report.count("triangle without texture gradient"), 1U);
+    for (std::size_t corner = tangents.size() - 3; corner < tangents.size(); ++corner)
+        EXPECT_EQ(tangents[corner].w, 1.0F);
+    test::expect_tangent_invariants(mesh, tangents);
+}
+
+TEST(Tangents, WithoutAnyTextureTheyFollowAFixedRuleAndAreCounted) {
+    Mesh mesh = test::grid(1);
+    mesh.texcoords.assign(4, {0.5F, 0.5F});
+    mesh.normals = {{0, 0, 1}, {1, 0, 0}, {0, 0.6F, 0.8F}, {0.6F, 0, 0.8F}};
+    Report report;
+    const auto tangents = tangents_of(mesh, report);
+    EXPECT_EQ(report.count("triangle without texture gradient"), 2U);
+    EXPECT_EQ(report.count("corner without texture direction"), 6U);
+    const glm::dvec3 expected[] = {{1, 0, 0}, {0, 1, 0}, {1, 0, 0}, {0.8, 0, -0.6}};
+    for (std::size_t corner = 0; corner < 6; ++corner) {
+        const std::uint32_t vertex = vertex_at(mesh, corner);
+        EXPECT_LE(degrees_between(tangents[corner], expected[vertex]), float_degrees);
+        EXPECT_EQ(tangents[corner].w, -1.0F);
+    }
+}
+
+TEST(Tangents, ATriangleWithCoincidingCornersTakesWhatItsVerticesHave) {
+    Mesh mesh = test::grid(1);
+    mesh.triangles.emplace_back(0, 0, 3);
+    Report report;
+    const auto tangents = tangents_of(mesh, report);
+    EXPECT_EQ(report.count("triangle with coinciding corners"), 1U);
+    EXPECT_EQ(report.findings().size(), 1U);
+    EXPECT_THAT(tangents, Each(along_x));
+}
+
+TEST(Tangents, ADegenerateTriangleBetweenTwoHandednessesHasOneW) {
+    // Two mirrored cells and a triangle that joins a corner of the left one with two of the right.
+    Mesh mesh = test::grid(1);
+    Mesh other = test::grid(1);
+    for (std::size_t i = 0; i < 4; ++i) {
+        mesh.positions.push_back(other.positions[i] + glm::vec3(3, 0, 0));
+        mesh.normals.push_back(other.normals[i]);
+        mesh.texcoords.emplace_back(1.0F - other.texcoords[i].x, other.texcoords[i].y);
+    }
+    for (const glm::uvec3& triangle : other.triangles)
+        mesh.triangles.push_back(triangle + 4U);
+    mesh.triangles.emplace_back(0, 4, 4);
+    mesh.triangles.emplace_back(0, 0, 4);
+    const auto tangents = tangents_of(mesh);
+    for (std::size_t corner = 12; corner < 15; ++corner)
+        EXPECT_EQ(tangents[corner].w, -1.0F) << "two of three vertices are mirrored";
+    for (std::size_t corner = 15; corner < 18; ++corner)
+        EXPECT_EQ(tangents[corner].w, 1.0F);
+    EXPECT_EQ(glm::vec3(tangents[12]), glm::vec3(1, 0, 0));
+    EXPECT_EQ(glm::vec3(tangents[13]), glm::vec3(-1, 0, 0));
+}
+
+TEST(Tangents, NonFiniteValuesStayAtTheirOwnTriangles) {
+    const Mesh clean = test::grid(4);
+    const auto expected = tangents_of(clean);
+    for (int kind = 0; kind < 3; ++kind) {
+        SCOPED_TRACE(kind);
+        Mesh mesh = clean;
+        const float bad = std::numeric_limits<float>::quiet_NaN();
+        if (kind == 0) mesh.positions[12].x = bad;
+        if (kind == 1) mesh.texcoords[12].y = bad;
+        if (kind == 2) mesh.normals[12].z = bad;
+        Report report;
+        const auto tangents = tangents_of(mesh, report);
+        test::expect_tangent_invariants(mesh, tangents);
+        EXPECT_EQ(report.count("triangle with non-finite values"), kind < 2 ? 6U : 0U);
+        EXPECT_EQ(report.count("normal without direction"), kind < 2 ? 0U : 1U);
+        for (std::size_t corner = 0; corner < tangents.size(); ++corner) {
+            const std::uint32_t vertex = vertex_at(mesh, corner);
+            if (vertex == 12) continue;
+            EXPECT_EQ(tangents[corner], expected[corner]) << "corner " << corner;
+        }
+    }
+}
+
+TEST(Tangents, ZeroNormalsLeaveTheTextureDirection) {
+    Mesh mesh = test::grid(2);
+    mesh.normals.assign(mesh.normals.size(), glm::vec3(0.0F));
+    Report report;
+    EXPECT_THAT(tangents_of(mesh, report), Each(along_x));
+    EXPECT_EQ(report.count("normal without direction"), 9U);
+}
+
+TEST(Tangents, WhereTheyCancelEachCornerKeepsItsTriangles) {
+    // A quarter-turn fan whose u runs around the apex: the average there is nothing.
+    Mesh mesh;
+    mesh.positions = {{0, 0, 0}, {1, 1, 0}, {-1, 1, 0}, {-1, -1, 0}, {1, -1, 0}, {1, 1, 0}};
+    mesh.normals.assign(6, {0, 0, 1});
+    mesh.texcoords = {{0.5F, 0}, {0, 1}, {0.25F, 1}, {0.5F, 1}, {0.75F, 1}, {1, 1}};
+    mesh.triangles = {{0, 1, 2}, {0, 2, 3}, {0, 3, 4}, {0, 4, 5}};
+    const auto tangents = tangents_of(mesh);
+    const glm::dvec3 around[] = {{-1, 0, 0}, {0, -1, 0}, {1, 0, 0}, {0, 1, 0}};
+    for (std::size_t t = 0; t < 4; ++t)
+        EXPECT_LE(degrees_between(tangents[3 * t], around[t]), float_degrees);
+}
+
+TEST(Tangents, ARepeatedTriangleCountsOnceAndIsCounted) {
+    Mesh mesh = test::grid(2);
+    const auto expected = tangents_of(mesh);
+    mesh.positions[4].z = 0.3F;
+    const auto once = tangents_of(mesh);
+    const glm::uvec3 triangle = mesh.triangles[3];
+    mesh.triangles.push_back(triangle);
+    mesh.triangles.emplace_back(triangle.z, triangle.x, triangle.y);
+    Report report;
+    const auto tangents = tangents_of(mesh, report);
+    EXPECT_EQ(report.count("repeated triangle"), 2U);
+    for (std::size_t corner = 0; corner < once.size(); ++corner)
+        EXPECT_EQ(tangents[corner], once[corner]);
+    EXPECT_EQ(tangents[24], once[9]);
+    EXPECT_EQ(tangents[27], once[11]);
+}
+
+TEST(Tangents, NothingComesOfNothing) {
+    EXPECT_TRUE(tangents_of(Mesh{}).empty());
+}
+
+TEST(Tangents, WrongLengthsAndIndicesAreRefused) {
+    Report report;
+    Mesh mesh = test::grid(1);
+    mesh.normals.pop_back();
+    EXPECT_THAT([&] { tangents_of(mesh, report); },
+                testing::ThrowsMessage<InvalidInput>(
+                    testing::StrEq("there are 3 normals, but 4 positions")));
+    mesh = test::grid(1);
+    mesh.texcoords.clear();
+    EXPECT_THAT([&] { tangents_of(mesh, report); },
+                testing::ThrowsMessage<InvalidInput>(
+                    testing::StrEq("there are 0 texture coordinates, but 4 positions")));
+    mesh = test::grid(1);
+    mesh.triangles[1].x = 4;
+    EXPECT_THAT([&] { tangents_of(mesh, report); },
+                testing::ThrowsMessage<InvalidInput>(
+                    testing::StrEq("triangle 1 names vertex 4, but there are only 4")));
+}
+
+/// Shapes on which searching for neighbours, recursion or comparing sets takes quadratic time.
+Mesh crowded(int kind, std::uint32_t count) {
+    Mesh mesh;
+    const auto add = [&](glm::vec3 position, glm::vec2 texcoord) {
+        mesh.positions.push_back(position);
+        mesh.texcoords.push_back(texcoord);
+        mesh.normals.emplace_back(0, 0, 1);
+    };
+    add({0, 0, 0}, {0.5F, 0.5F});
+    add({1, 0, 0}, {1, 0.5F});
+    for (std::uint32_t i = 0; i < count; ++i) {
+        const double angle = 2.0 * std::numbers::pi * i / count;
+        const glm::dvec2 circle(std::cos(angle), std::sin(angle));
+        if (kind < 2)
+            add({circle, 0}, kind == 0 ? glm::dvec2(0.5) + 0.5 * circle : glm::dvec2(angle, 1));
+        if (kind == 2) add({circle, 1 + i % 7}, {0.1 * (i % 10), 0.1 * (i % 9)});
+        if (kind == 3) add({circle.x, 0, 0}, circle);
+        if (kind == 4) add({0, 0, 0}, circle);
+        const std::uint32_t next = (i + 1) % count + 2;
+        if (kind == 2) {
+            mesh.triangles.emplace_back(i % 2, 1 - i % 2, i + 2);
+        } else {
+            mesh.triangles.emplace_back(0, i + 2, next);
+        }
+    }
+    return mesh;
+}
+
+TEST(Tangents, NoShapeTakesLong) {
+    const char* const names[] = {"flat fan", "fan with a texture around it", "one edge", "line",
+                                 "point"};
+    for (int kind = 0; kind < 5; ++kind) {
+        SCOPED_TRACE(names[kind]);
+        const Mesh mesh = crowded(kind, 100000);
+        const auto start = std::chrono::steady_clock::now();
+        const auto tangents = tangents_of(mesh);
+        const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
+        test::expect_tangent_invariants(mesh, tangents);
+        // About 0.1 s; quadratic time would be half a minute. Wide, for sanitizers and busy
+        // machines.
+        EXPECT_LT(took.count(), 5.0);
+    }
+}
+
+}  // namespace
+}  // namespace relief

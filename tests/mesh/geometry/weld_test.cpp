@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which vertices count as one.
+#include "geometry/weld.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "support/shapes.h"
+
+namespace relief {
+namespace {
+
+using testing::ElementsAre;
+
+constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+constexpr float infinity = std::numeric_limits<float>::infinity();
+
+TEST(Weld, TheSmallestIndexOfAPositionStandsForAll) {
+    const std::vector<glm::vec3> positions = {
+        {1, 2, 3}, {3, 2, 1}, {1, 2, 3}, {3, 2, 1}, {0, 0, 0}};
+    EXPECT_THAT(weld_positions(positions), ElementsAre(0, 1, 0, 1, 4));
+}
+
+TEST(Weld, MinusZeroIsZeroAndInfinitiesEqualThemselves) {
+    const std::vector<glm::vec3> positions = {
+        {0, -0.0F, 1}, {-0.0F, 0, 1}, {infinity, 0, 0}, {infinity, -0.0F, 0}, {-infinity, 0, 0}};
+    EXPECT_THAT(weld_positions(positions), ElementsAre(0, 0, 2, 2, 4));
+}
+
+TEST(Weld, ANaNEqualsNothingNotEvenItself) {
+    const std::vector<glm::vec3> positions(4, glm::vec3(0, nan, 0));
+    EXPECT_THAT(weld_positions(positions), ElementsAre(0, 1, 2, 3));
+}
+
+TEST(Weld, OneUnitInTheLastPlaceKeepsPositionsApart) {
+    const std::vector<glm::vec3> positions = {{1, 0, 0}, {std::nextafter(1.0F, 2.0F), 0, 0}};
+    EXPECT_THAT(weld_positions(positions), ElementsAre(0, 1));
+}
+
+TEST(Weld, VerticesAreOneOnlyIfNormalAndTextureCoordinateAgreeToo) {
+    const std::vector<glm::vec3> positions(4, glm::vec3(1, 1, 1));
+    const std::vector<glm::vec3> normals = {{0, 0, 1}, {0, 0, 1}, {0, 1, 0}, {0, -0.0F, 1}};
+    const std::vector<glm::vec2> texcoords = {{0, 0}, {1, 0}, {0, 0}, {-0.0F, 0}};
+    EXPECT_THAT(weld_vertices(positions, normals, texcoords), ElementsAre(0, 1, 2, 0));
+}
+
+TEST(Weld, TheSphereClosesAtItsSeamAndPoles) {
+    const int slices = 16;
+    const int stacks = 8;
+    const Mesh sphere = test::sphere(slices, stacks);
+    const std::vector<std::uint32_t> classes = weld_positions(sphere.positions);
+    std::size_t different = 0;
+    for (std::size_t i = 0; i < classes.size(); ++i)
+        different += classes[i] == i ? 1 : 0;
+    EXPECT_EQ(different, static_cast<std::size_t>(slices * (stacks - 1) + 2));
+}
+
+}  // namespace
+}  // namespace relief
