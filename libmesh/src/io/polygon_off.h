@@ -14,8 +14,8 @@ namespace relief {
 /// See read_mesh in mesh_file.h. Vertices are kept as they are; v is upwards in the file, as in
 /// PLY.
 ///
-/// Why not OpenMesh's reader: version 9 gives 32718 faces without vertices for a file of two faces
-/// with a NaN in it, takes gigabytes for a wrong count, and nothing if counts stand behind "OFF".
+/// Why not OpenMesh's reader: version 9 fills the rest of the file with stale numbers after a NaN,
+/// believes any count, and finds nothing if the counts stand behind "OFF".
 MeshFile read_off(const std::filesystem::path& file, Report& report);
 
 }  // namespace relief
