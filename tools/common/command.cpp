@@ -1,0 +1,237 @@
+// SPDX-License-Identifier: Apache-2.0
+// Parsing, running and reporting, alike for all tools. Every problem ends as one line on stderr and
+// an exit code, CLI11's own among them. Tests: tests/tools/command_test.cpp.
+#include "common/command.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <memory>
+#include <numeric>
+#include <optional>
+
+#include "common/help_format.h"
+
+namespace relief::tools {
+namespace {
+
+/// Insertions, deletions and replacements between two words.
+std::size_t edit_distance(std::string_view a, std::string_view b) {
+    std::vector<std::size_t> row(b.size() + 1);
+    std::iota(row.begin(), row.end(), std::size_t{0});
+    for (std::size_t i = 0; i < a.size(); ++i) {
+        std::size_t diagonal = row[0];
+        row[0] = i + 1;
+        for (std::size_t j = 0; j < b.size(); ++j) {
+            const std::size_t replaced = diagonal + (a[i] == b[j] ? 0 : 1);
+            diagonal = row[j + 1];
+            row[j + 1] = std::min({replaced, row[j] + 1, diagonal + 1});
+        }
+    }
+    return row.back();
+}
+
+/// The word that was most likely meant, if one is near enough.
+std::optional<std::string> nearest(const std::string& word, const std::vector<std::string>& known) {
+    constexpr std::size_t max_distance = 3;
+    std::optional<std::string> best;
+    std::size_t best_distance = std::min(max_distance, word.size() / 2) + 1;
+    for (const std::string& candidate : known) {
+        const std::size_t distance = edit_distance(word, candidate);
+        if (distance < best_distance) {
+            best = candidate;
+            best_distance = distance;
+        }
+    }
+    return best;
+}
+
+std::vector<std::string> option_names(const CLI::App& app) {
+    std::vector<std::string> names;
+    for (const CLI::Option* option : app.get_options()) {
+        for (const std::string& name : option->get_lnames())
+            names.push_back("--" + name);
+    }
+    return names;
+}
+
+std::vector<std::string> command_names(const CLI::App& app) {
+    std::vector<std::string> names;
+    for (const CLI::App* command : app.get_subcommands({}))
+        names.push_back(command->get_name());
+    return names;
+}
+
+/// The command that the arguments chose, or the tool itself.
+const CLI::App& chosen(const CLI::App& root) {
+    const std::vector<CLI::App*> parsed = root.get_subcommands();
+    return parsed.empty() ? root : *parsed.front();
+}
+
+/// "relief-mesh process"
+std::string full_name(const CLI::App& app) {
+    const CLI::App* parent = app.get_parent();
+    return parent == nullptr ? app.get_name() : parent->get_name() + " " + app.get_name();
+}
+
+/// An argument that nothing takes: an unknown option, command or file too many.
+UsageError unexpected(const CLI::App& app, const std::string& argument) {
+    const bool is_option = argument.size() > 1 && argument.front() == '-';
+    const std::vector<std::string> commands = command_names(app);
+    const std::string word = argument.substr(0, argument.find('='));
+    const std::optional<std::string> meant =
+        nearest(word, is_option ? option_names(app) : commands);
+    const std::string remedy = meant ? fmt::format("did you mean {}?", *meant) : "";
+    if (is_option) return UsageError(word + ": unknown option", remedy);
+    if (!commands.empty()) return UsageError(word + ": unknown command", remedy);
+    return UsageError(argument + ": one argument too many");
+}
+
+/// CLI11's complaint in relief's words.
+UsageError usage_error(const CLI::App& root, const CLI::ParseError& error) {
+    const CLI::App& app = chosen(root);
+    const std::vector<std::string> remaining = app.remaining();
+    if (!remaining.empty()) return unexpected(app, remaining.front());
+    if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::RequiredError)) {
+        if (!command_names(app).empty())
+            return UsageError(
+                fmt::format("a command is missing: {}", fmt::join(command_names(app), " or ")));
+        std::string what = error.what();
+        what = what.substr(0, what.find(" is required"));
+        return UsageError(what + " is missing");
+    }
+    const std::string what = error.what();
+    if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::ArgumentMismatch))
+        return UsageError(what.substr(0, what.find(':')) + ": needs a value");
+    return UsageError(what);
+}
+
+void print_error(const CLI::App& root, const std::string& text) {
+    std::fflush(stdout);
+    fmt::print(stderr, "{}: error: {}\n", root.get_name(), text);
+}
+
+int report(const CLI::App& root, const UsageError& error) {
+    const std::string remedy = error.remedy().empty()
+                                   ? fmt::format("see {} --help", full_name(chosen(root)))
+                                   : error.remedy();
+    print_error(root, fmt::format("{} ({})", error.what(), remedy));
+    return static_cast<int>(ExitCode::wrong_usage);
+}
+
+int report_failure(const CLI::App& root, const std::string& text) {
+    print_error(root, text);
+    return static_cast<int>(ExitCode::failed);
+}
+
+/// Parses and runs; throws what there is to report.
+int parse_and_run(CLI::App& root, const std::vector<Command>& commands, int argc,
+                  const char* const* argv) {
+    try {
+        root.parse(argc, argv);
+    } catch (const CLI::Success& request) {  // --help and --version
+        return root.exit(request);
+    } catch (const CLI::ParseError& error) {
+        throw usage_error(root, error);
+    }
+    for (const Command& command : commands) {
+        if (!command.app->parsed()) continue;
+        const ExitCode code = command.run();
+        if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0)
+            throw FileError("standard output", "cannot be written");
+        return static_cast<int>(code);
+    }
+    throw UsageError("a command is missing");
+}
+
+}  // namespace
+
+FileError failure(const std::filesystem::path& file, const std::string& problem,
+                  const std::string& remedy) {
+    return {file, fmt::format("{} ({})", problem, remedy)};
+}
+
+void require_folder_of(const std::filesystem::path& file) {
+    const std::filesystem::path folder = file.parent_path();
+    if (folder.empty() || std::filesystem::is_directory(folder)) return;
+    throw failure(file, fmt::format("the folder {} does not exist", folder.string()),
+                  "create it first");
+}
+
+Stages::Stages(bool quiet) : show_(!quiet && isatty(STDERR_FILENO) == 1) {}
+
+double Stages::milliseconds(std::string_view name) const {
+    double sum = 0;
+    for (const Stage& stage : finished_) {
+        if (stage.name == name) sum += stage.milliseconds;
+    }
+    return sum;
+}
+
+Stages::Running::Running(Stages& stages, const std::string& name)
+    : stages_(stages), index_(0), start_(std::chrono::steady_clock::now()) {
+    const auto known = std::find_if(stages.finished_.begin(), stages.finished_.end(),
+                                    [&](const Stage& stage) { return stage.name == name; });
+    index_ = static_cast<std::size_t>(known - stages.finished_.begin());
+    if (known == stages.finished_.end()) stages.finished_.push_back({name, 0});
+    if (stages.show_) {
+        fmt::print(stderr, "\r\033[K{} ...", name);
+        std::fflush(stderr);
+    }
+}
+
+Stages::Running::~Running() {
+    const std::chrono::duration<double, std::milli> spent =
+        std::chrono::steady_clock::now() - start_;
+    stages_.finished_[index_].milliseconds += spent.count();
+    if (stages_.show_) {
+        fmt::print(stderr, "\r\033[K");
+        std::fflush(stderr);
+    }
+}
+
+CLI::App& add_subcommand(CLI::App& tool, const std::string& name, const std::string& sentence) {
+    CLI::App& app = *tool.add_subcommand(name, sentence);
+    app.formatter(std::make_shared<HelpFormat>());
+    return app;
+}
+
+void set_examples(CLI::App& app, const std::vector<std::string>& commands) {
+    app.footer(fmt::format("Examples:\n  {}", fmt::join(commands, "\n  ")));
+}
+
+void warn(const CLI::App& app, const std::string& text) {
+    const CLI::App* parent = app.get_parent();
+    std::fflush(stdout);
+    fmt::print(stderr, "{}: warning: {}\n", parent == nullptr ? app.get_name() : parent->get_name(),
+               text);
+}
+
+int run_tool(const Tool& tool, int argc, const char* const* argv) {
+    CLI::App root(tool.sentence, tool.name);
+    root.formatter(std::make_shared<HelpFormat>());
+    root.set_version_flag("--version", tool.name + " " + version(), "Print the version and leave.");
+    root.set_help_flag("-h,--help", "Print this help and leave.");
+    std::vector<Command> commands;
+    for (const auto& add : tool.commands)
+        commands.push_back(add(root));
+    if (!root.get_subcommands({}).empty()) root.require_subcommand(1);
+
+    try {
+        return parse_and_run(root, commands, argc, argv);
+    } catch (const UsageError& error) {
+        return report(root, error);
+    } catch (const std::bad_alloc&) {
+        return report_failure(root, "out of memory");
+    } catch (const std::exception& error) {
+        return report_failure(root, error.what());
+    }
+}
+
+std::string version() {
+    return RELIEF_VERSION;
+}
+
+}  // namespace relief::tools

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// What every tool of relief does alike: exit codes, the form of errors, --help, --version, stages
+/// with their times, and progress, which goes to stderr and only to a terminal.
+///
+/// Errors read "relief-bake: error: high.obj: no texture coordinates (remedy)", whether the file,
+/// the data or the command line is at fault. Tests: tests/tools/command_test.cpp.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <filesystem>
+#include <functional>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "relief/mesh/error.h"
+
+namespace relief::tools {
+
+enum class ExitCode : int {
+    done = 0,
+    failed = 1,
+    wrong_usage = 2,
+    fell_back = 3,  ///< Done, but --strict was given and something is in the report.
+};
+
+/// A command line that contradicts itself or asks for what cannot be. Exit code 2.
+class UsageError : public std::runtime_error {
+  public:
+    /// \param remedy  what to do instead; empty: the reader is sent to --help
+    explicit UsageError(const std::string& problem, std::string remedy = "")
+        : std::runtime_error(problem), remedy_(std::move(remedy)) {}
+
+    [[nodiscard]] const std::string& remedy() const { return remedy_; }
+
+  private:
+    std::string remedy_;
+};
+
+/// "FILE: PROBLEM (REMEDY)", for what is wrong in a file's contents. Exit code 1.
+FileError failure(const std::filesystem::path& file, const std::string& problem,
+                  const std::string& remedy);
+
+/// Checks, before any work is done, that the folder in which a file is to be written exists.
+/// \throws FileError if it does not
+void require_folder_of(const std::filesystem::path& file);
+
+/// Runs `work` and names `file` in whatever InvalidInput it throws.
+template <typename Work>
+auto about(const std::filesystem::path& file, Work&& work) {
+    try {
+        return std::forward<Work>(work)();
+    } catch (const InvalidInput& error) {
+        throw FileError(file, error.what());
+    }
+}
+
+/// A step of the work and the wall-clock time that it took.
+struct Stage {
+    std::string name;
+    double milliseconds = 0;
+};
+
+/// Times the steps of a command; on a terminal, says on stderr which one is going on.
+class Stages {
+  public:
+    explicit Stages(bool quiet);
+
+    template <typename Work>
+    auto run(const std::string& name, Work&& work) {
+        const Running running(*this, name);
+        return std::forward<Work>(work)();
+    }
+
+    [[nodiscard]] const std::vector<Stage>& finished() const { return finished_; }
+    [[nodiscard]] double milliseconds(std::string_view name) const;
+
+  private:
+    /// Books the time of one step when it goes out of scope, by an exception too.
+    class Running {
+      public:
+        Running(Stages& stages, const std::string& name);
+        ~Running();
+        Running(const Running&) = delete;
+        Running& operator=(const Running&) = delete;
+
+      private:
+        Stages& stages_;
+        std::size_t index_;
+        std::chrono::steady_clock::time_point start_;
+    };
+
+    bool show_;
+    std::vector<Stage> finished_;
+};
+
+/// One command of a tool: where its options stand, and what it does once they are parsed.
+struct Command {
+    CLI::App* app = nullptr;
+    std::function<ExitCode()> run;
+};
+
+/// A tool: its name, what it is for in one sentence, and its commands.
+struct Tool {
+    std::string name;
+    std::string sentence;
+    /// Each adds its options to the tool, or to a subcommand that it makes there.
+    std::vector<std::function<Command(CLI::App&)>> commands;
+};
+
+/// A subcommand with relief's help layout.
+CLI::App& add_subcommand(CLI::App& tool, const std::string& name, const std::string& sentence);
+
+/// Examples for the end of a --help page, one command a line. Each is run by a test.
+void set_examples(CLI::App& app, const std::vector<std::string>& commands);
+
+/// Prints a warning in the form of the errors: "relief-mesh: warning: TEXT".
+void warn(const CLI::App& app, const std::string& text);
+
+/// All of main(): parses, runs the command, reports errors. \return the process's exit code
+int run_tool(const Tool& tool, int argc, const char* const* argv);
+
+/// "0.1.0"
+std::string version();
+
+}  // namespace relief::tools

@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: Apache-2.0
+// Parsing of option values. Every value is taken whole or refused: nothing is clamped, and no
+// trailing text is ignored. Tests: tests/tools/options_test.cpp.
+#include "common/options.h"
+
+#include <charconv>
+#include <cmath>
+
+#include "relief/mesh/image.h"
+
+namespace relief::tools {
+namespace {
+
+/// The whole text as a number, or nothing.
+template <typename Number>
+std::optional<Number> whole(std::string_view text) {
+    if (text.starts_with('+')) text.remove_prefix(1);
+    Number number{};
+    const char* const end = text.data() + text.size();
+    const auto [stopped, error] = std::from_chars(text.data(), end, number);
+    if (error != std::errc{} || stopped != end || text.empty()) return std::nullopt;
+    return number;
+}
+
+/// "between 1 and 170 degrees", "at least 0"
+std::string limits(const Range& range) {
+    constexpr double unlimited = std::numeric_limits<double>::max();
+    const std::string unit = range.unit.empty() ? "" : " " + range.unit;
+    if (range.max == unlimited) return fmt::format("at least {}{}", range.min, unit);
+    if (range.min == -unlimited) return fmt::format("at most {}{}", range.max, unit);
+    return fmt::format("between {} and {}{}", range.min, range.max, unit);
+}
+
+using Take = std::function<void(const std::string& subject, const std::string& text)>;
+
+CLI::Option* add(CLI::App& app, const std::string& name, const std::string& value_name,
+                 const std::string& description, const Take& take, bool repeatable) {
+    const auto callback = [name, take, repeatable](const CLI::results_t& values) {
+        if (!repeatable && values.size() > 1) throw UsageError(name + ": given more than once");
+        for (const std::string& value : values) {
+            // A forgotten value makes the next option look like one.
+            if (value.empty() || value.starts_with("--"))
+                throw UsageError(name + ": needs a value");
+            take(name + " " + value, value);
+        }
+        return true;
+    };
+    CLI::Option* option = app.add_option(name, callback, description);
+    option->type_name(value_name);
+    option->expected(1);
+    option->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+    return option;
+}
+
+}  // namespace
+
+double parse_number(const std::string& subject, std::string_view text, const Range& range) {
+    const std::optional<double> number = whole<double>(text);
+    if (!number || !std::isfinite(*number)) throw UsageError(subject + ": not a number");
+    if (*number < range.min || *number > range.max)
+        throw UsageError(fmt::format("{}: not {}", subject, limits(range)));
+    return *number;
+}
+
+int parse_integer(const std::string& subject, std::string_view text, int min, int max) {
+    const std::optional<int> number = whole<int>(text);
+    if (!number) throw UsageError(subject + ": not a whole number");
+    if (*number < min || *number > max)
+        throw UsageError(fmt::format("{}: not between {} and {}", subject, min, max));
+    return *number;
+}
+
+glm::vec3 parse_color(const std::string& subject, std::string_view text) {
+    unsigned code = 0;
+    const char* const end = text.data() + text.size();
+    const bool has_form = text.size() == 7 && text.front() == '#';
+    const auto result = has_form ? std::from_chars(text.data() + 1, end, code, 16)
+                                 : std::from_chars_result{text.data(), std::errc::invalid_argument};
+    if (result.ec != std::errc{} || result.ptr != end)
+        throw UsageError(subject + ": not a colour like #ff8000");
+    const auto channel = [code](unsigned shift) {
+        return linear_from_srgb(static_cast<float>((code >> shift) & 0xFFU) / 255.0F);
+    };
+    return {channel(16), channel(8), channel(0)};
+}
+
+glm::ivec2 parse_size(const std::string& subject, std::string_view text) {
+    constexpr int max_side = 16384;
+    const std::vector<std::string> sides = split(text, 'x');
+    if (sides.size() != 2) throw UsageError(subject + ": not a size like 1920x1080");
+    return {parse_integer(subject, sides[0], 1, max_side),
+            parse_integer(subject, sides[1], 1, max_side)};
+}
+
+std::vector<std::string> split(std::string_view text, char separator) {
+    std::vector<std::string> parts;
+    for (std::size_t start = 0;;) {
+        const std::size_t end = text.find(separator, start);
+        parts.emplace_back(text.substr(start, end - start));
+        if (end == std::string_view::npos) return parts;
+        start = end + 1;
+    }
+}
+
+std::vector<double> parse_numbers(const std::string& subject, std::string_view text) {
+    std::vector<double> numbers;
+    for (const std::string& part : split(text, ','))
+        numbers.push_back(parse_number(subject + ": '" + part + "'", part));
+    return numbers;
+}
+
+CLI::Option* add_value(CLI::App& app, const std::string& name, const std::string& value_name,
+                       const std::string& description, const Take& take) {
+    return add(app, name, value_name, description, take, false);
+}
+
+CLI::Option* add_repeatable(CLI::App& app, const std::string& name, const std::string& value_name,
+                            const std::string& description, const Take& take) {
+    return add(app, name, value_name, description, take, true);
+}
+
+CLI::Option* add_switch(CLI::App& app, const std::string& name, bool& target,
+                        const std::string& description) {
+    return app.add_flag(
+        name, [&target](std::int64_t) { target = true; }, description);
+}
+
+CLI::Option* add_file(CLI::App& app, const std::string& name, std::filesystem::path& target,
+                      const std::string& description) {
+    CLI::Option* option = add_path(app, name, target, description);
+    option->required();
+    return option;
+}
+
+void add_general_options(CLI::App& app, GeneralOptions& options) {
+    constexpr int max_threads = 1024;
+    add_value(app, "--threads", "N",
+              "Use at most N threads. The output does not depend on it. Default: all of the "
+              "machine's.",
+              [&options](const std::string& subject, const std::string& text) {
+                  options.threads =
+                      static_cast<unsigned>(parse_integer(subject, text, 1, max_threads));
+              });
+    add_switch(app, "--quiet", options.quiet, "Print nothing but warnings and errors.");
+}
+
+}  // namespace relief::tools

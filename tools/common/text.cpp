@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+// Words for numbers, and the lines of a summary. Tests: tests/tools/text_test.cpp.
+#include "common/text.h"
+
+#include <fmt/format.h>
+
+#include <cctype>
+#include <cstdio>
+#include <span>
+
+#include "io/file_replacement.h"
+
+namespace relief::tools {
+namespace {
+
+/// JSON text that is valid UTF-8 whatever bytes the names in it hold.
+std::string dumped(const nlohmann::ordered_json& json) {
+    return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace
+
+std::string counted(std::size_t count, const std::string& thing, const std::string& plural) {
+    if (count == 1) return "1 " + thing;
+    return fmt::format("{} {}", count, plural.empty() ? thing + "s" : plural);
+}
+
+std::string byte_size(std::uintmax_t bytes) {
+    if (bytes < 1000) return fmt::format("{} B", bytes);
+    double size = static_cast<double>(bytes) / 1000;
+    const char* unit = "kB";
+    for (const char* larger : {"MB", "GB"}) {
+        if (size < 999.5) break;
+        size /= 1000;
+        unit = larger;
+    }
+    return size < 9.95 ? fmt::format("{:.1f} {}", size, unit)
+                       : fmt::format("{:.0f} {}", size, unit);
+}
+
+std::string duration(double milliseconds) {
+    if (milliseconds < 9.95) return fmt::format("{:.1f} ms", milliseconds);
+    if (milliseconds < 999.5) return fmt::format("{:.0f} ms", milliseconds);
+    return fmt::format("{:.2f} s", milliseconds / 1000);
+}
+
+std::string durations(const std::vector<Stage>& stages) {
+    std::string text;
+    double sum = 0;
+    for (const Stage& stage : stages) {
+        text += fmt::format("{} {}, ", stage.name, duration(stage.milliseconds));
+        sum += stage.milliseconds;
+    }
+    return text + duration(sum) + " in all";
+}
+
+nlohmann::ordered_json durations_json(const std::vector<Stage>& stages) {
+    nlohmann::ordered_json json = nlohmann::ordered_json::object();
+    for (const Stage& stage : stages)
+        json[stage.name] = stage.milliseconds;
+    return json;
+}
+
+std::string file_and_size(const std::filesystem::path& file) {
+    return fmt::format("{}: {}", file.string(), byte_size(std::filesystem::file_size(file)));
+}
+
+std::string extension_of(const std::filesystem::path& file) {
+    std::string extension = file.extension().string();
+    for (char& letter : extension)
+        letter = static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
+    return extension;
+}
+
+void print_entry(const std::string& label, const std::string& text) {
+    fmt::print("{:<10}{}\n", label, text);
+}
+
+void print_entry(const std::string& label, const std::vector<std::string>& lines) {
+    for (std::size_t i = 0; i < lines.size(); ++i)
+        print_entry(i == 0 ? label : "", lines[i]);
+}
+
+void print_json(const nlohmann::ordered_json& json) {
+    fmt::print("{}", dumped(json));
+}
+
+void write_json(const std::filesystem::path& file, const nlohmann::ordered_json& json) {
+    const std::string text = dumped(json);
+    replace_file(file, std::as_bytes(std::span(text)));
+}
+
+}  // namespace relief::tools

@@ -1,0 +1,215 @@
+// SPDX-License-Identifier: Apache-2.0
+// `relief-bake bump HEIGHT OUT`: reads a height map, converts it to tangent-space normals, stores
+// them in the depth and convention asked for. A depth that the output format cannot hold exactly is
+// refused before anything is read. Tests: tests/tools/relief_bake_test.cpp.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+
+#include "commands.h"
+#include "common/findings.h"
+#include "common/map_choices.h"
+#include "common/options.h"
+#include "common/report_options.h"
+#include "common/text.h"
+#include "relief/mesh/image_file.h"
+#include "relief/mesh/threads.h"
+
+namespace relief::tools {
+namespace {
+
+struct BakeBumpOptions {
+    std::filesystem::path input;
+    std::filesystem::path output;
+    BumpOptions bump;
+    std::optional<int> bits;
+    Green green = Green::up;
+    std::optional<FlatCode> flat;
+    ReportOptions report;
+    GeneralOptions general;
+};
+
+/// The depths that a format can hold normals in, the first being the one to use unless asked.
+std::vector<int> depths_of(const std::filesystem::path& output) {
+    const std::string extension = extension_of(output);
+    if (extension == ".png") return {16, 8};
+    if (extension == ".tif" || extension == ".tiff") return {16, 8, 32};
+    if (extension == ".exr") return {32};
+    const std::string remedy = "use .png, .tif or .exr";
+    if (extension == ".jpg" || extension == ".jpeg")
+        throw UsageError(output.string() + ": JPEG distorts normals", remedy);
+    if (extension == ".hdr")
+        throw UsageError(output.string() + ": HDR keeps 8 bits of a normal and no sign", remedy);
+    throw UsageError(fmt::format("{}: no format to write a normal map in", output.string()),
+                     remedy);
+}
+
+NormalMapFormat format_of(const BakeBumpOptions& options) {
+    const std::vector<int> depths = depths_of(options.output);
+    const int bits = options.bits.value_or(depths.front());
+    if (std::find(depths.begin(), depths.end(), bits) == depths.end()) {
+        throw UsageError(fmt::format("--bits {}: {} holds {} bits", bits,
+                                     extension_of(options.output), fmt::join(depths, " or ")));
+    }
+    if (bits == 32 && options.flat)
+        throw UsageError("--flat: has no effect on 32-bit output, where flat is exact");
+    return {.bits = bits,
+            .green = options.green,
+            .flat = options.flat.value_or(NormalMapFormat{}.flat)};
+}
+
+/// What was made of which image, for the summary.
+struct Baked {
+    int width = 0;
+    int height = 0;
+    int channels = 0;
+    int bits_read = 0;
+    NormalMapFormat format;
+    Findings findings;
+};
+
+Baked bake(const BakeBumpOptions& options, Stages& stages) {
+    Baked baked;
+    baked.format = format_of(options);
+    const Image source =
+        stages.run("read", [&] { return read_image(options.input, ImageUse::data); });
+    baked.width = source.width;
+    baked.height = source.height;
+    baked.channels = source.channels;
+    baked.bits_read = source.bits();
+
+    Report report;
+    const Image coded = about(options.input, [&] {
+        const Image normals = stages.run("convert", [&] {
+            return normals_from_height(height_field(source), options.bump, report);
+        });
+        return stages.run("encode",
+                          [&] { return encode_normal_map(normals, baked.format, report); });
+    });
+    stages.run("write",
+               [&] { write_image(options.output, coded, normal_map_metadata(baked.format)); });
+    baked.findings.add("", report);
+    return baked;
+}
+
+/// Millions of pixels a second through the conversion itself, reading and writing left out.
+double megapixels_per_second(const Baked& baked, const Stages& stages) {
+    const double milliseconds = stages.milliseconds("convert") + stages.milliseconds("encode");
+    const double pixels = static_cast<double>(baked.width) * baked.height;
+    return milliseconds > 0 ? pixels / milliseconds / 1000 : 0;
+}
+
+void print_summary(const BakeBumpOptions& options, const Baked& baked, const Stages& stages) {
+    const bool is_float = baked.format.bits == 32;
+    print_entry(
+        "read",
+        fmt::format("{}: {} x {}, {}, {} bit", options.input.string(), baked.width, baked.height,
+                    counted(static_cast<std::size_t>(baked.channels), "channel"), baked.bits_read));
+    print_entry("slopes",
+                fmt::format("{}, strength {:g} texels, {} at the border",
+                            name_of(options.bump.kernel, kernel_choices()), options.bump.strength,
+                            name_of(options.bump.wrap, wrap_choices())));
+    print_entry("coded", fmt::format("{} bit{}, green {}", baked.format.bits,
+                                     is_float ? " float"
+                                              : ", flat is " + std::string(baked.format.flat ==
+                                                                                   FlatCode::middle
+                                                                               ? "the middle code"
+                                                                               : "between codes"),
+                                     name_of(baked.format.green, green_choices())));
+    print_entry("findings",
+                baked.findings.empty() ? std::vector<std::string>{"none"} : baked.findings.lines());
+    print_entry("time",
+                fmt::format("{} ({:.0f} MPixel/s without the files)", durations(stages.finished()),
+                            megapixels_per_second(baked, stages)));
+    print_entry("wrote", file_and_size(options.output));
+}
+
+nlohmann::ordered_json bake_json(const BakeBumpOptions& options, const Baked& baked,
+                                 const Stages& stages) {
+    return {{"tool", "relief-bake bump"},
+            {"version", version()},
+            {"input", options.input.string()},
+            {"output", options.output.string()},
+            {"width", baked.width},
+            {"height", baked.height},
+            {"kernel", name_of(options.bump.kernel, kernel_choices())},
+            {"strength", options.bump.strength},
+            {"wrap", name_of(options.bump.wrap, wrap_choices())},
+            {"bits", baked.format.bits},
+            {"green", name_of(baked.format.green, green_choices())},
+            {"flat", name_of(baked.format.flat, flat_choices())},
+            {"findings", baked.findings.json()},
+            {"milliseconds", durations_json(stages.finished())},
+            {"megapixels_per_second", megapixels_per_second(baked, stages)}};
+}
+
+ExitCode run(const CLI::App& app, const BakeBumpOptions& options) {
+    format_of(options);
+    check(options.report, {options.input, options.output});
+    require_folder_of(options.output);
+    set_thread_limit(options.general.threads);
+    Stages stages(options.general.quiet);
+    const Baked baked = bake(options, stages);
+    if (!options.general.quiet) print_summary(options, baked, stages);
+    return finish(app, options.report, options.input, baked.findings,
+                  bake_json(options, baked, stages));
+}
+
+void add_slope_options(CLI::App& app, BakeBumpOptions& options) {
+    const std::string group = "Slopes";
+    add_number(app, "--strength", "S", options.bump.strength, {},
+               "Height in texels that the value 1.0 (white) stands for; negative turns bumps into "
+               "dents. Default: 16.")
+        ->group(group);
+    add_choice(app, "--kernel", options.bump.kernel, kernel_choices(),
+               "How the slope is taken from neighbouring heights: half the difference of two "
+               "(central3, sharpest), or of three rows weighted 1 2 1 (sobel3, less noise). Both "
+               "give the same depth. Default: sobel3.")
+        ->group(group);
+    add_choice(app, "--wrap", options.bump.wrap, wrap_choices(),
+               "What lies beyond the border: the opposite edge, for maps that tile (repeat), or "
+               "the border texel again (clamp). Default: repeat.")
+        ->group(group);
+}
+
+void add_coding_options(CLI::App& app, BakeBumpOptions& options) {
+    const std::string group = "Output";
+    const Choices<int> depths = {{"8", 8}, {"16", 16}, {"32", 32}};
+    add_choice(app, "--green", options.green, green_choices(),
+               "Where green is bright: on slopes that face up in the image, as OpenGL and glTF "
+               "want it (up), or down, as DirectX does (down). Default: up.")
+        ->group(group);
+    add_choice(app, "--bits", options.bits, depths,
+               "Bits per channel: 8 or 16 for .png, 8, 16 or 32 (float) for .tif, 32 for .exr. "
+               "Default: 16, and 32 for .exr.")
+        ->group(group);
+    add_choice(app, "--flat", options.flat, flat_choices(),
+               "Which code stands for zero in 8 and 16 bits: 128 of 255, so that flat is exactly "
+               "flat (middle), or 127.5, as glTF's formula has it and no code can say (half). "
+               "Default: middle.")
+        ->group(group);
+}
+
+}  // namespace
+
+Command add_bump_command(CLI::App& tool) {
+    CLI::App& app =
+        add_subcommand(tool, "bump", "Converts a height map to a tangent-space normal map.");
+    const auto options = std::make_shared<BakeBumpOptions>();
+    add_file(
+        app, "HEIGHT", options->input,
+        "Height map: grey, or colour of which the mean counts; PNG, TIFF, EXR, HDR, JPEG, ...");
+    add_file(app, "OUT", options->output, "Normal map to write: .png .tif .exr");
+    add_slope_options(app, *options);
+    add_coding_options(app, *options);
+    add_report_options(app, options->report);
+    add_general_options(app, options->general);
+    set_examples(app,
+                 {"relief-bake bump data/bricks-height.png out/bricks-normal.png --strength 12",
+                  "relief-bake bump data/bricks-height.png out/bricks-dx.png --green down --bits 8",
+                  "relief-bake bump data/bricks-height.png out/bricks.exr --kernel central3"});
+    return {&app, [&app, options] { return run(app, *options); }};
+}
+
+}  // namespace relief::tools

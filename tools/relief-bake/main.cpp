@@ -1,0 +1,9 @@
+// SPDX-License-Identifier: Apache-2.0
+// relief-bake: makes normal maps. Each command stands in its own file.
+// Tests: tests/tools/relief_bake_test.cpp.
+#include "commands.h"
+
+int main(int argc, char** argv) {
+    using namespace relief::tools;
+    return run_tool({"relief-bake", "Makes normal maps.", {add_bump_command}}, argc, argv);
+}
