@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+// Parallel loops: every element once, whatever the number of threads, and exceptions come through.
+#include "parallel.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <stdexcept>
+#include <vector>
+
+#include "relief/mesh/threads.h"
+
+namespace relief {
+namespace {
+
+TEST(Parallel, EveryElementIsVisitedOnce) {
+    for (const unsigned threads : {1U, 2U, 0U}) {
+        set_thread_limit(threads);
+        for (const std::size_t count : {0U, 1U, 99U, 100000U}) {
+            std::vector<int> visits(count, 0);
+            parallel_for(count, 100, [&](std::size_t begin, std::size_t end) {
+                for (std::size_t i = begin; i < end; ++i)
+                    ++visits[i];
+            });
+            EXPECT_THAT(visits, testing::Each(1)) << threads << " threads";
+        }
+    }
+}
+
+TEST(Parallel, AnExceptionReachesTheCaller) {
+    EXPECT_THROW(parallel_for(1000, 1,
+                              [](std::size_t begin, std::size_t end) {
+                                  if (begin <= 500 && 500 < end) throw std::runtime_error("at 500");
+                              }),
+                 std::runtime_error);
+}
+
+}  // namespace
+}  // namespace relief
