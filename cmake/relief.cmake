@@ -16,6 +16,17 @@ if(RELIEF_SANITIZE)
     target_link_options(relief_flags INTERFACE -fsanitize=address,undefined)
 endif()
 
+# What every test runs under, for set_tests_properties too. Mesa's cache of compiled shaders would
+# carry results from one run to the next; and its own leaks are not ours. Two kinds of environment,
+# because gtest_discover_tests takes lists apart.
+set(RELIEF_TEST_PROPERTIES
+    TIMEOUT
+    300
+    ENVIRONMENT
+    MESA_SHADER_CACHE_DISABLE=true
+    ENVIRONMENT_MODIFICATION
+    LSAN_OPTIONS=set:suppressions=${PROJECT_SOURCE_DIR}/tests/support/lsan.supp:print_suppressions=0)
+
 # relief_add_tests(NAME sources... [LIBRARIES ...]): one GoogleTest program; each test is a ctest entry
 # called NAME/Suite.Test. A test that calls GTEST_SKIP shows as "Skipped" there.
 function(relief_add_tests name)
@@ -28,5 +39,5 @@ function(relief_add_tests name)
         ${name}
         TEST_PREFIX ${name}/
         DISCOVERY_MODE PRE_TEST
-        PROPERTIES TIMEOUT 300)
+        PROPERTIES ${RELIEF_TEST_PROPERTIES})
 endfunction()

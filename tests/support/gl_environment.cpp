@@ -3,9 +3,18 @@
 #include "support/gl_environment.h"
 
 #include <cstdlib>
+#include <ostream>
 
 #include "gl/handle.h"
 #include "relief/shade/error.h"
+
+namespace relief {
+
+void PrintTo(Backend backend, std::ostream* out) {
+    *out << (backend == Backend::osmesa ? "osmesa" : "egl");
+}
+
+}  // namespace relief
 
 namespace relief::test {
 

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <functional>
+#include <iosfwd>
 #include <memory>
 #include <optional>
 #include <string>
@@ -13,6 +14,11 @@
 #include "gl/api.h"
 #include "gl/program.h"
 #include "relief/shade/context.h"
+
+namespace relief {
+void PrintTo(Backend backend,
+             std::ostream* out);  // NOLINT(readability-identifier-naming): gtest's.
+}
 
 namespace relief::test {
 
