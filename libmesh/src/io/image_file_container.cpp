@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Walks the chunks of PNG [ISO/IEC 15948], the segments of JPEG [ITU-T T.81] and the header of TGA;
-// see image_file_container.h. A walk never reads past the end: what is cut short is a FileError.
-// Believable sizes: deflate expands at most 1032 times; a JPEG block of 8 x 8 takes at least one
-// bit, so that a byte stands for fewer than 2048 samples; a TGA run for at most 128 texels.
-// Tests: tests/mesh/io/image_file_container_test.cpp.
+// Walks the chunks of PNG [ISO/IEC 15948], the segments of JPEG [ITU-T T.81] and the headers of
+// TGA and EXR; see image_file_container.h. A walk never reads past the end: what is cut short is a
+// FileError. Believable sizes: deflate expands at most 1032 times; a JPEG block of 8 x 8 takes at
+// least one bit, so that a byte stands for fewer than 2048 samples; a TGA run for at most 128
+// texels. Tests: tests/mesh/io/image_file_container_test.cpp.
 #include "io/image_file_container.h"
 
 #include <fmt/format.h>
@@ -214,6 +214,58 @@ bool is_tga(Bytes bytes, const std::filesystem::path& name) {
     return lower_extension(name) == ".tga";
 }
 
+// ---------------------------------------------------------------------------------------------
+// EXR
+
+std::uint32_t little32(Bytes bytes, std::size_t offset) {
+    return little16(bytes, offset) | little16(bytes, offset + 2) << 16;
+}
+
+/// The value of an attribute in the first header, or nothing where it has none.
+Bytes exr_attribute(Bytes bytes, std::string_view wanted, const std::filesystem::path& name) {
+    const std::string_view text = text_of(bytes);
+    for (std::size_t at = 8;;) {
+        const std::size_t key_end = text.find('\0', at);
+        if (key_end == at) return {};
+        const std::size_t type_end =
+            key_end == text.npos ? text.npos : text.find('\0', key_end + 1);
+        if (type_end == text.npos || bytes.size() - type_end < 5)
+            throw FileError(name, "is cut short within its header");
+        const std::uint32_t size = little32(bytes, type_end + 1);
+        const std::size_t value = type_end + 5;
+        if (size > bytes.size() - value) throw FileError(name, "is cut short within its header");
+        if (text.substr(at, key_end - at) == wanted) return bytes.subspan(value, size);
+        at = value + size;
+    }
+}
+
+/// Every block of lines or tile has 8 bytes in a table; tiles are held in memory as a whole.
+void check_exr(Bytes bytes, const std::filesystem::path& name) {
+    constexpr std::uint64_t most_lines_of_a_block = 256;
+    constexpr std::uint64_t largest_tile = 1 << 24;
+    const Bytes window = exr_attribute(bytes, "dataWindow", name);
+    if (window.size() < 16) throw FileError(name, "has no data window");
+    const auto extent = [&](std::size_t axis) {
+        const auto first = static_cast<std::int32_t>(little32(window, axis));
+        const auto last = static_cast<std::int32_t>(little32(window, axis + 8));
+        return last < first ? 0 : static_cast<std::uint64_t>(std::int64_t{last} - first + 1);
+    };
+    const std::uint64_t width = extent(0);
+    const std::uint64_t height = extent(4);
+    std::uint64_t blocks = (height + most_lines_of_a_block - 1) / most_lines_of_a_block;
+    if (const Bytes tiles = exr_attribute(bytes, "tiles", name); tiles.size() >= 8) {
+        const std::uint64_t tile_width = little32(tiles, 0);
+        const std::uint64_t tile_height = little32(tiles, 4);
+        if (tile_width == 0 || tile_height == 0 || tile_width > largest_tile / tile_height) {
+            throw FileError(
+                name, fmt::format("announces tiles of {} x {} texels", tile_width, tile_height));
+        }
+        blocks =
+            ((width + tile_width - 1) / tile_width) * ((height + tile_height - 1) / tile_height);
+    }
+    check_believable(blocks, bytes.size() / 8, width, height, bytes.size(), name);
+}
+
 /// OpenImageIO's name for the format that the first bytes announce, or null.
 const char* format_by_signature(std::string_view start) {
     struct Signature {
@@ -259,6 +311,7 @@ ImageContainer examine_image(std::span<const std::byte> bytes, const std::filesy
     if (format == "png") strip_png(bytes, name, container);
     if (format == "jpeg") strip_jpeg(bytes, name, container);
     if (format == "targa") check_tga(bytes, name);
+    if (format == "openexr") check_exr(bytes, name);
     return container;
 }
 

@@ -14,6 +14,8 @@
 #include <memory>
 #include <string>
 
+#include "io/image_module_png.h"
+
 namespace relief {
 
 struct ImageModuleReader {
@@ -41,10 +43,13 @@ Result guarded(const ImageModuleFailure& failure, Result otherwise, Body body) {
     return otherwise;
 }
 
-/// The pending message of a reader or writer, or else the library's own.
+/// The pending message of a reader or writer, or else the library's own; what libpng says is more
+/// than OpenImageIO makes of it.
 template <typename File>
 std::string pending_error(File& file) {
-    return file.has_error() ? file.geterror() : OIIO::geterror();
+    const std::string text = file.has_error() ? file.geterror() : OIIO::geterror();
+    const std::string complaint = last_png_complaint();
+    return complaint.empty() ? text : "PNG: " + complaint;
 }
 
 OIIO::TypeDesc sample_type(int bits) {

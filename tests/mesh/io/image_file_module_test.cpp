@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: Apache-2.0
+// The image module comes when the first image needs it, from where it was said to come from. What a
+// fresh process does is seen by running this very program again, elsewhere and with other
+// variables.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include "relief/mesh/error.h"
+#include "relief/mesh/image_file.h"
+#include "support/shared_data.h"
+
+namespace relief {
+namespace {
+
+using test::TemporaryDirectory;
+using testing::HasSubstr;
+using testing::Not;
+
+bool module_is_mapped() {
+    std::ifstream maps("/proc/self/maps");
+    const std::string all{std::istreambuf_iterator<char>(maps), {}};
+    return all.find("libOpenImageIO") != std::string::npos;
+}
+
+const Image one_texel = make_image(1, 1, 1, 8, ColorSpace::data);
+
+// Run only in a process of its own, by the tests below.
+TEST(ImageModuleChild, WritesAndReadsAndSaysHowItWent) {
+    const char* file = std::getenv("RELIEF_TEST_IMAGE");
+    if (file == nullptr) GTEST_SKIP() << "is started by other tests";
+    std::printf("mapped at start: %d\n", module_is_mapped());
+    try {
+        read_image(std::as_bytes(std::span("no image")), "none", ImageUse::data);
+    } catch (const FileError&) {
+        std::printf("mapped after a text file: %d\n", module_is_mapped());
+    }
+    try {
+        write_image(file, one_texel);
+        std::printf("mapped after an image: %d\n", module_is_mapped());
+        std::printf("width %d\n", read_image(file, ImageUse::data).width);
+    } catch (const FileError& error) {
+        std::printf("failed: %s\n", error.what());
+    }
+}
+
+/// What the child prints when this program runs as `program`.
+std::string child_output(const std::filesystem::path& program, const std::string& module_folder,
+                         const std::filesystem::path& image) {
+    const std::string command = "RELIEF_MODULE_DIR='" + module_folder + "' RELIEF_TEST_IMAGE='" +
+                                image.string() + "' '" + program.string() +
+                                "' --gtest_filter='ImageModuleChild.*' 2>&1";
+    std::FILE* pipe = ::popen(command.c_str(), "r");
+    std::string output;
+    std::array<char, 4096> buffer{};
+    while (std::fgets(buffer.data(), buffer.size(), pipe) != nullptr)
+        output += buffer.data();
+    EXPECT_EQ(::pclose(pipe), 0) << output;
+    return output;
+}
+
+std::filesystem::path this_program() {
+    return std::filesystem::read_symlink("/proc/self/exe");
+}
+
+/// This program in a tree of its own, where no module lies beside it.
+std::filesystem::path program_elsewhere(const TemporaryDirectory& folder) {
+    std::filesystem::create_directory(folder / "bin");
+    std::filesystem::copy_file(this_program(), folder / "bin/program");
+    return folder / "bin/program";
+}
+
+TEST(ImageModule, IsNotLoadedBeforeTheFirstImageNeedsIt) {
+    const TemporaryDirectory folder;
+    const std::string output = child_output(this_program(), "", folder / "a.png");
+    EXPECT_THAT(output, HasSubstr("mapped at start: 0"));
+    EXPECT_THAT(output, HasSubstr("mapped after a text file: 0"));
+    EXPECT_THAT(output, HasSubstr("mapped after an image: 1"));
+    EXPECT_THAT(output, HasSubstr("width 1"));
+}
+
+TEST(ImageModule, WithoutItTheErrorNamesEveryPlaceLookedAt) {
+    const TemporaryDirectory folder;
+    const std::string output =
+        child_output(program_elsewhere(folder), "/nowhere/modules", folder / "a.png");
+    EXPECT_THAT(output, HasSubstr("failed: " + (folder / "a.png").string() +
+                                  ": relief's image module relief_image.so was not found"));
+    EXPECT_THAT(output, HasSubstr("not at /nowhere/modules/relief_image.so"));
+    EXPECT_THAT(output, HasSubstr("not at " + (folder / "lib/relief/relief_image.so").string()));
+    EXPECT_FALSE(std::filesystem::exists(folder / "a.png"));
+}
+
+TEST(ImageModule, TheVariableIsLookedAtFirst) {
+    const TemporaryDirectory folder;
+    const std::filesystem::path modules = this_program().parent_path().parent_path() / "lib/relief";
+    const std::string output =
+        child_output(program_elsewhere(folder), modules.string(), folder / "a.png");
+    EXPECT_THAT(output, HasSubstr("width 1"));
+}
+
+TEST(ImageModule, ABrokenModuleIsNamedWithTheLoadersOwnWords) {
+    const TemporaryDirectory folder;
+    std::filesystem::create_directories(folder / "lib/relief");
+    std::ofstream(folder / "lib/relief/relief_image.so") << "no library";
+    const std::string output = child_output(program_elsewhere(folder), "", folder / "a.png");
+    EXPECT_THAT(output, HasSubstr("does not load: "));
+    EXPECT_THAT(output, HasSubstr("too short"));
+    EXPECT_THAT(output, Not(HasSubstr("width")));
+}
+
+}  // namespace
+}  // namespace relief
