@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Render targets of a picture and the pass that averages and codes samples. Linear light; sRGB
 // codes by IEC 61966-2-1. Bad sizes throw as RenderTarget says. Tests:
-// tests/shade/render/picture_test.cpp.
+// tests/shade/render/renderer_test.cpp.
 #include "render/picture.h"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// From drawn samples to the finished picture: how they are stored, averaged and coded.
-/// Tests: tests/shade/render/picture_test.cpp.
+/// Tests: tests/shade/render/renderer_test.cpp.
 #pragma once
 
 #include <glm/glm.hpp>

@@ -1,0 +1,242 @@
+// SPDX-License-Identifier: Apache-2.0
+// Hard inputs of the renderer: each has one defined outcome, and every picture is finite.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "draw_test.h"
+#include "relief/shade/image_compare.h"
+#include "support/shapes.h"
+
+namespace relief {
+namespace {
+
+using test::pixel;
+
+constexpr float not_a_number = std::numeric_limits<float>::quiet_NaN();
+constexpr float infinite = std::numeric_limits<float>::infinity();
+
+class HardCases : public test::DrawTest {
+  protected:
+    /// The linear picture, checked to be finite and not negative.
+    [[nodiscard]] Image finite_radiance(const Scene& scene, int size = 16) const {
+        Image image = radiance(scene, size, size);
+        std::size_t offences = 0;
+        for (const float sample : image.as<float>()) {
+            if (!(sample >= 0.0F && std::isfinite(sample))) ++offences;
+        }
+        EXPECT_EQ(offences, 0U);
+        return image;
+    }
+};
+
+Scene lit_square() {
+    Material material;
+    material.diffuse = glm::vec3(1.0F);
+    Scene scene = test::scene_of(test::facing_square(), material);
+    scene.directional_lights = {{{0, 0, -1}, {0.5F, 0.5F, 0.5F}}};
+    return scene;
+}
+
+const glm::dvec4 fully_lit(0.5, 0.5, 0.5, 1);
+
+TEST_F(HardCases, ANormalWithoutLengthCountsAsTheZAxis) {
+    for (const glm::vec3& bad : {glm::vec3(0.0F), glm::vec3(not_a_number), glm::vec3(infinite)}) {
+        Scene scene = lit_square();
+        scene.meshes[0].normals.assign(4, bad);
+        EXPECT_EQ(pixel(finite_radiance(scene), 8, 8), fully_lit);
+    }
+}
+
+TEST_F(HardCases, NormalsThatCancelBetweenVerticesAreFinite) {
+    Scene scene = lit_square();
+    scene.materials[0].specular = glm::vec3(1.0F);
+    auto& normals = scene.meshes[0].normals;
+    for (std::size_t i = 0; i < 4; ++i)
+        normals[i] = {i % 2 == 0 ? 1.0F : -1.0F, 0, 0};
+    // 17 pixels across: a column of them is where the normals cancel.
+    EXPECT_NEAR(pixel(finite_radiance(scene, 17), 8, 8).r, 1.0,
+                1e-5);  // 0.5 scattered, 0.5 mirrored.
+}
+
+TEST_F(HardCases, ANormalOfAnyLengthCountsAlike) {
+    const Image expected = finite_radiance(lit_square());
+    for (const float length : {1e-14F, 1e-3F, 1e3F, 1e14F}) {
+        Scene scene = lit_square();
+        for (glm::vec3& normal : scene.meshes[0].normals)
+            normal *= length;
+        EXPECT_TRUE(test::same_bits(finite_radiance(scene), expected)) << length;
+    }
+}
+
+TEST_F(HardCases, ANormalThatFacesAwayReflectsAtGrazingAngleAtMost) {
+    Scene scene = test::scene_of(test::facing_square(), test::black_material());
+    scene.meshes[0].normals.assign(4, glm::vec3(0, 0, -1));
+    scene.materials[0].reflectivity = {0.25F, 0.25F, 0.25F};
+    scene.environment = test::constant_environment(glm::vec3(0.5F), false);
+    // n.v is -1, taken as 0: all is reflected.
+    EXPECT_EQ(pixel(finite_radiance(scene), 8, 8), fully_lit);
+}
+
+TEST_F(HardCases, ExponentsFromZeroToAMillionKeepTheirHighlight) {
+    for (const SpecularModel model : {SpecularModel::phong, SpecularModel::blinn_phong}) {
+        for (const float shininess : {0.0F, 1e-6F, 1.0F, 1e4F, 1e5F, 1e6F}) {
+            SCOPED_TRACE(shininess);
+            Scene scene = lit_square();
+            scene.materials[0] = test::black_material();
+            scene.materials[0].specular = glm::vec3(1.0F);
+            scene.materials[0].specular_model = model;
+            scene.materials[0].shininess = shininess;
+            // 17 pixels: the middle one looks straight down the normal, and so does the light.
+            const Image image = finite_radiance(scene, 17);
+            EXPECT_NEAR(pixel(image, 8, 8).r, 0.5, 1e-5);
+            const double next = pixel(image, 9, 8).r;  // 0.0782 radians from the middle one.
+            const double half = model == SpecularModel::phong ? 1.0 : 0.5;
+            const double cosine = std::cos(half * std::atan2(4.0 / 17, 3.0));
+            EXPECT_NEAR(next, 0.5 * std::pow(cosine, static_cast<double>(shininess)), 1e-5);
+        }
+    }
+}
+
+TEST_F(HardCases, AnExponentOfZeroShinesEvenAtRightAngles) {
+    Scene scene = lit_square();
+    scene.materials[0] = test::black_material();
+    scene.materials[0].specular = glm::vec3(1.0F);
+    scene.materials[0].specular_model = SpecularModel::phong;
+    scene.materials[0].shininess = 0.0F;
+    // The mirrored light leaves at 80 degrees to the normal, away from most of the picture.
+    scene.directional_lights = {{{5.67F, 0, -1}, {0.5F, 0.5F, 0.5F}}};
+    const Image image = finite_radiance(scene);
+    for (int x = 0; x < 16; ++x)
+        EXPECT_EQ(pixel(image, x, 8), fully_lit);
+}
+
+TEST_F(HardCases, ALightThatTouchesTheSurfaceIsFiniteAndLightsTheRest) {
+    Scene scene = lit_square();
+    scene.directional_lights.clear();
+    // In the middle of 17 pixels, exactly on the surface and then ever closer above it.
+    for (const float height : {0.0F, 1e-38F, 1e-20F, 1e-10F, 1e-3F}) {
+        SCOPED_TRACE(height);
+        scene.point_lights = {{{0, 0, height}, {1, 1, 1}, std::nullopt}};
+        (void)finite_radiance(scene, 17);
+        SpotLight spot;
+        spot.point = scene.point_lights[0];
+        Scene spotted = scene;
+        spotted.point_lights.clear();
+        spotted.spot_lights = {spot};
+        (void)finite_radiance(spotted, 17);
+    }
+    scene.materials[0].specular = glm::vec3(max_reflectance);
+    scene.point_lights = {{{0, 0, 1e-19F}, glm::vec3(max_light), std::nullopt}};
+    scene.ambient = glm::vec3(max_light);
+    (void)finite_radiance(scene, 17);
+}
+
+TEST_F(HardCases, ALightBehindTheEyeExactlyOppositeHasNoHalfVector) {
+    // The light comes from where the surface is seen to, l = -v: a normal that faces the light.
+    Scene scene = lit_square();
+    scene.materials[0] = test::black_material();
+    scene.materials[0].specular = glm::vec3(1.0F);
+    scene.meshes[0].normals.assign(4, glm::vec3(0, 0, -1));
+    scene.directional_lights = {{{0, 0, 1}, {1, 1, 1}}};
+    EXPECT_EQ(pixel(finite_radiance(scene, 17), 8, 8), glm::dvec4(0, 0, 0, 1));
+}
+
+TEST_F(HardCases, TheEyeOnTheSurfaceIsFinite) {
+    Scene scene = lit_square();
+    scene.materials[0].specular = glm::vec3(1.0F);
+    scene.materials[0].double_sided = true;
+    scene.camera->world_from_view[3] = glm::vec4(0, 0, 0, 1);
+    (void)finite_radiance(scene);
+}
+
+TEST_F(HardCases, SingularMatricesDrawWhatIsLeftOfTheGeometry) {
+    // Flattened onto z = 0: the sphere becomes a disc that faces both ways, and its normals those
+    // of the plane, by the sign of their z.
+    Material material;
+    material.diffuse = glm::vec3(1.0F);
+    Scene scene = test::scene_of(test::sphere(32, 16), material);
+    scene.directional_lights = {{{0, 0, -1}, {0.5F, 0.5F, 0.5F}}};
+    scene.instances[0].world_from_object[2].z = 0.0F;
+    EXPECT_EQ(pixel(finite_radiance(scene), 8, 8), fully_lit);
+    // Flattened onto a line, and onto a point: nothing is left.
+    scene.instances[0].world_from_object[1].y = 0.0F;
+    EXPECT_EQ(pixel(finite_radiance(scene), 8, 8), glm::dvec4(0));
+    scene.instances[0].world_from_object = glm::mat4(0.0F);
+    EXPECT_EQ(pixel(finite_radiance(scene), 8, 8), glm::dvec4(0));
+}
+
+TEST_F(HardCases, ScaleDoesNotMatter) {
+    const Image expected = finite_radiance(lit_square());
+    for (const float scale : {1e-12F, 1e-3F, 1e3F, 1e12F}) {
+        SCOPED_TRACE(scale);
+        Scene scene = lit_square();
+        scene.instances[0].world_from_object = glm::mat4(scale);
+        scene.instances[0].world_from_object[3].w = 1.0F;
+        scene.camera->world_from_view[3] = glm::vec4(0, 0, 3.0F * scale, 1);
+        scene.camera->near *= scale;
+        scene.camera->far *= scale;
+        EXPECT_LE(compare(finite_radiance(scene), expected).max, 1e-6);
+    }
+}
+
+TEST_F(HardCases, FarFromTheOriginTheModelKeepsItsShape) {
+    const Image expected = finite_radiance(lit_square());
+    Scene scene = lit_square();
+    const glm::vec3 away(1048576.0F, -2097152.0F, 524288.0F);  // Powers of two: exact in float.
+    scene.instances[0].world_from_object[3] = glm::vec4(away, 1);
+    scene.camera->world_from_view[3] = glm::vec4(away + glm::vec3(0, 0, 3), 1);
+    EXPECT_LE(compare(finite_radiance(scene), expected).max, 1e-6);
+}
+
+TEST_F(HardCases, NotANumberInVertexDataStaysWhereItIs) {
+    Scene scene = lit_square();
+    Mesh& mesh = scene.meshes[0];
+    const auto add_triangle = [&](const glm::vec3& first) {
+        const auto base = static_cast<std::uint32_t>(mesh.positions.size());
+        mesh.positions.insert(mesh.positions.end(), {first, {0, 0, 1}, {1, 0, 1}});
+        mesh.normals.insert(mesh.normals.end(), 3, glm::vec3(0, 0, 1));
+        mesh.texcoords.insert(mesh.texcoords.end(), 3, glm::vec2(0.0F));
+        mesh.triangles.emplace_back(base, base + 1, base + 2);
+    };
+    add_triangle({not_a_number, 0, 1});
+    add_triangle({0, infinite, 1});
+    mesh.colors.assign(mesh.positions.size(), glm::vec4(1.0F));
+    mesh.colors[0] = glm::vec4(not_a_number);  // The square's upper left corner.
+    mesh.material_ranges = {{0, 4, 0}};
+    const Image image = finite_radiance(scene);
+    EXPECT_EQ(image.width, 16);  // What NaN reaches is black; the picture is whole.
+}
+
+TEST_F(HardCases, NotANumberInATextureShowsBlackAndSpoilsNothingElse) {
+    Image texture = make_image(2, 1, 3, 32, ColorSpace::linear);
+    texture.samples = std::vector<float>{not_a_number, infinite, -1, 0.5F, 0.5F, 0.5F};
+    Scene scene = lit_square();
+    scene.images = {{"texture", texture}};
+    Texture use;
+    use.filter = TextureFilter::nearest;
+    use.wrap_u = use.wrap_v = TextureWrap::clamp;
+    scene.materials[0].diffuse_texture = use;
+    const Image image = finite_radiance(scene);
+    EXPECT_EQ(pixel(image, 4, 8).r, 0.0);   // NaN.
+    EXPECT_GT(pixel(image, 4, 8).g, 1e30);  // Infinity: the largest value.
+    EXPECT_EQ(pixel(image, 4, 8).b, 0.0);   // Negative.
+    EXPECT_EQ(pixel(image, 12, 8).r, 0.25);
+}
+
+TEST_F(HardCases, AnEmptySceneIsItsBackground) {
+    Scene scene;
+    scene.camera = test::front_camera();
+    scene.background = {0.25F, 0.5F, 0.75F, 1.0F};
+    EXPECT_EQ(pixel(finite_radiance(scene), 8, 8), glm::dvec4(0.25, 0.5, 0.75, 1));
+    // A mesh without triangles, with a range of none, is nothing as well.
+    scene.meshes = {Mesh{}};
+    scene.meshes[0].material_ranges = {{0, 0, std::nullopt}};
+    scene.instances = {{0, glm::mat4(1), "empty"}};
+    scene.ambient = {1, 1, 1};
+    EXPECT_EQ(pixel(finite_radiance(scene), 8, 8), glm::dvec4(0.25, 0.5, 0.75, 1));
+}
+
+}  // namespace
+}  // namespace relief
