@@ -3,7 +3,6 @@
 #include "relief/mesh/report.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 
@@ -54,9 +53,12 @@ std::size_t Report::count(std::string_view kind) const {
 }
 
 std::string to_string(const Finding& finding) {
-    return fmt::format("{} x {} ({} {}{}): {}", finding.count, finding.kind, finding.element,
-                       fmt::join(finding.first, ", "),
-                       finding.count > finding.first.size() ? ", ..." : "", finding.outcome);
+    std::string elements;
+    for (const std::size_t index : finding.first)
+        elements += fmt::format("{}{}", elements.empty() ? "" : ", ", index);
+    if (finding.count > finding.first.size()) elements += ", ...";
+    return fmt::format("{} x {} ({} {}): {}", finding.count, finding.kind, finding.element,
+                       elements, finding.outcome);
 }
 
 }  // namespace relief

@@ -182,47 +182,79 @@ class GroupAverager {
     std::vector<glm::dvec3> terms_;
 };
 
-/// Signs of triangles that border on one with a sign, round by round.
-class SignSpreader {
+/// Finds signs for triangles without a gradient: first by what groups could claim them at their
+/// vertices, then from neighbour to neighbour.
+class SignFinder {
   public:
-    SignSpreader(const TangentInput& input, std::vector<std::int8_t>& signs)
-        : input_(input),
-          signs_(signs),
-          offers_(signs.size(), 0),
-          is_offered_(signs.size(), false) {}
+    SignFinder(const TangentInput& input, std::vector<std::int8_t>& signs)
+        : input_(input), signs_(signs), votes_(signs.size()) {}
 
-    /// Offers the triangle's sign to its neighbours without one.
-    void offer_from(std::uint32_t triangle) {
-        for (std::uint32_t i = 0; i < 3; ++i) {
-            const Corner beyond = input_.links.across[3 * triangle + i];
-            if (beyond == no_corner) continue;
-            const std::uint32_t neighbour = triangle_of(beyond);
-            if (signs_[neighbour] != 0) continue;
-            if (!is_offered_[neighbour]) offered_.push_back(neighbour);
-            is_offered_[neighbour] = true;
-            offers_[neighbour] = static_cast<std::int8_t>(offers_[neighbour] + signs_[triangle]);
+    void find() {
+        for (Corner corner = 0; corner < 3 * signs_.size(); ++corner) {
+            if (is_open(corner) && !is_open(input_.links.across_previous(corner))) {
+                vote_along_chain(corner);
+            }
         }
-    }
-
-    /// All offers of a round are made before any is taken, so that no order matters.
-    void spread() {
-        std::vector<std::uint32_t> taken;
-        while (!offered_.empty()) {
-            taken.swap(offered_);
-            offered_.clear();
-            for (const std::uint32_t triangle : taken)
-                signs_[triangle] = offers_[triangle] >= 0 ? 1 : -1;
-            for (const std::uint32_t triangle : taken)
-                offer_from(triangle);
+        while (!voted_.empty()) {
+            const std::vector<std::uint32_t> elected = elect();
+            for (const std::uint32_t triangle : elected) {
+                for (Corner corner = 3 * triangle; corner < 3 * triangle + 3; ++corner)
+                    vote(input_.links.across[corner], signs_[triangle]);
+            }
         }
     }
 
   private:
+    struct Votes {
+        std::int8_t sum = 0;
+        bool any = false;
+    };
+
+    /// Whether the corner's triangle takes part and has no sign yet.
+    [[nodiscard]] bool is_open(Corner corner) const {
+        return corner != no_corner && signs_[triangle_of(corner)] == 0 &&
+               input_.gradients.kinds[triangle_of(corner)] == Gradient::none;
+    }
+
+    [[nodiscard]] std::int8_t sign_at(Corner corner) const {
+        return corner == no_corner ? std::int8_t{0} : signs_[triangle_of(corner)];
+    }
+
+    void vote(Corner corner, std::int8_t sign) {
+        if (!is_open(corner) || sign == 0) return;
+        Votes& votes = votes_[triangle_of(corner)];
+        if (!votes.any) voted_.push_back(triangle_of(corner));
+        votes.any = true;
+        votes.sum = static_cast<std::int8_t>(votes.sum + sign);
+    }
+
+    /// Around one vertex, the triangles with gradients at both ends of a run of triangles without
+    /// vote for all of them.
+    void vote_along_chain(Corner first) {
+        const std::int8_t before = sign_at(input_.links.across_previous(first));
+        Corner end = first;
+        while (is_open(end))
+            end = input_.links.across[end];
+        const std::int8_t after = sign_at(end);
+        for (Corner corner = first; corner != end; corner = input_.links.across[corner]) {
+            vote(corner, before);
+            vote(corner, after);
+        }
+    }
+
+    /// All votes of a round are cast before any counts, so that no order matters.
+    std::vector<std::uint32_t> elect() {
+        std::vector<std::uint32_t> elected;
+        elected.swap(voted_);
+        for (const std::uint32_t triangle : elected)
+            signs_[triangle] = votes_[triangle].sum >= 0 ? 1 : -1;
+        return elected;
+    }
+
     const TangentInput& input_;
     std::vector<std::int8_t>& signs_;
-    std::vector<std::int8_t> offers_;  ///< The sum over the neighbours that have a sign.
-    std::vector<bool> is_offered_;
-    std::vector<std::uint32_t> offered_;
+    std::vector<Votes> votes_;
+    std::vector<std::uint32_t> voted_;
 };
 
 }  // namespace
@@ -235,12 +267,7 @@ std::vector<std::int8_t> triangle_signs(const TangentInput& input) {
         if (has_gradient(kinds[t])) signs[t] = kinds[t] == Gradient::upright ? 1 : -1;
         all = all && signs[t] != 0;
     }
-    if (all) return signs;
-    SignSpreader spreader(input, signs);
-    for (std::uint32_t t = 0; t < kinds.size(); ++t) {
-        if (has_gradient(kinds[t])) spreader.offer_from(t);
-    }
-    spreader.spread();
+    if (!all) SignFinder(input, signs).find();
     return signs;
 }
 

@@ -27,9 +27,10 @@ struct TangentInput {
     const TriangleGradients& gradients;
 };
 
-/// The w of every triangle: its own, or for one without a gradient that of most of the neighbours
-/// that have one first, +1 if they balance; 0 where no triangle with a gradient can be reached.
-/// (The reference implementation takes that of the first to come in the list.)
+/// The w of every triangle. One without a gradient takes that of most triangles with one that end
+/// the runs of such triangles around its vertices, since their groups could claim it; failing
+/// these, of most neighbours that have found theirs first; +1 if they balance, 0 where there are
+/// none at all. (The reference implementation takes that of the first group to come in the list.)
 std::vector<std::int8_t> triangle_signs(const TangentInput& input);
 
 /// How a corner came by its tangent.
