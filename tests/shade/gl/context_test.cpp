@@ -224,7 +224,7 @@ TEST(Context, AFailureLeavesTheThreadFreeForAnother) {
     if (!test::is_installed(Backend::osmesa)) GTEST_SKIP() << "needs OSMesa";
     {
         const ScopedVariable osmesa("RELIEF_OSMESA_LIBRARY", absent_osmesa);
-        EXPECT_THROW(Context(Backend::osmesa), GpuError);
+        EXPECT_THROW(Context{Backend::osmesa}, GpuError);
     }
     EXPECT_TRUE(clears_to(Context(Backend::osmesa).api(), 200));
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// An OpenGL context without a window. Tests: tests/shade/gl/context_test.cpp.
+/// An OpenGL context without a window.
+/// Tests: tests/shade/gl/context_test.cpp, tests/shade/gl/egl_devices_test.cpp.
 #pragma once
 
 #include <memory>
@@ -9,6 +10,10 @@
 namespace relief {
 
 /// Which library gives the context. Each is loaded at run time; none is needed by another.
+///
+/// OSMesa is libOSMesa.so.8, .6 or .so, EGL is libEGL.so.1, wherever the system keeps them;
+/// $RELIEF_OSMESA_LIBRARY and $RELIEF_EGL_LIBRARY name another file in their place. A device that
+/// calls itself hardware but is drawn by Mesa's rasteriser counts as software.
 enum class Backend {
     automatic,  ///< A hardware EGL device where there is one, else OSMesa, else software EGL.
     osmesa,
@@ -21,11 +26,14 @@ class Api;  // The table of entry points (libshade/src/gl/api.h).
 
 /// One headless OpenGL 3.3 core context, current on the thread that made it until destroyed.
 ///
-/// At most one exists at a time in a thread; it is released before another is made current, since
-/// OSMesa and EGL do not notice each other.
+/// At most one exists at a time in a thread, since OSMesa and EGL do not notice each other; any
+/// number of threads may have one each. It is destroyed on the thread that made it, after
+/// everything that lives in it. The libraries and EGL's displays stay loaded until the process
+/// ends.
 class Context {
   public:
     /// \throws GpuError saying for every backend tried why it could not serve
+    /// \throws InvalidInput if this thread has a context already
     explicit Context(Backend backend = Backend::automatic);
     ~Context();
     Context(const Context&) = delete;
