@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+// Writes the project's samples into a folder: relief-make-data FOLDER. What each file is stands in
+// data/README.md. The same files come out of every run. Exit 0 done, 1 failed, 2 wrong usage.
+// Tests: tests/mesh/image/sample_data_test.cpp.
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+
+#include "bricks.h"
+#include "relief/mesh/image_file.h"
+#include "relief/mesh/mesh_file.h"
+#include "sky.h"
+#include "vase.h"
+
+namespace {
+
+namespace sample = relief::sample;
+
+relief::MeshFile vase_with_material(const std::filesystem::path& folder) {
+    relief::MeshFile file;
+    file.mesh = sample::vase();
+    file.mesh.material_ranges = {
+        {0, static_cast<std::uint32_t>(file.mesh.triangles.size()), std::uint32_t{0}}};
+    relief::MtlMaterial bricks;
+    bricks.name = "bricks";
+    bricks.diffuse = glm::vec3(1.0F);
+    bricks.specular = glm::vec3(0.05F);
+    bricks.shininess = 24.0F;
+    bricks.diffuse_map = folder / "bricks-diffuse.png";
+    file.materials.push_back(bricks);
+    return file;
+}
+
+void write_all(const std::filesystem::path& folder) {
+    std::filesystem::create_directories(folder / "sky");
+    relief::write_image(folder / "bricks-height.png", sample::brick_heights(1024),
+                        {{"relief:content", "height map, tiles"}});
+    relief::write_image(folder / "bricks-diffuse.png", sample::brick_colors(512));
+    for (int face = 0; face < 6; ++face) {
+        relief::write_image(folder / "sky" / fmt::format("{}.jpg", sample::face_names[face]),
+                            sample::sky_face(face, 384));
+    }
+    relief::write_mesh(folder / "vase.obj", vase_with_material(folder));
+}
+
+}  // namespace
+
+int main(int count, char** arguments) {
+    if (count != 2) {
+        fmt::print(stderr, "usage: relief-make-data FOLDER\n");
+        return 2;
+    }
+    try {
+        write_all(arguments[1]);
+    } catch (const std::exception& error) {
+        fmt::print(stderr, "relief-make-data: error: {}\n", error.what());
+        return 1;
+    }
+    return 0;
+}
