@@ -64,6 +64,7 @@ struct GltfMaterial {
     std::optional<GltfTexture> emission_texture;
     float normal_scale = 1.0F;
     enum class AlphaMode { opaque, mask, blend } alpha_mode = AlphaMode::opaque;
+    float alpha_cutoff = 0.5F;  ///< Of AlphaMode::mask: what is below is not there.
     bool double_sided = false;
     bool unlit = false;  ///< KHR_materials_unlit
 };

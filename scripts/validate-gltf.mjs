@@ -1,0 +1,84 @@
+#!/usr/bin/env node
+// SPDX-License-Identifier: Apache-2.0
+// Runs the Khronos glTF validator over .gltf and .glb files and prints counts of its messages.
+//
+//   node scripts/validate-gltf.mjs [--module DIR] FILE...
+//   node scripts/validate-gltf.mjs [--module DIR] --baseline IN OUT [--baseline IN OUT]...
+//
+// DIR is the folder of the npm package gltf-validator; without it, NODE_PATH is searched. With a
+// baseline only what is new in OUT counts: messages of a code that IN has fewer of. Exit status: 0
+// if there are no (new) errors or warnings, 1 if there are, 2 if the validator is not to be found.
+import { readFile } from "node:fs/promises";
+import { createRequire } from "node:module";
+import path from "node:path";
+import process from "node:process";
+
+const severities = ["error", "warning", "info", "hint"];
+
+function parseArguments(list) {
+    const options = { module: null, pairs: [] };
+    for (let i = 0; i < list.length; ++i) {
+        if (list[i] === "--module") options.module = list[++i];
+        else if (list[i] === "--baseline") options.pairs.push({ before: list[++i], after: list[++i] });
+        else options.pairs.push({ before: null, after: list[i] });
+    }
+    if (options.pairs.length === 0 || options.pairs.some((pair) => pair.after === undefined)) {
+        console.error("validate-gltf: error: no file given; see the head of the script");
+        process.exit(2);
+    }
+    return options;
+}
+
+function loadValidator(folder) {
+    try {
+        const require = createRequire(import.meta.url);
+        return require(folder ? path.resolve(folder) : "gltf-validator");
+    } catch (error) {
+        console.error(`validate-gltf: error: gltf-validator is not to be found (${error.message}); ` +
+            "npm install gltf-validator, then --module DIR");
+        process.exit(2);
+    }
+}
+
+async function messagesOf(validator, file) {
+    const bytes = new Uint8Array(await readFile(file));
+    const report = await validator.validateBytes(bytes, {
+        uri: path.basename(file),
+        maxIssues: 0,
+        externalResourceFunction: async (uri) =>
+            new Uint8Array(await readFile(path.join(path.dirname(file), decodeURIComponent(uri)))),
+    }).catch((error) => ({ issues: { messages: [{ code: String(error), severity: 0, pointer: "" }] } }));
+    return report.issues.messages;
+}
+
+/// Messages whose code stands more often in `after` than in `before`: the surplus, the last ones.
+function newMessages(before, after) {
+    const allowed = new Map();
+    for (const message of before) allowed.set(message.code, (allowed.get(message.code) ?? 0) + 1);
+    return after.filter((message) => {
+        const left = allowed.get(message.code) ?? 0;
+        allowed.set(message.code, left - 1);
+        return left <= 0;
+    });
+}
+
+const options = parseArguments(process.argv.slice(2));
+const validator = loadValidator(options.module);
+let isClean = true;
+for (const { before, after } of options.pairs) {
+    let messages = await messagesOf(validator, after);
+    if (before) messages = newMessages(await messagesOf(validator, before), messages);
+    const counts = severities.map((_, severity) =>
+        messages.filter((message) => message.severity === severity).length);
+    isClean = isClean && counts[0] === 0 && counts[1] === 0;
+    const summary = severities.map((name, severity) => `${counts[severity]} ${name}s`).join(", ");
+    console.log(`${after}: ${before ? "new: " : ""}${summary}`);
+    const shown = new Map();
+    for (const { code, severity, pointer, message } of messages) {
+        const seen = shown.get(code) ?? 0;
+        shown.set(code, seen + 1);
+        if (severity <= 1 && seen < 3) console.log(`  ${severities[severity]} ${code} ${pointer} ${message ?? ""}`);
+        else if (seen === 0) console.log(`  ${severities[severity]} ${code}`);
+    }
+}
+process.exit(isClean ? 0 : 1);
