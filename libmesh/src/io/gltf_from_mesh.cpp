@@ -101,6 +101,19 @@ void set_bounds(Json& accessor, const std::vector<glm::vec3>& positions) {
     accessor["max"] = most;
 }
 
+/// Normals as glTF wants them. OBJ allows any length, and some writers use that; those that are
+/// unit within what glTF tolerates keep their bits, and those without a direction stay as they are.
+std::vector<glm::vec3> unit_normals(std::vector<glm::vec3> normals) {
+    for (glm::vec3& normal : normals) {
+        const double length = glm::length(glm::dvec3(normal));
+        const bool has_direction = length > 0.0 && std::isfinite(length);
+        if (has_direction && std::abs(length - 1.0) > 5e-4) {
+            normal = glm::vec3(glm::dvec3(normal) / length);
+        }
+    }
+    return normals;
+}
+
 void DocumentMaker::add_primitive(const MaterialRange& range) {
     const Mesh& mesh = file_.mesh;
     const std::vector<std::uint32_t> vertices = vertices_of(mesh, range);
@@ -122,7 +135,7 @@ void DocumentMaker::add_primitive(const MaterialRange& range) {
     add("POSITION", mesh.positions, "VEC3");
     set_bounds(contents_.root["accessors"][attributes["POSITION"].get<std::size_t>()],
                picked(mesh.positions, vertices));
-    add("NORMAL", mesh.normals, "VEC3");
+    add("NORMAL", unit_normals(mesh.normals), "VEC3");
     if (!mesh.normals.empty()) add("TANGENT", mesh.tangents, "VEC4");
     add("TEXCOORD_0", mesh.texcoords, "VEC2");
     add("COLOR_0", mesh.colors, "VEC4");

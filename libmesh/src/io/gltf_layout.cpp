@@ -81,6 +81,8 @@ class Clearance {
   public:
     Clearance(Json& root, const GltfContents& contents)
         : root_(root), dead_(contents.buffers.size()), live_(contents.buffers.size()) {
+        for (const GltfBuffer& buffer : contents.buffers)
+            sizes_.push_back(buffer.size);
         drop_accessors(contents);
         drop_views(contents);
         if (!dropped_accessors_.empty() || !dropped_views_.empty()) collect_live();
@@ -107,6 +109,7 @@ class Clearance {
     std::set<std::size_t> dropped_accessors_, dropped_views_;
     std::set<std::size_t> touched_views_;  ///< Those that lost an accessor.
     std::vector<std::vector<Extent>> dead_, live_;
+    std::vector<std::size_t> sizes_;  ///< Of the buffers.
 };
 
 void Clearance::drop_accessors(const GltfContents& contents) {
@@ -206,8 +209,14 @@ std::vector<Extent> uncovered(std::vector<Extent> dead, std::vector<Extent> live
 std::vector<std::vector<Extent>> Clearance::clear(std::size_t alignment) {
     std::vector<std::vector<Extent>> cuts(dead_.size());
     for (std::size_t buffer = 0; buffer < dead_.size(); ++buffer) {
+        // The padding behind what goes away goes with it.
+        for (Extent& extent : dead_[buffer]) {
+            extent.end = std::min((extent.end + 3) / 4 * 4, sizes_[buffer]);
+        }
         for (Extent extent : uncovered(dead_[buffer], live_[buffer])) {
-            extent.end -= (extent.end - extent.begin) % alignment;
+            // What follows keeps its alignment; behind the end of a buffer nothing does.
+            const bool is_last = extent.end == sizes_[buffer];
+            if (!is_last) extent.end -= (extent.end - extent.begin) % alignment;
             if (extent.end > extent.begin) cuts[buffer].push_back(extent);
         }
     }

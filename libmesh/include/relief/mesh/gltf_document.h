@@ -48,6 +48,7 @@ struct GltfTexture {
 /// An image in its encoded form: bytes from the document, or a file beside it.
 struct GltfImage {
     std::string name;
+    /// No bytes where the document names a file outside its folder.
     std::variant<std::vector<std::byte>, std::filesystem::path> source;
 };
 
@@ -96,7 +97,8 @@ struct GltfPlaced {
     std::string name;  ///< The node's.
 };
 
-/// What a renderer needs of a document, in plain data. Animations and skins are at rest.
+/// What a renderer needs of a document, in plain data. Animations and skins are at rest; instances
+/// of EXT_mesh_gpu_instancing are placed one by one; orthographic cameras are left out.
 struct GltfView {
     std::vector<GltfPlaced<GltfPrimitiveId>> primitives;  ///< Triangles only.
     std::vector<GltfPlaced<GltfLight>> lights;
@@ -107,29 +109,44 @@ struct GltfView {
 
 class GltfDocument {
   public:
-    /// Reads a .gltf or .glb file.
+    /// Reads a .gltf or .glb file, told apart by content.
     ///
-    /// \param report  counts what is unusual but harmless
-    /// \throws FileError if the file is unreadable; if an index, count, offset or length in it is
-    /// out of range; if
-    ///         nodes form a cycle; if it requires an extension that relief does not know how to
-    ///         keep or decode; or if it names a buffer that is missing or outside its folder
+    /// \param report  counts what is unusual but harmless: images that are missing or outside the
+    ///                folder (such are never opened), bytes behind a GLB
+    /// \throws FileError if the file is unreadable; if a property that relief knows has the wrong
+    ///         type, or an index, count, offset or length is out of range; if nodes form a cycle or
+    ///         share a child; if it requires an extension that relief does not know how to keep or
+    ///         decode (KHR_draco_mesh_compression and EXT_meshopt_compression among them); or if it
+    ///         names a buffer that is missing or outside its folder
     static GltfDocument read(const std::filesystem::path& file, Report& report);
 
-    /// A new document with one mesh, a primitive for each material range, and materials translated
-    /// from MTL: Kd to base colour, roughness = sqrt(2 / (Ns + 2)), metallic 0; the mesh must be
-    /// valid. Images are embedded as they are. \throws FileError if one is missing
+    /// A new document with one mesh, a primitive for each material range over its own vertices, and
+    /// materials translated from MTL: Kd and d to base colour (within [0,1]), roughness =
+    /// sqrt(2 / (Ns + 2)), metallic 0, Ke to emission (KHR_materials_emissive_strength above 1),
+    /// norm to the normal map. Images are embedded as they are; bump maps (heights) have no place
+    /// in glTF and are left out. Normals of other than unit length, which OBJ allows, are scaled.
+    /// \throws FileError if an image is missing or neither PNG nor JPEG; InvalidInput if the mesh
+    /// is
+    ///         not valid, has no triangle or names a material that is not there
     static GltfDocument from_mesh(const MeshFile& contents);
 
     GltfDocument(GltfDocument&&) noexcept;
     GltfDocument& operator=(GltfDocument&&) noexcept;
     ~GltfDocument();
 
-    /// Writes .glb (one self-contained file) or .gltf (JSON, with its buffer beside it as
-    /// NAME.bin), by extension. Written beside and renamed. \throws FileError
+    /// Writes .glb (one file, images in files and data URIs put inside) or .gltf (JSON, with its
+    /// buffer beside it as NAME.bin), by extension. Written beside and renamed.
+    ///
+    /// Buffers become one, with the name and extras of the first; what set_frames replaced is left
+    /// out, and all else keeps its bytes. A .gltf in another folder gets copies of the images that
+    /// lie in files, at the same place below it. Images that are missing stay missing.
+    /// \throws FileError if it cannot be written, if a file of other content is where an image
+    ///         should go, or if an image lies outside the document's folder and the target is not
+    ///         in that same folder
     void write(const std::filesystem::path& file) const;
 
-    /// All primitives made of triangles (lists, strips, fans), each once, in document order.
+    /// All primitives made of triangles (lists, strips, fans) that have positions, each once, in
+    /// document order.
     [[nodiscard]] std::vector<GltfPrimitiveId> triangle_primitives() const;
 
     /// "mesh 'Body' primitive 0", for messages.
@@ -137,13 +154,18 @@ class GltfDocument {
 
     /// A primitive in plain arrays: indices made explicit, strips and fans unrolled, sparse and
     /// normalised-integer accessors made float; texture coordinate set 0, colour set 0. Its one
-    /// material range names the document's material. \throws InvalidInput if it cannot be read
+    /// material range names the document's material. Where primitives share an array of vertices
+    /// and this one uses only a part of it, the mesh has that part, in the same order.
+    /// \throws InvalidInput if indices are out of range or make no whole triangles, if attributes
+    ///         differ in number or have the wrong type, or if there is no such primitive
     [[nodiscard]] Mesh mesh(GltfPrimitiveId id) const;
 
     /// Replaces a primitive's NORMAL and TANGENT by those of `framed`, which with_frames() made
     /// from mesh(id). Where vertices were split, indices are rewritten and every other attribute
     /// and morph target is carried along, in its own type. Attributes that did not change keep
-    /// their bytes.
+    /// their bytes; primitives that shared what is replaced keep theirs. Without normals or
+    /// tangents in `framed` the primitive loses them, and so do its morph targets. \throws
+    /// InvalidInput if `framed` does not belong to this primitive
     void set_frames(GltfPrimitiveId id, const FramedMesh& framed);
 
     /// The document as a scene. \throws InvalidInput if it cannot be read
@@ -160,8 +182,9 @@ class GltfDocument {
 
 /// All primitives of the default scene in world space as one mesh, with materials translated to
 /// MTL (names, base colour, image paths where images are files), for OBJ and PLY. Negative scale
-/// turns the winding, so that faces stay counter-clockwise. \throws InvalidInput if it cannot be
-/// read
+/// turns the winding, so that faces stay counter-clockwise. Where only some primitives have
+/// normals, texture coordinates or colours, the others get flat normals, (0,0) and white. Tangents
+/// are left out. \throws InvalidInput if it cannot be read
 MeshFile flattened(const GltfDocument& document);
 
 }  // namespace relief

@@ -1,0 +1,442 @@
+// SPDX-License-Identifier: Apache-2.0
+// glTF documents: what goes in comes out, and broken files end in an error that names them.
+#include "relief/mesh/gltf_document.h"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <tiny_gltf.h>
+
+#include <cstring>
+#include <fstream>
+#include <set>
+
+#include "gltf_semantics.h"
+#include "relief/mesh/error.h"
+#include "support/shapes.h"
+#include "support/shared_data.h"
+
+namespace relief {
+namespace {
+
+using nlohmann::json;
+using test::meaning_of;
+using test::write_gltf_file;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+class GltfDocumentTest : public testing::Test {
+  protected:
+    GltfDocument read(const std::filesystem::path& file) {
+        return GltfDocument::read(file, report_);
+    }
+    std::string error_of(const json& root, const std::string& buffer = {}) {
+        write_gltf_file(folder_ / "e.glb", root, buffer);
+        return error_of_file(folder_ / "e.glb");
+    }
+    std::string error_of_file(const std::filesystem::path& file) {
+        try {
+            read(file);
+        } catch (const FileError& error) {
+            EXPECT_THAT(error.what(), HasSubstr(file.string() + ": "));
+            return error.what();
+        }
+        return "no error";
+    }
+
+    test::TemporaryDirectory folder_;
+    Report report_;
+};
+
+json triangle_json() {
+    return json::parse(R"({
+        "asset": {"version": "2.0"},
+        "buffers": [{"byteLength": 42}],
+        "bufferViews": [{"buffer": 0, "byteLength": 36},
+                        {"buffer": 0, "byteOffset": 36, "byteLength": 6}],
+        "accessors": [
+            {"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3",
+             "min": [0, 0, 0], "max": [1, 1, 0]},
+            {"bufferView": 1, "componentType": 5123, "count": 3, "type": "SCALAR"}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 1}]}],
+        "nodes": [{"mesh": 0}], "scenes": [{"nodes": [0]}], "scene": 0})");
+}
+
+std::string triangle_bytes() {
+    const float positions[] = {0, 0, 0, 1, 0, 0, 0, 1, 0};
+    const std::uint16_t indices[] = {0, 1, 2};
+    std::string bytes(42, '\0');
+    std::memcpy(bytes.data(), positions, 36);
+    std::memcpy(bytes.data() + 36, indices, 6);
+    return bytes;
+}
+
+TEST_F(GltfDocumentTest, PropertiesThatNobodyKnowsAreKept) {
+    json root = triangle_json();
+    root["asset"]["minVersion"] = "2.0";
+    root["asset"]["copyright"] = "somebody";
+    root["extras"] = {{"large", 12345678901234}, {"null", nullptr},       {"empty", json::object()},
+                      {"none", json::array()},   {"negative zero", -0.0}, {"tenth", 0.1},
+                      {"text", "\u00e9\u2764"}};
+    root["unheard of"] = {1, 2, 3};
+    root["nodes"][0]["extensions"]["FOO_bar"] = {{"accessor", 0}};
+    root["extensionsUsed"] = {"FOO_bar", "KHR_animation_pointer"};
+    root["animations"] = json::parse(R"([{"channels": [{"sampler": 0, "target": {"path": "pointer",
+        "extensions": {"KHR_animation_pointer": {"pointer": "/nodes/0/scale"}}}}],
+        "samplers": [{"input": 0, "output": 0, "extras": 1}]}])");
+    write_gltf_file(folder_ / "a.glb", root, triangle_bytes());
+    for (const char* name : {"b.glb", "b.gltf"}) {
+        read(folder_ / "a.glb").write(folder_ / name);
+        EXPECT_EQ(meaning_of(folder_ / name), meaning_of(folder_ / "a.glb"));
+    }
+    // And the JSON itself, but for the buffer's place.
+    std::ifstream stream(folder_ / "b.gltf");
+    json written = json::parse(stream);
+    EXPECT_EQ(written["buffers"][0]["uri"], "b.bin");
+    written["buffers"][0].erase("uri");
+    EXPECT_EQ(written, root);
+    EXPECT_TRUE(report_.empty());
+}
+
+TEST_F(GltfDocumentTest, ChunksThatNobodyKnowsAreKept) {
+    write_gltf_file(folder_ / "a.glb", triangle_json(), triangle_bytes());
+    std::fstream stream(folder_ / "a.glb", std::ios::binary | std::ios::in | std::ios::out);
+    stream.seekp(0, std::ios::end);
+    stream.write("\x04\0\0\0XYZWdata", 12);
+    const auto length = static_cast<std::uint32_t>(stream.tellp());
+    stream.seekp(8);
+    stream.write(reinterpret_cast<const char*>(&length), 4);
+    stream.close();
+    read(folder_ / "a.glb").write(folder_ / "b.glb");
+    std::ifstream written(folder_ / "b.glb", std::ios::binary);
+    const std::string bytes((std::istreambuf_iterator<char>(written)), {});
+    EXPECT_TRUE(bytes.ends_with(std::string_view("\x04\0\0\0XYZWdata", 12)));
+}
+
+TEST_F(GltfDocumentTest, EveryReadableModelMeansTheSameAfterACopy) {
+    RELIEF_NEEDS_SHARED(models, "data/models");
+    // Required compression, a later version, and a made-up extension.
+    const std::set<std::string> refused = {
+        "Box_Draco.glb",           "DracoSparseMesh.gltf", "BoxMeshopt.glb", "BoxMeshopt.gltf",
+        "BoxTextured_meshopt.glb", "MeshoptCubeTest.gltf", "pirate.glb",     "DenseSphere.glb",
+        "Compatibility_04.gltf",   "Compatibility_05.gltf"};
+    int copied = 0;
+    for (const auto& file : test::gltf_files_below(models)) {
+        const bool is_draco = file.parent_path().filename() == "glTF-Draco";
+        if (refused.contains(file.filename().string()) || is_draco) {
+            EXPECT_THAT(error_of_file(file),
+                        testing::AnyOf(HasSubstr("requires "), HasSubstr("minVersion is 2.1")));
+            continue;
+        }
+        const json before = meaning_of(file);
+        const auto target = folder_ / std::to_string(copied++);
+        std::filesystem::create_directory(target);
+        for (const char* name : {"copy.glb", "copy.gltf"}) {
+            read(file).write(target / name);
+            EXPECT_TRUE(meaning_of(target / name) == before) << file << " as " << name;
+        }
+    }
+    EXPECT_EQ(copied, 90);
+}
+
+TEST_F(GltfDocumentTest, AnIndependentReaderFindsTheSamePositions) {
+    RELIEF_NEEDS_SHARED(models, "data/models/gltf");
+    int compared = 0;
+    for (const auto& file : test::gltf_files_below(models)) {
+        if (file.parent_path().filename() == "glTF-Draco") continue;
+        const GltfDocument document = read(file);
+        document.write(folder_ / "a.glb");
+        tinygltf::TinyGLTF loader;
+        loader.SetImageLoader([](tinygltf::Image*, int, std::string*, std::string*, int, int,
+                                 const unsigned char*, int, void*) { return true; },
+                              nullptr);
+        tinygltf::Model model;
+        std::string error;
+        std::string warning;
+        ASSERT_TRUE(loader.LoadBinaryFromFile(&model, &error, &warning, folder_ / "a.glb"))
+            << file << error;
+        for (const GltfPrimitiveId id : document.triangle_primitives()) {
+            const auto& primitive = model.meshes[id.mesh].primitives[id.primitive];
+            const auto& accessor =
+                model.accessors[static_cast<std::size_t>(primitive.attributes.at("POSITION"))];
+            const Mesh mesh = document.mesh(id);
+            if (accessor.componentType != TINYGLTF_COMPONENT_TYPE_FLOAT ||
+                accessor.sparse.isSparse || accessor.count != mesh.positions.size()) {
+                continue;
+            }
+            const auto& view = model.bufferViews[static_cast<std::size_t>(accessor.bufferView)];
+            const unsigned char* data =
+                model.buffers[static_cast<std::size_t>(view.buffer)].data.data() + view.byteOffset +
+                accessor.byteOffset;
+            const auto stride = static_cast<std::size_t>(accessor.ByteStride(view));
+            for (std::size_t i = 0; i < accessor.count; ++i) {
+                ASSERT_EQ(std::memcmp(data + i * stride, &mesh.positions[i], 12), 0)
+                    << file << document.describe(id) << i;
+            }
+            ++compared;
+        }
+    }
+    EXPECT_GT(compared, 300);
+}
+
+bool is_valid(const Mesh& mesh) {
+    try {
+        validate(mesh);
+        return true;
+    } catch (const InvalidInput&) {
+        return false;
+    }
+}
+
+TEST_F(GltfDocumentTest, EveryBrokenFileIsRefusedOrCanBeWorkedWith) {
+    RELIEF_NEEDS_SHARED(broken, "data/broken/gltf");
+    int refused = 0;
+    int kept = 0;
+    for (const auto& file : test::gltf_files_below(broken)) {
+        try {
+            const GltfDocument document = read(file);
+            for (const GltfPrimitiveId id : document.triangle_primitives()) {
+                try {
+                    const Mesh mesh = document.mesh(id);
+                    EXPECT_TRUE(is_valid(mesh)) << file;
+                } catch (const InvalidInput& error) {
+                    EXPECT_THAT(error.what(), HasSubstr("primitive")) << file;
+                }
+            }
+            EXPECT_NO_THROW(static_cast<void>(document.view())) << file;
+            document.write(folder_ / "a.glb");
+            EXPECT_NO_THROW(read(folder_ / "a.glb")) << file;
+            ++kept;
+        } catch (const FileError& error) {
+            EXPECT_THAT(error.what(), HasSubstr(file.string() + ": "));
+            ++refused;
+        }
+    }
+    EXPECT_EQ(refused, 36);
+    EXPECT_EQ(kept, 28);
+}
+
+TEST_F(GltfDocumentTest, EveryTruncationOfAFileIsRefused) {
+    write_gltf_file(folder_ / "a.glb", triangle_json(), triangle_bytes());
+    for (auto length = std::filesystem::file_size(folder_ / "a.glb"); length-- > 0;) {
+        std::filesystem::resize_file(folder_ / "a.glb", length);
+        EXPECT_NE(error_of_file(folder_ / "a.glb"), "no error") << length;
+    }
+}
+
+/// A place in the JSON, a wrong value, and what the error says about it.
+struct Fault {
+    const char* pointer;
+    json value;
+    const char* message;
+};
+
+TEST_F(GltfDocumentTest, EveryFaultIsNamedWithPlaceValueAndLimit) {
+    const std::vector<Fault> faults = {
+        {"/asset/version", "1.0", "asset.version is 1.0, but only 2 is read"},
+        {"/asset/minVersion", "2.1", "asset.minVersion is 2.1"},
+        {"/asset/version", 2, "asset.version is not a string"},
+        {"/scene", 1, "scene is 1, but there are only 1 scenes"},
+        {"/nodes/0/mesh", 7, "nodes[0].mesh is 7, but there are only 1 meshes"},
+        {"/nodes/0/mesh", -1, "nodes[0].mesh is not an index"},
+        {"/nodes/0/mesh", 0.5, "nodes[0].mesh is not an index"},
+        {"/nodes/0/children", {0}, "nodes[0] is its own ancestor"},
+        {"/nodes/0/matrix", {1, 2}, "nodes[0].matrix is not an array of numbers"},
+        {"/nodes/0/extensions", 1, "nodes[0].extensions is not an object"},
+        {"/meshes/0/primitives/0/attributes/POSITION", 2,
+         "meshes[0].primitives[0].attributes.POSITION is 2, but there are only 2 accessors"},
+        {"/meshes/0/primitives/0/mode", 7, "meshes[0].primitives[0].mode is 7"},
+        {"/accessors/0/count", 4,
+         "accessors[0] covers bytes 0 to 48, but bufferViews[0] has only 36"},
+        {"/accessors/0/count", 4611686018427387904, "accessors[0].count is not a whole number"},
+        {"/accessors/0/count", 4503599627370496, "accessors[0] covers bytes 0 to"},
+        {"/accessors/0/byteOffset", 1, "accessors[0] covers bytes 1 to 37"},
+        {"/accessors/0/componentType", 5130, "accessors[0].componentType is 5130"},
+        {"/accessors/0/type", "VEC5", "accessors[0].type is 'VEC5'"},
+        {"/accessors/0/sparse",
+         {{"count", 4},
+          {"indices", {{"bufferView", 1}, {"componentType", 5123}}},
+          {"values", {{"bufferView", 0}}}},
+         "accessors[0].sparse.count is 4, but there are only 3"},
+        {"/accessors/0/sparse",
+         {{"count", 3},
+          {"indices", {{"bufferView", 1}, {"componentType", 5125}}},
+          {"values", {{"bufferView", 0}}}},
+         "accessors[0].sparse.indices covers bytes 0 to 12, but bufferViews[1] has only 6"},
+        {"/bufferViews/1/byteLength", 7, "bufferViews[1] covers bytes 36 to 43"},
+        {"/bufferViews/0/byteStride", 2, "bufferViews[0].byteStride is 2"},
+        {"/bufferViews/0/byteStride", 16, "accessors[0] covers bytes 0 to 44"},
+        {"/buffers/0/byteLength", 100, "buffers[0] claims 100 bytes, but has only 44"},
+        {"/buffers/0/uri", "../a.bin", "buffers[0].uri '../a.bin' lies outside"},
+        {"/buffers/0/uri", "/etc/passwd", "lies outside"},
+        {"/buffers/0/uri", "file:///etc/passwd", "lies outside"},
+        {"/buffers/0/uri", "%2e%2e/a.bin", "lies outside"},
+        {"/buffers/0/uri", "none.bin", "none.bin: no such file"},
+        {"/buffers/0/uri", "data:application/octet-stream;base64,AAA*", "is not base64"},
+        {"/buffers/0/uri", "data:application/octet-stream;base64,AAAA",
+         "buffers[0] claims 42 bytes, but has only 3"},
+        {"/extensionsRequired", {"FOO_bar"}, "requires the extension FOO_bar"},
+        {"/extensionsRequired",
+         {"KHR_draco_mesh_compression"},
+         "requires KHR_draco_mesh_compression, which relief does not decode"},
+        {"/images", {{{"uri", "data:image/png;base64,A"}}}, "images[0].uri: base64 data ends"},
+    };
+    for (const Fault& fault : faults) {
+        json root = triangle_json();
+        root[json::json_pointer(fault.pointer)] = fault.value;
+        EXPECT_THAT(error_of(root, triangle_bytes()), HasSubstr(fault.message))
+            << fault.pointer << " = " << fault.value;
+    }
+    EXPECT_EQ(error_of(triangle_json(), triangle_bytes()), "no error");
+}
+
+TEST_F(GltfDocumentTest, DeepJsonAndSharedOrCyclicNodesAreRefused) {
+    const std::string deep =
+        "{\"asset\":{\"version\":\"2.0\"},\"extras\":" + std::string(100'000, '[') +
+        std::string(100'000, ']') + "}";
+    std::ofstream(folder_ / "d.gltf") << deep;
+    EXPECT_THAT(error_of_file(folder_ / "d.gltf"), HasSubstr("nested deeper than 256"));
+    json root = triangle_json();
+    root["nodes"] = json::parse(R"([{"children": [1, 1]}, {}])");
+    EXPECT_THAT(error_of(root, triangle_bytes()), HasSubstr("nodes[1] has more than one parent"));
+    root["nodes"] = json::parse(R"([{}, {"children": [2]}, {"children": [1]}])");
+    EXPECT_THAT(error_of(root, triangle_bytes()), HasSubstr("nodes[1] is its own ancestor"));
+}
+
+TEST_F(GltfDocumentTest, AccessorsWithoutDataAreZerosWithinALimit) {
+    json root = triangle_json();
+    root["accessors"][0].erase("bufferView");
+    root["accessors"][0]["count"] = 20'000'000;
+    EXPECT_THAT(error_of(root, triangle_bytes()),
+                HasSubstr("accessors[0] has no data for 20000000"));
+    root["accessors"][0]["count"] = 3;
+    write_gltf_file(folder_ / "a.glb", root, triangle_bytes());
+    EXPECT_EQ(read(folder_ / "a.glb").mesh({0, 0}).positions[1], glm::vec3(0.0F));
+}
+
+TEST_F(GltfDocumentTest, MeshesAreRefusedWhereTheirDataContradictsItself) {
+    const auto error = [&](const char* pointer, const json& value, std::string bytes) {
+        json root = triangle_json();
+        root[json::json_pointer(pointer)] = value;
+        write_gltf_file(folder_ / "a.glb", root, bytes);
+        const GltfDocument document = read(folder_ / "a.glb");
+        try {
+            static_cast<void>(document.mesh({0, 0}));
+        } catch (const InvalidInput& input) {
+            return std::string(input.what());
+        }
+        return std::string("no error");
+    };
+    std::string bytes = triangle_bytes();
+    bytes[38] = 3;
+    EXPECT_EQ(error("/meshes/0/name", "Body", bytes),
+              "mesh 'Body' primitive 0: index 1 names vertex 3, but there are only 3");
+    EXPECT_THAT(error("/accessors/1/count", 2, triangle_bytes()),
+                HasSubstr("2 indices make no whole triangles"));
+    EXPECT_THAT(error("/meshes/0/primitives/0/attributes/NORMAL", 1, triangle_bytes()),
+                HasSubstr("accessors[1] is of type SCALAR, but VEC3 is needed"));
+    EXPECT_THAT(error("/meshes/0/primitives/0/indices", 0, triangle_bytes()),
+                HasSubstr("accessors[0] holds no indices"));
+    const GltfDocument cube = GltfDocument::from_mesh({test::cube(), {}});
+    EXPECT_THROW(static_cast<void>(cube.mesh({0, 1})), InvalidInput);
+    EXPECT_THROW(static_cast<void>(cube.mesh({5, 0})), InvalidInput);
+}
+
+TEST_F(GltfDocumentTest, StripsAndFansAreUnrolledWithTheirWinding) {
+    const std::uint16_t indices[] = {0, 1, 2, 3, 4};
+    const float positions[15] = {};
+    std::string bytes(70, '\0');
+    std::memcpy(bytes.data(), positions, 60);
+    std::memcpy(bytes.data() + 60, indices, 10);
+    json root = triangle_json();
+    root["buffers"][0]["byteLength"] = 70;
+    root["bufferViews"][0]["byteLength"] = 60;
+    root["bufferViews"][1] = {{"buffer", 0}, {"byteOffset", 60}, {"byteLength", 10}};
+    root["accessors"][0]["count"] = 5;
+    root["accessors"][1]["count"] = 5;
+    json& primitive = root["meshes"][0]["primitives"][0];
+    primitive["mode"] = 5;
+    write_gltf_file(folder_ / "a.glb", root, bytes);
+    EXPECT_THAT(read(folder_ / "a.glb").mesh({0, 0}).triangles,
+                ElementsAre(glm::uvec3(0, 1, 2), glm::uvec3(1, 3, 2), glm::uvec3(2, 3, 4)));
+    primitive["mode"] = 6;
+    primitive.erase("indices");
+    write_gltf_file(folder_ / "a.glb", root, bytes);
+    EXPECT_THAT(read(folder_ / "a.glb").mesh({0, 0}).triangles,
+                ElementsAre(glm::uvec3(1, 2, 0), glm::uvec3(2, 3, 0), glm::uvec3(3, 4, 0)));
+}
+
+TEST_F(GltfDocumentTest, SparseElementsReplaceTheirBase) {
+    RELIEF_NEEDS_SHARED(file,
+                        "data/models/gltf/SimpleSparseAccessor/glTF/SimpleSparseAccessor.gltf");
+    const Mesh mesh = read(file).mesh({0, 0});
+    // As the sample's author draws it: vertices 8, 10 and 12 are moved.
+    EXPECT_EQ(mesh.positions[8], glm::vec3(1, 2, 0));
+    EXPECT_EQ(mesh.positions[9], glm::vec3(2, 1, 0));
+    EXPECT_EQ(mesh.positions[10], glm::vec3(3, 3, 0));
+    EXPECT_EQ(mesh.positions[12], glm::vec3(5, 4, 0));
+}
+
+TEST_F(GltfDocumentTest, QuantisedModelsLieWhereTheFloatOnesDo) {
+    RELIEF_NEEDS_SHARED(folder, "data/models/gltf/Duck");
+    const MeshFile exact = flattened(read(folder / "glTF-Binary/Duck.glb"));
+    const MeshFile quantised = flattened(read(folder / "glTF-Quantized/Duck.gltf"));
+    const Bounds a = bounds_of(exact.mesh);
+    const Bounds b = bounds_of(quantised.mesh);
+    EXPECT_EQ(exact.mesh.triangles.size(), 4212U);
+    EXPECT_EQ(quantised.mesh.triangles.size(), 4212U);
+    // 14 bits over 1.7 units of length.
+    EXPECT_LT(glm::length(a.min - b.min), 1e-3F);
+    EXPECT_LT(glm::length(a.max - b.max), 1e-3F);
+}
+
+TEST_F(GltfDocumentTest, ImagesInFilesAreCopiedAlongOrPutInside) {
+    json root = triangle_json();
+    root["images"] = {
+        {{"uri", "sub/my%20image.png"}}, {{"uri", "gone.png"}}, {{"uri", "../out.png"}}};
+    std::filesystem::create_directories(folder_ / "in/sub");
+    std::filesystem::create_directories(folder_ / "out");
+    const std::string png = "\x89PNG\r\n\x1A\nnot much";
+    std::ofstream(folder_ / "in/sub/my image.png", std::ios::binary) << png;
+    write_gltf_file(folder_ / "in/a.glb", root, triangle_bytes());
+    const GltfDocument document = read(folder_ / "in/a.glb");
+    EXPECT_EQ(report_.count("missing image"), 1U);
+    EXPECT_EQ(report_.count("image outside the document's folder"), 1U);
+    // In its own folder all names stay right; from another one, "../out.png" would not.
+    document.write(folder_ / "in/b.gltf");
+    EXPECT_EQ(meaning_of(folder_ / "in/b.gltf"), meaning_of(folder_ / "in/a.glb"));
+    EXPECT_THROW(document.write(folder_ / "out/b.gltf"), FileError);
+
+    root["images"].erase(2);
+    write_gltf_file(folder_ / "in/a.glb", root, triangle_bytes());
+    const GltfDocument moved = read(folder_ / "in/a.glb");
+    moved.write(folder_ / "out/b.gltf");
+    EXPECT_TRUE(std::filesystem::exists(folder_ / "out/sub/my image.png"));
+    EXPECT_EQ(meaning_of(folder_ / "out/b.gltf"), meaning_of(folder_ / "in/a.glb"));
+    moved.write(folder_ / "out/b.gltf");  // The same again: nothing is in the way.
+    std::ofstream(folder_ / "out/sub/my image.png", std::ios::binary) << "another";
+    EXPECT_THROW(moved.write(folder_ / "out/b.gltf"), FileError);
+    moved.write(folder_ / "out/c.glb");
+    const GltfView view = read(folder_ / "out/c.glb").view();
+    EXPECT_EQ(std::get<std::vector<std::byte>>(view.images[0].source).size(), png.size());
+}
+
+TEST_F(GltfDocumentTest, WhatOtherFormatsCannotHoldIsListed) {
+    RELIEF_NEEDS_SHARED(gltf, "data/models/gltf");
+    EXPECT_THAT(read(gltf / "Fox/glTF-Binary/Fox.glb").beyond_a_mesh(),
+                ElementsAre("3 animations", "1 skin", "2 further vertex attributes"));
+    EXPECT_THAT(read(gltf / "SimpleMorph/glTF-Embedded/SimpleMorph.gltf").beyond_a_mesh(),
+                ElementsAre("1 animation", "2 morph targets"));
+    EXPECT_THAT(read(gltf / "Cameras/glTF-Embedded/Cameras.gltf").beyond_a_mesh(),
+                ElementsAre("2 cameras"));
+}
+
+TEST_F(GltfDocumentTest, OtherExtensionsAndMissingFilesAreErrors) {
+    const GltfDocument document = GltfDocument::from_mesh({test::cube(), {}});
+    EXPECT_THROW(document.write(folder_ / "a.obj"), FileError);
+    EXPECT_THROW(document.write(folder_ / "none/a.glb"), FileError);
+    EXPECT_THAT(error_of_file(folder_ / "none.glb"), HasSubstr("no such file"));
+}
+
+}  // namespace
+}  // namespace relief

@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: Apache-2.0
+// Documents made from meshes: vertices, ranges, materials and images.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <limits>
+
+#include "gltf_semantics.h"
+#include "relief/mesh/error.h"
+#include "relief/mesh/gltf_document.h"
+#include "support/shapes.h"
+#include "support/shared_data.h"
+
+namespace relief {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+class GltfFromMesh : public testing::Test {
+  protected:
+    GltfDocument written(const MeshFile& file) {
+        GltfDocument::from_mesh(file).write(folder_ / "a.glb");
+        return GltfDocument::read(folder_ / "a.glb", report_);
+    }
+    test::TemporaryDirectory folder_;
+    Report report_;
+};
+
+TEST_F(GltfFromMesh, AMeshComesBackBitForBit) {
+    MeshFile file{test::sphere(24, 12), {}};
+    file.mesh.name = "ball";
+    file.mesh.colors.assign(file.mesh.positions.size(), glm::vec4(0.1F, 0.2F, 0.3F, 0.4F));
+    file.mesh.tangents.assign(file.mesh.positions.size(), glm::vec4(1, 0, 0, -1));
+    file.mesh.positions.emplace_back(std::numeric_limits<float>::infinity());  // Isolated.
+    file.mesh.normals.emplace_back(0, 0, 1);
+    file.mesh.texcoords.emplace_back(0.5F);
+    file.mesh.colors.emplace_back(1.0F);
+    file.mesh.tangents.emplace_back(1, 0, 0, 1);
+    const GltfDocument document = written(file);
+    ASSERT_EQ(document.triangle_primitives().size(), 1U);
+    EXPECT_EQ(document.describe({0, 0}), "mesh 'ball' primitive 0");
+    const Mesh mesh = document.mesh({0, 0});
+    EXPECT_EQ(mesh.positions, file.mesh.positions);
+    EXPECT_EQ(mesh.normals, file.mesh.normals);
+    EXPECT_EQ(mesh.texcoords, file.mesh.texcoords);
+    EXPECT_EQ(mesh.tangents, file.mesh.tangents);
+    EXPECT_EQ(mesh.colors, file.mesh.colors);
+    EXPECT_EQ(mesh.triangles, file.mesh.triangles);
+}
+
+TEST_F(GltfFromMesh, EveryRangeIsAPrimitiveOverItsOwnVertices) {
+    MeshFile file{test::cube(), {}};
+    file.mesh.material_ranges = {{0, 2, 1U}, {2, 10, std::nullopt}};
+    file.materials.resize(2);
+    const GltfDocument document = written(file);
+    ASSERT_EQ(document.triangle_primitives().size(), 2U);
+    const Mesh first = document.mesh({0, 0});
+    EXPECT_EQ(first.positions.size(), 4U);
+    EXPECT_THAT(first.material_ranges, ElementsAre(MaterialRange{0, 2, 1U}));
+    const Mesh second = document.mesh({0, 1});
+    EXPECT_EQ(second.positions.size(), 20U);
+    EXPECT_THAT(second.material_ranges, ElementsAre(MaterialRange{0, 10, std::nullopt}));
+    EXPECT_EQ(second.positions[second.triangles[0].x],
+              file.mesh.positions[file.mesh.triangles[2].x]);
+}
+
+TEST_F(GltfFromMesh, NormalsOfAnyLengthBecomeUnitAndUnitOnesKeepTheirBits) {
+    MeshFile file{test::cube(), {}};
+    file.mesh.normals[0] = {0, 6, 8};
+    file.mesh.normals[1] = {0.57735F, 0.57735F, 0.57735F};
+    file.mesh.normals[2] = {0, 0, 0};
+    const std::vector<glm::vec3> normals = written(file).mesh({0, 0}).normals;
+    EXPECT_EQ(normals[0], glm::vec3(0, 0.6F, 0.8F));
+    EXPECT_EQ(normals[1], file.mesh.normals[1]);
+    EXPECT_EQ(normals[2], glm::vec3(0.0F));
+}
+
+TEST_F(GltfFromMesh, PhongMaterialsAreTranslated) {
+    MeshFile file{test::cube(), {}};
+    MtlMaterial material;
+    material.name = "glow";
+    material.diffuse = {0.5F, 0.25F, 2.0F};
+    material.opacity = 0.75F;
+    material.shininess = 30.0F;
+    material.emission = {0, 4, 2};
+    file.materials = {material};
+    file.mesh.material_ranges = {{0, 12, 0U}};
+    const GltfMaterial result = written(file).view().materials.at(0);
+    EXPECT_EQ(result.name, "glow");
+    EXPECT_EQ(result.base_color, glm::vec4(0.5F, 0.25F, 1.0F, 0.75F));  // glTF ends at 1.
+    EXPECT_EQ(result.metallic, 0.0F);
+    EXPECT_FLOAT_EQ(result.roughness, 0.25F);  // sqrt(2 / 32)
+    EXPECT_EQ(result.emission, glm::vec3(0, 4, 2));
+    EXPECT_EQ(result.alpha_mode, GltfMaterial::AlphaMode::blend);
+    // And back: what OBJ can hold is the same.
+    const MtlMaterial back = flattened(written(file)).materials.at(0);
+    EXPECT_FLOAT_EQ(back.shininess, 30.0F);
+    EXPECT_EQ(back.opacity, 0.75F);
+    EXPECT_EQ(back.emission, material.emission);
+}
+
+TEST_F(GltfFromMesh, ImagesAreEmbeddedOnceAsTheyAre) {
+    RELIEF_NEEDS_SHARED(obj, "data/models/obj/spot/spot_triangulated.obj");
+    RELIEF_NEEDS_SHARED(jpeg, "data/models/obj/fuze/fuze uv.jpg");
+    MeshFile file = read_mesh(obj, report_);
+    MtlMaterial material;
+    material.diffuse_map = jpeg;
+    material.emission_map = jpeg;
+    file.materials = {material, material};
+    file.mesh.material_ranges = {{0, static_cast<std::uint32_t>(file.mesh.triangles.size()), 0U}};
+    const GltfView view = written(file).view();
+    ASSERT_EQ(view.images.size(), 1U);
+    EXPECT_EQ(std::get<std::vector<std::byte>>(view.images[0].source).size(),
+              std::filesystem::file_size(jpeg));
+    EXPECT_EQ(view.materials[1].base_color_texture->image, 0U);
+    EXPECT_EQ(view.materials[0].emission, glm::vec3(1.0F));
+    std::ifstream stream(folder_ / "a.glb", std::ios::binary);
+    const std::string bytes((std::istreambuf_iterator<char>(stream)), {});
+    EXPECT_THAT(bytes.substr(0, 4096), HasSubstr("\"mimeType\":\"image/jpeg\""));
+}
+
+TEST_F(GltfFromMesh, MissingAndForeignImagesAreFileErrors) {
+    MeshFile file{test::cube(), {}};
+    file.materials.resize(1);
+    file.materials[0].diffuse_map = folder_ / "none.png";
+    EXPECT_THROW(GltfDocument::from_mesh(file), FileError);
+    std::ofstream(folder_ / "a.tga") << "no image";
+    file.materials[0].diffuse_map = folder_ / "a.tga";
+    EXPECT_THROW(GltfDocument::from_mesh(file), FileError);
+    EXPECT_THROW(GltfDocument::from_mesh({}), InvalidInput);
+}
+
+}  // namespace
+}  // namespace relief

@@ -1,0 +1,217 @@
+// SPDX-License-Identifier: Apache-2.0
+// Documents as scenes: placement, materials, lights, cameras, and flattening into one mesh.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "gltf_semantics.h"
+#include "relief/mesh/error.h"
+#include "relief/mesh/gltf_document.h"
+#include "support/angle.h"
+#include "support/shapes.h"
+#include "support/shared_data.h"
+
+namespace relief {
+namespace {
+
+using nlohmann::json;
+
+class GltfViewTest : public testing::Test {
+  protected:
+    GltfDocument document(const json& root) {
+        test::write_gltf_file(folder_ / "a.gltf", root);
+        return GltfDocument::read(folder_ / "a.gltf", report_);
+    }
+    GltfDocument read(const std::filesystem::path& file) {
+        return GltfDocument::read(file, report_);
+    }
+
+    test::TemporaryDirectory folder_;
+    Report report_;
+};
+
+TEST_F(GltfViewTest, MaterialsHaveTheirValuesOrGltfsDefaults) {
+    const GltfView view = document(json::parse(R"({"asset": {"version": "2.0"},
+        "images": [{"uri": "a.png", "name": "A"}, {"uri": "data:image/png;base64,AAAA"}, {"uri": "../b.png"}],
+        "samplers": [{"wrapS": 33071, "wrapT": 33648, "magFilter": 9728}],
+        "textures": [{"source": 0}, {"source": 1, "sampler": 0},
+                     {"extensions": {"EXT_texture_webp": {"source": 1}}}, {}],
+        "materials": [{}, {"name": "m",
+            "pbrMetallicRoughness": {"baseColorFactor": [0.1, 0.2, 0.3, 0.4], "metallicFactor": 0.5,
+                "roughnessFactor": 0.25, "baseColorTexture": {"index": 1, "texCoord": 1,
+                    "extensions": {"KHR_texture_transform": {"texCoord": 2}}},
+                "metallicRoughnessTexture": {"index": 2}},
+            "normalTexture": {"index": 0, "scale": 0.75}, "emissiveTexture": {"index": 3},
+            "emissiveFactor": [1, 0.5, 0], "alphaMode": "MASK", "alphaCutoff": 0.25,
+            "doubleSided": true, "extensions": {"KHR_materials_unlit": {},
+                "KHR_materials_emissive_strength": {"emissiveStrength": 4}}}]})"))
+                              .view();
+    const GltfMaterial& plain = view.materials[0];
+    EXPECT_EQ(plain.base_color, glm::vec4(1.0F));
+    EXPECT_EQ(plain.metallic, 1.0F);
+    EXPECT_EQ(plain.roughness, 1.0F);
+    EXPECT_EQ(plain.emission, glm::vec3(0.0F));
+    EXPECT_EQ(plain.alpha_mode, GltfMaterial::AlphaMode::opaque);
+    EXPECT_FALSE(plain.base_color_texture || plain.normal_texture || plain.double_sided);
+    const GltfMaterial& full = view.materials[1];
+    EXPECT_EQ(full.name, "m");
+    EXPECT_EQ(full.base_color, glm::vec4(0.1F, 0.2F, 0.3F, 0.4F));
+    EXPECT_EQ(full.metallic, 0.5F);
+    EXPECT_EQ(full.roughness, 0.25F);
+    EXPECT_EQ(full.emission, glm::vec3(4, 2, 0));
+    EXPECT_EQ(full.normal_scale, 0.75F);
+    EXPECT_EQ(full.alpha_mode, GltfMaterial::AlphaMode::mask);
+    EXPECT_EQ(full.alpha_cutoff, 0.25F);
+    EXPECT_TRUE(full.unlit && full.double_sided);
+    const GltfTexture& base = *full.base_color_texture;
+    EXPECT_EQ(base.image, 1U);
+    EXPECT_EQ(base.wrap_u, TextureWrap::clamp);
+    EXPECT_EQ(base.wrap_v, TextureWrap::mirror);
+    EXPECT_EQ(base.filter, TextureFilter::nearest);
+    EXPECT_EQ(base.texcoord_set, 2);
+    EXPECT_TRUE(base.has_transform);
+    EXPECT_EQ(full.normal_texture->wrap_u, TextureWrap::repeat);
+    EXPECT_EQ(full.metallic_roughness_texture->image, 1U);
+    EXPECT_FALSE(full.emission_texture);
+    EXPECT_EQ(std::get<std::filesystem::path>(view.images[0].source), folder_ / "a.png");
+    EXPECT_EQ(std::get<std::vector<std::byte>>(view.images[1].source).size(), 3U);
+    // Outside the folder: never opened, so empty.
+    EXPECT_TRUE(std::get<std::vector<std::byte>>(view.images[2].source).empty());
+}
+
+TEST_F(GltfViewTest, LightsAndCamerasStandWhereTheirNodesAre) {
+    const GltfView view = document(json::parse(R"({"asset": {"version": "2.0"},
+        "extensionsUsed": ["KHR_lights_punctual"],
+        "extensions": {"KHR_lights_punctual": {"lights": [
+            {"type": "spot", "color": [1, 0.5, 0], "intensity": 20, "range": 9,
+             "spot": {"innerConeAngle": 0.1, "outerConeAngle": 0.2}},
+            {"type": "directional"}, {"type": "point"}]}},
+        "cameras": [{"type": "perspective", "name": "c", "perspective": {"yfov": 0.7, "znear": 0.01}},
+                    {"type": "orthographic", "orthographic": {"xmag": 1, "ymag": 1, "znear": 0, "zfar": 1}}],
+        "scenes": [{"nodes": []}, {"nodes": [0, 4]}], "scene": 1,
+        "nodes": [{"children": [1, 2, 3], "translation": [1, 2, 3]},
+            {"name": "lamp", "rotation": [0, 0.70710678, 0, 0.70710678], "scale": [2, 2, 2],
+             "extensions": {"KHR_lights_punctual": {"light": 0}}},
+            {"extensions": {"KHR_lights_punctual": {"light": 1}}, "camera": 0},
+            {"extensions": {"KHR_lights_punctual": {"light": 2}}, "camera": 1},
+            {"matrix": [1,0,0,0, 0,1,0,0, 0,0,1,0, 7,8,9,1], "camera": 0, "name": "last"}]})"))
+                              .view();
+    ASSERT_EQ(view.lights.size(), 3U);
+    const GltfLight& spot = view.lights[0].what;
+    EXPECT_EQ(view.lights[0].name, "lamp");
+    EXPECT_EQ(spot.type, GltfLight::Type::spot);
+    EXPECT_EQ(spot.color, glm::vec3(1, 0.5F, 0));
+    EXPECT_EQ(spot.intensity, 20.0F);
+    EXPECT_EQ(spot.range, 9.0F);
+    EXPECT_EQ(spot.inner_cone, 0.1F);
+    EXPECT_EQ(spot.outer_cone, 0.2F);
+    // A quarter turn about y takes -z to -x.
+    const glm::vec3 looks(view.lights[0].world_from_object * glm::vec4(0, 0, -1, 0));
+    EXPECT_LT(test::degrees_between(looks, {-1, 0, 0}), 1e-5);
+    EXPECT_NEAR(glm::length(looks), 2.0F, 1e-6F);
+    EXPECT_EQ(glm::vec3(view.lights[0].world_from_object[3]), glm::vec3(1, 2, 3));
+    EXPECT_EQ(view.lights[1].what.type, GltfLight::Type::directional);
+    EXPECT_EQ(view.lights[2].what.type, GltfLight::Type::point);
+    EXPECT_FALSE(view.lights[2].what.range);
+    // The orthographic camera has no place in a scene of perspective ones.
+    ASSERT_EQ(view.cameras.size(), 2U);
+    EXPECT_EQ(view.cameras[0].what.vertical_fov, 0.7F);
+    EXPECT_EQ(view.cameras[0].what.near, 0.01F);
+    EXPECT_FALSE(view.cameras[0].what.far);
+    EXPECT_EQ(glm::vec3(view.cameras[1].world_from_object[3]), glm::vec3(7, 8, 9));
+    EXPECT_EQ(view.cameras[1].name, "last");
+}
+
+TEST_F(GltfViewTest, InstancesAreRepeated) {
+    RELIEF_NEEDS_SHARED(file, "data/models/gltf/SimpleInstancing/glTF-Binary/SimpleInstancing.glb");
+    const GltfView view = read(file).view();
+    EXPECT_EQ(view.primitives.size(), 125U);  // Five to the power of three cubes.
+    EXPECT_NE(view.primitives[0].world_from_object, view.primitives[124].world_from_object);
+}
+
+TEST_F(GltfViewTest, TheDefaultSceneOrTheFirstIsShown) {
+    RELIEF_NEEDS_SHARED(file, "data/models/gltf/MultipleScenes/glTF-Embedded/MultipleScenes.gltf");
+    EXPECT_EQ(read(file).view().primitives.size(), 1U);
+}
+
+TEST_F(GltfViewTest, MirroringNodesTurnTriangles) {
+    RELIEF_NEEDS_SHARED(folder, "data/models/gltf-ext/misc");
+    const auto facing = [&](const char* name) {
+        const Mesh mesh = flattened(read(folder / name)).mesh;
+        const glm::uvec3 t = mesh.triangles.at(0);
+        return glm::cross(mesh.positions[t.y] - mesh.positions[t.x],
+                          mesh.positions[t.z] - mesh.positions[t.x]);
+    };
+    const glm::vec3 plain = facing("one_face_123.gltf");
+    const glm::vec3 moved = facing("one_face_123_translated.gltf");
+    EXPECT_LT(test::degrees_between(plain, moved), 1e-4);
+    const GltfView view = read(folder / "one_face_123_mirror.gltf").view();
+    const glm::mat3 mirror(view.primitives[0].world_from_object);
+    ASSERT_LT(glm::determinant(mirror), 0.0F);
+    // A mirrored surface shows its mirrored front.
+    EXPECT_LT(test::degrees_between(mirror * plain, facing("one_face_123_mirror.gltf")), 1e-4);
+}
+
+TEST_F(GltfViewTest, FlattenedNormalsStayPerpendicularUnderUnevenScale) {
+    json root;
+    {
+        GltfDocument::from_mesh({test::sphere(32, 16), {}}).write(folder_ / "s.gltf");
+        root = json::parse(std::ifstream(folder_ / "s.gltf"));
+    }
+    for (const float x : {3.0F, -3.0F, 3e-15F}) {
+        root["nodes"][0]["scale"] = {x, x / 3, x / 6};
+        root["nodes"][0]["rotation"] = {0.5, 0.5, 0.5, 0.5};
+        test::write_gltf_file(folder_ / "t.gltf", root);
+        const MeshFile flat = flattened(read(folder_ / "t.gltf"));
+        // The ellipsoid's true normal is the gradient of its equation.
+        const glm::dmat3 rotation(0, 1, 0, 0, 0, 1, 1, 0, 0);  // The quaternion's: x to y to z.
+        const glm::dvec3 scale(x, x / 3, x / 6);
+        for (std::size_t i = 0; i < flat.mesh.positions.size(); ++i) {
+            const glm::dvec3 local =
+                glm::transpose(rotation) * glm::dvec3(flat.mesh.positions[i]) / scale;
+            const glm::dvec3 truth = rotation * (local / scale);
+            // Rounding of float positions and normals, stretched by the ratio of the scales.
+            ASSERT_LT(test::degrees_between(flat.mesh.normals[i], truth), 1e-4) << x << " " << i;
+        }
+        // Front faces look outwards, mirrored or not.
+        const glm::uvec3 t = flat.mesh.triangles[100];
+        const glm::dvec3 a(flat.mesh.positions[t.x]), b(flat.mesh.positions[t.y]),
+            c(flat.mesh.positions[t.z]);
+        EXPECT_GT(glm::dot(glm::normalize(glm::cross((b - a) / double(x), (c - a) / double(x))),
+                           glm::normalize(a + b + c)),
+                  0.0);
+    }
+}
+
+TEST_F(GltfViewTest, FlatteningFillsInWhatSomePrimitivesLack) {
+    MeshFile plain{test::cube(), {}};
+    plain.mesh.texcoords.clear();
+    plain.mesh.normals.clear();
+    GltfDocument::from_mesh(plain).write(folder_ / "p.gltf");
+    GltfDocument::from_mesh({test::cube(), {}}).write(folder_ / "q.gltf");
+    const Mesh alone = flattened(read(folder_ / "p.gltf")).mesh;
+    EXPECT_TRUE(alone.normals.empty() && alone.texcoords.empty() && alone.colors.empty());
+    RELIEF_NEEDS_SHARED(file,
+                        "data/models/gltf/PrimitiveModeNormalsTest/PrimitiveModeNormalsTest.glb");
+    const Mesh mixed = flattened(read(file)).mesh;
+    EXPECT_NO_THROW(validate(mixed));
+    EXPECT_EQ(mixed.normals.size(), mixed.positions.size());
+    for (const glm::vec3& normal : mixed.normals)
+        ASSERT_NEAR(glm::length(normal), 1.0F, 1e-3F);
+}
+
+TEST_F(GltfViewTest, AllRealModelsFlattenIntoValidMeshes) {
+    RELIEF_NEEDS_SHARED(models, "data/models/gltf");
+    for (const auto& file : test::gltf_files_below(models)) {
+        if (file.parent_path().filename() == "glTF-Draco") continue;
+        const MeshFile flat = flattened(read(file));
+        EXPECT_NO_THROW(validate(flat.mesh)) << file;
+    }
+    const MeshFile spheres = flattened(read(models / "MetalRoughSpheresNoTextures/glTF-Binary/"
+                                                     "MetalRoughSpheresNoTextures.glb"));
+    EXPECT_GT(spheres.mesh.triangles.size(), 1'000'000U);
+}
+
+}  // namespace
+}  // namespace relief
