@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: Apache-2.0
+// What all tools do alike: exit codes, error lines, --version, stages.
+#include "common/command.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <stdexcept>
+
+#include "relief/mesh/error.h"
+#include "tools/workplace.h"
+
+namespace relief::tools {
+namespace {
+
+using test::ProgramResult;
+using test::Workplace;
+using testing::ElementsAre;
+using testing::Field;
+
+struct WrongUsage {
+    const char* line;
+    const char* error;
+};
+
+class AllTools : public testing::TestWithParam<WrongUsage> {};
+
+TEST_P(AllTools, ExplainWrongUsageInOneLineAndExitWith2) {
+    const Workplace workplace;
+    const ProgramResult result = workplace.run(GetParam().line);
+    EXPECT_EQ(result.exit_code, 2);
+    EXPECT_EQ(result.error, std::string(GetParam().error) + "\n");
+    EXPECT_EQ(result.out, "");
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Usage, AllTools,
+    testing::Values(
+        WrongUsage{"relief-mesh",
+                   "relief-mesh: error: a command is missing: process or info (see "
+                   "relief-mesh --help)"},
+        WrongUsage{"relief-mesh proces a b",
+                   "relief-mesh: error: proces: unknown command (did you mean process?)"},
+        WrongUsage{"relief-mesh fly",
+                   "relief-mesh: error: fly: unknown command (see relief-mesh --help)"},
+        WrongUsage{"relief-mesh process",
+                   "relief-mesh: error: IN is missing (see relief-mesh process --help)"},
+        WrongUsage{"relief-mesh process a.obj",
+                   "relief-mesh: error: OUT is missing (see relief-mesh process --help)"},
+        WrongUsage{"relief-mesh process a.obj b.obj c.obj",
+                   "relief-mesh: error: c.obj: one argument too many (see relief-mesh process "
+                   "--help)"},
+        WrongUsage{"relief-mesh process a.obj b.obj --normal flat",
+                   "relief-mesh: error: --normal: unknown option (did you mean --normals?)"},
+        WrongUsage{"relief-mesh process a.obj b.obj -x",
+                   "relief-mesh: error: -x: unknown option (see relief-mesh process --help)"},
+        WrongUsage{"relief-mesh process a.obj b.obj --normals",
+                   "relief-mesh: error: --normals: needs a value (see relief-mesh process "
+                   "--help)"},
+        WrongUsage{"relief-mesh process a.obj b.obj --normals --quiet",
+                   "relief-mesh: error: --normals: needs a value (see relief-mesh process "
+                   "--help)"},
+        WrongUsage{"relief-mesh process a.obj b.obj --normals round",
+                   "relief-mesh: error: --normals round: not one of keep, flat, area, angle (see "
+                   "relief-mesh process --help)"},
+        WrongUsage{"relief-mesh process a.obj b.obj --threads 0",
+                   "relief-mesh: error: --threads 0: not between 1 and 1024 (see relief-mesh "
+                   "process --help)"},
+        WrongUsage{"relief-bake bump a.png b.png --strength 1 --strength 2",
+                   "relief-bake: error: --strength: given more than once (see relief-bake bump "
+                   "--help)"}));
+
+TEST(AllToolsAlike, SayTheirVersionAndNothingElse) {
+    const Workplace workplace;
+    for (const char* tool : {"relief-mesh", "relief-bake", "relief-view"}) {
+        const ProgramResult result = workplace.run(std::string(tool) + " --version");
+        EXPECT_EQ(result.exit_code, 0);
+        EXPECT_EQ(result.out, std::string(tool) + " " + version() + "\n");
+        EXPECT_EQ(result.error, "");
+    }
+}
+
+TEST(AllToolsAlike, FailWhenTheirResultCannotBePrinted) {
+    const Workplace workplace;
+    workplace.write_square("square.obj");
+    const ProgramResult result = workplace.run("relief-mesh info square.obj > /dev/full");
+    EXPECT_EQ(result.exit_code, 1);
+    EXPECT_EQ(result.error, "relief-mesh: error: standard output: cannot be written\n");
+}
+
+TEST(Command, NamesTheFileInComplaintsAboutItsContents) {
+    try {
+        about("a.obj", [] { throw InvalidInput("triangle 7 names vertex 12"); });
+        FAIL() << "did not throw";
+    } catch (const FileError& error) {
+        EXPECT_STREQ(error.what(), "a.obj: triangle 7 names vertex 12");
+    }
+    EXPECT_EQ(about("a.obj", [] { return 3; }), 3);
+}
+
+TEST(Command, StagesOfOneNameAreAddedUpInOrderOfFirstAppearance) {
+    Stages stages(true);
+    stages.run("read", [] {});
+    EXPECT_EQ(stages.run("write", [] { return 5; }), 5);
+    stages.run("read", [] {});
+    EXPECT_THAT(stages.finished(),
+                ElementsAre(Field(&Stage::name, "read"), Field(&Stage::name, "write")));
+    EXPECT_GE(stages.milliseconds("read"), 0);
+    EXPECT_EQ(stages.milliseconds("fly"), 0);
+}
+
+TEST(Command, AStageThatThrowsIsBookedAndThrowsOn) {
+    Stages stages(true);
+    EXPECT_THROW(stages.run("read", [] { throw std::runtime_error("x"); }), std::runtime_error);
+    EXPECT_EQ(stages.finished().size(), 1U);
+}
+
+}  // namespace
+}  // namespace relief::tools

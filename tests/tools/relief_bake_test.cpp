@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: Apache-2.0
+// relief-bake as users run it: the maps that it writes, decoded again, and how it refuses.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "relief/mesh/image_file.h"
+#include "relief/mesh/normal_map.h"
+#include "support/angle.h"
+#include "support/shared_data.h"
+#include "tools/workplace.h"
+
+namespace relief::tools {
+namespace {
+
+using nlohmann::json;
+using test::degrees_between;
+using test::ProgramResult;
+using test::Workplace;
+using testing::HasSubstr;
+
+constexpr int side = 16;
+
+/// Heights that rise by `step` from one column to the next, in 16 bit; row 0 at the top.
+void write_ramp(const Workplace& workplace, const std::string& name, bool upwards, int step) {
+    Image image = make_image(side, side, 1, 16, ColorSpace::data);
+    const auto samples = image.as<std::uint16_t>();
+    for (int y = 0; y < side; ++y) {
+        for (int x = 0; x < side; ++x) {
+            const int height = upwards ? side - 1 - y : x;
+            samples[static_cast<std::size_t>(y * side + x)] =
+                static_cast<std::uint16_t>(height * step);
+        }
+    }
+    write_image(workplace / name, image);
+}
+
+/// The normal in the middle of a map that was written.
+glm::dvec3 middle_normal(const std::filesystem::path& file, Green green) {
+    Report report;
+    const Image normals =
+        decode_normal_map(read_image(file, ImageUse::data), green, FlatCode::middle, report);
+    const std::size_t texel = (side / 2 * side + side / 2) * 3;
+    const auto samples = normals.as<float>();
+    return {samples[texel], samples[texel + 1], samples[texel + 2]};
+}
+
+/// Rounding of 16-bit codes: half a code of 1/32767, seen as an angle, with room for the root.
+constexpr double degrees_of_16_bit = 0.005;
+
+TEST(BumpCommand, StoresTheSlopeThatStrengthSays) {
+    const Workplace workplace;
+    // 65535 / 257 = 255 steps of 1/255 each; with strength 255 the height rises one texel a texel.
+    write_ramp(workplace, "ramp.png", false, 257);
+    const ProgramResult result =
+        workplace.run("relief-bake bump ramp.png out/normal.png --strength 255 --wrap clamp");
+    ASSERT_EQ(result.exit_code, 0) << result.error;
+    EXPECT_EQ(result.error, "");
+    EXPECT_THAT(result.out, HasSubstr("read      ramp.png: 16 x 16, 1 channel, 16 bit\n"
+                                      "slopes    sobel3, strength 255 texels, clamp at the border\n"
+                                      "coded     16 bit, flat is the middle code, green up\n"
+                                      "findings  none\n"));
+    EXPECT_LT(degrees_between(middle_normal(workplace / "out/normal.png", Green::up), {-1, 0, 1}),
+              degrees_of_16_bit);
+    EXPECT_EQ(workplace.outputs(), "normal.png");
+}
+
+TEST(BumpCommand, GreenDownIsTheMirrorOfGreenUp) {
+    const Workplace workplace;
+    write_ramp(workplace, "ramp.png", true, 257);
+    for (const std::string green : {"up", "down"}) {
+        const ProgramResult result =
+            workplace.run("relief-bake bump ramp.png out/" + green +
+                          ".png --strength 255 --wrap clamp --green " + green);
+        ASSERT_EQ(result.exit_code, 0) << result.error;
+    }
+    // Heights grow upwards in the image, so the surface looks down.
+    const glm::dvec3 looks_down{0, -1, 1};
+    EXPECT_LT(degrees_between(middle_normal(workplace / "out/up.png", Green::up), looks_down),
+              degrees_of_16_bit);
+    EXPECT_LT(degrees_between(middle_normal(workplace / "out/down.png", Green::down), looks_down),
+              degrees_of_16_bit);
+    EXPECT_EQ(read_image_info(workplace / "out/up.png").metadata.at("relief:green"), "up");
+    EXPECT_EQ(read_image_info(workplace / "out/down.png").metadata.at("relief:green"), "down");
+}
+
+TEST(BumpCommand, AConstantMapIsExactlyFlatInEveryDepth) {
+    const Workplace workplace;
+    write_image(workplace / "flat.png", make_image(4, 3, 1, 8, ColorSpace::data));
+    for (const std::string output : {"a.png --bits 8", "b.png", "c.tif --bits 32", "d.exr"}) {
+        const ProgramResult result = workplace.run("relief-bake bump flat.png out/" + output);
+        ASSERT_EQ(result.exit_code, 0) << result.error;
+    }
+    EXPECT_EQ(read_image(workplace / "out/a.png", ImageUse::data).bits(), 8);
+    EXPECT_EQ(read_image(workplace / "out/b.png", ImageUse::data).bits(), 16);
+    EXPECT_EQ(read_image(workplace / "out/c.tif", ImageUse::data).bits(), 32);
+    EXPECT_EQ(read_image(workplace / "out/d.exr", ImageUse::data).bits(), 32);
+    for (const char* name : {"out/a.png", "out/b.png", "out/c.tif", "out/d.exr"}) {
+        Report report;
+        const Image normals = decode_normal_map(read_image(workplace / name, ImageUse::data),
+                                                Green::up, FlatCode::middle, report);
+        for (std::size_t i = 0; i < normals.sample_count(); ++i)
+            ASSERT_EQ(normals.as<float>()[i], i % 3 == 2 ? 1.0F : 0.0F) << name;
+    }
+}
+
+TEST(BumpCommand, BothKernelsGiveTheSameDepth) {
+    const Workplace workplace;
+    write_ramp(workplace, "ramp.png", false, 257);
+    for (const std::string kernel : {"central3", "sobel3"}) {
+        ASSERT_EQ(workplace
+                      .run("relief-bake bump ramp.png out/" + kernel +
+                           ".png --strength 100 --kernel " + kernel)
+                      .exit_code,
+                  0);
+    }
+    EXPECT_EQ(middle_normal(workplace / "out/central3.png", Green::up),
+              middle_normal(workplace / "out/sobel3.png", Green::up));
+}
+
+TEST(BumpCommand, NegativeStrengthTurnsBumpsIntoDents) {
+    const Workplace workplace;
+    write_ramp(workplace, "ramp.png", false, 257);
+    ASSERT_EQ(workplace.run("relief-bake bump ramp.png out/n.png --strength -255").exit_code, 0);
+    EXPECT_LT(degrees_between(middle_normal(workplace / "out/n.png", Green::up), {1, 0, 1}),
+              degrees_of_16_bit);
+}
+
+TEST(BumpCommand, ATexelThatIsNoNumberIsFoundAndStrictExitsWith3) {
+    const Workplace workplace;
+    Image image = make_image(8, 8, 1, 32, ColorSpace::data);
+    image.as<float>()[27] = std::numeric_limits<float>::quiet_NaN();
+    write_image(workplace / "nan.exr", image);
+    const std::string line = "relief-bake bump nan.exr out/n.png --report out/report.json";
+    const ProgramResult lenient = workplace.run(line);
+    EXPECT_EQ(lenient.exit_code, 0) << lenient.error;
+    const json report = json::parse(workplace.read("out/report.json"));
+    ASSERT_EQ(report["findings"].size(), 1U);
+    EXPECT_EQ(report["findings"][0]["first"], json({27}));
+    EXPECT_EQ(report["bits"], 16);
+    EXPECT_EQ(report["kernel"], "sobel3");
+
+    const ProgramResult strict = workplace.run(line + " --strict --quiet");
+    EXPECT_EQ(strict.exit_code, 3);
+    EXPECT_EQ(strict.error,
+              "relief-bake: warning: nan.exr: 1 finding (exit code 3, because of --strict)\n");
+    EXPECT_EQ(strict.out, "");
+}
+
+TEST(BumpCommand, OutputDoesNotDependOnThreads) {
+    const Workplace workplace;
+    for (const std::string threads : {"1", "2"}) {
+        ASSERT_EQ(workplace
+                      .run("relief-bake bump data/bricks-height.png out/" + threads +
+                           ".png --threads " + threads)
+                      .exit_code,
+                  0);
+    }
+    EXPECT_EQ(workplace.read("out/1.png"), workplace.read("out/2.png"));
+}
+
+TEST(BumpCommand, ConvertsARealFloatMap) {
+    RELIEF_NEEDS_SHARED(mountain, "data/textures/height_only/mountain1_256_float.exr");
+    const Workplace workplace;
+    const ProgramResult result =
+        workplace.run("relief-bake bump " + mountain.string() + " out/m.exr --strength 60");
+    EXPECT_EQ(result.exit_code, 0) << result.error;
+    EXPECT_THAT(result.out, HasSubstr("256 x 256, 1 channel, 32 bit"));
+    EXPECT_THAT(result.out, HasSubstr("coded     32 bit float, green up"));
+}
+
+struct Refused {
+    const char* line;
+    int exit_code;
+    const char* error;
+};
+
+class BakeRefusal : public testing::TestWithParam<Refused> {};
+
+TEST_P(BakeRefusal, SaysWhyAndLeavesNothingBehind) {
+    const Workplace workplace;
+    write_image(workplace / "flat.png", make_image(4, 3, 1, 8, ColorSpace::data));
+    workplace.write("noise.png", "this is no image");
+    workplace.write("out/old.png", "old");
+    const ProgramResult result = workplace.run(GetParam().line);
+    EXPECT_EQ(result.exit_code, GetParam().exit_code);
+    EXPECT_THAT(result.first_error_line(),
+                HasSubstr(std::string("relief-bake: error: ") + GetParam().error));
+    EXPECT_EQ(result.error, result.first_error_line() + "\n");
+    EXPECT_EQ(result.out, "");
+    EXPECT_EQ(workplace.outputs(), "old.png");
+    EXPECT_EQ(workplace.read("out/old.png"), "old");
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Bump, BakeRefusal,
+    testing::Values(
+        Refused{"relief-bake bump missing.png out/old.png", 1, "missing.png: "},
+        Refused{"relief-bake bump noise.png out/old.png", 1, "noise.png: "},
+        Refused{"relief-bake bump out out/old.png", 1, "out: "},
+        Refused{"relief-bake bump flat.png nowhere/n.png", 1, "nowhere/n.png: "},
+        Refused{"relief-bake bump flat.png out/n.jpg", 2,
+                "out/n.jpg: JPEG distorts normals (use .png, .tif or .exr)"},
+        Refused{"relief-bake bump flat.png out/n.hdr", 2, "out/n.hdr: "},
+        Refused{"relief-bake bump flat.png out/n", 2,
+                "out/n: no format to write a normal map in (use .png, .tif or .exr)"},
+        Refused{"relief-bake bump flat.png out/n.png --bits 32", 2,
+                "--bits 32: .png holds 16 or 8 bits"},
+        Refused{"relief-bake bump flat.png out/n.exr --bits 16", 2,
+                "--bits 16: .exr holds 32 bits"},
+        Refused{"relief-bake bump flat.png out/n.png --bits 12", 2,
+                "--bits 12: not one of 8, 16, 32"},
+        Refused{"relief-bake bump flat.png out/n.exr --flat half", 2,
+                "--flat: has no effect on 32-bit output, where flat is exact"},
+        Refused{"relief-bake bump flat.png out/n.png --strength abc", 2,
+                "--strength abc: not a number"},
+        Refused{"relief-bake bump flat.png out/n.png --kernel sobel", 2,
+                "--kernel sobel: not one of central3, sobel3"},
+        Refused{"relief-bake bump flat.png out/n.png --report flat.png", 2,
+                "--report flat.png: is also the input or the output"},
+        Refused{"relief-bake bump flat.png", 2, "OUT is missing (see relief-bake bump --help)"},
+        Refused{"relief-bake", 2, "a command is missing: bump (see relief-bake --help)"}));
+
+}  // namespace
+}  // namespace relief::tools

@@ -1,0 +1,304 @@
+// SPDX-License-Identifier: Apache-2.0
+// relief-mesh as users run it: what it writes, what it says, and how it refuses.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "relief/mesh/gltf_document.h"
+#include "support/angle.h"
+#include "support/shared_data.h"
+#include "tools/workplace.h"
+
+namespace relief::tools {
+namespace {
+
+using nlohmann::json;
+using test::degrees_between;
+using test::ProgramResult;
+using test::Workplace;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::Not;
+
+/// Of float normals read back from a file.
+constexpr double direction_tolerance = 1e-4;
+
+GltfDocument read_document(const std::filesystem::path& file) {
+    Report report;
+    return GltfDocument::read(file, report);
+}
+
+/// A glTF file with one primitive that has texture coordinates and one that has none; both are the
+/// same triangle, without normals.
+void write_two_primitives(const Workplace& workplace, const std::string& name) {
+    // Three positions (0,0,0) (1,0,0) (0,1,0), then three texture coordinates (0,0) (1,0) (0,1).
+    const std::vector<float> numbers = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 1};
+    workplace.write(name + ".bin", std::string(reinterpret_cast<const char*>(numbers.data()),
+                                               numbers.size() * sizeof(float)));
+    workplace.write(name + ".gltf", R"({
+        "asset": {"version": "2.0"},
+        "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
+        "buffers": [{"uri": ")" + name + R"(.bin", "byteLength": 60}],
+        "bufferViews": [{"buffer": 0, "byteLength": 36},
+                        {"buffer": 0, "byteOffset": 36, "byteLength": 24}],
+        "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3",
+                       "min": [0, 0, 0], "max": [1, 1, 0]},
+                      {"bufferView": 1, "componentType": 5126, "count": 3, "type": "VEC2"}],
+        "meshes": [{"name": "Pair", "primitives": [
+            {"attributes": {"POSITION": 0, "TEXCOORD_0": 1}},
+            {"attributes": {"POSITION": 0}}]}]
+    })");
+}
+
+TEST(ProcessCommand, GivesAMeshFileNormalsAndTangents) {
+    const Workplace workplace;
+    workplace.write_square("square.obj");
+    const ProgramResult result =
+        workplace.run("relief-mesh process square.obj out/square.glb --tangents mikktspace");
+    ASSERT_EQ(result.exit_code, 0) << result.error;
+    EXPECT_EQ(result.error, "") << "progress is for terminals";
+    EXPECT_THAT(result.out, HasSubstr("read      square.obj: Wavefront OBJ, 1 primitive, 2 "
+                                      "triangles, 4 vertices\n"
+                                      "normals   computed, averaged by angle\n"
+                                      "tangents  computed, MikkTSpace\n"
+                                      "splits    none needed\n"
+                                      "findings  none\n"));
+    EXPECT_THAT(result.out, HasSubstr("wrote     out/square.glb: "));
+    EXPECT_EQ(workplace.outputs(), "square.glb");
+
+    const Mesh mesh = read_document(workplace / "out/square.glb").mesh({0, 0});
+    ASSERT_EQ(mesh.triangles.size(), 2U);
+    ASSERT_EQ(mesh.normals.size(), 4U);
+    ASSERT_EQ(mesh.tangents.size(), 4U);
+    for (std::size_t i = 0; i < 4; ++i) {
+        EXPECT_LT(degrees_between(mesh.normals[i], {0, 0, 1}), direction_tolerance);
+        EXPECT_LT(degrees_between(glm::vec3(mesh.tangents[i]), {1, 0, 0}), direction_tolerance);
+        EXPECT_EQ(mesh.tangents[i].w, 1.0F) << "upright texture";
+    }
+}
+
+TEST(ProcessCommand, ReplacesItsInputWhenAskedTo) {
+    const Workplace workplace;
+    workplace.write_square("out/square.obj");
+    const ProgramResult result =
+        workplace.run("relief-mesh process out/square.obj out/square.obj --normals area");
+    EXPECT_EQ(result.exit_code, 0) << result.error;
+    EXPECT_THAT(workplace.read("out/square.obj"), HasSubstr("vn 0 0 1"));
+    EXPECT_EQ(workplace.outputs(), "square.obj");
+}
+
+TEST(ProcessCommand, FlatNormalsSplitTheCornersOfACube) {
+    const Workplace workplace;
+    workplace.write("cube.obj",
+                    "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n"
+                    "f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n");
+    const ProgramResult result =
+        workplace.run("relief-mesh process cube.obj out/cube.ply --normals flat");
+    ASSERT_EQ(result.exit_code, 0) << result.error;
+    // Eight corners of three faces each.
+    EXPECT_THAT(result.out, HasSubstr("normals   computed, one per triangle\n"));
+    EXPECT_THAT(result.out, HasSubstr("splits    8 -> 24 vertices\n"));
+}
+
+TEST(ProcessCommand, GltfWithoutNormalsGetsFlatOnes) {
+    const Workplace workplace;
+    write_two_primitives(workplace, "pair");
+    const ProgramResult result = workplace.run("relief-mesh process pair.gltf out/pair.glb");
+    ASSERT_EQ(result.exit_code, 0) << result.error;
+    EXPECT_THAT(result.out, HasSubstr("normals   computed, one per triangle\n"
+                                      "tangents  none\n"));
+}
+
+TEST(ProcessCommand, APrimitiveThatCannotHaveTangentsIsFoundAndTheOthersGetThem) {
+    const Workplace workplace;
+    write_two_primitives(workplace, "pair");
+    const ProgramResult result = workplace.run(
+        "relief-mesh process pair.gltf out/pair.glb --tangents mikktspace --report out/r.json");
+    ASSERT_EQ(result.exit_code, 0) << result.error;
+    EXPECT_THAT(result.out,
+                HasSubstr("tangents  computed, MikkTSpace in 1 primitive; none in 1 primitive\n"));
+    const GltfDocument document = read_document(workplace / "out/pair.glb");
+    EXPECT_EQ(document.mesh({0, 0}).tangents.size(), 3U);
+    EXPECT_TRUE(document.mesh({0, 1}).tangents.empty());
+
+    const json report = json::parse(workplace.read("out/r.json"));
+    ASSERT_EQ(report["findings"].size(), 1U);
+    EXPECT_EQ(report["findings"][0]["where"], document.describe({0, 1}));
+    EXPECT_EQ(report["findings"][0]["kind"], "primitive without texture coordinates");
+    EXPECT_EQ(report["primitives"][0]["tangents"], "computed");
+    EXPECT_EQ(report["primitives"][1]["tangents"], "none");
+}
+
+TEST(ProcessCommand, StrictExitsWith3WhenSomethingWasFoundAndWritesAllTheSame) {
+    const Workplace workplace;
+    workplace.write("bad.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 2 0 0\nf 1 2 3\nf 1 2 4\n");
+    const std::string line = "relief-mesh process bad.obj out/bad.ply --normals angle";
+    const ProgramResult lenient = workplace.run(line);
+    EXPECT_EQ(lenient.exit_code, 0);
+    EXPECT_EQ(lenient.error, "");
+    EXPECT_THAT(lenient.out, Not(HasSubstr("findings  none")));
+
+    std::filesystem::remove(workplace / "out/bad.ply");
+    const ProgramResult strict = workplace.run(line + " --strict --quiet");
+    EXPECT_EQ(strict.exit_code, 3);
+    EXPECT_EQ(strict.out, "");
+    EXPECT_THAT(strict.error, testing::MatchesRegex("relief-mesh: warning: bad.obj: [0-9]+ "
+                                                    "findings? .exit code 3, because of "
+                                                    "--strict.\n"));
+    EXPECT_EQ(workplace.outputs(), "bad.ply");
+}
+
+TEST(ProcessCommand, StrictIsSilentAboutAFaultlessInput) {
+    const Workplace workplace;
+    workplace.write_square("square.obj");
+    const ProgramResult result =
+        workplace.run("relief-mesh process square.obj out/square.ply --strict --quiet");
+    EXPECT_EQ(result.exit_code, 0);
+    EXPECT_EQ(result.out + result.error, "");
+}
+
+TEST(ProcessCommand, OutputDoesNotDependOnThreads) {
+    const Workplace workplace;
+    for (const char* threads : {"1", "2", "7"}) {
+        const ProgramResult result =
+            workplace.run(std::string("relief-mesh process data/vase.obj out/") + threads +
+                          ".glb --normals angle --tangents mikktspace --threads " + threads);
+        ASSERT_EQ(result.exit_code, 0) << result.error;
+    }
+    EXPECT_EQ(workplace.read("out/1.glb"), workplace.read("out/2.glb"));
+    EXPECT_EQ(workplace.read("out/1.glb"), workplace.read("out/7.glb"));
+}
+
+TEST(ProcessCommand, SaysWhatTheOutputFormatLeavesBehind) {
+    const Workplace workplace;
+    workplace.write_square("square.obj");
+    ASSERT_EQ(
+        workplace.run("relief-mesh process square.obj out/a.glb --tangents mikktspace").exit_code,
+        0);
+    const ProgramResult result = workplace.run("relief-mesh process out/a.glb out/a.obj");
+    EXPECT_EQ(result.exit_code, 0) << result.error;
+    EXPECT_THAT(result.out, HasSubstr("left out  tangents (cannot be stored in .obj)\n"));
+}
+
+TEST(ProcessCommand, KeepsARealModelsTangentsAndTexturesUntilAskedOtherwise) {
+    RELIEF_NEEDS_SHARED(bottle, "data/models/gltf/WaterBottle/glTF/WaterBottle.gltf");
+    const Workplace workplace;
+    const std::string input = bottle.string();
+    const ProgramResult kept = workplace.run("relief-mesh process " + input + " out/kept.glb");
+    ASSERT_EQ(kept.exit_code, 0) << kept.error;
+    EXPECT_THAT(kept.out, HasSubstr("normals   kept\ntangents  kept\n"));
+    const GltfDocument before = read_document(input);
+    const GltfDocument after = read_document(workplace / "out/kept.glb");
+    EXPECT_EQ(before.mesh({0, 0}).tangents, after.mesh({0, 0}).tangents);
+    EXPECT_EQ(before.view().images.size(), after.view().images.size());
+
+    const ProgramResult removed = workplace.run(
+        "relief-mesh process out/kept.glb out/removed.glb --tangents none --normals angle");
+    ASSERT_EQ(removed.exit_code, 0) << removed.error;
+    EXPECT_THAT(removed.out,
+                HasSubstr("normals   computed, averaged by angle\ntangents  removed\n"));
+}
+
+TEST(InfoCommand, CountsWhatIsThere) {
+    const Workplace workplace;
+    workplace.write_square("square.obj");
+    const ProgramResult result = workplace.run("relief-mesh info square.obj");
+    EXPECT_EQ(result.exit_code, 0) << result.error;
+    EXPECT_THAT(result.out, HasSubstr("contents  2 triangles, 4 vertices, 1 primitive\n"
+                                      "bounds    (-1, -1, 0) to (1, 1, 0), size 2 x 2 x 0\n"));
+    EXPECT_THAT(result.out, HasSubstr("2 triangles, 4 vertices; texcoords\n"));
+}
+
+TEST(InfoCommand, PrintsOneJsonObject) {
+    const Workplace workplace;
+    write_two_primitives(workplace, "pair");
+    const ProgramResult result = workplace.run("relief-mesh info pair.gltf --json");
+    ASSERT_EQ(result.exit_code, 0) << result.error;
+    const json info = json::parse(result.out);
+    EXPECT_EQ(info["format"], "glTF");
+    EXPECT_EQ(info["triangles"], 2);
+    EXPECT_EQ(info["vertices"], 6);
+    EXPECT_EQ(info["instances"], 2);
+    EXPECT_EQ(info["bounds"]["max"], json({1.0, 1.0, 0.0}));
+    EXPECT_EQ(info["primitives"][0]["attributes"], json({"texcoords"}));
+    EXPECT_EQ(info["primitives"][1]["attributes"], json::array());
+    EXPECT_EQ(info["primitives"][1]["bounds"]["min"], json({0.0, 0.0, 0.0}));
+}
+
+TEST(InfoCommand, SaysWhatARealSceneHolds) {
+    RELIEF_NEEDS_SHARED(bottle, "data/models/gltf/WaterBottle/glTF/WaterBottle.gltf");
+    const Workplace workplace;
+    const json info = json::parse(workplace.run("relief-mesh info --json " + bottle.string()).out);
+    EXPECT_EQ(info["triangles"], 4510);
+    EXPECT_EQ(info["images"], 4);
+    EXPECT_EQ(info["primitives"][0]["attributes"], json({"normals", "texcoords", "tangents"}));
+    EXPECT_THAT(info["materials"][0]["textures"].get<std::vector<std::string>>(),
+                ElementsAre("base color", "metallic-roughness", "normal", "emission"));
+}
+
+struct Refused {
+    const char* line;
+    int exit_code;
+    const char* error;  ///< What the first line of stderr holds, after "relief-mesh: error: ".
+};
+
+class MeshRefusal : public testing::TestWithParam<Refused> {};
+
+TEST_P(MeshRefusal, SaysWhyAndLeavesNothingBehind) {
+    const Workplace workplace;
+    workplace.write_square("square.obj");
+    workplace.write_square("plain.obj", true);
+    workplace.write("empty.obj", "");
+    workplace.write("noise.glb", "this is no glTF");
+    workplace.write("index.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n");
+    workplace.write("out/old.glb", "old");
+    write_two_primitives(workplace, "pair");
+    const ProgramResult result = workplace.run(GetParam().line);
+    EXPECT_EQ(result.exit_code, GetParam().exit_code);
+    EXPECT_THAT(result.first_error_line(),
+                HasSubstr(std::string("relief-mesh: error: ") + GetParam().error));
+    EXPECT_EQ(result.error, result.first_error_line() + "\n");
+    EXPECT_EQ(result.out, "");
+    EXPECT_EQ(workplace.outputs(), "old.glb");
+    EXPECT_EQ(workplace.read("out/old.glb"), "old");
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Process, MeshRefusal,
+    testing::Values(
+        Refused{"relief-mesh process missing.obj out/old.glb", 1, "missing.obj: "},
+        Refused{"relief-mesh process missing.glb out/old.glb", 1, "missing.glb: "},
+        Refused{"relief-mesh process empty.obj out/old.glb", 1, "empty.obj: "},
+        Refused{"relief-mesh process noise.glb out/old.glb", 1, "noise.glb: "},
+        Refused{"relief-mesh process index.obj out/old.glb", 1, "index.obj: "},
+        Refused{"relief-mesh process . out/old.glb", 2, ".: no extension says what format this is"},
+        Refused{"relief-mesh process square.txt out/old.glb", 2,
+                "square.txt: .txt is not a format that can be read (use one of .glb, .gltf, .obj, "
+                ".ply, .stl, .off)"},
+        Refused{"relief-mesh process square.obj out/square.stl", 2,
+                "out/square.stl: .stl is not a format that can be written (use one of .glb, .gltf, "
+                ".obj, .ply)"},
+        Refused{"relief-mesh process square.obj out/square", 2,
+                "out/square: no extension says what format this is (use one of .glb, "},
+        Refused{"relief-mesh process square.obj out/square.obj --tangents mikktspace", 2,
+                "--tangents mikktspace: .obj cannot hold tangents (write .glb or .gltf)"},
+        Refused{"relief-mesh process plain.obj out/old.glb --tangents mikktspace", 1,
+                "plain.obj: no texture coordinates, so there can be no tangents (unwrap the model "
+                "first, or leave --tangents out)"},
+        Refused{"relief-mesh process square.obj nowhere/square.glb", 1,
+                "nowhere/square.glb: the folder nowhere does not exist (create it first)"},
+        Refused{"relief-mesh process square.obj /dev/full/square.glb", 1, "/dev/full/square.glb: "},
+        Refused{"relief-mesh process square.obj out/new.glb --report nowhere/r.json", 1,
+                "nowhere/r.json: the folder nowhere does not exist (create it first)"},
+        Refused{"relief-mesh process square.obj out/new.glb --report ./out/new.glb", 2,
+                "--report ./out/new.glb: is also the input or the output"}));
+
+INSTANTIATE_TEST_SUITE_P(
+    Info, MeshRefusal,
+    testing::Values(Refused{"relief-mesh info missing.obj", 1, "missing.obj: "},
+                    Refused{"relief-mesh info noise.glb --json", 1, "noise.glb: "},
+                    Refused{"relief-mesh info", 2, "IN is missing (see relief-mesh info --help)"}));
+
+}  // namespace
+}  // namespace relief::tools

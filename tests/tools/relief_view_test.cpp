@@ -1,0 +1,396 @@
+// SPDX-License-Identifier: Apache-2.0
+// relief-view as users run it: pixels whose value follows from the options by hand, what it says,
+// and how it refuses.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <array>
+#include <nlohmann/json.hpp>
+
+#include "relief/mesh/image_file.h"
+#include "support/shared_data.h"
+#include "tools/workplace.h"
+
+namespace relief::tools {
+namespace {
+
+using nlohmann::json;
+using test::ProgramResult;
+using test::Workplace;
+using testing::HasSubstr;
+
+using Pixel = std::array<int, 4>;
+
+/// 8-bit pixel; alpha is 255 where the file has none.
+Pixel pixel(const Image& image, int x, int y) {
+    Pixel result = {0, 0, 0, 255};
+    const auto channels = static_cast<std::size_t>(image.channels);
+    const std::size_t start = static_cast<std::size_t>(y * image.width + x) * channels;
+    for (std::size_t i = 0; i < channels; ++i)
+        result[i] = image.as<std::uint8_t>()[start + i];
+    return result;
+}
+
+Image picture(const std::filesystem::path& file) {
+    return read_image(file, ImageUse::color);
+}
+
+/// Looks straight at the square of Workplace::write_square, in 33 x 33 pixels.
+constexpr const char* look =
+    "relief-view square.obj --camera 0,0 --size 33x33 --samples 1 --quiet ";
+
+/// The pixel in the middle of what that shows.
+Pixel middle_of(const Workplace& workplace, const std::string& options) {
+    workplace.write_square("square.obj");
+    const ProgramResult result = workplace.run(look + options + " --output out/p.png");
+    EXPECT_EQ(result.exit_code, 0) << result.error;
+    EXPECT_EQ(result.out + result.error, "");
+    if (result.exit_code != 0) return {};
+    return pixel(picture(workplace / "out/p.png"), 16, 16);
+}
+
+/// 0.8, the diffuse colour of a model without materials, sRGB-coded: 1.055 * 0.8^(1/2.4) - 0.055.
+constexpr Pixel white_lit = {231, 231, 231, 255};
+
+TEST(ViewCommand, ALightOfIntensity1ShowsTheDiffuseColourOfASurfaceThatFacesIt) {
+    const Workplace workplace;
+    EXPECT_EQ(middle_of(workplace, "--light directional:0,0"), white_lit);
+    EXPECT_EQ(middle_of(workplace, "--light directional:0,0,1,#ff0000"), (Pixel{231, 0, 0, 255}));
+    EXPECT_EQ(middle_of(workplace, "--light directional:180,0"), (Pixel{0, 0, 0, 255}))
+        << "from behind";
+}
+
+TEST(ViewCommand, PointAndSpotLightsFallOffWithTheSquaredDistance) {
+    const Workplace workplace;
+    EXPECT_EQ(middle_of(workplace, "--light point:0,0,2,4"), white_lit);
+    EXPECT_EQ(middle_of(workplace, "--light spot:0,0,2,0,0,0,20,4"), white_lit);
+    EXPECT_EQ(middle_of(workplace, "--light spot:0,0,2,1,0,0,20,4"), (Pixel{0, 0, 0, 255}))
+        << "outside the cone";
+}
+
+TEST(ViewCommand, NoLightAndNoAmbientLightIsBlack) {
+    const Workplace workplace;
+    EXPECT_EQ(middle_of(workplace, "--light none"), (Pixel{0, 0, 0, 255}));
+    EXPECT_EQ(middle_of(workplace, "--light none --ambient 1"), white_lit);
+}
+
+TEST(ViewCommand, LightsAreAddedWhereThereAreNoneAndItSaysSo) {
+    const Workplace workplace;
+    workplace.write_square("square.obj");
+    const ProgramResult result =
+        workplace.run("relief-view square.obj --output out/p.png --size 33x33 --camera 0,0");
+    ASSERT_EQ(result.exit_code, 0) << result.error;
+    EXPECT_EQ(result.error, "") << "progress is for terminals";
+    EXPECT_THAT(result.out, HasSubstr("read      square.obj: 1 mesh, 2 triangles\n"
+                                      "light     2 directional lights and ambient light\n"
+                                      "notes     neither the model nor --light gives a light: a "
+                                      "key and a fill light were added\n"
+                                      "findings  none\n"));
+    EXPECT_THAT(result.out, HasSubstr("wrote     out/p.png: "));
+    EXPECT_GT(pixel(picture(workplace / "out/p.png"), 16, 16)[0], 100);
+}
+
+TEST(ViewCommand, BackgroundIsTheColourOrNothing) {
+    const Workplace workplace;
+    workplace.write_square("square.obj");
+    const auto corner = [&](const std::string& options) {
+        EXPECT_EQ(workplace.run(look + options + " --output out/p.png").exit_code, 0);
+        return pixel(picture(workplace / "out/p.png"), 0, 0);
+    };
+    EXPECT_EQ(corner(""), (Pixel{0x1e, 0x21, 0x26, 255}));
+    EXPECT_EQ(picture(workplace / "out/p.png").channels, 3) << "nothing to see through";
+    EXPECT_EQ(corner("--background '#ff8000'"), (Pixel{0xff, 0x80, 0x00, 255}));
+    EXPECT_EQ(corner("--background transparent"), (Pixel{0, 0, 0, 0}));
+    EXPECT_EQ(picture(workplace / "out/p.png").channels, 4);
+    EXPECT_EQ(pixel(picture(workplace / "out/p.png"), 16, 16)[3], 255) << "the model covers";
+}
+
+TEST(ViewCommand, TheCameraShowsAllOfTheModelAndComesNearerWhenAsked) {
+    const Workplace workplace;
+    workplace.write_square("square.obj");
+    const auto covered = [&](const std::string& camera) {
+        const std::string line =
+            "relief-view square.obj --quiet --size 64x64 --background "
+            "transparent --output out/p.png --camera " +
+            camera;
+        EXPECT_EQ(workplace.run(line).exit_code, 0);
+        const Image image = picture(workplace / "out/p.png");
+        int count = 0;
+        int on_border = 0;
+        for (int y = 0; y < 64; ++y) {
+            for (int x = 0; x < 64; ++x) {
+                const bool hit = pixel(image, x, y)[3] != 0;
+                count += hit ? 1 : 0;
+                on_border += hit && (x == 0 || y == 0 || x == 63 || y == 63) ? 1 : 0;
+            }
+        }
+        return std::pair(count, on_border);
+    };
+    const auto [whole, at_border] = covered("0,0");
+    EXPECT_GT(whole, 64 * 64 / 5) << "not lost in the distance";
+    EXPECT_EQ(at_border, 0);
+    const auto [far, far_border] = covered("0,0,2");
+    EXPECT_NEAR(static_cast<double>(far) / whole, 0.25, 0.03) << "pixels of the edges";
+    EXPECT_EQ(covered("0,0,0.5").first, 64 * 64) << "so near that it fills the picture";
+}
+
+TEST(ViewCommand, ExrHoldsLinearRadiance) {
+    const Workplace workplace;
+    workplace.write_square("square.obj");
+    const ProgramResult result =
+        workplace.run(std::string(look) + "--light directional:0,0,10 --output out/p.exr");
+    ASSERT_EQ(result.exit_code, 0) << result.error;
+    const Image image = picture(workplace / "out/p.exr");
+    ASSERT_EQ(image.bits(), 32);
+    const auto middle = static_cast<std::size_t>((16 * 33 + 16) * image.channels);
+    EXPECT_NEAR(image.as<float>()[middle], 8.0F, 1e-2) << "half-float frame buffer";
+}
+
+/// A picture of one colour.
+void write_plain(const std::filesystem::path& file, std::array<std::uint8_t, 3> color) {
+    Image image = make_image(8, 8, 3, 8, ColorSpace::srgb);
+    for (std::size_t i = 0; i < image.sample_count(); ++i)
+        image.as<std::uint8_t>()[i] = color[i % 3];
+    write_image(file, image);
+}
+
+TEST(ViewCommand, ADiffuseMapIsTheColour) {
+    const Workplace workplace;
+    write_plain(workplace / "map.png", {200, 100, 50});
+    EXPECT_EQ(middle_of(workplace, "--light directional:0,0 --diffuse-map map.png"),
+              (Pixel{200, 100, 50, 255}));
+}
+
+TEST(ViewCommand, AFlatHeightMapChangesNothingAndARampTiltsTheLight) {
+    const Workplace workplace;
+    write_image(workplace / "flat.png", make_image(8, 8, 1, 8, ColorSpace::data));
+    EXPECT_EQ(middle_of(workplace, "--light directional:0,0 --height-map flat.png"), white_lit);
+    // Rises by one texel a texel to the right: the normal leans 45 degrees to the left.
+    Image ramp = make_image(64, 64, 1, 8, ColorSpace::data);
+    for (std::size_t i = 0; i < ramp.sample_count(); ++i)
+        ramp.as<std::uint8_t>()[i] = static_cast<std::uint8_t>(i % 64);
+    write_image(workplace / "ramp.png", ramp);
+    EXPECT_EQ(middle_of(workplace,
+                        "--light directional:-45,0 --height-map ramp.png --strength "
+                        "255"),
+              white_lit);
+    EXPECT_EQ(middle_of(workplace,
+                        "--light directional:45,0 --height-map ramp.png --strength "
+                        "255")[0],
+              0);
+}
+
+TEST(ViewCommand, ANormalMapIsReadByItsGreenDirection) {
+    const Workplace workplace;
+    // Leans 45 degrees up in the image, in the OpenGL convention: green = 128 + 127 / sqrt(2).
+    write_plain(workplace / "leans.png", {128, 218, 218});
+    const std::string map = " --normal-map leans.png";
+    const int up = middle_of(workplace, "--light directional:0,45" + map)[0];
+    EXPECT_NEAR(up, 231, 1) << "8-bit normals";
+    EXPECT_EQ(middle_of(workplace, "--light directional:0,45 --green down" + map)[0], 0);
+    EXPECT_EQ(middle_of(workplace, "--light directional:0,45 --normal-scale 0" + map)[0],
+              middle_of(workplace, "--light directional:0,45")[0]);
+}
+
+/// Six plain faces, each of its own colour, as posx.png and so on.
+constexpr std::array<std::pair<const char*, std::array<std::uint8_t, 3>>, 6> faces = {
+    {{"posx", {255, 0, 0}},
+     {"negx", {0, 255, 0}},
+     {"posy", {0, 0, 255}},
+     {"negy", {255, 255, 0}},
+     {"posz", {0, 255, 255}},
+     {"negz", {255, 0, 255}}}};
+
+void write_sky(const Workplace& workplace) {
+    std::filesystem::create_directory(workplace / "sky");
+    for (const auto& [name, color] : faces)
+        write_plain(workplace / "sky" / (std::string(name) + ".png"), color);
+}
+
+TEST(ViewCommand, TheEnvironmentStandsBehindTheModelHoweverItIsNamed) {
+    const Workplace workplace;
+    write_sky(workplace);
+    workplace.write_square("square.obj");
+    const auto corner = [&](const std::string& words) {
+        const ProgramResult result =
+            workplace.run("relief-view --quiet --size 33x33 --fov 20 --output out/p.png " + words);
+        EXPECT_EQ(result.exit_code, 0) << result.error;
+        return pixel(picture(workplace / "out/p.png"), 0, 0);
+    };
+    const Pixel behind = {255, 0, 255, 255};  // negz
+    EXPECT_EQ(corner("--camera 0,0 --environment sky square.obj"), behind);
+    EXPECT_EQ(corner("square.obj --camera 0,0 --environment sky"), behind);
+    EXPECT_EQ(corner("--environment sky/posx.png sky/negx.png sky/posy.png sky/negy.png "
+                     "sky/posz.png sky/negz.png --camera 0,0 square.obj"),
+              behind);
+    EXPECT_EQ(corner("--environment sky/posx.png sky/negx.png sky/posy.png sky/negy.png "
+                     "sky/posz.png sky/negz.png square.obj --camera 0,0"),
+              behind);
+    EXPECT_EQ(corner("--camera 0,0 --environment sky/posy.png square.obj"), (Pixel{0, 0, 255, 255}))
+        << "a panorama";
+    EXPECT_EQ(corner("square.obj --camera 90,0 --environment sky"), (Pixel{0, 255, 0, 255}))
+        << "seen from +x, what lies behind is -x";
+}
+
+TEST(ViewCommand, AMirrorShowsWhatIsBehindTheCamera) {
+    const Workplace workplace;
+    write_sky(workplace);
+    EXPECT_EQ(middle_of(workplace, "--environment sky --reflectivity 1 --light none"),
+              (Pixel{0, 255, 255, 255}))
+        << "posz";
+    EXPECT_EQ(middle_of(workplace, "--environment sky --reflectivity 1 --light none --no-skybox"),
+              (Pixel{0, 255, 255, 255}));
+}
+
+TEST(ViewCommand, HighlightsFollowShininess) {
+    const Workplace workplace;
+    // The light 60 degrees off: its half vector is 30 degrees from the normal, so the highlight is
+    // 0.25 cos(30)^N on top of 0.8 * cos(60) = 0.4.
+    const std::string light = "--light directional:60,0 ";
+    const int without = middle_of(workplace, light)[0];
+    const int wide = middle_of(workplace, light + "--shininess 2")[0];
+    const int narrow = middle_of(workplace, light + "--shininess 500")[0];
+    const auto coded = [](double linear) {
+        return static_cast<int>(std::lround(255 * srgb_from_linear(static_cast<float>(linear))));
+    };
+    EXPECT_EQ(without, coded(0.4));
+    EXPECT_NEAR(wide, coded(0.4 + 0.25 * 0.75), 1) << "rounding of the light's direction";
+    EXPECT_EQ(narrow, coded(0.4));
+    // Phong's reflected ray is 60 degrees off: 0.25 cos(60)^2.
+    EXPECT_NEAR(middle_of(workplace, light + "--shininess 2 --specular phong")[0],
+                coded(0.4 + 0.25 * 0.25), 1);
+}
+
+TEST(ViewCommand, ExplainsEffectsWithoutDrawing) {
+    const Workplace workplace;
+    workplace.write_square("square.obj");
+    write_image(workplace / "flat.png", make_image(8, 8, 1, 8, ColorSpace::data));
+    const ProgramResult bare = workplace.run("relief-view square.obj --explain-effects");
+    ASSERT_EQ(bare.exit_code, 0) << bare.error;
+    EXPECT_THAT(bare.out, HasSubstr("Whole frame\n"));
+    EXPECT_THAT(bare.out, testing::ContainsRegex("off +normal map "));
+    EXPECT_EQ(workplace.outputs(), "");
+    const ProgramResult mapped =
+        workplace.run("relief-view square.obj --explain-effects --height-map flat.png");
+    EXPECT_THAT(mapped.out, testing::ContainsRegex("on +normal map "));
+}
+
+TEST(ViewCommand, PrintsOneJsonObject) {
+    const Workplace workplace;
+    workplace.write_square("square.obj");
+    const ProgramResult result = workplace.run(
+        "relief-view square.obj --json --explain-effects --size 20x10 --output out/p.png");
+    ASSERT_EQ(result.exit_code, 0) << result.error;
+    const json summary = json::parse(result.out);
+    EXPECT_EQ(summary["triangles"], 2);
+    EXPECT_EQ(summary["notes"].size(), 1U);
+    EXPECT_EQ(summary["picture"]["width"], 20);
+    EXPECT_EQ(summary["picture"]["programs"], 1);
+    EXPECT_EQ(summary["picture"]["textures"], 0);
+    ASSERT_EQ(summary["effects"]["draws"].size(), 1U);
+    EXPECT_FALSE(summary["effects"]["draws"][0]["effects"].empty());
+    EXPECT_EQ(picture(workplace / "out/p.png").height, 10);
+}
+
+TEST(ViewCommand, DrawsRealModelsWithTheirOwnMaps) {
+    RELIEF_NEEDS_SHARED(bottle, "data/models/gltf/WaterBottle/glTF/WaterBottle.gltf");
+    const Workplace workplace;
+    const ProgramResult result = workplace.run("relief-view " + bottle.string() +
+                                               " --output out/bottle.png --size 256x256 --json");
+    ASSERT_EQ(result.exit_code, 0) << result.error;
+    EXPECT_GE(json::parse(result.out)["picture"]["textures"], 2) << "colour and normals";
+}
+
+struct Refused {
+    const char* options;
+    int exit_code;
+    const char* error;
+};
+
+class ViewRefusal : public testing::TestWithParam<Refused> {};
+
+TEST_P(ViewRefusal, SaysWhyAndLeavesNothingBehind) {
+    const Workplace workplace;
+    workplace.write_square("square.obj");
+    workplace.write_square("plain.obj", true);
+    write_plain(workplace / "map.png", {128, 128, 255});
+    write_sky(workplace);
+    std::filesystem::create_directory(workplace / "empty");
+    workplace.write("noise.png", "this is no image");
+    workplace.write("out/old.png", "old");
+    const ProgramResult result = workplace.run(std::string("relief-view ") + GetParam().options);
+    EXPECT_EQ(result.exit_code, GetParam().exit_code);
+    EXPECT_THAT(result.first_error_line(),
+                HasSubstr(std::string("relief-view: error: ") + GetParam().error));
+    EXPECT_EQ(result.error, result.first_error_line() + "\n");
+    EXPECT_EQ(result.out, "");
+    EXPECT_EQ(workplace.outputs(), "old.png");
+    EXPECT_EQ(workplace.read("out/old.png"), "old");
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Usage, ViewRefusal,
+    testing::Values(
+        Refused{"", 2, "MODEL is missing (see relief-view --help)"},
+        Refused{"square.obj", 2,
+                "--output is missing (name a picture to write, or ask for --explain-effects)"},
+        Refused{"square.obj --output out/p.jpg", 2,
+                "--output out/p.jpg: no format to write a picture in (use .png or .exr)"},
+        Refused{"square.obj --output out/old.png --size 5", 2,
+                "--size 5: not a size like 1920x1080"},
+        Refused{"square.obj --output out/old.png --samples 2", 2, "--samples 2: not one of 1, 4"},
+        Refused{"square.obj --output out/old.png --fov 180", 2,
+                "--fov 180: not between 1 and 170 degrees"},
+        Refused{"square.obj --output out/old.png --camera 10", 2,
+                "--camera 10: not azimuth,elevation or azimuth,elevation,factor"},
+        Refused{"square.obj --output out/old.png --camera 10,x", 2,
+                "--camera 10,x: 'x': not a number"},
+        Refused{"square.obj --output out/old.png --camera 0,0,0", 2,
+                "--camera 0,0,0: '0': not between 0.01 and 1000"},
+        Refused{"square.obj --output out/old.png --light sun", 2,
+                "--light sun: not a light (begin with directional:, point: or spot:, or say none)"},
+        Refused{"square.obj --output out/old.png --light none --light point:0,0,1", 2,
+                "--light none: contradicts the other lights"},
+        Refused{"square.obj --output out/old.png --normal-map map.png --height-map map.png", 2,
+                "--height-map: contradicts --normal-map"},
+        Refused{"square.obj --output out/old.png --green up", 2,
+                "--green: says how to read a --normal-map"},
+        Refused{"square.obj --output out/old.png --strength 2", 2,
+                "--strength: says how to read a --height-map"},
+        Refused{"square.obj --output out/old.png --kernel sobel3", 2,
+                "--kernel: says how to read a --height-map"},
+        Refused{"square.obj --output out/old.png --normal-scale 2", 2,
+                "--normal-scale: the model has no normal map to scale (give one with --normal-map "
+                "or --height-map)"},
+        Refused{"square.obj --output out/old.png --no-skybox", 2,
+                "--no-skybox: there is no --environment to hide"},
+        Refused{"square.obj --output out/old.png --reflectivity 0.5", 2,
+                "--reflectivity: there is no --environment to reflect"},
+        Refused{"square.obj --output out/old.png --environment sky --background '#000000'", 2,
+                "--background: the environment hides it"},
+        Refused{"square.obj --output out/old.png --environment sky --no-skybox", 2,
+                "--environment: would show nowhere"},
+        Refused{"square.obj --output out/old.png --environment sky map.png", 2,
+                "--environment: takes one file, six files or a folder, not 2 files"},
+        Refused{"square.obj --output out/old.png --backend vulkan", 2,
+                "--backend vulkan: not one of auto, osmesa, egl"}));
+
+INSTANTIATE_TEST_SUITE_P(
+    Files, ViewRefusal,
+    testing::Values(
+        Refused{"missing.obj --output out/old.png", 1, "missing.obj: "},
+        Refused{"map.png --output out/old.png", 1, "map.png: "},
+        Refused{"square.obj --output nowhere/p.png", 1, "nowhere/p.png: "},
+        Refused{"plain.obj --output out/old.png --normal-map map.png", 1,
+                "plain.obj: no texture coordinates, which --normal-map needs (unwrap the model "
+                "first, or leave --normal-map out)"},
+        Refused{"square.obj --output out/old.png --normal-map missing.png", 1, "missing.png: "},
+        Refused{"square.obj --output out/old.png --height-map noise.png", 1, "noise.png: "},
+        Refused{"square.obj --output out/old.png --diffuse-map noise.png", 1, "noise.png: "},
+        Refused{"square.obj --output out/old.png --environment missing.hdr", 1, "missing.hdr: "},
+        Refused{"square.obj --output out/old.png --environment empty", 1,
+                "empty: no file whose name ends in posx (name the six files in the order +x -x +y "
+                "-y +z -z)"}));
+
+}  // namespace
+}  // namespace relief::tools

@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: Apache-2.0
+// Scenes as composed from a model and options, without drawing them.
+#include "scene_options.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "relief/shade/effects.h"
+#include "support/angle.h"
+#include "tools/workplace.h"
+
+namespace relief::tools {
+namespace {
+
+using test::Workplace;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+ComposedScene composed(const ViewOptions& options) {
+    Stages stages(true);
+    Report report;
+    return compose_scene(options, stages, report);
+}
+
+/// Options that ask for nothing but a model.
+ViewOptions of(const std::filesystem::path& model) {
+    ViewOptions options;
+    options.model = model;
+    return options;
+}
+
+TEST(SceneOptions, NothingAskedForChangesNoMaterial) {
+    const Workplace workplace;
+    workplace.write_square("square.obj");
+    const ComposedScene plain = composed(of(workplace / "square.obj"));
+    for (const Material& material : plain.scene.materials) {
+        EXPECT_EQ(material.diffuse, default_material().diffuse);
+        EXPECT_EQ(material.specular, default_material().specular);
+        EXPECT_FALSE(material.diffuse_texture || material.normal_map);
+    }
+    EXPECT_FALSE(plain.scene.environment);
+    EXPECT_THAT(plain.scene.images, IsEmpty());
+}
+
+TEST(SceneOptions, MeshesWithoutAMaterialTakePartInAllMaterials) {
+    const Workplace workplace;
+    workplace.write("m.mtl", "newmtl red\nKd 1 0 0\n");
+    workplace.write("two.obj",
+                    "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nusemtl red\nf 1 2 3\n");
+    ViewOptions options = of(workplace / "two.obj");
+    options.shininess = 77.0F;
+    const Scene scene = composed(options).scene;
+    for (const Mesh& mesh : scene.meshes) {
+        for (const MaterialRange& range : mesh.material_ranges) {
+            ASSERT_TRUE(range.material);
+            EXPECT_EQ(scene.materials.at(*range.material).shininess, 77.0F);
+        }
+    }
+}
+
+TEST(SceneOptions, AMapReplacesTheDiffuseColourOfEveryMaterial) {
+    const Workplace workplace;
+    workplace.write_square("square.obj");
+    ViewOptions options = of(workplace / "square.obj");
+    options.diffuse_map = "map.png";
+    const Scene scene = composed(options).scene;
+    ASSERT_EQ(scene.images.size(), 1U);
+    EXPECT_EQ(std::get<std::filesystem::path>(scene.images[0].source), "map.png")
+        << "named, and read only when it is drawn";
+    ASSERT_EQ(scene.materials.size(), 1U);
+    EXPECT_EQ(scene.materials[0].diffuse, glm::vec3(1.0F));
+    EXPECT_TRUE(scene.materials[0].diffuse_texture);
+}
+
+TEST(SceneOptions, DefaultLightsShineFromTheViewersSideWhereverTheCameraIs) {
+    const Workplace workplace;
+    workplace.write_square("square.obj");
+    ViewOptions options = of(workplace / "square.obj");
+    for (const float azimuth : {0.0F, 1.0F, 3.0F}) {
+        options.camera = CameraOption{.azimuth = azimuth, .elevation = 0.3F};
+        const ComposedScene lit = composed(options);
+        ASSERT_EQ(lit.scene.directional_lights.size(), 2U);
+        EXPECT_NE(lit.scene.ambient, glm::vec3(0.0F));
+        const glm::vec3 to_viewer = towards(azimuth, 0.3F);
+        for (const DirectionalLight& light : lit.scene.directional_lights)
+            EXPECT_LT(test::degrees_between(-light.direction_world, to_viewer), 80.0);
+    }
+}
+
+TEST(SceneOptions, LightsOnTheCommandLineReplaceAllOthers) {
+    const Workplace workplace;
+    workplace.write_square("square.obj");
+    ViewOptions options = of(workplace / "square.obj");
+    options.lights = {PointLight{}};
+    const ComposedScene lit = composed(options);
+    EXPECT_THAT(lit.scene.directional_lights, IsEmpty());
+    ASSERT_EQ(lit.scene.point_lights.size(), 1U);
+    EXPECT_EQ(lit.scene.ambient, glm::vec3(0.0F));
+    EXPECT_THAT(lit.notes, IsEmpty());
+}
+
+TEST(SceneOptions, SixFacesAreFoundInAFolderByTheEndsOfTheirNames) {
+    const Workplace workplace;
+    const std::vector<std::string> ends = {"posx", "negx", "posy", "negy", "posz", "negz"};
+    for (const std::string& end : ends)
+        workplace.write("out/xmas_" + end + ".png", "");
+    workplace.write("out/readme.txt", "");
+    const CubeFaces faces = cube_faces_in(workplace / "out");
+    for (std::size_t i = 0; i < 6; ++i) {
+        EXPECT_EQ(std::get<std::filesystem::path>(faces.faces[i].source),
+                  workplace / ("out/xmas_" + ends[i] + ".png"));
+    }
+    workplace.write("out/other_negy.jpg", "");
+    try {
+        cube_faces_in(workplace / "out");
+        FAIL() << "did not throw";
+    } catch (const FileError& error) {
+        EXPECT_THAT(error.what(), HasSubstr("both other_negy.jpg and xmas_negy.png end in negy"));
+    }
+}
+
+}  // namespace
+}  // namespace relief::tools

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// A folder laid out like a checkout that was built in release mode, so that commands can be run as
+/// the documents show them, and small inputs to run them on.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "support/shared_data.h"
+#include "tools/run_program.h"
+
+namespace relief::test {
+
+/// data/ and scripts/ as in the sources, build/release/bin, and an empty out/. Removed at exit.
+class Workplace {
+  public:
+    Workplace();
+
+    [[nodiscard]] std::filesystem::path operator/(const std::filesystem::path& name) const {
+        return folder_ / name;
+    }
+
+    /// Runs a line there as typed in a shell.
+    [[nodiscard]] ProgramResult run(const std::string& line) const;
+
+    void write(const std::filesystem::path& name, const std::string& text) const;
+    [[nodiscard]] std::string read(const std::filesystem::path& name) const;
+
+    /// A square of two triangles in the xy plane from (-1,-1) to (1,1), facing +z; with texture
+    /// coordinates unless `plain`.
+    void write_square(const std::filesystem::path& name, bool plain = false) const;
+
+    /// All that stands in out/, sorted, by name: no half or temporary file escapes.
+    [[nodiscard]] std::string outputs() const;
+
+  private:
+    TemporaryDirectory folder_;
+};
+
+}  // namespace relief::test

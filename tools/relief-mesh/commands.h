@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// The commands of relief-mesh. Each adds its options to the tool and says what to run.
+#pragma once
+
+#include "common/command.h"
+
+namespace relief::tools {
+
+Command add_process_command(CLI::App& tool);
+Command add_info_command(CLI::App& tool);
+
+}  // namespace relief::tools

@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: Apache-2.0
+// relief-mesh: what can be done to a mesh file. Each command stands in its own file.
+// Tests: tests/tools/relief_mesh_test.cpp.
+#include "commands.h"
+
+int main(int argc, char** argv) {
+    using namespace relief::tools;
+    return run_tool({"relief-mesh",
+                     "Computes normals and tangents of meshes, and says what is in mesh files.",
+                     {add_process_command, add_info_command}},
+                    argc, argv);
+}

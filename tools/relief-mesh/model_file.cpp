@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "model_file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+#include "common/command.h"
+#include "common/text.h"
+
+namespace relief::tools {
+namespace {
+
+struct FormatRow {
+    ModelFormat format;
+    const char* extension;
+    const char* name;
+    bool writable;
+};
+
+constexpr std::array formats = {
+    FormatRow{ModelFormat::glb, ".glb", "glTF (binary)", true},
+    FormatRow{ModelFormat::gltf, ".gltf", "glTF", true},
+    FormatRow{ModelFormat::obj, ".obj", "Wavefront OBJ", true},
+    FormatRow{ModelFormat::ply, ".ply", "PLY", true},
+    FormatRow{ModelFormat::stl, ".stl", "STL", false},
+    FormatRow{ModelFormat::off, ".off", "OFF", false},
+};
+
+ModelFormat format_of(const std::filesystem::path& file, bool to_write) {
+    const std::string extension = extension_of(file);
+    std::string known;
+    for (const FormatRow& row : formats) {
+        if (to_write && !row.writable) continue;
+        if (extension == row.extension) return row.format;
+        known += std::string(known.empty() ? "" : ", ") + row.extension;
+    }
+    const std::string problem = extension.empty()
+                                    ? "no extension says what format this is"
+                                    : fmt::format("{} is not a format that can be {}", extension,
+                                                  to_write ? "written" : "read");
+    throw UsageError(fmt::format("{}: {}", file.string(), problem), "use one of " + known);
+}
+
+}  // namespace
+
+ModelFormat readable_format(const std::filesystem::path& file) {
+    return format_of(file, false);
+}
+
+ModelFormat writable_format(const std::filesystem::path& file) {
+    return format_of(file, true);
+}
+
+bool is_document(ModelFormat format) {
+    return format == ModelFormat::gltf || format == ModelFormat::glb;
+}
+
+std::string format_name(ModelFormat format) {
+    return std::find_if(formats.begin(), formats.end(),
+                        [format](const FormatRow& row) { return row.format == format; })
+        ->name;
+}
+
+Model read_model(const std::filesystem::path& file, Report& report) {
+    return about(file, [&]() -> Model {
+        if (is_document(readable_format(file))) return GltfDocument::read(file, report);
+        return read_mesh(file, report);
+    });
+}
+
+}  // namespace relief::tools

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// Which model files relief-mesh reads and writes, by extension, and reading one of either kind.
+/// Tests: tests/tools/relief_mesh_test.cpp.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <variant>
+
+#include "relief/mesh/gltf_document.h"
+#include "relief/mesh/mesh_file.h"
+#include "relief/mesh/report.h"
+
+namespace relief::tools {
+
+enum class ModelFormat { gltf, glb, obj, ply, stl, off };
+
+/// The format of a file to read or to write. \throws UsageError naming the extensions that serve
+ModelFormat readable_format(const std::filesystem::path& file);
+ModelFormat writable_format(const std::filesystem::path& file);
+
+/// A document with a scene, rather than one mesh.
+bool is_document(ModelFormat format);
+
+/// "glTF", "Wavefront OBJ", ...
+std::string format_name(ModelFormat format);
+
+/// What was read: a glTF document, or a mesh with its materials.
+using Model = std::variant<GltfDocument, MeshFile>;
+
+Model read_model(const std::filesystem::path& file, Report& report);
+
+}  // namespace relief::tools

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// What is in a model file: counts, attributes, bounds, materials, and what only a scene has.
+/// Tests: tests/tools/relief_mesh_test.cpp.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "common/findings.h"
+#include "relief/mesh/mesh.h"
+
+namespace relief::tools {
+
+/// One triangle primitive, or the one mesh of a mesh file.
+struct PartInfo {
+    std::string name;
+    std::size_t vertices = 0;
+    std::size_t triangles = 0;
+    std::vector<std::string> attributes;  ///< Besides positions: "normals", "texcoords", ...
+    std::vector<std::string> materials;   ///< Names of those it uses.
+    Bounds bounds;                        ///< Object space.
+};
+
+struct MaterialInfo {
+    std::string name;
+    std::vector<std::string> textures;  ///< "base color", "normal", ...
+};
+
+struct ModelInfo {
+    std::string format;
+    std::uintmax_t bytes = 0;
+    std::vector<PartInfo> parts;
+    std::size_t instances = 0;  ///< Parts as placed in the scene; a part may stand in many places.
+    std::size_t vertices = 0;   ///< Of all parts, each counted once.
+    std::size_t triangles = 0;
+    Bounds bounds;  ///< Of all instances in world space.
+    std::vector<MaterialInfo> materials;
+    std::size_t images = 0;
+    std::size_t lights = 0;
+    std::size_t cameras = 0;
+    std::vector<std::string> beyond_a_mesh;  ///< "2 animations", "1 skin", ...
+    Findings findings;
+};
+
+/// \throws FileError if the file cannot be read
+ModelInfo model_info(const std::filesystem::path& file);
+
+}  // namespace relief::tools

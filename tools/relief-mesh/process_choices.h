@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// The words for modes of normals and tangents, as options take them and reports print them.
+#pragma once
+
+#include "common/options.h"
+#include "relief/mesh/frames.h"
+
+namespace relief::tools {
+
+inline Choices<NormalMode> normal_choices() {
+    return {{"keep", NormalMode::keep},
+            {"flat", NormalMode::flat},
+            {"area", NormalMode::area},
+            {"angle", NormalMode::angle}};
+}
+
+inline Choices<TangentMode> tangent_choices() {
+    return {{"keep", TangentMode::keep},
+            {"none", TangentMode::none},
+            {"mikktspace", TangentMode::mikktspace}};
+}
+
+}  // namespace relief::tools

@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "process_summary.h"
+
+#include <fmt/format.h>
+
+#include <functional>
+#include <map>
+
+#include "common/options.h"
+#include "common/text.h"
+#include "process_choices.h"
+
+namespace relief::tools {
+namespace {
+
+struct Totals {
+    std::size_t triangles = 0;
+    std::size_t vertices_read = 0;
+    std::size_t vertices_written = 0;
+};
+
+Totals totals_of(const Processed& done) {
+    Totals totals;
+    for (const ProcessedPart& part : done.parts) {
+        totals.triangles += part.triangles;
+        totals.vertices_read += part.vertices_read;
+        totals.vertices_written += part.vertices_written;
+    }
+    return totals;
+}
+
+std::string normals_in_words(const ProcessedPart& part) {
+    switch (part.normals) {
+        case Fate::kept:
+            return "kept";
+        case Fate::removed:
+            return "removed";
+        case Fate::absent:
+            return "none";
+        case Fate::computed:
+            break;
+    }
+    if (part.normal_mode == NormalMode::flat) return "computed, one per triangle";
+    return fmt::format("computed, averaged by {}", word_of(part.normal_mode));
+}
+
+std::string tangents_in_words(const ProcessedPart& part) {
+    switch (part.tangents) {
+        case Fate::kept:
+            return "kept";
+        case Fate::computed:
+            return "computed, MikkTSpace";
+        case Fate::removed:
+            return "removed";
+        case Fate::absent:
+            break;
+    }
+    return "none";
+}
+
+/// "kept", or where primitives differ: "kept in 3 primitives; computed in 1 primitive".
+std::string summed_up(const std::vector<ProcessedPart>& parts,
+                      const std::function<std::string(const ProcessedPart&)>& words) {
+    std::map<std::string, std::size_t> counts;
+    for (const ProcessedPart& part : parts)
+        ++counts[words(part)];
+    if (counts.size() == 1) return counts.begin()->first;
+    std::string text;
+    for (const auto& [what, count] : counts) {
+        text +=
+            fmt::format("{}{} in {}", text.empty() ? "" : "; ", what, counted(count, "primitive"));
+    }
+    return text;
+}
+
+std::string splits_in_words(const Totals& totals) {
+    if (totals.vertices_written == totals.vertices_read) return "none needed";
+    return fmt::format("{} -> {} vertices", totals.vertices_read, totals.vertices_written);
+}
+
+std::string word_of(Fate fate) {
+    switch (fate) {
+        case Fate::kept:
+            return "kept";
+        case Fate::computed:
+            return "computed";
+        case Fate::removed:
+            return "removed";
+        case Fate::absent:
+            break;
+    }
+    return "none";
+}
+
+}  // namespace
+
+std::string word_of(NormalMode mode) {
+    return name_of(mode, normal_choices());
+}
+
+std::string word_of(TangentMode mode) {
+    return name_of(mode, tangent_choices());
+}
+
+void print_summary(const ProcessRequest& request, const Processed& done, const Stages& stages) {
+    const Totals totals = totals_of(done);
+    print_entry("read", fmt::format("{}: {}, {}, {}, {}", request.input.string(),
+                                    format_name(readable_format(request.input)),
+                                    counted(done.parts.size(), "primitive"),
+                                    counted(totals.triangles, "triangle"),
+                                    counted(totals.vertices_read, "vertex", "vertices")));
+    print_entry("normals", summed_up(done.parts, normals_in_words));
+    print_entry("tangents", summed_up(done.parts, tangents_in_words));
+    print_entry("splits", splits_in_words(totals));
+    print_entry("findings",
+                done.findings.empty() ? std::vector<std::string>{"none"} : done.findings.lines());
+    if (!done.left_behind.empty()) {
+        print_entry("left out",
+                    fmt::format("{} (cannot be stored in {})", fmt::join(done.left_behind, ", "),
+                                extension_of(request.output)));
+    }
+    print_entry("time", durations(stages.finished()));
+    print_entry("wrote", file_and_size(request.output));
+}
+
+nlohmann::ordered_json process_json(const ProcessRequest& request, const Processed& done,
+                                    const Stages& stages) {
+    nlohmann::ordered_json parts = nlohmann::ordered_json::array();
+    for (const ProcessedPart& part : done.parts) {
+        nlohmann::ordered_json json = {{"name", part.name},
+                                       {"triangles", part.triangles},
+                                       {"vertices_read", part.vertices_read},
+                                       {"vertices_written", part.vertices_written},
+                                       {"normals", word_of(part.normals)}};
+        if (part.normals == Fate::computed) json["normal_method"] = word_of(part.normal_mode);
+        json["tangents"] = word_of(part.tangents);
+        if (part.tangents == Fate::computed)
+            json["tangent_method"] = word_of(TangentMode::mikktspace);
+        parts.push_back(std::move(json));
+    }
+    return {{"tool", "relief-mesh process"},
+            {"version", version()},
+            {"input", request.input.string()},
+            {"output", request.output.string()},
+            {"options",
+             {{"normals", word_of(request.normals)}, {"tangents", word_of(request.tangents)}}},
+            {"primitives", std::move(parts)},
+            {"findings", done.findings.json()},
+            {"left_behind", done.left_behind},
+            {"milliseconds", durations_json(stages.finished())}};
+}
+
+}  // namespace relief::tools

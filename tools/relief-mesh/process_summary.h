@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// What `relief-mesh process` says it did: a few lines for people, or the --report file.
+/// Tests: tests/tools/relief_mesh_test.cpp.
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include "common/command.h"
+#include "processing.h"
+
+namespace relief::tools {
+
+void print_summary(const ProcessRequest& request, const Processed& done, const Stages& stages);
+
+nlohmann::ordered_json process_json(const ProcessRequest& request, const Processed& done,
+                                    const Stages& stages);
+
+/// The words of the command line.
+std::string word_of(NormalMode mode);
+std::string word_of(TangentMode mode);
+
+}  // namespace relief::tools

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// Giving every triangle primitive of a model its normals and tangents, and writing the model in
+/// the format of the output file, with a record of what was done and what that format left behind.
+/// Tests: tests/tools/relief_mesh_test.cpp.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/command.h"
+#include "common/findings.h"
+#include "model_file.h"
+#include "relief/mesh/frames.h"
+
+namespace relief::tools {
+
+struct ProcessRequest {
+    std::filesystem::path input;
+    std::filesystem::path output;
+    NormalMode normals = NormalMode::keep;
+    TangentMode tangents = TangentMode::keep;
+};
+
+/// What became of an attribute of one primitive.
+enum class Fate { kept, computed, removed, absent };
+
+/// What was done to one primitive.
+struct ProcessedPart {
+    std::string name;  ///< "mesh 'Body' primitive 0"; empty for a file with one mesh.
+    std::size_t triangles = 0;
+    std::size_t vertices_read = 0;
+    std::size_t vertices_written = 0;  ///< More where vertices were split.
+    Fate normals = Fate::absent;
+    NormalMode normal_mode = NormalMode::keep;  ///< How they were computed, where they were.
+    Fate tangents = Fate::absent;
+};
+
+struct Processed {
+    std::vector<ProcessedPart> parts;
+    std::vector<std::string> left_behind;  ///< What the output format cannot hold.
+    Findings findings;
+};
+
+/// Reads, computes, writes.
+///
+/// \throws FileError if a file cannot be read or written, if it holds no triangles, or if tangents
+///         are asked for and no primitive has texture coordinates; then nothing is written
+Processed process(const ProcessRequest& request, Stages& stages);
+
+}  // namespace relief::tools

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// Maps, highlights and reflection that the command line puts on all materials of a scene.
+/// Tests: tests/tools/scene_options_test.cpp.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "common/command.h"
+#include "relief/mesh/report.h"
+#include "relief/shade/scene.h"
+#include "view_options.h"
+
+namespace relief::tools {
+
+/// Replaces what the options name in every material. Meshes without a material get the default one
+/// first, so that "all materials" leaves nothing out.
+///
+/// \param notes  gets what the reader should know: meshes that a map cannot cover, highlights
+/// added \throws UsageError if an option could show nowhere; FileError if a map is asked for and no
+/// mesh
+///         has texture coordinates, or the height map cannot be read
+void override_materials(Scene& scene, const ViewOptions& options, Stages& stages, Report& report,
+                        std::vector<std::string>& notes);
+
+}  // namespace relief::tools

@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scene_options.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <set>
+
+#include "common/text.h"
+#include "framing.h"
+#include "material_overrides.h"
+#include "relief/shade/scene_file.h"
+
+namespace relief::tools {
+namespace {
+
+constexpr float default_fov = 0.610865238F;  // 35 degrees
+constexpr CameraOption default_camera{.azimuth = 0.523598776F, .elevation = 0.34906585F};
+constexpr float default_ambient = 0.08F;
+// #1e2126, linear.
+constexpr glm::vec4 default_background{0.01299F, 0.01521F, 0.01938F, 1.0F};
+
+ImageSource image_file(const std::filesystem::path& file) {
+    return {file.string(), file};
+}
+
+Environment environment_of(const std::vector<std::filesystem::path>& files) {
+    if (files.size() == 6) {
+        CubeFaces faces;
+        std::transform(files.begin(), files.end(), faces.faces.begin(), image_file);
+        return {.source = std::move(faces)};
+    }
+    if (std::filesystem::is_directory(files.front()))
+        return {.source = cube_faces_in(files.front())};
+    return {.source = Equirectangular{image_file(files.front())}};
+}
+
+void set_environment(Scene& scene, const ViewOptions& options) {
+    if (options.environment.empty()) return;
+    scene.environment = environment_of(options.environment);
+    scene.environment->skybox = !options.no_skybox;
+    const bool reflected = std::any_of(
+        scene.materials.begin(), scene.materials.end(),
+        [](const Material& material) { return material.reflectivity != glm::vec3(0.0F); });
+    if (!reflected && options.no_skybox) {
+        throw UsageError(
+            "--environment: would show nowhere, as no material reflects it and "
+            "--no-skybox hides it",
+            "add --reflectivity, or leave --no-skybox out");
+    }
+}
+
+glm::vec3 center_of(const Bounds& bounds) {
+    return bounds.empty() ? glm::vec3(0.0F) : 0.5F * (bounds.min + bounds.max);
+}
+
+Camera camera_for(const Scene& scene, const ViewOptions& options) {
+    if (scene.camera && !options.camera) {
+        Camera camera = *scene.camera;
+        camera.vertical_fov = options.vertical_fov.value_or(camera.vertical_fov);
+        return camera;
+    }
+    const CameraOption view = options.camera.value_or(default_camera);
+    const float aspect = static_cast<float>(options.size.x) / static_cast<float>(options.size.y);
+    const Bounds bounds = world_bounds(scene);
+    const glm::vec3 center = center_of(bounds);
+    const Camera camera = framed(bounds, view.azimuth, view.elevation,
+                                 options.vertical_fov.value_or(default_fov), aspect);
+    // The box's corners are mostly empty: go by the vertices.
+    const float factor = view.distance_factor * fitting_factor(scene, camera, center, aspect);
+    return at_distance(camera, center, factor);
+}
+
+std::size_t light_count(const Scene& scene) {
+    return scene.directional_lights.size() + scene.point_lights.size() + scene.spot_lights.size();
+}
+
+void add_light(Scene& scene, const LightOption& option) {
+    if (const auto* directional = std::get_if<DirectionalLight>(&option))
+        scene.directional_lights.push_back(*directional);
+    else if (const auto* point = std::get_if<PointLight>(&option))
+        scene.point_lights.push_back(*point);
+    else if (const auto* spot = std::get_if<SpotLight>(&option))
+        scene.spot_lights.push_back(*spot);
+}
+
+void replace_lights(Scene& scene, const std::vector<LightOption>& lights,
+                    std::vector<std::string>& notes) {
+    if (const std::size_t own = light_count(scene); own != 0)
+        notes.push_back(fmt::format("--light replaces {} of the model", counted(own, "light")));
+    scene.directional_lights.clear();
+    scene.point_lights.clear();
+    scene.spot_lights.clear();
+    for (const LightOption& light : lights)
+        add_light(scene, light);
+}
+
+/// A warm key light from the upper left of the viewer, slanting so that relief shows, and a dim
+/// cool one from the right.
+void add_default_lights(Scene& scene, const Camera& camera) {
+    const glm::mat3 world_from_view(camera.world_from_view);
+    const glm::vec3 to_key_view{-0.7F, 0.64F, 0.32F};
+    const glm::vec3 to_fill_view{0.85F, 0.05F, 0.5F};
+    scene.directional_lights.push_back(
+        {.direction_world = world_from_view * -to_key_view, .irradiance = {1.0F, 0.97F, 0.92F}});
+    scene.directional_lights.push_back(
+        {.direction_world = world_from_view * -to_fill_view, .irradiance = {0.18F, 0.2F, 0.23F}});
+    scene.ambient = glm::vec3(default_ambient);
+}
+
+void set_lights(ComposedScene& composed, const ViewOptions& options) {
+    Scene& scene = composed.scene;
+    if (!options.lights.empty()) {
+        replace_lights(scene, options.lights, composed.notes);
+    } else if (light_count(scene) == 0) {
+        add_default_lights(scene, composed.camera);
+        composed.notes.emplace_back(
+            "neither the model nor --light gives a light: a key and a fill light were added");
+    }
+    if (options.ambient) scene.ambient = glm::vec3(*options.ambient);
+}
+
+}  // namespace
+
+CubeFaces cube_faces_in(const std::filesystem::path& folder) {
+    constexpr std::array<const char*, 6> ends = {"posx", "negx", "posy", "negy", "posz", "negz"};
+    // In order of name, so that the message does not depend on the file system.
+    std::set<std::filesystem::path> files;
+    for (const auto& entry : std::filesystem::directory_iterator(folder))
+        files.insert(entry.path());
+    CubeFaces faces;
+    for (std::size_t i = 0; i < ends.size(); ++i) {
+        std::optional<std::filesystem::path> found;
+        for (const std::filesystem::path& file : files) {
+            if (!file.stem().string().ends_with(ends[i])) continue;
+            if (found) {
+                throw failure(folder,
+                              fmt::format("both {} and {} end in {}", found->filename().string(),
+                                          file.filename().string(), ends[i]),
+                              "name the six files instead");
+            }
+            found = file;
+        }
+        if (!found) {
+            throw failure(folder, fmt::format("no file whose name ends in {}", ends[i]),
+                          "name the six files in the order +x -x +y -y +z -z");
+        }
+        faces.faces[i] = image_file(*found);
+    }
+    return faces;
+}
+
+ComposedScene compose_scene(const ViewOptions& options, Stages& stages, Report& report) {
+    ComposedScene composed;
+    composed.scene = stages.run("read", [&] {
+        return about(options.model, [&] { return load_scene(options.model, report); });
+    });
+    if (composed.scene.instances.empty())
+        throw FileError(options.model, "holds no triangles, so there is nothing to draw");
+    override_materials(composed.scene, options, stages, report, composed.notes);
+    set_environment(composed.scene, options);
+    composed.scene.background = options.background.value_or(default_background);
+    composed.camera = camera_for(composed.scene, options);
+    set_lights(composed, options);
+    return composed;
+}
+
+}  // namespace relief::tools

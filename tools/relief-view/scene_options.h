@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// From a model file and options to a scene and a camera that sees it.
+///
+/// What the options do not say comes from the model; what the model does not say either gets a
+/// pleasant default, of which the notes tell. Tests: tests/tools/scene_options_test.cpp.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "common/command.h"
+#include "relief/mesh/report.h"
+#include "relief/shade/scene.h"
+#include "view_options.h"
+
+namespace relief::tools {
+
+struct ComposedScene {
+    Scene scene;
+    Camera camera;
+    std::vector<std::string> notes;  ///< What was added or could not be done, for the summary.
+};
+
+/// \param options  settled (view_options.h)
+/// \throws FileError if a file cannot be read, holds no triangles, or lacks what an option needs;
+///         UsageError if an option could show nowhere in this scene
+ComposedScene compose_scene(const ViewOptions& options, Stages& stages, Report& report);
+
+/// Six images in a folder, by the ends of their names: posx, negx, posy, negy, posz, negz.
+/// \throws FileError naming the first that is missing, or two that claim one place
+CubeFaces cube_faces_in(const std::filesystem::path& folder);
+
+}  // namespace relief::tools

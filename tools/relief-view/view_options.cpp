@@ -1,0 +1,230 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "view_options.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "common/map_choices.h"
+#include "common/text.h"
+
+namespace relief::tools {
+namespace {
+
+void add_output_options(CLI::App& app, ViewOptions& options) {
+    const std::string group = "Output";
+    add_path(app, "--output", options.output,
+             "Picture to write: .png (8 bit, sRGB) or .exr (linear float).")
+        ->group(group);
+    add_value(app, "--size", "WxH", "Width and height in pixels. Default: 1024x1024.",
+              [&](const std::string& subject, const std::string& text) {
+                  options.size = parse_size(subject, text);
+              })
+        ->group(group);
+    add_choice(app, "--samples", options.samples, Choices<int>{{"1", 1}, {"4", 4}},
+               "Samples per pixel; 4 smooth the edges of triangles. Default: 4.")
+        ->group(group);
+    add_value(app, "--background", "#RRGGBB|transparent",
+              "Colour behind the model where no environment shows. Default: #1e2126.",
+              [&](const std::string& subject, const std::string& text) {
+                  options.background = text == "transparent"
+                                           ? glm::vec4(0.0F)
+                                           : glm::vec4(parse_color(subject, text), 1.0F);
+              })
+        ->group(group);
+    add_switch(app, "--explain-effects", options.explain_effects,
+               "Print which effects the scene calls for and which not, with the reason. Needs no "
+               "--output, and then no OpenGL.")
+        ->group(group);
+    add_switch(app, "--json", options.json, "Print the summary as one JSON object.")->group(group);
+}
+
+void add_map_options(CLI::App& app, ViewOptions& options) {
+    const std::string group = "Maps, for all materials; the model needs texture coordinates";
+    add_path(app, "--diffuse-map", options.diffuse_map,
+             "Colour image that replaces every material's diffuse colour.")
+        ->group(group);
+    add_path(app, "--normal-map", options.normal_map, "Tangent-space normal map.")->group(group);
+    add_choice(app, "--green", options.green, green_choices(),
+               "Where the normal map's green is bright: on slopes facing up in the image (OpenGL, "
+               "glTF) or down (DirectX). Default: up.")
+        ->group(group);
+    add_path(app, "--height-map", options.height_map,
+             "Height map, made into a normal map on the fly.")
+        ->group(group);
+    add_number(app, "--strength", "S", options.strength, {},
+               "Height in texels that the height map's value 1.0 stands for. Default: 16.")
+        ->group(group);
+    add_choice(app, "--kernel", options.kernel, kernel_choices(),
+               "How slopes are taken from the height map. Default: sobel3.")
+        ->group(group);
+    add_number(app, "--normal-scale", "S", options.normal_scale, {-100, 100, ""},
+               "Multiplies the slopes of normal maps, the model's own too. Default: as the model "
+               "says, else 1.")
+        ->group(group);
+}
+
+void add_material_options(CLI::App& app, ViewOptions& options) {
+    const std::string group = "Highlights and reflection, for all materials";
+    const Choices<SpecularModel> models = {{"phong", SpecularModel::phong},
+                                           {"blinn_phong", SpecularModel::blinn_phong}};
+    add_choice(app, "--specular", options.specular, models,
+               "Model of highlights. Materials without a specular colour get a grey one of 0.25. "
+               "Default: as the model says, else blinn_phong.")
+        ->group(group);
+    add_number(app, "--shininess", "N", options.shininess, {0, 1e6, ""},
+               "Exponent of highlights: larger is smaller and sharper. Materials without a "
+               "specular colour get a grey one of 0.25. Default: as the model says, else 32.")
+        ->group(group);
+    add_repeatable(app, "--environment", "FILE...",
+                   "Surroundings: a panorama by longitude and latitude, six square images in the "
+                   "order +x -x +y -y +z -z, or a folder with six images whose names end in posx, "
+                   "negx, posy, negy, posz, negz.",
+                   [&](const std::string&, const std::string& text) {
+                       options.environment.emplace_back(text);
+                   })
+        ->group(group)
+        ->expected(1, 7);
+    add_number(app, "--reflectivity", "R", options.reflectivity, {0, 1, ""},
+               "Share of the environment that materials reflect, seen head on; more at grazing "
+               "angles. Default: as the model says, else 0.")
+        ->group(group);
+    add_switch(app, "--no-skybox", options.no_skybox,
+               "Reflect the environment but do not show it behind the model.")
+        ->group(group);
+}
+
+void add_light_options(CLI::App& app, ViewOptions& options) {
+    const std::string group = "Light and camera";
+    add_repeatable(app, "--light", "LIGHT",
+                   "A light, instead of the model's own; may be given many times. "
+                   "directional:azimuth,elevation[,intensity[,#rrggbb]] comes from there, in "
+                   "degrees; point:x,y,z[,intensity[,#rrggbb]] stands in the model's space; "
+                   "spot:x,y,z,tx,ty,tz[,angle[,intensity[,#rrggbb]]] shines from x,y,z towards "
+                   "tx,ty,tz in a cone of 30 or angle degrees from its axis; none means no light. "
+                   "Intensity 1 makes a white surface white, at distance 1 for point and spot. "
+                   "Default: the model's lights, else a key and a fill light.",
+                   [&](const std::string& subject, const std::string& text) {
+                       options.lights.push_back(parse_light(subject, text));
+                   })
+        ->group(group);
+    add_number(app, "--ambient", "A", options.ambient, {0, 1000, ""},
+               "Light from everywhere. Default: 0, or 0.08 with the key and fill light.")
+        ->group(group);
+    add_value(app, "--camera", "AZIMUTH,ELEVATION[,FACTOR]",
+              "From where the camera looks, in degrees from +z towards +x and above the horizon, "
+              "and how far away it is as a factor of the distance that shows all. Default: the "
+              "model's camera, else 30,20,1.",
+              [&](const std::string& subject, const std::string& text) {
+                  options.camera = parse_camera(subject, text);
+              })
+        ->group(group);
+    add_value(app, "--fov", "DEGREES",
+              "Vertical field of view. Default: the model's camera's, else 35.",
+              [&](const std::string& subject, const std::string& text) {
+                  const Range range{1, 170, "degrees"};
+                  options.vertical_fov =
+                      glm::radians(static_cast<float>(parse_number(subject, text, range)));
+              })
+        ->group(group);
+}
+
+void refuse(bool useless, const std::string& option, const std::string& because,
+            const std::string& remedy) {
+    if (useless) throw UsageError(option + ": " + because, remedy);
+}
+
+void check_output(const ViewOptions& options) {
+    if (!options.output && !options.explain_effects)
+        throw UsageError("--output is missing",
+                         "name a picture to write, or ask for --explain-effects");
+    if (!options.output) return;
+    const std::string extension = extension_of(*options.output);
+    refuse(extension != ".png" && extension != ".exr", "--output " + options.output->string(),
+           "no format to write a picture in", "use .png or .exr");
+    refuse(*options.output == options.model, "--output", "would overwrite the model", "");
+    require_folder_of(*options.output);
+}
+
+void check_maps(const ViewOptions& options) {
+    refuse(options.normal_map && options.height_map, "--height-map",
+           "contradicts --normal-map, as both give the normals", "leave one of them out");
+    refuse(options.green && !options.normal_map, "--green", "says how to read a --normal-map",
+           "give a normal map too, or leave it out");
+    refuse(options.strength && !options.height_map, "--strength", "says how to read a --height-map",
+           "give a height map too, or leave it out");
+    refuse(options.kernel && !options.height_map, "--kernel", "says how to read a --height-map",
+           "give a height map too, or leave it out");
+}
+
+void check_environment(const ViewOptions& options) {
+    const std::size_t files = options.environment.size();
+    refuse(files != 0 && files != 1 && files != 6, "--environment",
+           fmt::format("takes one file, six files or a folder, not {} files", files), "");
+    refuse(options.no_skybox && files == 0, "--no-skybox", "there is no --environment to hide", "");
+    refuse(options.reflectivity && files == 0, "--reflectivity",
+           "there is no --environment to reflect", "give one, or leave it out");
+    refuse(options.background && files != 0 && !options.no_skybox, "--background",
+           "the environment hides it", "add --no-skybox, or leave one of them out");
+}
+
+void check_lights(const ViewOptions& options) {
+    const bool has_none = std::any_of(
+        options.lights.begin(), options.lights.end(),
+        [](const LightOption& light) { return std::holds_alternative<NoLight>(light); });
+    refuse(has_none && options.lights.size() > 1, "--light none", "contradicts the other lights",
+           "");
+}
+
+/// The environment takes one or six files, so it may have eaten the model that follows it.
+void give_back_model(ViewOptions& options) {
+    if (!options.model.empty()) return;
+    if (options.environment.size() != 2 && options.environment.size() != 7) return;
+    options.model = options.environment.back();
+    options.environment.pop_back();
+}
+
+}  // namespace
+
+CameraOption parse_camera(const std::string& subject, const std::string& text) {
+    const std::vector<std::string> fields = split(text, ',');
+    if (fields.size() < 2 || fields.size() > 3)
+        throw UsageError(subject + ": not azimuth,elevation or azimuth,elevation,factor");
+    const auto number = [&](std::size_t i, const Range& range) {
+        const std::string field = subject + ": '" + fields[i] + "'";
+        return static_cast<float>(parse_number(field, fields[i], range));
+    };
+    return {.azimuth = glm::radians(number(0, {-360, 360, "degrees"})),
+            .elevation = glm::radians(number(1, {-90, 90, "degrees"})),
+            .distance_factor = fields.size() == 3 ? number(2, {0.01, 1000, ""}) : 1.0F};
+}
+
+void add_view_options(CLI::App& app, ViewOptions& options) {
+    // Not required in CLI11's eyes: settle() looks for it behind --environment.
+    add_path(app, "MODEL", options.model, "Model to show: .glb .gltf .obj .ply .stl .off");
+    add_output_options(app, options);
+    add_map_options(app, options);
+    add_material_options(app, options);
+    add_light_options(app, options);
+    const Choices<Backend> backends = {
+        {"auto", Backend::automatic}, {"osmesa", Backend::osmesa}, {"egl", Backend::egl}};
+    add_choice(app, "--backend", options.backend, backends,
+               "What gives the OpenGL context; neither needs a display. Default: auto, which takes "
+               "a GPU through EGL where there is one, else OSMesa, else EGL in software.");
+    add_general_options(app, options.general);
+}
+
+void settle(ViewOptions& options) {
+    give_back_model(options);
+    if (options.model.empty()) throw UsageError("MODEL is missing");
+    check_output(options);
+    check_maps(options);
+    check_environment(options);
+    check_lights(options);
+}
+
+bool is_linear_output(const ViewOptions& options) {
+    return options.output && extension_of(*options.output) == ".exr";
+}
+
+}  // namespace relief::tools
