@@ -7,12 +7,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
+#include <charconv>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <optional>
-#include <regex>
+#include <system_error>
 
 #include "relief/shade/error.h"
 
@@ -37,6 +39,30 @@ std::optional<Include> include_of(std::string_view line) {
         return Include{false, line.substr(1, line.size() - 2)};
     }
     return Include{};
+}
+
+/// A line number in a driver's message, and where its mention ends.
+struct LineMention {
+    std::size_t line = 0;
+    std::size_t end = 0;
+};
+
+/// The mention that starts here, if one does: "0:12" before "(" (Mesa), or "0(12)" (NVIDIA), at the
+/// start of a word.
+std::optional<LineMention> line_mention(std::string_view message, std::size_t begin) {
+    const auto is_word = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0; };
+    if (begin > 0 && is_word(message[begin - 1])) return std::nullopt;
+    const std::string_view rest = message.substr(begin);
+    if (!rest.starts_with("0:") && !rest.starts_with("0(")) return std::nullopt;
+    LineMention mention;
+    const char* const first = rest.data() + 2;
+    const auto [last, error] = std::from_chars(first, rest.data() + rest.size(), mention.line);
+    const auto length = static_cast<std::size_t>(last - rest.data());
+    if (error != std::errc() || last == first || length == rest.size()) return std::nullopt;
+    const bool mesa = rest[1] == ':';
+    if (*last != (mesa ? '(' : ')')) return std::nullopt;
+    mention.end = begin + length + (mesa ? 0 : 1);
+    return mention;
 }
 
 /// Puts one shader together.
@@ -124,24 +150,21 @@ ShaderSource assemble(std::string_view file, const ShaderSteps& steps,
 }
 
 std::string with_file_names(const std::string& message, const ShaderSource& source) {
-    // Mesa: "0:12(3): error: ..."; NVIDIA: "0(12) : error ...".
-    static const std::regex line_number(R"(\b0:(\d+)(?=\()|\b0\((\d+)\))");
     std::string result;
-    std::sregex_iterator match(message.begin(), message.end(), line_number);
-    std::size_t done = 0;
-    for (; match != std::sregex_iterator(); ++match) {
-        const std::string number = (*match)[1].matched ? (*match)[1].str() : (*match)[2].str();
-        const std::size_t index = number.size() > 7 ? 0 : std::stoul(number);
-        if (index == 0 || index > source.lines.size()) continue;
-        const SourceLine place = source.lines[index - 1];
-        if (place.file < 0) continue;
-        const auto position = static_cast<std::size_t>(match->position());
-        result += message.substr(done, position - done);
-        result +=
-            fmt::format("{}:{}", source.files[static_cast<std::size_t>(place.file)], place.line);
-        done = position + static_cast<std::size_t>(match->length());
+    std::size_t position = 0;
+    while (position < message.size()) {
+        const std::optional<LineMention> mention = line_mention(message, position);
+        if (!mention || mention->line == 0 || mention->line > source.lines.size() ||
+            source.lines[mention->line - 1].file < 0) {
+            result += message[position++];
+            continue;
+        }
+        const SourceLine place = source.lines[mention->line - 1];
+        const std::string& file = source.files[static_cast<std::size_t>(place.file)];
+        result += fmt::format("{}:{}", file, place.line);
+        position = mention->end;
     }
-    return result + message.substr(done);
+    return result;
 }
 
 std::string shader_file(std::string_view name) {
