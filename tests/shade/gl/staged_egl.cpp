@@ -18,6 +18,7 @@
 
 #include <cstdlib>
 #include <cstring>
+#include <map>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -49,16 +50,15 @@ EGLBoolean fail(EGLint error) {
     return EGL_FALSE;
 }
 
-/// The devices asked for; they live as long as the process, as EGL's do.
+/// The devices asked for. They are never destroyed, as EGL's are not.
 std::vector<Device*> staged_devices() {
+    static auto* const known = new std::map<std::string, Device>;
     const char* names = std::getenv("STAGED_EGL_DEVICES");
     std::istringstream stream(names == nullptr ? "" : names);
-    static std::vector<Device*> all;
     std::vector<Device*> devices;
     for (std::string kind; stream >> kind;) {
         if (kind == "alone") continue;
-        devices.push_back(new Device{kind});
-        all.push_back(devices.back());
+        devices.push_back(&known->try_emplace(kind, Device{kind}).first->second);
     }
     return devices;
 }
