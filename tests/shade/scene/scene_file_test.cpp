@@ -67,6 +67,111 @@ TEST(LoadScene, GivesSurfacesWithoutMaterialBothSides) {
     EXPECT_EQ(scene.meshes[0].normals[0], glm::vec3(0, 0, 1));
 }
 
+/// One triangle with lights, a camera under a scaled node, and materials that Phong cannot show.
+std::string lit_triangle() {
+    return R"({
+  "asset": {"version": "2.0"},
+  "extensionsUsed": ["KHR_lights_punctual", "KHR_texture_transform"],
+  "extensions": {"KHR_lights_punctual": {"lights": [
+    {"type": "directional", "color": [1, 0.5, 0], "intensity": 3.14159265},
+    {"type": "point", "intensity": 6.2831853, "range": 5},
+    {"type": "spot", "spot": {"innerConeAngle": 0.1, "outerConeAngle": 0.4}}]}},
+  "scene": 0,
+  "scenes": [{"nodes": [0, 1, 2, 3, 4]}],
+  "nodes": [
+    {"mesh": 0, "name": "first", "translation": [2, 0, 0]},
+    {"mesh": 0, "name": "second", "scale": [-1, 1, 1]},
+    {"extensions": {"KHR_lights_punctual": {"light": 0}}, "rotation": [-0.70710678, 0, 0, 0.70710678]},
+    {"translation": [1, 2, 3], "children": [5, 6]},
+    {"camera": 0, "translation": [0, 0, 7], "scale": [2, 3, 4]},
+    {"extensions": {"KHR_lights_punctual": {"light": 1}}},
+    {"extensions": {"KHR_lights_punctual": {"light": 2}}}],
+  "cameras": [{"type": "perspective", "perspective": {"yfov": 0.5, "znear": 0.25}}],
+  "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 1, "material": 0}]}],
+  "materials": [{"name": "glass", "alphaMode": "BLEND", "doubleSided": true,
+    "pbrMetallicRoughness": {"metallicFactor": 0, "roughnessFactor": 0.5,
+      "baseColorTexture": {"index": 0, "texCoord": 1}},
+    "normalTexture": {"index": 0, "scale": 0.5,
+      "extensions": {"KHR_texture_transform": {"scale": [2, 2]}}}}],
+  "textures": [{"source": 0}],
+  "images": [{"uri": "missing.png"}],
+  "accessors": [
+    {"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [0, 0, 0], "max": [1, 1, 0]},
+    {"bufferView": 1, "componentType": 5123, "count": 3, "type": "SCALAR"}],
+  "bufferViews": [{"buffer": 0, "byteLength": 36}, {"buffer": 0, "byteOffset": 36, "byteLength": 6}],
+  "buffers": [{"byteLength": 42, "uri": "data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAAAAABAAIA"}]
+})";
+}
+
+TEST(LoadScene, PlacesWhatAGltfFileHolds) {
+    const test::TemporaryDirectory folder;
+    write_text(folder / "lit.gltf", lit_triangle());
+    Report report;
+    const Scene scene = load_scene(folder / "lit.gltf", report);
+    ASSERT_EQ(scene.meshes.size(), 1U);  // Read once, though it stands twice.
+    ASSERT_EQ(scene.instances.size(), 2U);
+    EXPECT_EQ(scene.instances[0].name, "first");
+    EXPECT_EQ(scene.instances[0].world_from_object[3], glm::vec4(2, 0, 0, 1));
+    EXPECT_EQ(scene.instances[1].world_from_object[0].x, -1.0F);
+    EXPECT_EQ(scene.meshes[0].normals[0], glm::vec3(0, 0, 1));  // Flat, as glTF asks.
+
+    ASSERT_EQ(scene.directional_lights.size(), 1U);
+    const DirectionalLight& sun = scene.directional_lights[0];
+    EXPECT_NEAR(sun.direction_world.y, -1.0F, 1e-6F);  // Its node is turned to look down.
+    EXPECT_NEAR(sun.irradiance.x, 1.0F, 1e-6F);        // pi lux over pi.
+    EXPECT_NEAR(sun.irradiance.y, 0.5F, 1e-6F);
+    ASSERT_EQ(scene.point_lights.size(), 1U);
+    EXPECT_EQ(scene.point_lights[0].position_world, glm::vec3(1, 2, 3));
+    EXPECT_NEAR(scene.point_lights[0].intensity.x, 2.0F, 1e-6F);
+    EXPECT_EQ(scene.point_lights[0].range, 5.0F);
+    ASSERT_EQ(scene.spot_lights.size(), 1U);
+    EXPECT_EQ(scene.spot_lights[0].direction_world, glm::vec3(0, 0, -1));
+    EXPECT_NEAR(scene.spot_lights[0].outer_cone, 0.4F, 1e-6F);
+
+    ASSERT_TRUE(scene.camera);
+    EXPECT_EQ(scene.camera->world_from_view[1], glm::vec4(0, 1, 0, 0));  // Scale is no view.
+    EXPECT_EQ(scene.camera->world_from_view[3], glm::vec4(0, 0, 7, 1));
+    EXPECT_EQ(scene.camera->near, 0.25F);
+    EXPECT_GT(scene.camera->far, 7.0F);  // None in the file: to the end of the scene.
+    EXPECT_LT(scene.camera->far, 10.0F);
+}
+
+TEST(LoadScene, CountsWhatIsNotDrawnAsMeant) {
+    const test::TemporaryDirectory folder;
+    write_text(folder / "lit.gltf", lit_triangle());
+    Report report;
+    const Scene scene = load_scene(folder / "lit.gltf", report);
+    const Material& material = scene.materials.at(0);
+    EXPECT_TRUE(material.double_sided);
+    EXPECT_FALSE(material.diffuse_texture);  // On a further set of texture coordinates.
+    ASSERT_TRUE(material.normal_map);
+    EXPECT_EQ(material.normal_map->scale, 0.5F);
+    EXPECT_EQ(material.normal_map->green, Green::up);
+    EXPECT_EQ(report.count("blended alpha"), 1U);
+    EXPECT_EQ(report.count("texture transform"), 1U);
+    EXPECT_EQ(report.count("texture on a further texture coordinate set"), 1U);
+}
+
+TEST(LoadScene, ReadsMeansOfRealTexturesAndGoesOnWithoutMissingOnes) {
+    RELIEF_NEEDS_SHARED(bottle, "data/models/gltf/WaterBottle/glTF/WaterBottle.gltf");
+    RELIEF_NEEDS_SHARED(corset, "data/models/gltf/Corset");
+    Report report;
+    const Scene scene = load_scene(bottle, report);
+    EXPECT_TRUE(report.empty());
+    const Material& material = scene.materials.at(0);
+    EXPECT_GT(material.shininess, 0.5F);   // Factor 1 alone would give 0.
+    EXPECT_LT(material.diffuse.x, 0.99F);  // Partly metal.
+    EXPECT_TRUE(material.normal_map && material.diffuse_texture && material.emission_texture);
+
+    std::filesystem::path file;
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(corset)) {
+        if (entry.path().extension() == ".gltf") file = entry.path();
+    }
+    ASSERT_FALSE(file.empty());
+    EXPECT_NO_THROW((void)load_scene(file, report));
+    EXPECT_GT(report.count("unreadable texture"), 0U);
+}
+
 TEST(LoadScene, NamesTheFileOfWhatItCannotRead) {
     Report report;
     for (const char* file : {"/nowhere/model.obj", "/nowhere/model.glb", "/nowhere/model.xyz"}) {
