@@ -38,9 +38,9 @@ void write_all(const std::filesystem::path& folder) {
     relief::write_image(folder / "bricks-height.png", sample::brick_heights(1024),
                         {{"relief:content", "height map, tiles"}});
     relief::write_image(folder / "bricks-diffuse.png", sample::brick_colors(512));
-    for (int face = 0; face < 6; ++face) {
+    for (std::size_t face = 0; face < sample::face_names.size(); ++face) {
         relief::write_image(folder / "sky" / fmt::format("{}.jpg", sample::face_names[face]),
-                            sample::sky_face(face, 384));
+                            sample::sky_face(static_cast<int>(face), 512));
     }
     relief::write_mesh(folder / "vase.obj", vase_with_material(folder));
 }

@@ -56,10 +56,10 @@ struct CloseReader {
 
 /// An encoded image, opened and found acceptable.
 struct OpenImage {
-    std::unique_ptr<ImageModuleReader, CloseReader> reader;
-    ImageModuleHeader header;
     ImageContainer container;
     Metadata metadata;
+    ImageModuleHeader header;
+    std::unique_ptr<ImageModuleReader, CloseReader> reader;  ///< Last: it reads from `container`.
 };
 
 void check_header(const ImageModuleHeader& header, const std::filesystem::path& name) {
