@@ -13,10 +13,12 @@
 #include "relief/mesh/error.h"
 #include "relief/mesh/threads.h"
 #include "support/angle.h"
+#include "support/samples.h"
 
 namespace relief {
 namespace {
 
+using test::samples_of;
 using testing::ElementsAre;
 using testing::ElementsAreArray;
 using testing::HasSubstr;
@@ -103,13 +105,13 @@ std::vector<std::uint32_t> bits_of(const Image& image) {
 TEST(HeightField, GreyIsItselfRgbItsMeanAndAlphaIsLeftOut) {
     Image grey = make_image(2, 1, 2, 8, ColorSpace::data);
     grey.samples = std::vector<std::uint8_t>{51, 7, 255, 0};
-    EXPECT_THAT(height_field(grey).as<float>(), ElementsAre(0.2F, 1.0F));
+    EXPECT_THAT(samples_of<float>(height_field(grey)), ElementsAre(0.2F, 1.0F));
     Image rgb = make_image(1, 1, 4, 16, ColorSpace::data);
     rgb.samples = std::vector<std::uint16_t>{65535, 0, 13107, 9};
-    EXPECT_THAT(height_field(rgb).as<float>(), ElementsAre(0.4F));
+    EXPECT_THAT(samples_of<float>(height_field(rgb)), ElementsAre(0.4F));
     Image floats = make_image(1, 1, 3, 32, ColorSpace::data);
     floats.samples = std::vector<float>{-3.0F, 0.0F, 9.0F};
-    EXPECT_THAT(height_field(floats).as<float>(), ElementsAre(2.0F));
+    EXPECT_THAT(samples_of<float>(height_field(floats)), ElementsAre(2.0F));
 }
 
 TEST(HeightField, AGreyPictureStoredAsRgbGivesTheHeightsOfTheGreyOne) {

@@ -10,10 +10,12 @@
 #include <numeric>
 
 #include "relief/mesh/error.h"
+#include "support/samples.h"
 
 namespace relief {
 namespace {
 
+using test::samples_of;
 using testing::ElementsAre;
 
 /// Every code of a depth, in one grey row.
@@ -49,10 +51,10 @@ TEST(Image, SizesChannelsAndDepthsThatDoNotExistAreRefused) {
 
 TEST(Image, ToFloatDividesByTheLargestCodeAndConvertsNoColour) {
     const Image bytes = image_of<std::uint8_t>(1, 3, ColorSpace::srgb, {0, 51, 255});
-    EXPECT_THAT(to_float(bytes).as<float>(), ElementsAre(0.0F, 51.0F / 255.0F, 1.0F));
+    EXPECT_THAT(samples_of<float>(to_float(bytes)), ElementsAre(0.0F, 51.0F / 255.0F, 1.0F));
     EXPECT_EQ(to_float(bytes).color_space, ColorSpace::srgb);
     const Image words = image_of<std::uint16_t>(1, 3, ColorSpace::data, {0, 13107, 65535});
-    EXPECT_THAT(to_float(words).as<float>(), ElementsAre(0.0F, 0.2F, 1.0F));
+    EXPECT_THAT(samples_of<float>(to_float(words)), ElementsAre(0.0F, 0.2F, 1.0F));
 }
 
 TEST(Image, SrgbHasTheValuesOfTheStandard) {
@@ -94,14 +96,14 @@ TEST(Image, AlphaIsNeverDecodedNorEncoded) {
     EXPECT_EQ(linear.as<float>()[3], 128.0F / 255.0F);
     EXPECT_EQ(to_srgb(linear, 8).samples, coded.samples);
     const Image grey = image_of<std::uint8_t>(2, 2, ColorSpace::srgb, {128, 128, 0, 7});
-    EXPECT_EQ(to_linear(grey).as<float>()[1], 128.0F / 255.0F);
-    EXPECT_EQ(to_linear(grey).as<float>()[3], 7.0F / 255.0F);
+    EXPECT_EQ(samples_of<float>(to_linear(grey))[1], 128.0F / 255.0F);
+    EXPECT_EQ(samples_of<float>(to_linear(grey))[3], 7.0F / 255.0F);
 }
 
 TEST(Image, DataAndLinearImagesAreNeverDecoded) {
     for (const ColorSpace space : {ColorSpace::data, ColorSpace::linear}) {
         const Image image = image_of<std::uint8_t>(1, 1, space, {128});
-        EXPECT_EQ(to_linear(image).as<float>()[0], 128.0F / 255.0F);
+        EXPECT_EQ(samples_of<float>(to_linear(image))[0], 128.0F / 255.0F);
         EXPECT_EQ(to_linear(image).color_space, space);
     }
 }
@@ -111,7 +113,7 @@ TEST(Image, EncodingClampsAsADisplayDoesAndNanIsBlack) {
     const Image wild = image_of<float>(
         5, 1, ColorSpace::linear,
         {-1.0F, 2.0F, std::numeric_limits<float>::quiet_NaN(), infinity, -infinity});
-    EXPECT_THAT(to_srgb(wild, 8).as<std::uint8_t>(), ElementsAre(0, 255, 0, 255, 0));
+    EXPECT_THAT(samples_of<std::uint8_t>(to_srgb(wild, 8)), ElementsAre(0, 255, 0, 255, 0));
 }
 
 TEST(Image, OnlyLinearFloatIsEncodedAndOnlyTo8Or16Bits) {

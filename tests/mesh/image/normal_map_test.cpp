@@ -10,10 +10,12 @@
 
 #include "relief/mesh/error.h"
 #include "support/angle.h"
+#include "support/samples.h"
 
 namespace relief {
 namespace {
 
+using test::samples_of;
 using testing::ElementsAre;
 using testing::Pair;
 using testing::UnorderedElementsAre;
@@ -72,16 +74,16 @@ TEST(NormalMap, FlatAndTheAxesHaveTheKnownCodes) {
     const Image axes = normals_of({0, 0, 1, 1, 0, 0, -1, 0, 0, 0, 1, 0, 0, -1, 0});
     Report report;
     EXPECT_THAT(
-        encode_normal_map(axes, {8, Green::up, FlatCode::middle}, report).as<std::uint8_t>(),
+        samples_of<std::uint8_t>(encode_normal_map(axes, {8, Green::up, FlatCode::middle}, report)),
         ElementsAre(128, 128, 255, 255, 128, 128, 1, 128, 128, 128, 255, 128, 128, 1, 128));
-    EXPECT_THAT(encode_normal_map(axes, {8, Green::up, FlatCode::half}, report).as<std::uint8_t>(),
-                ElementsAre(128, 128, 255, 255, 128, 128, 0, 128, 128, 128, 255, 128, 128, 0, 128));
     EXPECT_THAT(
-        encode_normal_map(axes, {16, Green::down, FlatCode::middle}, report)
-            .as<std::uint16_t>()
-            .subspan(0, 12),
-        ElementsAre(32768, 32768, 65535, 65535, 32768, 32768, 1, 32768, 32768, 32768, 1, 32768));
-    EXPECT_THAT(encode_normal_map(axes, {32, Green::up, FlatCode::half}, report).as<float>(),
+        samples_of<std::uint8_t>(encode_normal_map(axes, {8, Green::up, FlatCode::half}, report)),
+        ElementsAre(128, 128, 255, 255, 128, 128, 0, 128, 128, 128, 255, 128, 128, 0, 128));
+    EXPECT_THAT(samples_of<std::uint16_t>(
+                    encode_normal_map(axes, {16, Green::down, FlatCode::middle}, report)),
+                ElementsAre(32768, 32768, 65535, 65535, 32768, 32768, 1, 32768, 32768, 32768, 1,
+                            32768, 32768, 65535, 32768));
+    EXPECT_THAT(samples_of<float>(encode_normal_map(axes, {32, Green::up, FlatCode::half}, report)),
                 ElementsAre(.5F, .5F, 1, 1, .5F, .5F, 0, .5F, .5F, .5F, 1, .5F, .5F, 0, .5F));
     EXPECT_TRUE(report.empty());
 }
@@ -91,8 +93,9 @@ TEST(NormalMap, MiddleCodesDecodeFlatToExactlyFlatAndHalfCodesDoNot) {
     const Image bytes = map_of<std::uint8_t>(3, {128, 128, 255});
     const Image words = map_of<std::uint16_t>(3, {32768, 32768, 65535});
     for (const Image& map : {bytes, words}) {
-        EXPECT_THAT(decode_normal_map(map, Green::down, FlatCode::middle, report).as<float>(),
-                    ElementsAre(0.0F, 0.0F, 1.0F));
+        EXPECT_THAT(
+            samples_of<float>(decode_normal_map(map, Green::down, FlatCode::middle, report)),
+            ElementsAre(0.0F, 0.0F, 1.0F));
     }
     // Read by glTF's formula the same texel leans by atan(sqrt(2) / 255).
     const Image leaning = decode_normal_map(bytes, Green::up, FlatCode::half, report);
@@ -157,7 +160,7 @@ TEST(NormalMap, GreenDownIsGreenUpWithTheOtherSign) {
 TEST(NormalMap, AFourthChannelIsIgnoredAndCodeZeroIsMinusOne) {
     Report report;
     const Image map = map_of<std::uint8_t>(4, {0, 128, 128, 3, 128, 128, 255, 200});
-    EXPECT_THAT(decode_normal_map(map, Green::up, FlatCode::middle, report).as<float>(),
+    EXPECT_THAT(samples_of<float>(decode_normal_map(map, Green::up, FlatCode::middle, report)),
                 ElementsAre(-1.0F, 0.0F, 0.0F, 0.0F, 0.0F, 1.0F));
     EXPECT_TRUE(report.empty());
 }

@@ -12,11 +12,13 @@
 
 #include "relief/mesh/error.h"
 #include "relief/mesh/image_file.h"
+#include "support/samples.h"
 #include "support/shared_data.h"
 
 namespace relief {
 namespace {
 
+using test::samples_of;
 using testing::ElementsAre;
 using testing::ElementsAreArray;
 
@@ -45,13 +47,13 @@ TEST(ImageFileReal, PngOfEverySampleTypeHasTheShapeThatTheHeaderPromises) {
 
 TEST(ImageFileReal, FourBitsWidenOverTheWholeRange) {
     RELIEF_NEEDS_SHARED(png, "data/textures/decoder/png");
-    EXPECT_THAT(read_data(png / "magnum_gray4.png").as<std::uint8_t>(),
+    EXPECT_THAT(samples_of<std::uint8_t>(read_data(png / "magnum_gray4.png")),
                 ElementsAre(0x88, 0x00, 0xFF, 0xFF, 0x88, 0x00));
 }
 
 TEST(ImageFileReal, SixteenBitSamplesArriveExactly) {
     RELIEF_NEEDS_SHARED(png, "data/textures/decoder/png");
-    EXPECT_THAT(read_data(png / "magnum_gray16.png").as<std::uint16_t>(),
+    EXPECT_THAT(samples_of<std::uint16_t>(read_data(png / "magnum_gray16.png")),
                 ElementsAre(5000, 6000, 3000, 4000, 1000, 2000));
 }
 
