@@ -40,15 +40,18 @@ struct Image {
     /// 8, 16 or 32.
     [[nodiscard]] int bits() const;
 
-    /// The samples, if they are of this type. \throws std::bad_variant_access otherwise
+    /// The samples, if they are of this type; not of a temporary, whose samples would be gone.
+    /// \throws std::bad_variant_access otherwise
     template <typename T>
-    [[nodiscard]] std::span<const T> as() const {
+    [[nodiscard]] std::span<const T> as() const& {
         return std::get<std::vector<T>>(samples);
     }
     template <typename T>
-    [[nodiscard]] std::span<T> as() {
+    [[nodiscard]] std::span<T> as() & {
         return std::get<std::vector<T>>(samples);
     }
+    template <typename T>
+    std::span<const T> as() const&& = delete;
 };
 
 /// An image of zeros. \throws InvalidInput if a size is not positive or bits is not 8, 16 or 32
