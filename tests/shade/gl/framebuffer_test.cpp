@@ -148,8 +148,8 @@ TEST_P(RenderTargets, DepthHidesWhatIsBehind) {
     cover_at("0.25", "vec4(1.0, 0.0, 0.0, 1.0)");
     cover_at("0.75", "vec4(0.0, 1.0, 0.0, 1.0)");
     api()->Disable(GL_DEPTH_TEST);
-    EXPECT_THAT(target.read(ColorSpace::data).as<std::uint8_t>().subspan(0, 4),
-                ElementsAre(255, 0, 0, 255));
+    const Image picture = target.read(ColorSpace::data);
+    EXPECT_THAT(picture.as<std::uint8_t>().subspan(0, 4), ElementsAre(255, 0, 0, 255));
 }
 
 TEST_P(RenderTargets, TheResolvedColourServesAsATexture) {

@@ -9,10 +9,12 @@
 #include "gl/framebuffer.h"
 #include "relief/shade/error.h"
 #include "support/gl_environment.h"
+#include "support/samples.h"
 
 namespace relief::gl {
 namespace {
 
+using test::samples_of;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
@@ -165,7 +167,7 @@ TEST_P(Programs, ABlockReadsTheBufferAtItsBindingPoint) {
                     EXPECT_TRUE(program.bind_block("Frame", 2));
                     EXPECT_FALSE(program.bind_block("Absent", 2));
                 });
-    EXPECT_THAT(target.read(ColorSpace::linear).as<float>(), ElementsAre(0.5F, 2, 3, 4));
+    EXPECT_THAT(samples_of<float>(target.read(ColorSpace::linear)), ElementsAre(0.5F, 2, 3, 4));
 }
 
 }  // namespace

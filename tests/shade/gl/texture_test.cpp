@@ -18,10 +18,12 @@
 #include "relief/shade/error.h"
 #include "relief/shade/image_compare.h"
 #include "support/gl_environment.h"
+#include "support/samples.h"
 
 namespace relief::gl {
 namespace {
 
+using test::samples_of;
 using ::testing::ElementsAre;
 using ::testing::FloatNear;
 using ::testing::HasSubstr;
@@ -241,7 +243,7 @@ float look_up_at(const Api& api, const Texture& texture, const Sampler& sampler,
                 });
     api->BindSampler(0, 0);
     api->BindTexture(GL_TEXTURE_2D, 0);
-    return target.read(ColorSpace::linear).as<float>()[0];
+    return samples_of<float>(target.read(ColorSpace::linear))[0];
 }
 
 TEST_P(Textures, OneImageIsLookedUpThroughDifferentSamplers) {
@@ -279,7 +281,7 @@ TEST_P(Textures, BufferTexturesAreReadByIndex) {
                 "uniform samplerBuffer values;\nout vec4 color;\n"
                 "void main() { color = texelFetch(values, 1) + float(textureSize(values)); }\n",
                 [](const LinkedProgram& program) { program.set("values", 0); });
-    EXPECT_THAT(target.read(ColorSpace::linear).as<float>(), ElementsAre(7, 8, 9, 10));
+    EXPECT_THAT(samples_of<float>(target.read(ColorSpace::linear)), ElementsAre(7, 8, 9, 10));
     const std::size_t too_many = static_cast<std::size_t>(api().limits().buffer_texels) + 1;
     EXPECT_THROW(make_buffer_texture(api(), buffer, GL_RGBA32F, too_many, "values"), GpuError);
 }
