@@ -23,8 +23,8 @@ MtlMaterial translated(const GltfMaterial& material, const GltfView& view) {
     result.diffuse = glm::vec3(material.base_color);
     result.opacity = material.base_color.a;
     result.emission = material.emission;
-    const float roughness = std::max(material.roughness, 0.01F);
-    result.shininess = std::max(2.0F / (roughness * roughness) - 2.0F, 0.0F);
+    const float alpha = std::max(material.roughness * material.roughness, 1e-3F);
+    result.shininess = std::max(2.0F / (alpha * alpha) - 2.0F, 0.0F);
     const auto path = [&](const std::optional<GltfTexture>& texture) {
         std::optional<std::filesystem::path> file;
         if (texture) {

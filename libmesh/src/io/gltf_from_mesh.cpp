@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // A mesh and its MTL materials as a glTF document.
 //
-// Object space becomes the space of the one node. Phong's exponent becomes roughness by
-// r = sqrt(2 / (Ns + 2)), which gives microfacet and Blinn-Phong lobes the same width for
-// alpha = r^2 [Karis 2013]. A missing image is a FileError. Tests:
-// tests/mesh/io/gltf_from_mesh_test.cpp.
+// Object space becomes the space of the one node. Phong's exponent becomes GGX's alpha by
+// alpha^2 = 2 / (Ns + 2) [Karis 2013], and alpha is glTF's roughness squared; libshade's
+// phong_from_metallic_roughness is the inverse. A missing image is a FileError.
+// Tests: tests/mesh/io/gltf_from_mesh_test.cpp.
 #include "io/gltf_from_mesh.h"
 
 #include <fmt/format.h>
@@ -175,10 +175,11 @@ void DocumentMaker::add_material(const MtlMaterial& material) {
     const auto clamped = [](float value) { return std::clamp(value, 0.0F, 1.0F); };
     const glm::vec3 color = glm::clamp(material.diffuse, 0.0F, 1.0F);
     const float opacity = clamped(material.opacity);
-    Json pbr = {{"baseColorFactor", {color.r, color.g, color.b, opacity}},
-                {"metallicFactor", 0.0F},
-                {"roughnessFactor",
-                 clamped(std::sqrt(2.0F / (std::max(material.shininess, 0.0F) + 2.0F)))}};
+    Json pbr = {
+        {"baseColorFactor", {color.r, color.g, color.b, opacity}},
+        {"metallicFactor", 0.0F},
+        {"roughnessFactor",
+         clamped(std::sqrt(std::sqrt(2.0F / (std::max(material.shininess, 0.0F) + 2.0F))))}};
     if (material.diffuse_map) pbr["baseColorTexture"] = texture_info(*material.diffuse_map);
     Json json = {{"name", material.name}, {"pbrMetallicRoughness", pbr}};
     if (opacity < 1.0F) json["alphaMode"] = "BLEND";

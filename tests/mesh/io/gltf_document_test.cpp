@@ -9,6 +9,7 @@
 
 #include <cstring>
 #include <fstream>
+#include <random>
 #include <set>
 
 #include "gltf_semantics.h"
@@ -222,6 +223,56 @@ TEST_F(GltfDocumentTest, EveryTruncationOfAFileIsRefused) {
         std::filesystem::resize_file(folder_ / "a.glb", length);
         EXPECT_NE(error_of_file(folder_ / "a.glb"), "no error") << length;
     }
+}
+
+TEST_F(GltfDocumentTest, FilesWithWrongBytesAreRefusedOrCanBeWorkedWith) {
+    // Sparse accessors, a strip and an image make more of the format reachable.
+    json root = triangle_json();
+    root["accessors"][0]["sparse"] = {{"count", 2},
+                                      {"indices", {{"bufferView", 1}, {"componentType", 5123}}},
+                                      {"values", {{"bufferView", 0}}}};
+    root["meshes"][0]["primitives"][0]["mode"] = 5;
+    root["images"] = {{{"bufferView", 1}, {"mimeType", "image/png"}}};
+    root["nodes"][0]["children"] = {1};
+    root["nodes"].push_back(
+        {{"extensions", {{"EXT_mesh_gpu_instancing", {{"attributes", {{"TRANSLATION", 0}}}}}}}});
+    root["nodes"][1]["mesh"] = 0;
+    write_gltf_file(folder_ / "a.glb", root, triangle_bytes());
+    std::ifstream stream(folder_ / "a.glb", std::ios::binary);
+    const std::string whole((std::istreambuf_iterator<char>(stream)), {});
+    std::mt19937 random(3);
+    int kept = 0;
+    for (int i = 0; i < 2000; ++i) {
+        std::string bytes = whole;
+        for (unsigned k = 0; k <= random() % 3; ++k) {
+            char& byte = bytes[random() % bytes.size()];
+            // Digits for digits, so that most of them stay JSON.
+            byte = byte >= '0' && byte <= '9'
+                       ? static_cast<char>('0' + random() % 10)
+                       : static_cast<char>(random() % 3 == 0 ? random() : byte);
+        }
+        std::ofstream(folder_ / "b.glb", std::ios::binary) << bytes;
+        try {
+            GltfDocument document = read(folder_ / "b.glb");
+            for (const GltfPrimitiveId id : document.triangle_primitives()) {
+                FramedMesh framed;
+                framed.mesh = document.mesh(id);
+                ASSERT_TRUE(is_valid(framed.mesh));
+                framed.mesh.normals.assign(framed.mesh.positions.size(), glm::vec3(0, 0, 1));
+                for (std::uint32_t v = 0; v < framed.mesh.positions.size(); ++v) {
+                    framed.source_vertex.push_back(v);
+                }
+                document.set_frames(id, framed);
+            }
+            static_cast<void>(flattened(document));
+            document.write(folder_ / "c.glb");
+            read(folder_ / "c.glb");
+            ++kept;
+        } catch (const FileError&) {
+        } catch (const InvalidInput&) {
+        }
+    }
+    EXPECT_GT(kept, 250);
 }
 
 /// A place in the JSON, a wrong value, and what the error says about it.

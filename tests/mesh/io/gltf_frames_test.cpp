@@ -173,7 +173,7 @@ TEST_F(GltfFrames, ASplitCarriesEveryAttributeInItsOwnType) {
     check(primitive["targets"][0]["POSITION"], 5126, false,
           {floats(0, 0, 1), floats(0, 0, 2), floats(0, 0, 3), floats(0, 0, 4)});
     const json& positions =
-        written.root["accessors"][primitive["attributes"]["POSITION"].get<int>()];
+        written.root["accessors"][primitive["attributes"]["POSITION"].get<std::size_t>()];
     EXPECT_EQ(positions["name"], "corners");
     EXPECT_EQ(positions["max"], json({1, 1, 0}));
     // Everything else was replaced and is gone: seven accessors now are POSITION, NORMAL, TANGENT,
@@ -313,7 +313,8 @@ TEST_F(GltfFrames, APrimitiveThatUsesAPartOfSharedVerticesTakesOnlyThose) {
     document.write(out_);
     const GltfContents written = contents(out_);
     const json& second = written.root["meshes"][0]["primitives"][1];
-    const json& positions = written.root["accessors"][second["attributes"]["POSITION"].get<int>()];
+    const json& positions =
+        written.root["accessors"][second["attributes"]["POSITION"].get<std::size_t>()];
     EXPECT_EQ(positions["count"], 3);
     EXPECT_EQ(positions["min"], json({5, 5, 5}));
     EXPECT_EQ(written.root["accessors"].size(), 6U);
@@ -334,6 +335,26 @@ TEST_F(GltfFrames, NothingIsLeftOutWhereAnUnknownExtensionMayReferToIt) {
     for (std::size_t i = 0; i < before.root["accessors"].size(); ++i) {
         EXPECT_EQ(raw_elements(after, i), raw_elements(before, i));
     }
+}
+
+TEST_F(GltfFrames, ACompressedCopyGoesWithWhatItWasACopyOf) {
+    make_quad();
+    root_["bufferViews"].push_back(buffer_.view<std::uint8_t>(std::vector<std::uint8_t>(400, 7)));
+    root_["extensionsUsed"] = {"KHR_draco_mesh_compression"};
+    root_["meshes"][0]["primitives"][0]["extensions"]["KHR_draco_mesh_compression"] = {
+        {"bufferView", 7}, {"attributes", {{"POSITION", 0}}}};
+    // Another view between, so that the one behind has to move.
+    root_["bufferViews"].push_back(buffer_.view<std::uint8_t>({1, 2, 3, 4}));
+    root_["images"] = {{{"bufferView", 8}, {"mimeType", "image/png"}}};
+    finish();
+    GltfDocument document = read(in_);
+    document.set_frames({0, 0}, with_normals(document.mesh({0, 0}), {0, 1, 0}));
+    document.write(out_);
+    const GltfContents after = contents(out_);
+    EXPECT_FALSE(after.root["meshes"][0]["primitives"][0].contains("extensions"));
+    EXPECT_FALSE(after.root.contains("extensionsUsed"));
+    EXPECT_LT(after.buffers[0].size, 400U);
+    EXPECT_EQ(test::meaning_of(out_)["images"], test::meaning_of(in_)["images"]);
 }
 
 TEST_F(GltfFrames, IndicesTakeTheSmallestTypeThatLeavesTheRestartValueFree) {

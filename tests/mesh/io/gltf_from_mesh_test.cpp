@@ -83,7 +83,7 @@ TEST_F(GltfFromMesh, PhongMaterialsAreTranslated) {
     material.name = "glow";
     material.diffuse = {0.5F, 0.25F, 2.0F};
     material.opacity = 0.75F;
-    material.shininess = 30.0F;
+    material.shininess = 510.0F;
     material.emission = {0, 4, 2};
     file.materials = {material};
     file.mesh.material_ranges = {{0, 12, 0U}};
@@ -91,12 +91,12 @@ TEST_F(GltfFromMesh, PhongMaterialsAreTranslated) {
     EXPECT_EQ(result.name, "glow");
     EXPECT_EQ(result.base_color, glm::vec4(0.5F, 0.25F, 1.0F, 0.75F));  // glTF ends at 1.
     EXPECT_EQ(result.metallic, 0.0F);
-    EXPECT_FLOAT_EQ(result.roughness, 0.25F);  // sqrt(2 / 32)
+    EXPECT_FLOAT_EQ(result.roughness, 0.25F);  // (2 / 512)^(1/4)
     EXPECT_EQ(result.emission, glm::vec3(0, 4, 2));
     EXPECT_EQ(result.alpha_mode, GltfMaterial::AlphaMode::blend);
     // And back: what OBJ can hold is the same.
     const MtlMaterial back = flattened(written(file)).materials.at(0);
-    EXPECT_FLOAT_EQ(back.shininess, 30.0F);
+    EXPECT_FLOAT_EQ(back.shininess, 510.0F);
     EXPECT_EQ(back.opacity, 0.75F);
     EXPECT_EQ(back.emission, material.emission);
 }

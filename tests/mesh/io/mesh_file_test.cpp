@@ -6,6 +6,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <fstream>
+#include <random>
 #include <set>
 
 #include "relief/mesh/error.h"
@@ -92,6 +94,44 @@ TEST(MeshFile, EveryTruncationOfABinaryFileIsRefused) {
     for (auto length = std::filesystem::file_size(folder / "a.ply"); length-- > 0;) {
         std::filesystem::resize_file(folder / "a.ply", length);
         EXPECT_FALSE(is_read(folder / "a.ply")) << length;
+    }
+}
+
+TEST(MeshFile, FilesWithWrongBytesAreReadOrRefused) {
+    const test::TemporaryDirectory folder;
+    MeshFile contents{test::cube(), {}};
+    contents.mesh.colors.assign(contents.mesh.positions.size(), glm::vec4(0.5F));
+    contents.materials.resize(1);
+    contents.mesh.material_ranges = {{0, 12, 0U}};
+    write_mesh(folder / "a.ply", contents);
+    write_mesh(folder / "a.obj", contents);
+    std::ofstream(folder / "a.off") << "NOFF\n4 2 0\n0 0 0 0 0 1\n1 0 0 0 0 1\n1 1 0 0 0 1\n"
+                                       "0 1 0 0 0 1\n4 0 1 2 3\n3 0 1 2\n";
+    std::ofstream(folder / "a.stl") << "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\n"
+                                       "vertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid\n";
+    std::ofstream(folder / "b.ply")
+        << "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\n"
+           "property float y\nproperty float z\nelement face 1\n"
+           "property list uchar int vertex_indices\nproperty list uchar "
+           "float texcoord\nend_header\n0 0 0\n1 0 0\n0 1 0\n"
+           "3 0 1 2 6 0 0 1 0 0 1\n";
+    std::mt19937 random(5);
+    for (const char* name : {"a.ply", "a.obj", "a.off", "a.stl", "b.ply"}) {
+        std::ifstream stream(folder / name, std::ios::binary);
+        const std::string whole((std::istreambuf_iterator<char>(stream)), {});
+        const auto file = folder / (std::string("wrong") + &name[1]);
+        int read = 0;
+        for (int i = 0; i < 2000; ++i) {
+            std::string bytes = whole;
+            for (unsigned k = 0; k <= random() % 3; ++k) {
+                char& byte = bytes[random() % bytes.size()];
+                byte = byte >= '0' && byte <= '9' ? static_cast<char>('0' + random() % 10)
+                                                  : static_cast<char>(random());
+            }
+            std::ofstream(file, std::ios::binary) << bytes;
+            if (is_read(file)) ++read;
+        }
+        EXPECT_GT(read, 50) << name;
     }
 }
 

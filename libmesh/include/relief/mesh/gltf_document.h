@@ -122,7 +122,7 @@ class GltfDocument {
 
     /// A new document with one mesh, a primitive for each material range over its own vertices, and
     /// materials translated from MTL: Kd and d to base colour (within [0,1]), roughness =
-    /// sqrt(2 / (Ns + 2)), metallic 0, Ke to emission (KHR_materials_emissive_strength above 1),
+    /// (2 / (Ns + 2))^(1/4), metallic 0, Ke to emission (KHR_materials_emissive_strength above 1),
     /// norm to the normal map. Images are embedded as they are; bump maps (heights) have no place
     /// in glTF and are left out. Normals of other than unit length, which OBJ allows, are scaled.
     /// \throws FileError if an image is missing or neither PNG nor JPEG; InvalidInput if the mesh
