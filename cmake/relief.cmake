@@ -38,6 +38,7 @@ function(relief_add_tests name)
     gtest_discover_tests(
         ${name}
         TEST_PREFIX ${name}/
+        NO_PRETTY_VALUES
         DISCOVERY_MODE PRE_TEST
         PROPERTIES ${RELIEF_TEST_PROPERTIES})
 endfunction()

@@ -11,6 +11,7 @@
 #include "relief/mesh/normal_map.h"
 #include "support/angle.h"
 #include "support/shared_data.h"
+#include "tools/refusal.h"
 #include "tools/workplace.h"
 
 namespace relief::tools {
@@ -18,7 +19,9 @@ namespace {
 
 using nlohmann::json;
 using test::degrees_between;
+using test::expect_refusal;
 using test::ProgramResult;
+using test::Refused;
 using test::Workplace;
 using testing::HasSubstr;
 
@@ -172,27 +175,13 @@ TEST(BumpCommand, ConvertsARealFloatMap) {
     EXPECT_THAT(result.out, HasSubstr("coded     32 bit float, green up"));
 }
 
-struct Refused {
-    const char* line;
-    int exit_code;
-    const char* error;
-};
-
 class BakeRefusal : public testing::TestWithParam<Refused> {};
 
 TEST_P(BakeRefusal, SaysWhyAndLeavesNothingBehind) {
     const Workplace workplace;
     write_image(workplace / "flat.png", make_image(4, 3, 1, 8, ColorSpace::data));
     workplace.write("noise.png", "this is no image");
-    workplace.write("out/old.png", "old");
-    const ProgramResult result = workplace.run(GetParam().line);
-    EXPECT_EQ(result.exit_code, GetParam().exit_code);
-    EXPECT_THAT(result.first_error_line(),
-                HasSubstr(std::string("relief-bake: error: ") + GetParam().error));
-    EXPECT_EQ(result.error, result.first_error_line() + "\n");
-    EXPECT_EQ(result.out, "");
-    EXPECT_EQ(workplace.outputs(), "old.png");
-    EXPECT_EQ(workplace.read("out/old.png"), "old");
+    expect_refusal(workplace, "relief-bake", GetParam(), "old.png");
 }
 
 INSTANTIATE_TEST_SUITE_P(

@@ -8,6 +8,7 @@
 #include "relief/mesh/gltf_document.h"
 #include "support/angle.h"
 #include "support/shared_data.h"
+#include "tools/refusal.h"
 #include "tools/workplace.h"
 
 namespace relief::tools {
@@ -15,7 +16,9 @@ namespace {
 
 using nlohmann::json;
 using test::degrees_between;
+using test::expect_refusal;
 using test::ProgramResult;
+using test::Refused;
 using test::Workplace;
 using testing::ElementsAre;
 using testing::HasSubstr;
@@ -108,6 +111,16 @@ TEST(ProcessCommand, GltfWithoutNormalsGetsFlatOnes) {
     ASSERT_EQ(result.exit_code, 0) << result.error;
     EXPECT_THAT(result.out, HasSubstr("normals   computed, one per triangle\n"
                                       "tangents  none\n"));
+}
+
+TEST(ProcessCommand, GltfOutputNamesABufferThatStandsBesideIt) {
+    const Workplace workplace;
+    workplace.write_square("square.obj");
+    const ProgramResult result = workplace.run("relief-mesh process square.obj out/square.gltf");
+    ASSERT_EQ(result.exit_code, 0) << result.error;
+    EXPECT_THAT(result.out, HasSubstr(", its buffer and images beside it\n"));
+    EXPECT_EQ(workplace.outputs(), "square.bin square.gltf");
+    EXPECT_EQ(read_document(workplace / "out/square.gltf").mesh({0, 0}).normals.size(), 4U);
 }
 
 TEST(ProcessCommand, APrimitiveThatCannotHaveTangentsIsFoundAndTheOthersGetThem) {
@@ -237,12 +250,6 @@ TEST(InfoCommand, SaysWhatARealSceneHolds) {
                 ElementsAre("base color", "metallic-roughness", "normal", "emission"));
 }
 
-struct Refused {
-    const char* line;
-    int exit_code;
-    const char* error;  ///< What the first line of stderr holds, after "relief-mesh: error: ".
-};
-
 class MeshRefusal : public testing::TestWithParam<Refused> {};
 
 TEST_P(MeshRefusal, SaysWhyAndLeavesNothingBehind) {
@@ -252,16 +259,8 @@ TEST_P(MeshRefusal, SaysWhyAndLeavesNothingBehind) {
     workplace.write("empty.obj", "");
     workplace.write("noise.glb", "this is no glTF");
     workplace.write("index.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n");
-    workplace.write("out/old.glb", "old");
     write_two_primitives(workplace, "pair");
-    const ProgramResult result = workplace.run(GetParam().line);
-    EXPECT_EQ(result.exit_code, GetParam().exit_code);
-    EXPECT_THAT(result.first_error_line(),
-                HasSubstr(std::string("relief-mesh: error: ") + GetParam().error));
-    EXPECT_EQ(result.error, result.first_error_line() + "\n");
-    EXPECT_EQ(result.out, "");
-    EXPECT_EQ(workplace.outputs(), "old.glb");
-    EXPECT_EQ(workplace.read("out/old.glb"), "old");
+    expect_refusal(workplace, "relief-mesh", GetParam(), "old.glb");
 }
 
 INSTANTIATE_TEST_SUITE_P(

@@ -9,13 +9,16 @@
 
 #include "relief/mesh/image_file.h"
 #include "support/shared_data.h"
+#include "tools/refusal.h"
 #include "tools/workplace.h"
 
 namespace relief::tools {
 namespace {
 
 using nlohmann::json;
+using test::expect_refusal;
 using test::ProgramResult;
+using test::Refused;
 using test::Workplace;
 using testing::HasSubstr;
 
@@ -301,12 +304,6 @@ TEST(ViewCommand, DrawsRealModelsWithTheirOwnMaps) {
     EXPECT_GE(json::parse(result.out)["picture"]["textures"], 2) << "colour and normals";
 }
 
-struct Refused {
-    const char* options;
-    int exit_code;
-    const char* error;
-};
-
 class ViewRefusal : public testing::TestWithParam<Refused> {};
 
 TEST_P(ViewRefusal, SaysWhyAndLeavesNothingBehind) {
@@ -317,15 +314,9 @@ TEST_P(ViewRefusal, SaysWhyAndLeavesNothingBehind) {
     write_sky(workplace);
     std::filesystem::create_directory(workplace / "empty");
     workplace.write("noise.png", "this is no image");
-    workplace.write("out/old.png", "old");
-    const ProgramResult result = workplace.run(std::string("relief-view ") + GetParam().options);
-    EXPECT_EQ(result.exit_code, GetParam().exit_code);
-    EXPECT_THAT(result.first_error_line(),
-                HasSubstr(std::string("relief-view: error: ") + GetParam().error));
-    EXPECT_EQ(result.error, result.first_error_line() + "\n");
-    EXPECT_EQ(result.out, "");
-    EXPECT_EQ(workplace.outputs(), "old.png");
-    EXPECT_EQ(workplace.read("out/old.png"), "old");
+    const std::string line = std::string("relief-view ") + GetParam().line;
+    expect_refusal(workplace, "relief-view", {line.c_str(), GetParam().exit_code, GetParam().error},
+                   "old.png");
 }
 
 INSTANTIATE_TEST_SUITE_P(

@@ -57,8 +57,8 @@ void add_options(CLI::App& app, ProcessOptions& options) {
                "has none gets flat ones from glTF, as its rules ask, and angle ones otherwise.")
         ->group("Frames");
     add_choice(app, "--tangents", options.request.tangents, tangent_choices(),
-               "Tangents for normal maps: the file's own (keep; dropped where normals are computed "
-               "anew), none, or computed as MikkTSpace does, splitting vertices where needed. "
+               "Tangents for normal maps: the file's own (keep; computed anew where normals are), "
+               "none, or computed as MikkTSpace does, splitting vertices where needed. "
                "Default: keep.")
         ->group("Frames");
     add_report_options(app, options.report);

@@ -120,7 +120,9 @@ void print_summary(const ProcessRequest& request, const Processed& done, const S
                                 extension_of(request.output)));
     }
     print_entry("time", durations(stages.finished()));
-    print_entry("wrote", file_and_size(request.output));
+    const bool has_companions = writable_format(request.output) == ModelFormat::gltf;
+    print_entry("wrote", file_and_size(request.output) +
+                             (has_companions ? ", its buffer and images beside it" : ""));
 }
 
 nlohmann::ordered_json process_json(const ProcessRequest& request, const Processed& done,

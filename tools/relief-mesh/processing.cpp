@@ -45,8 +45,9 @@ FramedMesh framed_part(Mesh mesh, std::size_t index, FrameOptions options, Proce
     part.vertices_written = framed.mesh.positions.size();
     part.normals =
         fate(had_normals, !framed.mesh.normals.empty(), part.normal_mode != NormalMode::keep);
-    part.tangents = fate(had_tangents, !framed.mesh.tangents.empty(),
-                         options.tangents == TangentMode::mikktspace);
+    part.tangents =
+        fate(had_tangents, !framed.mesh.tangents.empty(),
+             options.tangents == TangentMode::mikktspace || part.normal_mode != NormalMode::keep);
     return framed;
 }
 

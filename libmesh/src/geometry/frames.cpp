@@ -109,6 +109,18 @@ void make_tangents(FramedMesh& framed, Report& report) {
     });
 }
 
+/// What keeping tangents comes to: they belong to the normals they were made for, so with new
+/// normals a mesh that has tangents gets new ones, if its texture coordinates allow.
+TangentMode resolved_tangents(const Mesh& mesh, TangentMode tangents, NormalMode normals,
+                              Report& report) {
+    const bool outdated = tangents == TangentMode::keep && normals != NormalMode::keep;
+    if (!outdated || mesh.tangents.empty()) return tangents;
+    if (!mesh.texcoords.empty()) return TangentMode::mikktspace;
+    report.add("tangents of other normals", "mesh", 0,
+               "are removed: without texture coordinates there can be no new ones");
+    return TangentMode::none;
+}
+
 }  // namespace
 
 FramedMesh with_frames(Mesh mesh, const FrameOptions& options, Report& report) {
@@ -121,11 +133,10 @@ FramedMesh with_frames(Mesh mesh, const FrameOptions& options, Report& report) {
     framed.source_vertex.resize(framed.mesh.positions.size());
     std::iota(framed.source_vertex.begin(), framed.source_vertex.end(), 0U);
 
-    // Tangents belong to the normals they were made for.
-    const bool keeps_tangents = options.tangents == TangentMode::keep && mode == NormalMode::keep;
-    if (!keeps_tangents) framed.mesh.tangents.clear();
+    const TangentMode tangents = resolved_tangents(framed.mesh, options.tangents, mode, report);
+    if (tangents != TangentMode::keep) framed.mesh.tangents.clear();
     make_normals(framed, mode, report);
-    if (options.tangents == TangentMode::mikktspace) make_tangents(framed, report);
+    if (tangents == TangentMode::mikktspace) make_tangents(framed, report);
     return framed;
 }
 

@@ -161,8 +161,11 @@ Material material_from(const GltfMaterial& material, const TextureMeans& means, 
 /// Meshes and their places; a primitive that stands in several places is read once.
 void add_instances(const GltfDocument& document, const GltfView& view, Scene& scene,
                    Report& report) {
+    // Without normals, glTF asks for flat ones and says that tangents given do not count; new ones
+    // are left to the effect plan.
     FrameOptions options;
     options.if_missing = NormalMode::flat;
+    options.tangents = TangentMode::none;
     std::map<std::pair<std::size_t, std::size_t>, std::size_t> mesh_of;
     for (const auto& placed : view.primitives) {
         const auto key = std::pair(placed.what.mesh, placed.what.primitive);

@@ -105,14 +105,25 @@ TEST(Frames, FlatNormalsSplitOnlyWhereTrianglesBend) {
     EXPECT_EQ(report.count("isolated vertex"), 1U);
 }
 
-TEST(Frames, ComputedNormalsDropTheTangentsMadeForOthers) {
+TEST(Frames, ComputedNormalsReplaceTheTangentsMadeForOthers) {
     Mesh mesh = test::grid(1);
-    mesh.tangents.assign(4, {1, 0, 0, 1});
-    EXPECT_TRUE(framed(mesh, {NormalMode::area}).mesh.tangents.empty());
+    mesh.tangents.assign(4, {0, 1, 0, -1});  // Not what the texture says.
+    const std::vector<glm::vec4> along_u(4, {1, 0, 0, 1});
+    EXPECT_EQ(framed(mesh, {NormalMode::area}).mesh.tangents, along_u);
+    EXPECT_EQ(framed(mesh, {}).mesh.tangents, mesh.tangents) << "kept with the normals";
     EXPECT_TRUE(framed(mesh, {NormalMode::keep, NormalMode::angle, TangentMode::none})
                     .mesh.tangents.empty());
     mesh.normals.clear();
-    EXPECT_TRUE(framed(mesh, {}).mesh.tangents.empty()) << "tangents without normals";
+    EXPECT_EQ(framed(mesh, {}).mesh.tangents, along_u) << "tangents without normals";
+}
+
+TEST(Frames, TangentsOfOtherNormalsWithoutTextureCoordinatesAreRemovedAndCounted) {
+    Mesh mesh = test::grid(1);
+    mesh.tangents.assign(4, {1, 0, 0, 1});
+    mesh.texcoords.clear();
+    Report report;
+    EXPECT_TRUE(with_frames(mesh, {NormalMode::area}, report).mesh.tangents.empty());
+    EXPECT_EQ(report.count("tangents of other normals"), 1U);
 }
 
 TEST(Frames, TangentsReplaceThoseOfTheInput) {

@@ -247,9 +247,11 @@ TEST_F(GltfDocumentTest, FilesWithWrongBytesAreRefusedOrCanBeWorkedWith) {
         for (unsigned k = 0; k <= random() % 3; ++k) {
             char& byte = bytes[random() % bytes.size()];
             // Digits for digits, so that most of them stay JSON.
-            byte = byte >= '0' && byte <= '9'
-                       ? static_cast<char>('0' + random() % 10)
-                       : static_cast<char>(random() % 3 == 0 ? random() : byte);
+            if (byte >= '0' && byte <= '9') {
+                byte = static_cast<char>('0' + random() % 10);
+            } else if (random() % 3 == 0) {
+                byte = static_cast<char>(random());
+            }
         }
         std::ofstream(folder_ / "b.glb", std::ios::binary) << bytes;
         try {

@@ -21,7 +21,7 @@ enum class NormalMode {
 };
 
 enum class TangentMode {
-    keep,        ///< The mesh's own, or none; dropped where normals are computed anew.
+    keep,        ///< The mesh's own, or none; computed anew (mikktspace) where normals are.
     none,        ///< Removed.
     mikktspace,  ///< Computed, see tangents.h.
 };
@@ -45,10 +45,10 @@ struct FramedMesh {
 /// \return every attribute carried along; results as normals.h and tangents.h promise. Kept normals
 ///         are passed through bit for bit; those not finite, or further from unit length than
 ///         8-bit storage leaves them (0.007), are counted in the report. Vertices without a
-///         triangle keep their place, with frames by the fallbacks named there.
-/// \throws InvalidInput if the mesh is not valid (mesh.h), if tangents are asked for without
-/// texture
-///         coordinates, or if `if_missing` is keep
+///         triangle keep their place, with frames by the fallbacks named there. Tangents whose
+///         normals change are removed, and counted, where there are no texture coordinates.
+/// \throws InvalidInput if the mesh is not valid (mesh.h), if `tangents` is mikktspace and there
+///         are no texture coordinates, or if `if_missing` is keep
 FramedMesh with_frames(Mesh mesh, const FrameOptions& options, Report& report);
 
 }  // namespace relief
