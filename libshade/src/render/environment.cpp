@@ -17,8 +17,15 @@ namespace relief {
 namespace {
 
 std::span<const ImageSource> sources_of(const Environment& environment) {
-    if (const auto* cube = std::get_if<CubeFaces>(&environment.source)) return cube->faces;
-    return {&std::get<Equirectangular>(environment.source).image, 1};
+    return std::visit(
+        [](const auto& source) -> std::span<const ImageSource> {
+            if constexpr (std::is_same_v<std::decay_t<decltype(source)>, CubeFaces>) {
+                return source.faces;
+            } else {
+                return {&source.image, 1};
+            }
+        },
+        environment.source);
 }
 
 gl::LinkedProgram skybox_program(const gl::Api& api, OutputCoding output) {

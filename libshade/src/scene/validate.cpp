@@ -67,6 +67,59 @@ void check_index(const std::string& thing, const char* names, std::size_t index,
     }
 }
 
+void validate_textures(const std::string& thing, const Material& material,
+                       std::size_t image_count) {
+    const auto check = [&](const char* name, const std::optional<Texture>& texture) {
+        if (texture) check_index(thing + name, "image", texture->image, image_count);
+    };
+    check("diffuse texture", material.diffuse_texture);
+    check("specular texture", material.specular_texture);
+    check("emission texture", material.emission_texture);
+    check("occlusion texture", material.occlusion_texture);
+    check("opacity texture", material.opacity_texture);
+    if (material.normal_map) {
+        check("normal map", material.normal_map->texture);
+        check_range(thing + "normal map scale", material.normal_map->scale, -1e6F, 1e6F);
+    }
+    if (material.bump_map) {
+        check("bump map", material.bump_map->texture);
+        check_range(thing + "bump map strength", material.bump_map->strength, -1e6F, 1e6F);
+        if (material.normal_map) {
+            throw InvalidInput(thing + "has a normal map and a bump map, but one normal");
+        }
+    }
+    if (material.metallic_roughness) {
+        check("metallic-roughness texture", material.metallic_roughness->texture);
+    }
+}
+
+void validate_reflection(const std::string& thing, const Material& material) {
+    check_color(thing + "reflectivity", material.reflectivity, 1.0F);
+    check_color(thing + "grazing reflectivity", material.grazing_reflectivity, 1.0F);
+    check_range(thing + "refractive index", material.refractive_index, 1.0F, 1e3F);
+    check_color(thing + "conductor index", material.conductor_index, 1e3F);
+    check_color(thing + "conductor absorption", material.conductor_absorption, 1e3F);
+    check_range(thing + "reflection roughness", material.reflection_roughness, 0.0F, 1.0F);
+    check_range(thing + "transmission", material.transmission, 0.0F, 1.0F);
+}
+
+/// What only Phong's model has is refused beside metallic-roughness.
+void validate_metallic_roughness(const std::string& thing, const Material& material) {
+    const MetallicRoughness& model = *material.metallic_roughness;
+    check_color(thing + "base colour", model.base_color, 1.0F);
+    check_range(thing + "metallic", model.metallic, 0.0F, 1.0F);
+    check_range(thing + "roughness", model.roughness, 0.0F, 1.0F);
+    if (material.interpolation == Interpolation::gouraud) {
+        throw InvalidInput(thing +
+                           "is metallic-roughness, which varies by pixel, and asks for Gouraud "
+                           "shading, which does not");
+    }
+    if (material.transmission > 0.0F) {
+        throw InvalidInput(thing +
+                           "is metallic-roughness and transmits, which only Phong's model does");
+    }
+}
+
 void validate_material(const Material& material, std::size_t index, std::size_t image_count) {
     const std::string thing = fmt::format("material {} '{}': ", index, material.name);
     check_color(thing + "ambient", material.ambient, max_reflectance);
@@ -74,22 +127,20 @@ void validate_material(const Material& material, std::size_t index, std::size_t 
     check_color(thing + "specular", material.specular, max_reflectance);
     check_color(thing + "emission", material.emission, max_reflectance);
     check_range(thing + "shininess", material.shininess, 0.0F, 1e6F);
-    check_color(thing + "reflectivity", material.reflectivity, 1.0F);
-    check_color(thing + "grazing reflectivity", material.grazing_reflectivity, 1.0F);
-    const auto check_texture = [&](const char* name, const Texture& texture) {
-        check_index(thing + name, "image", texture.image, image_count);
-    };
-    if (material.diffuse_texture) check_texture("diffuse texture", *material.diffuse_texture);
-    if (material.emission_texture) check_texture("emission texture", *material.emission_texture);
-    if (material.normal_map) {
-        check_texture("normal map", material.normal_map->texture);
-        check_range(thing + "normal map scale", material.normal_map->scale, -1e6F, 1e6F);
-    }
+    check_range(thing + "occlusion strength", material.occlusion_strength, 0.0F, 1.0F);
+    check_range(thing + "opacity", material.opacity, 0.0F, 1.0F);
+    check_range(thing + "alpha cutoff", material.alpha_cutoff, 0.0F, max_reflectance);
+    validate_reflection(thing, material);
+    validate_textures(thing, material, image_count);
+    if (material.metallic_roughness) validate_metallic_roughness(thing, material);
 }
 
 void validate_point(const std::string& thing, const PointLight& light) {
     check_finite(thing + " position", light.position_world);
     check_color(thing + " intensity", light.intensity, max_light);
+    if (light.highlight_intensity) {
+        check_color(thing + " highlight intensity", *light.highlight_intensity, max_light);
+    }
     if (light.range && !(*light.range > 0.0F && std::isfinite(*light.range))) {
         throw InvalidInput(
             fmt::format("{} range is {}, but must be positive and finite", thing, *light.range));
@@ -113,6 +164,9 @@ void validate_lights(const Scene& scene) {
         const std::string thing = fmt::format("directional light {}", i);
         check_direction(thing + " direction", scene.directional_lights[i].direction_world);
         check_color(thing + " irradiance", scene.directional_lights[i].irradiance, max_light);
+        if (const auto& highlights = scene.directional_lights[i].highlight_irradiance) {
+            check_color(thing + " highlight irradiance", *highlights, max_light);
+        }
     }
     for (std::size_t i = 0; i < scene.point_lights.size(); ++i) {
         validate_point(fmt::format("point light {}", i), scene.point_lights[i]);
@@ -173,6 +227,7 @@ void validate(const Scene& scene) {
     if (scene.camera) validate(*scene.camera);
     check_color("background", glm::vec3(scene.background), max_light);
     check_range("background alpha", scene.background.a, 0.0F, 1.0F);
+    check_range("exposure", scene.exposure, 0.0F, max_reflectance);
 }
 
 }  // namespace relief
