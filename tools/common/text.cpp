@@ -8,7 +8,7 @@
 #include <cstdio>
 #include <span>
 
-#include "io/file_replacement.h"
+#include "file_replacement.h"
 
 namespace relief::tools {
 namespace {

@@ -4,7 +4,7 @@
 ///
 /// Materials, animations, skins, morph targets, extensions, extras, names and images (their bytes,
 /// never re-encoded) come out of write() as they went into read().
-/// Tests: tests/mesh/io/gltf_document_test.cpp.
+/// Tests: tests/mesh/io/gltf/gltf_document_test.cpp.
 #pragma once
 
 #include <array>

@@ -5,7 +5,7 @@
 /// OpenImageIO stands behind a module that is loaded at the first call and not before, because
 /// loading it alone costs 0.2 s and 120 MB; a program that touches no image never pays that. The
 /// module is looked for in $RELIEF_MODULE_DIR, then in ../lib/relief beside the program.
-/// Tests: tests/mesh/io/image_file_test.cpp.
+/// Tests: tests/mesh/io/image/image_file_test.cpp.
 #pragma once
 
 #include <cstddef>

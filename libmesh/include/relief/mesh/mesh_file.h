@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// Mesh files without a scene: OBJ with MTL, PLY, STL, OFF. glTF has its own home: gltf_document.h.
-/// Tests: tests/mesh/io/mesh_file_test.cpp.
+/// Tests: tests/mesh/io/mesh/mesh_file_test.cpp.
 #pragma once
 
 #include <filesystem>

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+// Reading a whole file into memory; a missing file, a folder and a failing read are told apart.
+// Tests: tests/mesh/io/mesh/mesh_file_test.cpp.
+#include "file_bytes.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+
+#include "relief/mesh/error.h"
+
+namespace relief {
+
+std::string read_file(const std::filesystem::path& file) {
+    std::error_code error;
+    const std::filesystem::file_status status = std::filesystem::status(file, error);
+    if (!std::filesystem::exists(status)) throw FileError(file, "no such file");
+    if (!std::filesystem::is_regular_file(status)) throw FileError(file, "is not a file");
+    std::ifstream stream(file, std::ios::binary);
+    if (!stream) throw FileError(file, fmt::format("cannot be opened: {}", std::strerror(errno)));
+    std::string bytes(std::filesystem::file_size(file), '\0');
+    stream.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+    if (static_cast<std::size_t>(stream.gcount()) != bytes.size()) {
+        throw FileError(file, fmt::format("could be read only up to byte {} of {}", stream.gcount(),
+                                          bytes.size()));
+    }
+    return bytes;
+}
+
+std::string lower_extension(const std::filesystem::path& file) {
+    std::string extension = file.extension().string();
+    std::transform(extension.begin(), extension.end(), extension.begin(),
+                   [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
+    return extension;
+}
+
+}  // namespace relief

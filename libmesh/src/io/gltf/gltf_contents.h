@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// A glTF document in memory: its JSON as it was, and its bytes.
+///
+/// Why not tinygltf: version 2.7 gives back large integers in extras as other numbers, drops nulls,
+/// empty objects, unknown properties and minVersion, drops animation channels without a node, and
+/// writes null where it has dropped them all. It serves as an independent reader in the tests.
+/// Tests: tests/mesh/io/gltf/gltf_document_test.cpp.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <set>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "io/gltf/gltf_json.h"
+
+namespace relief {
+
+/// Bytes of a buffer; they may be the tail of a file that was read whole.
+struct GltfBuffer {
+    std::string storage;
+    std::size_t begin = 0;
+    std::size_t size = 0;
+
+    [[nodiscard]] std::string_view bytes() const {
+        return std::string_view(storage).substr(begin, size);
+    }
+};
+
+struct GltfContents {
+    Json root;                        ///< Checked by check_gltf.
+    std::filesystem::path folder;     ///< Where relative URIs begin; absolute.
+    std::vector<GltfBuffer> buffers;  ///< One per entry of "buffers".
+    /// Chunks of a GLB that are neither JSON nor the buffer: kept as they are.
+    std::vector<std::pair<std::uint32_t, std::string>> extra_chunks;
+
+    /// Accessors and buffer views that processing has replaced: left out when written, if nothing
+    /// else refers to them.
+    std::set<std::size_t> retired_accessors;
+    std::set<std::size_t> retired_views;
+    /// The buffer that holds what processing adds; past the end until there is something.
+    std::size_t added_buffer = static_cast<std::size_t>(-1);
+    /// How many primitives use an accessor as POSITION, as read: who shares vertices with others
+    /// must not change while primitives are processed one by one.
+    std::vector<std::uint32_t> position_uses;
+};
+
+/// Names of the extension that holds a compressed copy of a buffer view.
+inline constexpr std::array meshopt_extensions = {"EXT_meshopt_compression",
+                                                  "KHR_meshopt_compression"};
+
+/// Appends bytes, 4-aligned, as a new buffer view. \return its index
+std::size_t add_view(GltfContents& contents, std::string_view bytes);
+
+}  // namespace relief

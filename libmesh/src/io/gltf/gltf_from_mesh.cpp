@@ -1,0 +1,245 @@
+// SPDX-License-Identifier: Apache-2.0
+// A mesh and its MTL materials as a glTF document.
+//
+// Object space becomes the space of the one node. Phong's exponent becomes GGX's alpha by
+// alpha^2 = 2 / (Ns + 2) [Karis 2013], and alpha is glTF's roughness squared; libshade's
+// phong_from_metallic_roughness is the inverse. A missing image is a FileError.
+// Tests: tests/mesh/io/gltf/gltf_from_mesh_test.cpp.
+#include "io/gltf/gltf_from_mesh.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "file_bytes.h"
+#include "io/gltf/gltf_accessor.h"
+#include "io/gltf/gltf_writer.h"
+#include "relief/mesh/error.h"
+
+namespace relief {
+namespace {
+
+/// Puts together the document of one mesh.
+class DocumentMaker {
+  public:
+    explicit DocumentMaker(const MeshFile& file) : file_(file) {}
+    GltfContents make();
+
+  private:
+    template <typename Element>
+    std::size_t add_accessor(const std::vector<Element>& elements, const char* type,
+                             int component_type, int target);
+    void add_primitive(const MaterialRange& range);
+    void add_material(const MtlMaterial& material);
+    Json texture_info(const std::filesystem::path& image);
+
+    const MeshFile& file_;
+    GltfContents contents_;
+    std::map<std::filesystem::path, std::size_t> textures_;
+    bool uses_emissive_strength_ = false;
+};
+
+template <typename Element>
+std::size_t DocumentMaker::add_accessor(const std::vector<Element>& elements, const char* type,
+                                        int component_type, int target) {
+    const std::size_t view = add_view(contents_, {reinterpret_cast<const char*>(elements.data()),
+                                                  elements.size() * sizeof(Element)});
+    contents_.root["bufferViews"][view]["target"] = target;
+    Json& accessors = contents_.root["accessors"];
+    accessors.push_back({{"bufferView", view},
+                         {"componentType", component_type},
+                         {"count", elements.size() * sizeof(Element) /
+                                       (component_count(type) * component_size(component_type))},
+                         {"type", type}});
+    return accessors.size() - 1;
+}
+
+/// The vertices that a range uses, each once, in their order; all where it is the only range.
+std::vector<std::uint32_t> vertices_of(const Mesh& mesh, const MaterialRange& range) {
+    std::vector<bool> is_used(mesh.positions.size(), range.triangle_count == mesh.triangles.size());
+    for (std::uint32_t i = 0; i < range.triangle_count; ++i) {
+        const glm::uvec3& triangle = mesh.triangles[range.first_triangle + i];
+        for (int k = 0; k < 3; ++k)
+            is_used[triangle[k]] = true;
+    }
+    std::vector<std::uint32_t> vertices;
+    for (std::uint32_t i = 0; i < is_used.size(); ++i) {
+        if (is_used[i]) vertices.push_back(i);
+    }
+    return vertices;
+}
+
+template <typename Value>
+std::vector<Value> picked(const std::vector<Value>& values,
+                          const std::vector<std::uint32_t>& vertices) {
+    std::vector<Value> result;
+    result.reserve(vertices.size());
+    for (const std::uint32_t vertex : vertices)
+        result.push_back(values[vertex]);
+    return result;
+}
+
+/// min and max as glTF wants them of positions; JSON has no word for a coordinate without any
+/// finite value, so that becomes 0.
+void set_bounds(Json& accessor, const std::vector<glm::vec3>& positions) {
+    Json least = Json::array();
+    Json most = Json::array();
+    for (int k = 0; k < 3; ++k) {
+        float low = std::numeric_limits<float>::infinity();
+        float high = -low;
+        for (const glm::vec3& position : positions) {
+            if (!std::isfinite(position[k])) continue;
+            low = std::min(low, position[k]);
+            high = std::max(high, position[k]);
+        }
+        least.push_back(low <= high ? low : 0.0F);
+        most.push_back(low <= high ? high : 0.0F);
+    }
+    accessor["min"] = least;
+    accessor["max"] = most;
+}
+
+/// Normals as glTF wants them. OBJ allows any length, and some writers use that; those that are
+/// unit within what glTF tolerates keep their bits, and those without a direction stay as they are.
+std::vector<glm::vec3> unit_normals(std::vector<glm::vec3> normals) {
+    for (glm::vec3& normal : normals) {
+        const double length = glm::length(glm::dvec3(normal));
+        const bool has_direction = length > 0.0 && std::isfinite(length);
+        if (has_direction && std::abs(length - 1.0) > 5e-4) {
+            normal = glm::vec3(glm::dvec3(normal) / length);
+        }
+    }
+    return normals;
+}
+
+void DocumentMaker::add_primitive(const MaterialRange& range) {
+    const Mesh& mesh = file_.mesh;
+    const std::vector<std::uint32_t> vertices = vertices_of(mesh, range);
+    std::vector<std::uint32_t> place(mesh.positions.size(), 0);
+    for (std::uint32_t i = 0; i < vertices.size(); ++i)
+        place[vertices[i]] = i;
+    std::vector<std::uint32_t> indices;
+    for (std::uint32_t i = 0; i < range.triangle_count; ++i) {
+        for (int k = 0; k < 3; ++k) {
+            indices.push_back(place[mesh.triangles[range.first_triangle + i][k]]);
+        }
+    }
+    Json attributes;
+    const auto add = [&](const char* name, const auto& values, const char* type) {
+        if (values.empty()) return;
+        attributes[name] = add_accessor(picked(values, vertices), type, gltf_code::float32,
+                                        gltf_code::array_buffer);
+    };
+    add("POSITION", mesh.positions, "VEC3");
+    set_bounds(contents_.root["accessors"][attributes["POSITION"].get<std::size_t>()],
+               picked(mesh.positions, vertices));
+    add("NORMAL", unit_normals(mesh.normals), "VEC3");
+    if (!mesh.normals.empty()) add("TANGENT", mesh.tangents, "VEC4");
+    add("TEXCOORD_0", mesh.texcoords, "VEC2");
+    add("COLOR_0", mesh.colors, "VEC4");
+    Json primitive = {{"attributes", attributes}};
+    // 65535 restarts strips, so it must not be a vertex.
+    if (vertices.size() <= 0xFFFF) {
+        primitive["indices"] =
+            add_accessor(std::vector<std::uint16_t>(indices.begin(), indices.end()), "SCALAR",
+                         gltf_code::uint16, gltf_code::element_array_buffer);
+    } else {
+        primitive["indices"] =
+            add_accessor(indices, "SCALAR", gltf_code::uint32, gltf_code::element_array_buffer);
+    }
+    if (range.material) primitive["material"] = *range.material;
+    contents_.root["meshes"][0]["primitives"].push_back(primitive);
+}
+
+/// The texture of an image file; each file is put inside once.
+Json DocumentMaker::texture_info(const std::filesystem::path& image) {
+    const auto [entry, is_new] = textures_.try_emplace(image, textures_.size());
+    if (is_new) {
+        const std::string bytes = read_file(image);
+        const std::string media_type = image_media_type(bytes);
+        if (media_type != "image/png" && media_type != "image/jpeg") {
+            throw FileError(image, "is neither PNG nor JPEG, which is all that glTF holds");
+        }
+        contents_.root["images"].push_back({{"bufferView", add_view(contents_, bytes)},
+                                            {"mimeType", media_type},
+                                            {"name", image.stem().string()}});
+        contents_.root["textures"].push_back({{"sampler", 0}, {"source", entry->second}});
+        contents_.root["samplers"] = Json::array({{{"wrapS", 10497}, {"wrapT", 10497}}});
+    }
+    return {{"index", entry->second}};
+}
+
+void DocumentMaker::add_material(const MtlMaterial& material) {
+    const auto clamped = [](float value) { return std::clamp(value, 0.0F, 1.0F); };
+    const glm::vec3 color = glm::clamp(material.diffuse, 0.0F, 1.0F);
+    const float opacity = clamped(material.opacity);
+    Json pbr = {
+        {"baseColorFactor", {color.r, color.g, color.b, opacity}},
+        {"metallicFactor", 0.0F},
+        {"roughnessFactor",
+         clamped(std::sqrt(std::sqrt(2.0F / (std::max(material.shininess, 0.0F) + 2.0F))))}};
+    if (material.diffuse_map) pbr["baseColorTexture"] = texture_info(*material.diffuse_map);
+    Json json = {{"name", material.name}, {"pbrMetallicRoughness", pbr}};
+    if (opacity < 1.0F) json["alphaMode"] = "BLEND";
+    // An image of light needs a factor to be seen; MTL's own default for Ke is black.
+    glm::vec3 emission = glm::max(material.emission, 0.0F);
+    if (material.emission_map && emission == glm::vec3(0.0F)) emission = glm::vec3(1.0F);
+    const float strength = std::max({emission.r, emission.g, emission.b, 1.0F});
+    if (emission != glm::vec3(0.0F)) {
+        emission /= strength;
+        json["emissiveFactor"] = {emission.r, emission.g, emission.b};
+    }
+    if (strength > 1.0F) {
+        json["extensions"]["KHR_materials_emissive_strength"]["emissiveStrength"] = strength;
+        uses_emissive_strength_ = true;
+    }
+    if (material.emission_map) json["emissiveTexture"] = texture_info(*material.emission_map);
+    if (material.normal_map) json["normalTexture"] = texture_info(*material.normal_map);
+    contents_.root["materials"].push_back(json);
+}
+
+GltfContents DocumentMaker::make() {
+    const Mesh& mesh = file_.mesh;
+    Json& root = contents_.root;
+    root["asset"] = {{"version", "2.0"}, {"generator", "relief"}};
+    root["scene"] = 0;
+    root["scenes"] = Json::array({{{"nodes", {0}}}});
+    root["nodes"] = Json::array({{{"mesh", 0}}});
+    root["meshes"] = Json::array({{{"primitives", Json::array()}}});
+    if (!mesh.name.empty()) {
+        root["nodes"][0]["name"] = mesh.name;
+        root["meshes"][0]["name"] = mesh.name;
+    }
+    std::vector<MaterialRange> ranges = mesh.material_ranges;
+    if (ranges.empty()) {
+        ranges.push_back({0, static_cast<std::uint32_t>(mesh.triangles.size()), std::nullopt});
+    }
+    for (const MaterialRange& range : ranges) {
+        if (range.triangle_count > 0) add_primitive(range);
+    }
+    for (const MtlMaterial& material : file_.materials)
+        add_material(material);
+    if (uses_emissive_strength_) root["extensionsUsed"] = {"KHR_materials_emissive_strength"};
+    contents_.position_uses.assign(array_in(root, "accessors").size(), 0);
+    return std::move(contents_);
+}
+
+}  // namespace
+
+GltfContents gltf_from_mesh(const MeshFile& file) {
+    validate(file.mesh);
+    if (file.mesh.triangles.empty()) throw InvalidInput("the mesh has no triangle");
+    for (const MaterialRange& range : file.mesh.material_ranges) {
+        if (range.material && *range.material >= file.materials.size()) {
+            throw InvalidInput(
+                fmt::format("a material range names material {}, but there are "
+                            "only {}",
+                            *range.material, file.materials.size()));
+        }
+    }
+    return DocumentMaker(file).make();
+}
+
+}  // namespace relief

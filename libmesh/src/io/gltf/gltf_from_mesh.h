@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// A glTF document made from a mesh. Tests: tests/mesh/io/gltf/gltf_from_mesh_test.cpp.
+#pragma once
+
+#include "io/gltf/gltf_contents.h"
+#include "relief/mesh/mesh_file.h"
+
+namespace relief {
+
+/// See GltfDocument::from_mesh.
+GltfContents gltf_from_mesh(const MeshFile& file);
+
+}  // namespace relief

@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: Apache-2.0
+// A glTF primitive as plain arrays: strips and fans unrolled, attributes made float.
+//
+// Object space, v downwards as glTF has it. Indices out of range, a rest that makes no triangle and
+// attributes of different lengths throw InvalidInput. Source: glTF 2.0 (ISO/IEC 12113), section
+// 3.7.2. Tests: tests/mesh/io/gltf/gltf_document_test.cpp.
+#include "io/gltf/gltf_primitive.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "io/gltf/gltf_accessor.h"
+#include "relief/mesh/error.h"
+
+namespace relief {
+namespace {
+
+constexpr std::size_t triangle_strip = 5;
+constexpr std::size_t triangle_fan = 6;
+
+/// Calls of glTF's primitive modes on a run of indices. Every second triangle of a strip is turned.
+std::vector<glm::uvec3> triangles_of(const std::vector<std::uint32_t>& indices, std::size_t mode) {
+    std::vector<glm::uvec3> triangles;
+    if (mode != triangle_strip && mode != triangle_fan) {
+        if (indices.size() % 3 != 0) {
+            throw InvalidInput(fmt::format("{} indices make no whole triangles", indices.size()));
+        }
+        triangles.reserve(indices.size() / 3);
+        for (std::size_t i = 0; i < indices.size(); i += 3) {
+            triangles.emplace_back(indices[i], indices[i + 1], indices[i + 2]);
+        }
+        return triangles;
+    }
+    for (std::size_t i = 0; i + 2 < indices.size(); ++i) {
+        if (mode == triangle_fan) {
+            triangles.emplace_back(indices[i + 1], indices[i + 2], indices[0]);
+        } else {
+            triangles.emplace_back(indices[i], indices[i + 1 + i % 2], indices[i + 2 - i % 2]);
+        }
+    }
+    return triangles;
+}
+
+void check_counts(const GltfContents& contents, const Json& primitive, std::size_t vertex_count) {
+    for (const auto& [name, accessor] : primitive["attributes"].items()) {
+        const std::size_t count =
+            size_in(contents.root["accessors"][accessor.get<std::size_t>()], "count");
+        if (count != vertex_count) {
+            throw InvalidInput(fmt::format("there are {} elements of {}, but {} of POSITION", count,
+                                           name, vertex_count));
+        }
+    }
+    for (const Json& target : array_in(primitive, "targets")) {
+        for (const auto& [name, accessor] : target.items()) {
+            const std::size_t count =
+                size_in(contents.root["accessors"][accessor.get<std::size_t>()], "count");
+            if (count != vertex_count) {
+                throw InvalidInput(
+                    fmt::format("a morph target has {} elements of {}, but there "
+                                "are {} of POSITION",
+                                count, name, vertex_count));
+            }
+        }
+    }
+}
+
+/// The vertices that the triangles use, or nothing if they use all.
+std::optional<std::vector<std::uint32_t>> used_vertices(const std::vector<glm::uvec3>& triangles,
+                                                        std::size_t vertex_count) {
+    std::vector<bool> is_used(vertex_count, false);
+    for (const glm::uvec3& triangle : triangles) {
+        for (int k = 0; k < 3; ++k)
+            is_used[triangle[k]] = true;
+    }
+    std::vector<std::uint32_t> used;
+    for (std::uint32_t i = 0; i < vertex_count; ++i) {
+        if (is_used[i]) used.push_back(i);
+    }
+    if (used.size() == vertex_count) return std::nullopt;
+    return used;
+}
+
+/// An attribute as floats, of the vertices that the mesh has; empty where it is absent.
+template <typename Vector>
+std::vector<Vector> attribute(const GltfContents& contents, const Json& primitive, const char* name,
+                              const GltfTriangles& triangles) {
+    const auto accessor = index_in(primitive["attributes"], name);
+    if (!accessor) return {};
+    std::vector<Vector> all = float_elements<Vector>(contents, *accessor);
+    if (!triangles.used) return all;
+    std::vector<Vector> result;
+    for (const std::uint32_t vertex : *triangles.used)
+        result.push_back(all[vertex]);
+    return result;
+}
+
+/// Colours with or without alpha.
+std::vector<glm::vec4> colors(const GltfContents& contents, const Json& primitive,
+                              const GltfTriangles& triangles) {
+    const auto accessor = index_in(primitive["attributes"], "COLOR_0");
+    if (!accessor) return {};
+    if (text_in(contents.root["accessors"][*accessor], "type") != "VEC3") {
+        return attribute<glm::vec4>(contents, primitive, "COLOR_0", triangles);
+    }
+    std::vector<glm::vec4> result;
+    for (const auto& rgb : attribute<glm::vec3>(contents, primitive, "COLOR_0", triangles)) {
+        result.emplace_back(rgb, 1.0F);
+    }
+    return result;
+}
+
+/// The same triangles, over the used vertices alone.
+std::vector<glm::uvec3> compacted(const GltfTriangles& all) {
+    if (!all.used) return all.triangles;
+    std::vector<std::uint32_t> place(all.vertex_count, 0);
+    for (std::uint32_t i = 0; i < all.used->size(); ++i)
+        place[(*all.used)[i]] = i;
+    std::vector<glm::uvec3> result;
+    for (const glm::uvec3& t : all.triangles)
+        result.emplace_back(place[t.x], place[t.y], place[t.z]);
+    return result;
+}
+
+}  // namespace
+
+const Json& primitive_json(const GltfContents& contents, GltfPrimitiveId id) {
+    const Json& meshes = array_in(contents.root, "meshes");
+    if (id.mesh >= meshes.size() || id.primitive >= meshes[id.mesh]["primitives"].size()) {
+        throw InvalidInput(
+            fmt::format("there is no primitive {} of mesh {}", id.primitive, id.mesh));
+    }
+    return meshes[id.mesh]["primitives"][id.primitive];
+}
+
+std::string describe_primitive(const GltfContents& contents, GltfPrimitiveId id) {
+    const Json& meshes = array_in(contents.root, "meshes");
+    const std::string name =
+        id.mesh < meshes.size() ? text_in(meshes[id.mesh], "name") : std::string();
+    return name.empty() ? fmt::format("mesh {} primitive {}", id.mesh, id.primitive)
+                        : fmt::format("mesh '{}' primitive {}", name, id.primitive);
+}
+
+GltfTriangles read_triangles(const GltfContents& contents, GltfPrimitiveId id) {
+    const Json& primitive = primitive_json(contents, id);
+    const auto position = index_in(primitive["attributes"], "POSITION");
+    if (!position) throw InvalidInput("it has no positions");
+    GltfTriangles result;
+    result.vertex_count = size_in(contents.root["accessors"][*position], "count");
+    check_counts(contents, primitive, result.vertex_count);
+    std::vector<std::uint32_t> indices;
+    if (const auto accessor = index_in(primitive, "indices")) {
+        indices = index_elements(contents, *accessor);
+        const auto largest = std::max_element(indices.begin(), indices.end());
+        if (largest != indices.end() && *largest >= result.vertex_count) {
+            throw InvalidInput(fmt::format("index {} names vertex {}, but there are only {}",
+                                           largest - indices.begin(), *largest,
+                                           result.vertex_count));
+        }
+    } else {
+        if (result.vertex_count > std::numeric_limits<std::uint32_t>::max()) {
+            throw InvalidInput(fmt::format("{} vertices are too many", result.vertex_count));
+        }
+        indices.resize(result.vertex_count);
+        for (std::uint32_t i = 0; i < indices.size(); ++i)
+            indices[i] = i;
+    }
+    const std::size_t mode = size_in(primitive, "mode", 4);
+    if (mode < 4) throw InvalidInput("it is made of points or lines");
+    result.triangles = triangles_of(indices, mode);
+    const bool is_shared =
+        *position < contents.position_uses.size() && contents.position_uses[*position] > 1;
+    // Outlines name vertices by number, so those must stay.
+    const bool has_outline =
+        find(primitive, "extensions", "CESIUM_primitive_outline", "indices") != nullptr;
+    if (is_shared && !has_outline)
+        result.used = used_vertices(result.triangles, result.vertex_count);
+    return result;
+}
+
+Mesh read_primitive(const GltfContents& contents, GltfPrimitiveId id) {
+    try {
+        const Json& primitive = primitive_json(contents, id);
+        const GltfTriangles triangles = read_triangles(contents, id);
+        Mesh mesh;
+        mesh.name = text_in(contents.root["meshes"][id.mesh], "name");
+        mesh.positions = attribute<glm::vec3>(contents, primitive, "POSITION", triangles);
+        mesh.normals = attribute<glm::vec3>(contents, primitive, "NORMAL", triangles);
+        mesh.tangents = attribute<glm::vec4>(contents, primitive, "TANGENT", triangles);
+        mesh.texcoords = attribute<glm::vec2>(contents, primitive, "TEXCOORD_0", triangles);
+        mesh.colors = colors(contents, primitive, triangles);
+        mesh.triangles = compacted(triangles);
+        if (!mesh.triangles.empty()) {
+            const auto material = index_in(primitive, "material");
+            mesh.material_ranges.push_back(
+                {0, static_cast<std::uint32_t>(mesh.triangles.size()),
+                 material ? std::optional(static_cast<std::uint32_t>(*material)) : std::nullopt});
+        }
+        return mesh;
+    } catch (const InvalidInput& error) {
+        throw InvalidInput(fmt::format("{}: {}", describe_primitive(contents, id), error.what()));
+    }
+}
+
+}  // namespace relief

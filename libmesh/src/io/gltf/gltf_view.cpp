@@ -1,0 +1,301 @@
+// SPDX-License-Identifier: Apache-2.0
+// A glTF document as a scene: nodes to world matrices, materials, images, lights and cameras.
+//
+// World space, right-handed, +Y up; colours linear; angles in radians. What the plain scene has no
+// place for is left to the document. Instance attributes of a wrong type throw InvalidInput.
+// Source: glTF 2.0 (ISO/IEC 12113), KHR_lights_punctual, KHR_materials_emissive_strength,
+// KHR_materials_unlit, EXT_mesh_gpu_instancing. Tests: tests/mesh/io/gltf/gltf_view_test.cpp.
+#include "io/gltf/gltf_view.h"
+
+#include <algorithm>
+#include <cstring>
+#include <glm/gtc/matrix_transform.hpp>
+#include <glm/gtc/quaternion.hpp>
+
+#include "io/gltf/gltf_accessor.h"
+#include "io/gltf/gltf_uri.h"
+#include "relief/mesh/error.h"
+
+namespace relief {
+namespace {
+
+bool is_drawn_as_triangles(const Json& primitive) {
+    return size_in(primitive, "mode", 4) >= 4 && primitive["attributes"].contains("POSITION");
+}
+
+glm::mat4 transform(const glm::vec3& translation, const glm::vec4& rotation,
+                    const glm::vec3& scale) {
+    const glm::quat quaternion(rotation.w, rotation.x, rotation.y, rotation.z);
+    return glm::translate(glm::mat4(1.0F), translation) * glm::mat4_cast(quaternion) *
+           glm::scale(glm::mat4(1.0F), scale);
+}
+
+glm::mat4 parent_from_node(const Json& node) {
+    if (const Json* matrix = find(node, "matrix")) {
+        glm::mat4 result;
+        for (std::size_t i = 0; i < 16; ++i) {
+            result[static_cast<int>(i / 4)][static_cast<int>(i % 4)] = (*matrix)[i].get<float>();
+        }
+        return result;
+    }
+    return transform(vector_in(node, "translation", glm::vec3(0.0F)),
+                     vector_in(node, "rotation", glm::vec4(0, 0, 0, 1)),
+                     vector_in(node, "scale", glm::vec3(1.0F)));
+}
+
+/// Where EXT_mesh_gpu_instancing repeats a node's mesh, or the node's own place once.
+std::vector<glm::mat4> instances(const GltfContents& contents, const Json& node) {
+    const Json* attributes = find(node, "extensions", "EXT_mesh_gpu_instancing", "attributes");
+    if (attributes == nullptr || attributes->empty()) return {glm::mat4(1.0F)};
+    const auto read = [&]<typename Vector>(const char* name, Vector) {
+        const auto accessor = index_in(*attributes, name);
+        return accessor ? float_elements<Vector>(contents, *accessor) : std::vector<Vector>();
+    };
+    const auto translations = read("TRANSLATION", glm::vec3());
+    const auto rotations = read("ROTATION", glm::vec4());
+    const auto scales = read("SCALE", glm::vec3());
+    const std::size_t count = std::max({translations.size(), rotations.size(), scales.size()});
+    const auto fits = [&](std::size_t size) { return size == 0 || size == count; };
+    if (!fits(translations.size()) || !fits(rotations.size()) || !fits(scales.size())) {
+        throw InvalidInput("the attributes of EXT_mesh_gpu_instancing differ in length");
+    }
+    std::vector<glm::mat4> result;
+    for (std::size_t i = 0; i < count; ++i) {
+        result.push_back(transform(translations.empty() ? glm::vec3(0.0F) : translations[i],
+                                   rotations.empty() ? glm::vec4(0, 0, 0, 1) : rotations[i],
+                                   scales.empty() ? glm::vec3(1.0F) : scales[i]));
+    }
+    return result;
+}
+
+TextureWrap wrap_in(const Json& sampler, const char* key) {
+    switch (size_in(sampler, key, 10497)) {
+        case 33071:
+            return TextureWrap::clamp;
+        case 33648:
+            return TextureWrap::mirror;
+        default:
+            return TextureWrap::repeat;
+    }
+}
+
+/// The image of a texture: the one that every reader knows, or else that of an extension.
+std::optional<std::size_t> image_of(const Json& texture) {
+    if (const auto image = index_in(texture, "source")) return image;
+    for (const char* extension :
+         {"EXT_texture_webp", "EXT_texture_avif", "KHR_texture_basisu", "MSFT_texture_dds"}) {
+        const Json* inner = find(texture, "extensions", extension);
+        if (inner != nullptr && inner->contains("source")) return index_in(*inner, "source");
+    }
+    return std::nullopt;
+}
+
+std::optional<GltfTexture> texture_in(const Json& root, const Json& holder, const char* key) {
+    const Json* info = find(holder, key);
+    if (info == nullptr) return std::nullopt;
+    const Json& texture = root["textures"][size_in(*info, "index")];
+    const auto image = image_of(texture);
+    if (!image) return std::nullopt;
+    GltfTexture result;
+    result.image = *image;
+    result.texcoord_set = static_cast<int>(size_in(*info, "texCoord"));
+    if (const Json* transform = find(*info, "extensions", "KHR_texture_transform")) {
+        result.has_transform = true;
+        const Json* set = find(*transform, "texCoord");
+        if (set != nullptr && set->is_number_unsigned()) result.texcoord_set = set->get<int>();
+    }
+    if (const auto number = index_in(texture, "sampler")) {
+        const Json& sampler = root["samplers"][*number];
+        result.wrap_u = wrap_in(sampler, "wrapS");
+        result.wrap_v = wrap_in(sampler, "wrapT");
+        constexpr std::size_t nearest = 9728;
+        if (size_in(sampler, "magFilter") == nearest) result.filter = TextureFilter::nearest;
+    }
+    return result;
+}
+
+GltfMaterial material_from(const Json& root, const Json& json) {
+    static const Json nothing = Json::object();
+    GltfMaterial material;
+    material.name = text_in(json, "name");
+    const Json* pbr_or_none = find(json, "pbrMetallicRoughness");
+    const Json& pbr = pbr_or_none == nullptr ? nothing : *pbr_or_none;
+    material.base_color = vector_in(pbr, "baseColorFactor", glm::vec4(1.0F));
+    material.metallic = float_in(pbr, "metallicFactor", 1.0F);
+    material.roughness = float_in(pbr, "roughnessFactor", 1.0F);
+    material.base_color_texture = texture_in(root, pbr, "baseColorTexture");
+    material.metallic_roughness_texture = texture_in(root, pbr, "metallicRoughnessTexture");
+    material.normal_texture = texture_in(root, json, "normalTexture");
+    if (const Json* normal = find(json, "normalTexture")) {
+        material.normal_scale = float_in(*normal, "scale", 1.0F);
+    }
+    material.emission_texture = texture_in(root, json, "emissiveTexture");
+    material.emission = vector_in(json, "emissiveFactor", glm::vec3(0.0F));
+    if (const Json* strength = find(json, "extensions", "KHR_materials_emissive_strength")) {
+        material.emission *= float_in(*strength, "emissiveStrength", 1.0F);
+    }
+    const std::string mode = text_in(json, "alphaMode");
+    using AlphaMode = GltfMaterial::AlphaMode;
+    material.alpha_mode = mode == "MASK"    ? AlphaMode::mask
+                          : mode == "BLEND" ? AlphaMode::blend
+                                            : AlphaMode::opaque;
+    material.alpha_cutoff = float_in(json, "alphaCutoff", 0.5F);
+    material.double_sided = bool_in(json, "doubleSided");
+    material.unlit = find(json, "extensions", "KHR_materials_unlit") != nullptr;
+    return material;
+}
+
+std::vector<std::byte> bytes_of(std::string_view text) {
+    std::vector<std::byte> bytes(text.size());
+    if (!text.empty()) std::memcpy(bytes.data(), text.data(), text.size());
+    return bytes;
+}
+
+GltfImage image_from(const GltfContents& contents, const Json& json) {
+    GltfImage image;
+    image.name = text_in(json, "name");
+    const std::string uri = text_in(json, "uri");
+    if (const auto number = index_in(json, "bufferView")) {
+        const Json& view = contents.root["bufferViews"][*number];
+        image.source = bytes_of(contents.buffers[size_in(view, "buffer")].bytes().substr(
+            size_in(view, "byteOffset"), size_in(view, "byteLength")));
+    } else if (is_data_uri(uri)) {
+        image.source = bytes_of(decode_data_uri(uri).bytes);
+    } else if (const auto path = path_inside(contents.folder, uri)) {
+        image.source = *path;
+    }
+    return image;
+}
+
+GltfLight light_from(const Json& json) {
+    GltfLight light;
+    light.name = text_in(json, "name");
+    const std::string type = text_in(json, "type");
+    using Type = GltfLight::Type;
+    light.type = type == "directional" ? Type::directional
+                 : type == "spot"      ? Type::spot
+                                       : Type::point;
+    light.color = vector_in(json, "color", glm::vec3(1.0F));
+    light.intensity = float_in(json, "intensity", 1.0F);
+    if (json.contains("range")) light.range = float_in(json, "range", 0.0F);
+    if (const Json* spot = find(json, "spot")) {
+        light.inner_cone = float_in(*spot, "innerConeAngle", light.inner_cone);
+        light.outer_cone = float_in(*spot, "outerConeAngle", light.outer_cone);
+    }
+    return light;
+}
+
+/// Walks the nodes of a scene and places what hangs on them.
+class Placer {
+  public:
+    Placer(const GltfContents& contents, GltfView& view) : contents_(contents), view_(view) {}
+
+    void place_all() {
+        std::vector<Open> open;
+        for (const std::size_t root : root_nodes())
+            open.push_back({root, glm::mat4(1.0F)});
+        std::reverse(open.begin(), open.end());
+        while (!open.empty()) {
+            const Open next = open.back();
+            open.pop_back();
+            const Json& node = contents_.root["nodes"][next.node];
+            const glm::mat4 world_from_node = next.world_from_parent * parent_from_node(node);
+            place(node, world_from_node);
+            const Json& children = array_in(node, "children");
+            for (std::size_t i = children.size(); i-- > 0;) {
+                open.push_back({children[i].get<std::size_t>(), world_from_node});
+            }
+        }
+    }
+
+  private:
+    struct Open {
+        std::size_t node = 0;
+        glm::mat4 world_from_parent{1.0F};
+    };
+
+    /// Of the default scene, or the first; of a document without scenes, all nodes without parent.
+    [[nodiscard]] std::vector<std::size_t> root_nodes() const {
+        const Json& root = contents_.root;
+        const Json& scenes = array_in(root, "scenes");
+        std::vector<std::size_t> result;
+        if (!scenes.empty()) {
+            for (const Json& node : array_in(scenes[size_in(root, "scene")], "nodes")) {
+                result.push_back(node.get<std::size_t>());
+            }
+            return result;
+        }
+        const Json& nodes = array_in(root, "nodes");
+        std::vector<bool> has_parent(nodes.size(), false);
+        for (const Json& node : nodes) {
+            for (const Json& child : array_in(node, "children")) {
+                has_parent[child.get<std::size_t>()] = true;
+            }
+        }
+        for (std::size_t i = 0; i < nodes.size(); ++i) {
+            if (!has_parent[i]) result.push_back(i);
+        }
+        return result;
+    }
+
+    void place(const Json& node, const glm::mat4& world_from_node) {
+        const std::string name = text_in(node, "name");
+        if (const auto mesh = index_in(node, "mesh")) {
+            const Json& primitives = contents_.root["meshes"][*mesh]["primitives"];
+            for (const glm::mat4& node_from_instance : instances(contents_, node)) {
+                for (std::size_t i = 0; i < primitives.size(); ++i) {
+                    if (!is_drawn_as_triangles(primitives[i])) continue;
+                    view_.primitives.push_back(
+                        {{*mesh, i}, world_from_node * node_from_instance, name});
+                }
+            }
+        }
+        if (const Json* light = find(node, "extensions", "KHR_lights_punctual")) {
+            const Json& lights = contents_.root["extensions"]["KHR_lights_punctual"]["lights"];
+            view_.lights.push_back(
+                {light_from(lights[size_in(*light, "light")]), world_from_node, name});
+        }
+        if (const auto number = index_in(node, "camera")) {
+            const Json& json = contents_.root["cameras"][*number];
+            const Json* perspective = find(json, "perspective");
+            if (perspective == nullptr) return;
+            GltfCamera camera;
+            camera.name = text_in(json, "name");
+            camera.vertical_fov = float_in(*perspective, "yfov", camera.vertical_fov);
+            camera.near = float_in(*perspective, "znear", camera.near);
+            if (perspective->contains("zfar")) camera.far = float_in(*perspective, "zfar", 0.0F);
+            view_.cameras.push_back({camera, world_from_node, name});
+        }
+    }
+
+    const GltfContents& contents_;
+    GltfView& view_;
+};
+
+}  // namespace
+
+std::vector<GltfPrimitiveId> triangle_primitives_of(const GltfContents& contents) {
+    std::vector<GltfPrimitiveId> result;
+    const Json& meshes = array_in(contents.root, "meshes");
+    for (std::size_t i = 0; i < meshes.size(); ++i) {
+        const Json& primitives = meshes[i]["primitives"];
+        for (std::size_t k = 0; k < primitives.size(); ++k) {
+            if (is_drawn_as_triangles(primitives[k])) result.push_back({i, k});
+        }
+    }
+    return result;
+}
+
+GltfView view_of(const GltfContents& contents) {
+    GltfView view;
+    for (const Json& material : array_in(contents.root, "materials")) {
+        view.materials.push_back(material_from(contents.root, material));
+    }
+    for (const Json& image : array_in(contents.root, "images")) {
+        view.images.push_back(image_from(contents, image));
+    }
+    Placer(contents, view).place_all();
+    return view;
+}
+
+}  // namespace relief

@@ -1,0 +1,318 @@
+// SPDX-License-Identifier: Apache-2.0
+// Walks the chunks of PNG [ISO/IEC 15948], the segments of JPEG [ITU-T T.81] and the headers of
+// TGA and EXR; see image_file_container.h. A walk never reads past the end: what is cut short is a
+// FileError. Believable sizes: deflate expands at most 1032 times; a JPEG block of 8 x 8 takes at
+// least one bit, so that a byte stands for fewer than 2048 samples; a TGA run for at most 128
+// texels. Tests: tests/mesh/io/image/image_file_container_test.cpp.
+#include "io/image/image_file_container.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <cstring>
+#include <string_view>
+
+#include "file_bytes.h"
+#include "relief/mesh/error.h"
+
+namespace relief {
+namespace {
+
+using Bytes = std::span<const std::byte>;
+
+constexpr std::uint64_t deflate_expansion = 1032;
+constexpr std::uint64_t jpeg_samples_per_byte = 2048;
+constexpr std::uint64_t tga_texels_per_byte = 128;
+
+std::string_view text_of(Bytes bytes) {
+    return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+std::uint32_t byte_at(Bytes bytes, std::size_t offset) {
+    return std::to_integer<std::uint32_t>(bytes[offset]);
+}
+
+std::uint32_t big16(Bytes bytes, std::size_t offset) {
+    return byte_at(bytes, offset) << 8 | byte_at(bytes, offset + 1);
+}
+
+std::uint32_t big32(Bytes bytes, std::size_t offset) {
+    return big16(bytes, offset) << 16 | big16(bytes, offset + 2);
+}
+
+std::uint32_t little16(Bytes bytes, std::size_t offset) {
+    return byte_at(bytes, offset) | byte_at(bytes, offset + 1) << 8;
+}
+
+void append(std::vector<std::byte>& to, Bytes bytes) {
+    to.insert(to.end(), bytes.begin(), bytes.end());
+}
+
+/// Refuses a header that announces more than its file can hold.
+void check_believable(std::uint64_t needed, std::uint64_t possible, std::uint64_t width,
+                      std::uint64_t height, std::size_t size, const std::filesystem::path& name) {
+    if (width == 0 || height == 0)
+        throw FileError(name, fmt::format("is empty: {} x {} texels", width, height));
+    if (needed <= possible) return;
+    throw FileError(name, fmt::format("announces {} x {} texels, which its {} bytes cannot hold",
+                                      width, height, size));
+}
+
+// ---------------------------------------------------------------------------------------------
+// PNG
+
+/// Key, zero, value; or nothing where it is malformed. iTXt has five more fields in between.
+void keep_png_text(std::string_view type, std::string_view data,
+                   std::map<std::string, std::string>& text) {
+    const std::size_t key_end = data.find('\0');
+    if (key_end == std::string_view::npos || key_end == 0) return;
+    std::string_view value = data.substr(key_end + 1);
+    if (type == "iTXt") {
+        if (value.size() < 2 || value[0] != '\0') return;  // Compressed: no concern of ours.
+        value.remove_prefix(2);
+        for (int field = 0; field < 2; ++field) {  // Language tag, translated key.
+            const std::size_t end = value.find('\0');
+            if (end == std::string_view::npos) return;
+            value.remove_prefix(end + 1);
+        }
+    }
+    text.emplace(data.substr(0, key_end), value);
+}
+
+void check_png_size(Bytes header, std::uint64_t compressed, std::size_t size,
+                    const std::filesystem::path& name) {
+    static constexpr std::array<std::uint64_t, 7> channels_of_type{1, 0, 3, 1, 2, 0, 4};
+    const std::uint64_t width = big32(header, 0);
+    const std::uint64_t height = big32(header, 4);
+    const std::uint32_t type = byte_at(header, 9);
+    if (type >= channels_of_type.size() || channels_of_type[type] == 0)
+        throw FileError(name, fmt::format("PNG has no colour type {}", type));
+    // Width and height are below 2^32, so that bits stay below 2^32 * 64.
+    const std::uint64_t row = (width * channels_of_type[type] * byte_at(header, 8) + 7) / 8;
+    const std::uint64_t rows_possible =
+        deflate_expansion * (compressed + 16) / std::max<std::uint64_t>(row, 1);
+    check_believable(height, rows_possible + 1, width, height, size, name);
+}
+
+void strip_png(Bytes bytes, const std::filesystem::path& name, ImageContainer& container) {
+    constexpr std::size_t signature = 8;
+    constexpr std::size_t frame = 12;  // Length, type and checksum around a chunk's data.
+    container.stripped.reserve(bytes.size());
+    append(container.stripped, bytes.first(signature));
+    Bytes header;
+    std::uint64_t compressed = 0;
+    for (std::size_t at = signature;;) {
+        if (bytes.size() - at < frame) throw FileError(name, "is cut short: it has no IEND chunk");
+        const std::uint64_t length = big32(bytes, at);
+        const std::string_view type = text_of(bytes.subspan(at + 4, 4));
+        if (length > bytes.size() - at - frame) {
+            throw FileError(name, fmt::format("is cut short: the chunk at byte {} ends {} bytes "
+                                              "after the file",
+                                              at, length - (bytes.size() - at - frame)));
+        }
+        const Bytes data = bytes.subspan(at + 8, length);
+        if (type == "IHDR" && length >= 13) header = data;
+        if (type == "IDAT") compressed += length;
+        if (type == "tEXt" || type == "iTXt") keep_png_text(type, text_of(data), container.text);
+        for (const std::string_view kept : {"IHDR", "PLTE", "tRNS", "IDAT", "IEND"}) {
+            if (type == kept) append(container.stripped, bytes.subspan(at, length + frame));
+        }
+        at += length + frame;
+        if (type == "IEND") break;
+    }
+    if (header.empty()) throw FileError(name, "has no IHDR chunk");
+    check_png_size(header, compressed, bytes.size(), name);
+}
+
+// ---------------------------------------------------------------------------------------------
+// JPEG
+
+bool stands_alone(std::uint32_t marker) {
+    return marker == 0x01 || (marker >= 0xD0 && marker <= 0xD8);
+}
+
+bool starts_frame(std::uint32_t marker) {
+    return marker >= 0xC0 && marker <= 0xCF && marker != 0xC4 && marker != 0xC8 && marker != 0xCC;
+}
+
+/// Application data, but for JFIF (0) and Adobe (14), which say how colours are coded; comments.
+bool is_dropped(std::uint32_t marker) {
+    return (marker >= 0xE1 && marker <= 0xEF && marker != 0xEE) || marker == 0xFE;
+}
+
+/// Where the next marker's code stands, skipping coded data, stuffed zeros and fill bytes.
+std::size_t next_marker(Bytes bytes, std::size_t at, const std::filesystem::path& name) {
+    while (at + 1 < bytes.size()) {
+        const void* found = std::memchr(bytes.data() + at, 0xFF, bytes.size() - at - 1);
+        if (found == nullptr) break;
+        at = static_cast<std::size_t>(static_cast<const std::byte*>(found) - bytes.data()) + 1;
+        const std::uint32_t code = byte_at(bytes, at);
+        if (code != 0x00 && code != 0xFF) return at;
+    }
+    throw FileError(name, "is cut short: it has no end-of-image marker");
+}
+
+void strip_jpeg(Bytes bytes, const std::filesystem::path& name, ImageContainer& container) {
+    container.stripped.reserve(bytes.size());
+    append(container.stripped, bytes.first(2));
+    std::uint64_t width = 0, height = 0, components = 0;
+    std::size_t kept_to = 2;
+    for (std::size_t at = 2;;) {
+        const std::size_t code_at = next_marker(bytes, at, name);
+        const std::uint32_t code = byte_at(bytes, code_at);
+        std::size_t end = code_at + 1;
+        if (code != 0xD9 && !stands_alone(code)) {
+            const std::size_t left = bytes.size() - end;
+            const std::size_t length = left < 2 ? 0 : big16(bytes, end);
+            if (length < 2 || length > left) {
+                throw FileError(name,
+                                fmt::format("is cut short: the segment at byte {} takes {} bytes, "
+                                            "but there are only {}",
+                                            code_at - 1, length, left));
+            }
+            if (starts_frame(code) && length >= 8) {
+                height = big16(bytes, end + 3);
+                width = big16(bytes, end + 5);
+                components = byte_at(bytes, end + 7);
+                check_believable(width * height * components, jpeg_samples_per_byte * bytes.size(),
+                                 width, height, bytes.size(), name);
+            }
+            end += length;
+        }
+        if (is_dropped(code)) {
+            append(container.stripped, bytes.subspan(kept_to, code_at - 1 - kept_to));
+            kept_to = end;
+        }
+        at = end;
+        if (code == 0xD9) break;
+        if (at >= bytes.size()) next_marker(bytes, at, name);
+    }
+    append(container.stripped, bytes.subspan(kept_to));
+    if (width == 0) throw FileError(name, "has no frame");
+}
+
+// ---------------------------------------------------------------------------------------------
+// TGA
+
+void check_tga(Bytes bytes, const std::filesystem::path& name) {
+    if (bytes.size() < 18) throw FileError(name, "is cut short: TGA starts with 18 bytes");
+    const std::uint32_t type = byte_at(bytes, 2);
+    const std::uint64_t width = little16(bytes, 12);
+    const std::uint64_t height = little16(bytes, 14);
+    const std::uint64_t texel_bytes = (byte_at(bytes, 16) + 7) / 8;
+    const bool run_length_coded = type >= 9;
+    const std::uint64_t needed = width * height * (run_length_coded ? 1 : texel_bytes);
+    check_believable(needed, bytes.size() * (run_length_coded ? tga_texels_per_byte : 1), width,
+                     height, bytes.size(), name);
+}
+
+bool is_tga(Bytes bytes, const std::filesystem::path& name) {
+    constexpr std::string_view footer("TRUEVISION-XFILE.\0", 18);
+    if (text_of(bytes).ends_with(footer)) return true;
+    return lower_extension(name) == ".tga";
+}
+
+// ---------------------------------------------------------------------------------------------
+// EXR
+
+std::uint32_t little32(Bytes bytes, std::size_t offset) {
+    return little16(bytes, offset) | little16(bytes, offset + 2) << 16;
+}
+
+/// The value of an attribute in the first header, or nothing where it has none.
+Bytes exr_attribute(Bytes bytes, std::string_view wanted, const std::filesystem::path& name) {
+    const std::string_view text = text_of(bytes);
+    for (std::size_t at = 8;;) {
+        const std::size_t key_end = text.find('\0', at);
+        if (key_end == at) return {};
+        const std::size_t type_end =
+            key_end == text.npos ? text.npos : text.find('\0', key_end + 1);
+        if (type_end == text.npos || bytes.size() - type_end < 5)
+            throw FileError(name, "is cut short within its header");
+        const std::uint32_t size = little32(bytes, type_end + 1);
+        const std::size_t value = type_end + 5;
+        if (size > bytes.size() - value) throw FileError(name, "is cut short within its header");
+        if (text.substr(at, key_end - at) == wanted) return bytes.subspan(value, size);
+        at = value + size;
+    }
+}
+
+/// Every block of lines or tile has 8 bytes in a table; tiles are held in memory as a whole.
+void check_exr(Bytes bytes, const std::filesystem::path& name) {
+    constexpr std::uint64_t most_lines_of_a_block = 256;
+    constexpr std::uint64_t largest_tile = 1 << 24;
+    const Bytes window = exr_attribute(bytes, "dataWindow", name);
+    if (window.size() < 16) throw FileError(name, "has no data window");
+    const auto extent = [&](std::size_t axis) {
+        const auto first = static_cast<std::int32_t>(little32(window, axis));
+        const auto last = static_cast<std::int32_t>(little32(window, axis + 8));
+        return last < first ? 0 : static_cast<std::uint64_t>(std::int64_t{last} - first + 1);
+    };
+    const std::uint64_t width = extent(0);
+    const std::uint64_t height = extent(4);
+    std::uint64_t blocks = (height + most_lines_of_a_block - 1) / most_lines_of_a_block;
+    if (const Bytes tiles = exr_attribute(bytes, "tiles", name); tiles.size() >= 8) {
+        const std::uint64_t tile_width = little32(tiles, 0);
+        const std::uint64_t tile_height = little32(tiles, 4);
+        if (tile_width == 0 || tile_height == 0 || tile_width > largest_tile / tile_height) {
+            throw FileError(
+                name, fmt::format("announces tiles of {} x {} texels", tile_width, tile_height));
+        }
+        blocks =
+            ((width + tile_width - 1) / tile_width) * ((height + tile_height - 1) / tile_height);
+    }
+    check_believable(blocks, bytes.size() / 8, width, height, bytes.size(), name);
+}
+
+/// OpenImageIO's name for the format that the first bytes announce, or null.
+const char* format_by_signature(std::string_view start) {
+    struct Signature {
+        std::string_view start;
+        const char* format;
+    };
+    using namespace std::string_view_literals;
+    static constexpr Signature signatures[] = {
+        {"\x89PNG\r\n\x1A\n"sv, "png"},
+        {"\xFF\xD8\xFF"sv, "jpeg"},
+        {"II*\0"sv, "tiff"},
+        {"MM\0*"sv, "tiff"},
+        {"II+\0"sv, "tiff"},
+        {"MM\0+"sv, "tiff"},
+        {"\x76\x2F\x31\x01"sv, "openexr"},
+        {"#?"sv, "hdr"},
+        {"BM"sv, "bmp"},
+        {"DDS "sv, "dds"},
+        {"8BPS"sv, "psd"},
+    };
+    for (const Signature& signature : signatures) {
+        if (start.starts_with(signature.start)) return signature.format;
+    }
+    if (start.size() > 2 && start[0] == 'P' && "123456fF"sv.find(start[1]) != start.npos)
+        return "pnm";
+    if (start.starts_with("RIFF") && start.substr(0, 12).ends_with("WEBP")) return "webp";
+    return nullptr;
+}
+
+}  // namespace
+
+ImageContainer examine_image(std::span<const std::byte> bytes, const std::filesystem::path& name) {
+    if (bytes.empty()) throw FileError(name, "is empty");
+    ImageContainer container;
+    container.format = format_by_signature(text_of(bytes));
+    if (container.format == nullptr && is_tga(bytes, name)) container.format = "targa";
+    if (container.format == nullptr) {
+        throw FileError(name,
+                        "is no image that relief reads: PNG, JPEG, TIFF, EXR, HDR, BMP, TGA, "
+                        "PNM, DDS, PSD or WebP");
+    }
+    const std::string_view format = container.format;
+    if (format == "png") strip_png(bytes, name, container);
+    if (format == "jpeg") strip_jpeg(bytes, name, container);
+    if (format == "targa") check_tga(bytes, name);
+    if (format == "openexr") check_exr(bytes, name);
+    return container;
+}
+
+}  // namespace relief

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+// Words and numbers out of text files. A number that is missing or malformed is a FileError with
+// its line. Tests: tests/mesh/io/mesh/mesh_file_test.cpp.
+#include "io/mesh/mesh_file_text.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "relief/mesh/error.h"
+
+namespace relief {
+namespace {
+
+bool ends_line(char c) {
+    return c == '\n' || c == '\r';
+}
+
+bool is_blank(char c) {
+    return c == ' ' || c == '\t' || c == '\v' || c == '\f';
+}
+
+char lower(char c) {
+    return c >= 'A' && c <= 'Z' ? static_cast<char>(c + ('a' - 'A')) : c;
+}
+
+}  // namespace
+
+void TextScanner::skip_blanks() {
+    std::size_t i = 0;
+    while (i < rest_.size() && is_blank(rest_[i]))
+        ++i;
+    if (comment_ != '\0' && i < rest_.size() && rest_[i] == comment_) {
+        while (i < rest_.size() && !ends_line(rest_[i]))
+            ++i;
+    }
+    rest_.remove_prefix(i);
+}
+
+void TextScanner::skip_line_end() {
+    rest_.remove_prefix(rest_.starts_with("\r\n") ? 2 : 1);
+    ++line_;
+}
+
+std::string_view TextScanner::word_on_line() {
+    skip_blanks();
+    std::size_t length = 0;
+    while (length < rest_.size() && !is_blank(rest_[length]) && !ends_line(rest_[length]))
+        ++length;
+    const std::string_view word = rest_.substr(0, length);
+    rest_.remove_prefix(length);
+    return word;
+}
+
+std::string_view TextScanner::word() {
+    std::string_view word = word_on_line();
+    while (word.empty() && !rest_.empty()) {
+        skip_line_end();
+        word = word_on_line();
+    }
+    return word;
+}
+
+void TextScanner::skip_line() {
+    rest_.remove_prefix(std::min(rest_.find_first_of("\r\n"), rest_.size()));
+    if (!rest_.empty()) skip_line_end();
+}
+
+void TextScanner::fail(const std::string& reason) const {
+    throw FileError(file_, fmt::format("line {}: {}", line_, reason));
+}
+
+void TextScanner::fail_at(std::string_view text, const char* wanted) const {
+    fail(text.empty() ? fmt::format("the file ends where {} should be", wanted)
+                      : fmt::format("{} stands where {} should be", quoted(text), wanted));
+}
+
+std::string quoted(std::string_view word) {
+    std::string result = "'";
+    for (const char c : word.substr(0, 40))
+        result += c >= ' ' && c != '\x7F' ? c : '?';
+    return result + (word.size() > 40 ? "...'" : "'");
+}
+
+bool equal_ignoring_case(std::string_view a, std::string_view b) {
+    return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                      [](char x, char y) { return lower(x) == lower(y); });
+}
+
+}  // namespace relief

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// OBJ files with their MTL. Tests: tests/mesh/io/mesh/obj_test.cpp.
+#pragma once
+
+#include <filesystem>
+
+#include "relief/mesh/mesh_file.h"
+#include "relief/mesh/report.h"
+
+namespace relief {
+
+/// See read_mesh in mesh_file.h.
+MeshFile read_obj(const std::filesystem::path& file, Report& report);
+
+}  // namespace relief

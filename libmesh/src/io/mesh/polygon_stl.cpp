@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: Apache-2.0
+// STL to a mesh: corners with equal positions become one vertex, facet normals are not kept.
+//
+// Object space as written. A file is binary when its length fits its count; else it is ASCII if it
+// says so, else cut short, which is a FileError. Source: [3D Systems 1989].
+// Tests: tests/mesh/io/mesh/stl_test.cpp.
+#include "io/mesh/polygon_stl.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <bit>
+#include <cstring>
+
+#include "file_bytes.h"
+#include "io/mesh/mesh_file_text.h"
+#include "io/mesh/polygon_key_numbers.h"
+#include "relief/mesh/error.h"
+
+namespace relief {
+namespace {
+
+constexpr std::size_t header_size = 84;
+constexpr std::size_t facet_size = 50;
+
+/// Welds corners as they come; +0 equals -0 and NaN equals itself.
+class CornerWelder {
+  public:
+    explicit CornerWelder(std::size_t expected) : numbers_(expected) {}
+
+    std::uint32_t vertex_at(const glm::vec3& position) {
+        const glm::vec3 key = position + 0.0F;  // -0 becomes +0, all else stays.
+        const auto vertex = numbers_.number_of(std::bit_cast<KeyNumbers<3>::Key>(key));
+        if (vertex == positions.size()) positions.push_back(position);
+        return vertex;
+    }
+
+    std::vector<glm::vec3> positions;
+
+  private:
+    KeyNumbers<3> numbers_;
+};
+
+Mesh read_binary(std::string_view bytes, std::size_t count) {
+    CornerWelder welder(count / 2);
+    Mesh mesh;
+    mesh.triangles.reserve(count);
+    for (std::size_t i = 0; i < count; ++i) {
+        std::array<glm::vec3, 4> facet;  // The normal, then three corners.
+        std::memcpy(facet.data(), bytes.data() + header_size + i * facet_size, sizeof(facet));
+        const std::uint32_t a = welder.vertex_at(facet[1]);
+        const std::uint32_t b = welder.vertex_at(facet[2]);
+        mesh.triangles.emplace_back(a, b, welder.vertex_at(facet[3]));
+    }
+    mesh.positions = std::move(welder.positions);
+    return mesh;
+}
+
+Mesh read_ascii(std::string_view bytes, const std::filesystem::path& file) {
+    TextScanner text(bytes, file);
+    CornerWelder welder(bytes.size() / 256);
+    Mesh mesh;
+    std::vector<std::uint32_t> corners;
+    for (std::string_view word = text.word(); !word.empty(); word = text.word()) {
+        if (equal_ignoring_case(word, "vertex")) {
+            const auto x = text.number<float>();
+            const auto y = text.number<float>();
+            corners.push_back(welder.vertex_at({x, y, text.number<float>()}));
+        } else if (equal_ignoring_case(word, "endloop")) {
+            if (corners.size() != 3) {
+                text.fail(fmt::format("a facet has {} corners instead of 3", corners.size()));
+            }
+            mesh.triangles.emplace_back(corners[0], corners[1], corners[2]);
+            corners.clear();
+        } else if (equal_ignoring_case(word, "normal")) {
+            for (int i = 0; i < 3; ++i)
+                text.word();  // Some tools write words here: not read.
+        } else if (equal_ignoring_case(word, "solid") || equal_ignoring_case(word, "endsolid")) {
+            text.skip_line();
+        } else if (!equal_ignoring_case(word, "facet") && !equal_ignoring_case(word, "outer") &&
+                   !equal_ignoring_case(word, "loop") && !equal_ignoring_case(word, "endfacet")) {
+            text.fail(fmt::format("{} has no meaning in STL", quoted(word)));
+        }
+    }
+    if (!corners.empty()) text.fail("the file ends inside a facet");
+    mesh.positions = std::move(welder.positions);
+    return mesh;
+}
+
+bool says_that_it_is_ascii(std::string_view bytes, const std::filesystem::path& file) {
+    TextScanner text(bytes.substr(0, 1024), file);
+    if (!equal_ignoring_case(text.word(), "solid")) return false;
+    text.skip_line();
+    const std::string_view next = text.word();
+    return equal_ignoring_case(next, "facet") || equal_ignoring_case(next, "endsolid");
+}
+
+}  // namespace
+
+MeshFile read_stl(const std::filesystem::path& file, Report& report) {
+    const std::string bytes = read_file(file);
+    std::uint32_t count = 0;
+    if (bytes.size() >= header_size) {
+        std::memcpy(&count, bytes.data() + header_size - sizeof(count), sizeof(count));
+    }
+    const std::uint64_t binary_size = header_size + std::uint64_t{count} * facet_size;
+    MeshFile result;
+    if (bytes.size() >= header_size && binary_size == bytes.size()) {
+        result.mesh = read_binary(bytes, count);
+    } else if (says_that_it_is_ascii(bytes, file)) {
+        result.mesh = read_ascii(bytes, file);
+    } else if (bytes.size() >= header_size && binary_size < bytes.size()) {
+        report.add("bytes behind the last triangle", "byte", binary_size, "left out");
+        result.mesh = read_binary(bytes, count);
+    } else {
+        throw FileError(file, fmt::format("is neither ASCII STL nor binary: {} triangles need {} "
+                                          "bytes, but there are only {}",
+                                          count, binary_size, bytes.size()));
+    }
+    if (result.mesh.triangles.empty()) throw FileError(file, "has no triangle");
+    result.mesh.name = file.stem().string();
+    return result;
+}
+
+}  // namespace relief

@@ -1,0 +1,296 @@
+// SPDX-License-Identifier: Apache-2.0
+// Image files there and back, sample by sample, and what each format refuses.
+#include "relief/mesh/image_file.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+
+#include <chrono>
+#include <cmath>
+#include <csignal>
+#include <fstream>
+#include <limits>
+#include <thread>
+
+#include "relief/mesh/error.h"
+#include "support/message_of.h"
+#include "support/shared_data.h"
+
+namespace relief {
+namespace {
+
+using test::TemporaryDirectory;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Pair;
+
+/// Codes that look like nothing in particular, alpha among them.
+template <typename Sample>
+Image pattern(int width, int height, int channels, ColorSpace color_space) {
+    Image image = make_image(width, height, channels, sizeof(Sample) * 8, color_space);
+    std::uint32_t state = 7;
+    for (Sample& sample : image.as<Sample>()) {
+        state = state * 1664525U + 1013904223U;
+        if constexpr (std::is_same_v<Sample, float>)
+            sample = std::ldexp(static_cast<float>(state >> 8), -20) - 4.0F;
+        else
+            sample = static_cast<Sample>(state >> 13);
+    }
+    return image;
+}
+
+Image read_back(const std::filesystem::path& file, ImageUse use = ImageUse::data) {
+    return read_image(file, use);
+}
+
+void expect_same(const Image& found, const Image& expected) {
+    EXPECT_EQ(found.width, expected.width);
+    EXPECT_EQ(found.height, expected.height);
+    EXPECT_EQ(found.channels, expected.channels);
+    EXPECT_EQ(found.bits(), expected.bits());
+    EXPECT_EQ(found.color_space, expected.color_space);
+    EXPECT_TRUE(found.samples == expected.samples);
+}
+
+std::string bytes_of(const std::filesystem::path& file) {
+    std::ifstream stream(file, std::ios::binary);
+    return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+std::string complaint_about_reading(const std::filesystem::path& file) {
+    return test::message_of<FileError>([&] { read_image(file, ImageUse::data); });
+}
+
+TEST(ImageFile, PngKeepsEvery8And16BitSampleOfEveryChannelCount) {
+    const TemporaryDirectory folder;
+    for (int channels = 1; channels <= 4; ++channels) {
+        const Image bytes = pattern<std::uint8_t>(31, 17, channels, ColorSpace::data);
+        write_image(folder / "a.png", bytes);
+        expect_same(read_back(folder / "a.png"), bytes);
+        const Image words = pattern<std::uint16_t>(17, 31, channels, ColorSpace::data);
+        write_image(folder / "a.png", words);
+        expect_same(read_back(folder / "a.png"), words);
+    }
+}
+
+TEST(ImageFile, TiffKeepsEverySampleOf8And16BitsAndFloat) {
+    const TemporaryDirectory folder;
+    for (int channels = 1; channels <= 4; ++channels) {
+        const Image bytes = pattern<std::uint8_t>(31, 17, channels, ColorSpace::data);
+        write_image(folder / "a.tif", bytes);
+        expect_same(read_back(folder / "a.tif"), bytes);
+        const Image words = pattern<std::uint16_t>(17, 31, channels, ColorSpace::data);
+        write_image(folder / "a.tiff", words);
+        expect_same(read_back(folder / "a.tiff"), words);
+        const Image floats = pattern<float>(17, 31, channels, ColorSpace::data);
+        write_image(folder / "f.TIF", floats);
+        expect_same(read_back(folder / "f.TIF"), floats);
+    }
+}
+
+TEST(ImageFile, ExrKeepsEveryFloatOfEveryChannelCountInItsPlace) {
+    const TemporaryDirectory folder;
+    for (int channels = 1; channels <= 4; ++channels) {
+        Image floats = pattern<float>(40, 37, channels, ColorSpace::data);
+        floats.as<float>()[1] = std::numeric_limits<float>::infinity();
+        floats.as<float>()[2] = 1e-42F;
+        floats.as<float>()[3] = -0.0F;
+        write_image(folder / "a.exr", floats);
+        expect_same(read_back(folder / "a.exr"), floats);
+    }
+}
+
+TEST(ImageFile, HdrKeepsColoursWithinOnePartIn128OfTheLargestChannel) {
+    const TemporaryDirectory folder;
+    Image colors = make_image(64, 4, 3, 32, ColorSpace::linear);
+    for (std::size_t at = 0; at < colors.sample_count(); ++at)
+        colors.as<float>()[at] = 0.001F + static_cast<float>(at * at % 1000) / 90.0F;
+    write_image(folder / "a.hdr", colors);
+    const Image back = read_back(folder / "a.hdr", ImageUse::color);
+    EXPECT_EQ(back.color_space, ColorSpace::linear);
+    for (std::size_t at = 0; at < colors.sample_count(); at += 3) {
+        const float* texel = &colors.as<float>()[at];
+        const float largest = std::max({texel[0], texel[1], texel[2]});
+        for (std::size_t channel = 0; channel < 3; ++channel)
+            EXPECT_NEAR(back.as<float>()[at + channel], texel[channel], largest / 128.0F);
+    }
+}
+
+TEST(ImageFile, JpegComesCloseToASmoothPicture) {
+    const TemporaryDirectory folder;
+    Image smooth = make_image(64, 48, 3, 8, ColorSpace::srgb);
+    for (std::size_t at = 0; at < smooth.sample_count(); ++at)
+        smooth.as<std::uint8_t>()[at] = static_cast<std::uint8_t>(60 + at / 3 % 64 * 2 + at % 3);
+    write_image(folder / "a.jpg", smooth);
+    const Image back = read_back(folder / "a.jpg", ImageUse::color);
+    ASSERT_EQ(back.sample_count(), smooth.sample_count());
+    for (std::size_t at = 0; at < smooth.sample_count(); ++at)
+        EXPECT_NEAR(back.as<std::uint8_t>()[at], smooth.as<std::uint8_t>()[at], 4);
+}
+
+TEST(ImageFile, TheUseDecidesTheColourSpaceNotTheFile) {
+    const TemporaryDirectory folder;
+    Image srgb = pattern<std::uint8_t>(4, 4, 3, ColorSpace::srgb);
+    write_image(folder / "a.png", srgb);
+    expect_same(read_back(folder / "a.png", ImageUse::color), srgb);
+    srgb.color_space = ColorSpace::data;
+    expect_same(read_back(folder / "a.png", ImageUse::data), srgb);
+    const Image linear = pattern<float>(4, 4, 3, ColorSpace::linear);
+    write_image(folder / "a.exr", linear);
+    expect_same(read_back(folder / "a.exr", ImageUse::color), linear);
+}
+
+TEST(ImageFile, TransparentTexelsKeepTheirColour) {
+    const TemporaryDirectory folder;
+    Image image = make_image(2, 1, 4, 8, ColorSpace::data);
+    image.samples = std::vector<std::uint8_t>{200, 100, 50, 64, 10, 20, 30, 0};
+    for (const char* name : {"a.png", "a.tif"}) {
+        write_image(folder / name, image);
+        expect_same(read_back(folder / name), image);
+    }
+}
+
+TEST(ImageFile, LargeImagesArriveWholeThoughReadInSteps) {
+    // 24 MB of samples: more than one step of 16 MB.
+    const TemporaryDirectory folder;
+    const Image words = pattern<std::uint16_t>(1500, 2000, 4, ColorSpace::data);
+    write_image(folder / "a.tif", words);
+    expect_same(read_back(folder / "a.tif"), words);
+}
+
+TEST(ImageFile, BytesInMemoryReadLikeTheirFile) {
+    const TemporaryDirectory folder;
+    const Image image = pattern<std::uint16_t>(9, 5, 3, ColorSpace::data);
+    write_image(folder / "a.png", image);
+    const std::string bytes = bytes_of(folder / "a.png");
+    expect_same(read_image(std::as_bytes(std::span(bytes)), "image 3 of a.glb", ImageUse::data),
+                image);
+    try {
+        read_image(std::as_bytes(std::span(bytes).first(40)), "image 3 of a.glb", ImageUse::data);
+        FAIL() << "half a file was read";
+    } catch (const FileError& error) {
+        EXPECT_THAT(error.what(), HasSubstr("image 3 of a.glb: is cut short"));
+    }
+}
+
+TEST(ImageFile, TheSameImageGivesTheSameBytes) {
+    const TemporaryDirectory folder;
+    const Image image = pattern<float>(20, 20, 3, ColorSpace::linear);
+    const Image coded = pattern<std::uint8_t>(20, 20, 3, ColorSpace::srgb);
+    for (const char* name : {"a.png", "a.jpg", "a.tif", "a.exr", "a.hdr"}) {
+        const bool holds_float = name == std::string("a.exr") || name == std::string("a.hdr");
+        const Image& one = holds_float ? image : coded;
+        write_image(folder / name, one, {{"relief:content", "test"}});
+        const std::string first = bytes_of(folder / name);
+        // Dates in files go by the second.
+        std::this_thread::sleep_for(std::chrono::milliseconds(1050));
+        write_image(folder / name, one, {{"relief:content", "test"}});
+        EXPECT_EQ(bytes_of(folder / name), first) << name;
+    }
+}
+
+TEST(ImageFile, MetadataComesBackFromPngTiffAndExr) {
+    const TemporaryDirectory folder;
+    const std::map<std::string, std::string> metadata{{"relief:green", "up"},
+                                                      {"relief:flat", "128"}};
+    write_image(folder / "a.png", pattern<std::uint8_t>(4, 4, 3, ColorSpace::data), metadata);
+    write_image(folder / "a.tif", pattern<std::uint16_t>(4, 4, 3, ColorSpace::data), metadata);
+    write_image(folder / "a.exr", pattern<float>(4, 4, 3, ColorSpace::data), metadata);
+    for (const char* name : {"a.png", "a.tif", "a.exr"}) {
+        const ImageInfo info = read_image_info(folder / name);
+        for (const auto& [key, value] : metadata)
+            EXPECT_EQ(info.metadata.at(key), value) << name;
+    }
+    EXPECT_THAT(read_image_info(folder / "a.png").metadata, testing::ContainerEq(metadata));
+}
+
+TEST(ImageFile, InfoSaysWhatReadingGives) {
+    const TemporaryDirectory folder;
+    write_image(folder / "a.png", pattern<std::uint16_t>(7, 5, 2, ColorSpace::data));
+    const ImageInfo info = read_image_info(folder / "a.png");
+    EXPECT_EQ(info.width, 7);
+    EXPECT_EQ(info.height, 5);
+    EXPECT_EQ(info.channels, 2);
+    EXPECT_EQ(info.bits, 16);
+    EXPECT_THAT(info.metadata, IsEmpty());
+}
+
+TEST(ImageFile, WhatAFormatCannotHoldIsRefusedAndTheOldFileStays) {
+    const TemporaryDirectory folder;
+    const Image bytes = pattern<std::uint8_t>(4, 4, 3, ColorSpace::srgb);
+    const Image alpha = pattern<std::uint8_t>(4, 4, 4, ColorSpace::srgb);
+    const Image words = pattern<std::uint16_t>(4, 4, 3, ColorSpace::data);
+    const Image floats = pattern<float>(4, 4, 3, ColorSpace::linear);
+    const Image grey = pattern<float>(4, 4, 1, ColorSpace::linear);
+    Image linear_bytes = bytes;
+    linear_bytes.color_space = ColorSpace::linear;
+    Image coded_floats = floats;
+    coded_floats.color_space = ColorSpace::srgb;
+    Image short_of_one = bytes;
+    short_of_one.width = 5;
+    const std::pair<const char*, const Image*> wrong[] = {
+        {"a.png", &floats},       {"a.jpg", &floats},       {"a.jpg", &words},
+        {"a.jpg", &alpha},        {"a.exr", &bytes},        {"a.hdr", &words},
+        {"a.hdr", &grey},         {"a.png", &linear_bytes}, {"a.tif", &linear_bytes},
+        {"a.exr", &coded_floats}, {"a.tif", &coded_floats}, {"a.png", &short_of_one}};
+    for (const auto& [name, image] : wrong) {
+        std::ofstream(folder / name) << "old";
+        EXPECT_THROW(write_image(folder / name, *image), InvalidInput) << name;
+        EXPECT_EQ(bytes_of(folder / name), "old") << name;
+    }
+    EXPECT_THROW(write_image(folder / "a.png", bytes, {{"", "x"}}), InvalidInput);
+    EXPECT_THROW(write_image(folder / "a.png", bytes, {{std::string(80, 'k'), "x"}}), InvalidInput);
+    EXPECT_THROW(write_image(folder / "a.gif", bytes), FileError);
+    EXPECT_THROW(write_image(folder / "a", bytes), FileError);
+    EXPECT_THROW(write_image(folder / "nowhere" / "a.png", bytes), FileError);
+}
+
+TEST(ImageFile, AFailingDiskLeavesTheOldFileAndNoHalfOne) {
+    const TemporaryDirectory folder;
+    const Image image = pattern<std::uint16_t>(200, 200, 3, ColorSpace::data);
+    const Image floats = pattern<float>(200, 200, 3, ColorSpace::linear);
+    std::signal(SIGXFSZ, SIG_IGN);
+    rlimit before{};
+    ::getrlimit(RLIMIT_FSIZE, &before);
+    for (const char* name : {"a.png", "a.tif", "a.exr", "a.hdr"}) {
+        std::ofstream(folder / name) << "old";
+        const bool holds_float = name == std::string("a.exr") || name == std::string("a.hdr");
+        const rlimit small{20000, before.rlim_max};
+        ::setrlimit(RLIMIT_FSIZE, &small);
+        EXPECT_THROW(write_image(folder / name, holds_float ? floats : image), FileError) << name;
+        ::setrlimit(RLIMIT_FSIZE, &before);
+        EXPECT_EQ(bytes_of(folder / name), "old") << name;
+    }
+    const auto files = std::filesystem::directory_iterator(folder.path());
+    EXPECT_EQ(std::distance(begin(files), end(files)), 4);
+}
+
+TEST(ImageFile, MissingFilesAndFoldersAreSaidToBeSo) {
+    const TemporaryDirectory folder;
+    EXPECT_THAT(complaint_about_reading(folder / "none.png"), HasSubstr("no such file"));
+    EXPECT_THAT(complaint_about_reading(folder.path()), HasSubstr("is not a file"));
+    std::ofstream(folder / "empty.png").flush();
+    EXPECT_THAT(complaint_about_reading(folder / "empty.png"), HasSubstr("is empty"));
+}
+
+/// Every way to cut a written file short must be noticed.
+TEST(ImageFile, CutFilesAreErrorsInEveryFormat) {
+    const TemporaryDirectory folder;
+    const Image image = pattern<std::uint8_t>(40, 40, 3, ColorSpace::srgb);
+    const Image floats = pattern<float>(40, 40, 3, ColorSpace::linear);
+    for (const char* name : {"a.png", "a.jpg", "a.tif", "a.exr", "a.hdr"}) {
+        const bool holds_float = name == std::string("a.exr") || name == std::string("a.hdr");
+        write_image(folder / name, holds_float ? floats : image);
+        const std::string whole = bytes_of(folder / name);
+        for (const double share : {0.02, 0.3, 0.6, 0.9}) {
+            const auto size = static_cast<std::size_t>(static_cast<double>(whole.size()) * share);
+            std::ofstream(folder / name, std::ios::binary) << whole.substr(0, size);
+            EXPECT_NE(complaint_about_reading(folder / name), "no error") << name << " " << share;
+        }
+    }
+}
+
+}  // namespace
+}  // namespace relief

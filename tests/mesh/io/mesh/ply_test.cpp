@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: Apache-2.0
+// PLY: every scalar type and byte order, texture coordinates by vertex and by face, hostile counts.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "mesh_text_test.h"
+#include "support/shapes.h"
+
+namespace relief {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+class Ply : public test::MeshTextTest {
+  protected:
+    Ply() : MeshTextTest("a.ply") {}
+};
+
+const std::string ascii_vertices =
+    "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float "
+    "z\n";
+const std::string faces = "element face 1\nproperty list uchar int vertex_indices\nend_header\n";
+const std::string binary_head =
+    "ply\nformat binary_little_endian 1.0\nelement vertex 1\nproperty float x\nproperty float "
+    "y\nproperty float z\n";
+
+TEST_F(Ply, AsciiIsReadLineByLine) {
+    const Mesh mesh =
+        read(ascii_vertices + faces + "0 0 0 9 9\n1 0 nan\n0 1 -inf\n3 0 1 2 7\n").mesh;
+    EXPECT_THAT(mesh.triangles, ElementsAre(glm::uvec3(0, 1, 2)));
+    EXPECT_TRUE(std::isnan(mesh.positions[1].z));
+    EXPECT_EQ(report_.count("line with more values than the header names"), 2U);
+}
+
+TEST_F(Ply, VAndTArePointingUpInTheFileAndDownInTheMesh) {
+    const Mesh mesh = read(ascii_vertices + "property float s\nproperty float t\n" + faces +
+                           "0 0 0 0.5 0.25\n1 0 0 1 1\n0 1 0 0 0\n3 0 1 2\n")
+                          .mesh;
+    EXPECT_THAT(mesh.texcoords,
+                ElementsAre(glm::vec2(0.5F, 0.75F), glm::vec2(1, 0), glm::vec2(0, 1)));
+}
+
+TEST_F(Ply, TextureCoordinatesByFaceSplitVertices) {
+    const Mesh mesh =
+        read(
+            ascii_vertices +
+            "element face 2\nproperty list uchar int vertex_indices\nproperty list uchar float "
+            "texcoord\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2 6 0 0 1 0 0 1\n3 0 1 2 6 0 0 1 0 1 "
+            "1\n")
+            .mesh;
+    EXPECT_THAT(mesh.triangles, ElementsAre(glm::uvec3(0, 1, 2), glm::uvec3(0, 1, 3)));
+    EXPECT_EQ(mesh.positions[3], glm::vec3(0, 1, 0));
+    EXPECT_EQ(mesh.texcoords[3], glm::vec2(1, 0));
+}
+
+TEST_F(Ply, IsolatedAndEqualVerticesAreKept) {
+    const Mesh mesh = read(
+                          "ply\nformat ascii 1.0\nelement vertex 5\nproperty float x\nproperty "
+                          "float y\nproperty float z\n" +
+                          faces + "0 0 0\n0 0 0\n1 0 0\n0 1 0\n5 5 5\n3 0 2 3\n")
+                          .mesh;
+    EXPECT_EQ(mesh.positions.size(), 5U);
+}
+
+TEST_F(Ply, HostileCountsAreRefusedBeforeMemoryIsTaken) {
+    EXPECT_THAT(error_of("ply\nformat binary_little_endian 1.0\nelement vertex "
+                         "4000000000000\nproperty float x\nproperty float y\nproperty float z\n" +
+                         faces),
+                HasSubstr("claims 4000000000000 of element 'vertex'"));
+    const std::string list = binary_head +
+                             "element face 1\nproperty list int int vertex_indices\nend_header\n" +
+                             std::string(12, '\0');
+    EXPECT_THAT(error_of(list + std::string("\x00\x94\x35\x77", 4)), HasSubstr("2000000000"));
+    EXPECT_THAT(error_of(list + std::string("\xFB\xFF\xFF\xFF", 4)), HasSubstr("length -5"));
+    EXPECT_THAT(error_of(list + std::string("\x03\0\0\0\0\0\0\0", 8)), HasSubstr("length 3"));
+    EXPECT_THAT(error_of(ascii_vertices + faces + "0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n"),
+                HasSubstr("face 0 names vertex 3, but there are only 3"));
+    EXPECT_THAT(error_of(ascii_vertices + faces + "0 0 0\n1 0 0\n0 1 0\n3 0 1 -1\n"),
+                HasSubstr("face 0 names vertex -1"));
+    EXPECT_THAT(error_of(ascii_vertices + faces + "0 0 0\n1 0 0\n0 1\n"),
+                HasSubstr("the file ends"));
+}
+
+TEST_F(Ply, MalformedHeadersAreRefusedByLine) {
+    EXPECT_THAT(error_of("plx\n"), HasSubstr("does not begin with 'ply'"));
+    EXPECT_THAT(error_of("ply\nformat ascii 1.0\nelement vertex many\n"),
+                HasSubstr("line 3: an element has the count 'many'"));
+    EXPECT_THAT(error_of("ply\nformat ascii 1.0\nelement vertex 1\nproperty half x\n"),
+                HasSubstr("line 4: 'half' is no PLY type"));
+    EXPECT_THAT(error_of("ply\nelement vertex 1\n"), HasSubstr("no end_header"));
+    EXPECT_THAT(error_of("ply\nformat ascii 1.0\nelement vertex 1\nproperty list float int a\n"),
+                HasSubstr("counted in a floating-point type"));
+}
+
+TEST_F(Ply, WhatIsWrittenReadsBack) {
+    MeshFile contents{test::sphere(16, 8), {}};
+    for (std::size_t i = 0; i < contents.mesh.positions.size(); ++i) {
+        contents.mesh.colors.emplace_back(static_cast<float>(i % 256) / 255.0F, 0.0F, 1.0F, 0.2F);
+    }
+    for (const bool has_fractions : {false, true}) {
+        if (has_fractions) contents.mesh.colors[3].g = 0.123F;
+        write_mesh(folder_ / "b.ply", contents);
+        const Mesh mesh = read_mesh(folder_ / "b.ply", report_).mesh;
+        EXPECT_EQ(mesh.positions, contents.mesh.positions);
+        EXPECT_EQ(mesh.normals, contents.mesh.normals);
+        EXPECT_EQ(mesh.colors, contents.mesh.colors);
+        EXPECT_EQ(mesh.triangles, contents.mesh.triangles);
+        ASSERT_EQ(mesh.texcoords.size(), contents.mesh.texcoords.size());
+        for (std::size_t i = 0; i < mesh.texcoords.size(); ++i) {
+            EXPECT_EQ(mesh.texcoords[i].x, contents.mesh.texcoords[i].x);
+            // 1 - v is rounded to float in the file: half a unit in the last place of 1.
+            EXPECT_NEAR(mesh.texcoords[i].y, contents.mesh.texcoords[i].y, 6e-8);
+        }
+    }
+}
+
+TEST_F(Ply, EveryScalarTypeAndByteOrderGivesTheSameShape) {
+    RELIEF_NEEDS_SHARED(magnum, "data/models/ply/magnum");
+    // All of these hold the same five vertices, a quad and a triangle.
+    const Mesh reference = read_mesh(magnum / "positions-float-indices-uint.ply", report_).mesh;
+    int read_count = 0;
+    for (const auto& entry : std::filesystem::directory_iterator(magnum)) {
+        if (entry.path().filename() == "ascii.ply") continue;
+        const Mesh mesh = read_mesh(entry.path(), report_).mesh;
+        EXPECT_EQ(mesh.positions, reference.positions) << entry.path();
+        EXPECT_EQ(mesh.triangles, reference.triangles) << entry.path();
+        ++read_count;
+    }
+    EXPECT_EQ(read_count, 12);
+    const Mesh colored =
+        read_mesh(magnum /
+                      "positions-colors-normals-texcoords-float-objectid-uint-indices-int."
+                      "ply",
+                  report_)
+            .mesh;
+    EXPECT_EQ(colored.normals.size(), 5U);
+    EXPECT_EQ(colored.texcoords.size(), 5U);
+    EXPECT_EQ(colored.colors.size(), 5U);
+}
+
+TEST_F(Ply, TheSameModelAsPlyAndAsObjHasTheSameTextureCoordinates) {
+    RELIEF_NEEDS_SHARED(ply, "data/models/ply/fuze_ascii.ply");
+    RELIEF_NEEDS_SHARED(obj, "data/models/obj/fuze/fuze.obj");
+    const Mesh from_ply = read_mesh(ply, report_).mesh;
+    const Mesh from_obj = read_mesh(obj, report_).mesh;
+    ASSERT_EQ(from_ply.triangles.size(), from_obj.triangles.size());
+    ASSERT_EQ(from_ply.positions.size(), from_obj.positions.size());
+    // Written by the same tool with six decimals each; the flip of v must be the same in both.
+    for (std::size_t i = 0; i < from_ply.triangles.size(); ++i) {
+        for (int k = 0; k < 3; ++k) {
+            const glm::vec2 difference = from_ply.texcoords[from_ply.triangles[i][k]] -
+                                         from_obj.texcoords[from_obj.triangles[i][k]];
+            ASSERT_LT(glm::length(difference), 2e-6F) << "triangle " << i;
+        }
+    }
+}
+
+}  // namespace
+}  // namespace relief
