@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Differences between two pictures, in units of the images' own range; sums in double, in the order
 // of the samples. Not-a-number against a number is an infinite difference. See image_compare.h.
-// Tests: tests/shade/render/image_compare_test.cpp.
+// Tests: tests/shade/compare/image_compare_test.cpp.
 #include "relief/shade/image_compare.h"
 
 #include <fmt/format.h>
@@ -25,6 +25,7 @@ double distance(double a, double b) {
 
 template <typename T>
 ImageDifference difference(const std::vector<T>& a, const std::vector<T>& b, std::size_t channels) {
+    constexpr double peak = std::is_integral_v<T> ? std::numeric_limits<T>::max() : 1.0;
     ImageDifference result;
     double sum = 0.0;
     double sum_of_squares = 0.0;
@@ -42,6 +43,7 @@ ImageDifference difference(const std::vector<T>& a, const std::vector<T>& b, std
     if (!a.empty()) {
         result.mean = sum / static_cast<double>(a.size());
         result.rms = std::sqrt(sum_of_squares / static_cast<double>(a.size()));
+        result.psnr = 20.0 * std::log10(peak / result.rms);
     }
     return result;
 }

@@ -33,6 +33,16 @@ TEST(ImageCompare, BytesDifferInStepsOfTheirRange) {
     EXPECT_EQ(difference.differing_pixels, 2U);
 }
 
+TEST(ImageCompare, TheSignalToNoiseRatioIsAgainstThePeakOfTheSamples) {
+    Image a = make_image(1, 1, 1, 8, ColorSpace::srgb);
+    Image b = a;
+    b.as<std::uint8_t>()[0] = 51;  // A fifth: 20 log10(5) decibels.
+    EXPECT_NEAR(compare(a, b).psnr, 13.979400086720377, 1e-12);
+    EXPECT_NEAR(compare(of_floats({0.0F}), of_floats({0.5F})).psnr, 6.020599913279624, 1e-12);
+    EXPECT_EQ(compare(a, a).psnr, infinity);
+    EXPECT_EQ(compare(of_floats({0.0F}), of_floats({std::nanf("")})).psnr, -infinity);
+}
+
 TEST(ImageCompare, IsTheSameBothWaysAndNothingForTheSame) {
     Image a = make_image(1, 2, 1, 16, ColorSpace::data);
     Image b = a;
