@@ -12,6 +12,7 @@
 #include "common/findings.h"
 #include "common/text.h"
 #include "effects_text.h"
+#include "picture_reference.h"
 #include "relief/mesh/image_file.h"
 #include "relief/mesh/threads.h"
 #include "relief/shade/renderer.h"
@@ -105,7 +106,7 @@ void print_summary(const ViewOptions& options, const ComposedScene& composed, co
                     counted(drawn.frame.programs, "program"),
                     counted(drawn.frame.textures, "texture"), drawn.backend, drawn.renderer));
     print_entry("time", durations(stages.finished()));
-    print_entry("wrote", file_and_size(*options.output));
+    if (options.output) print_entry("wrote", file_and_size(*options.output));
 }
 
 nlohmann::ordered_json summary_json(const ViewOptions& options, const ComposedScene& composed,
@@ -122,7 +123,8 @@ nlohmann::ordered_json summary_json(const ViewOptions& options, const ComposedSc
 
 nlohmann::ordered_json picture_json(const ViewOptions& options, const Drawn& drawn) {
     const FrameTimes& times = drawn.frame.times;
-    return {{"output", options.output->string()},
+    using Json = nlohmann::ordered_json;
+    return {{"output", options.output ? Json(options.output->string()) : Json(nullptr)},
             {"width", options.size.x},
             {"height", options.size.y},
             {"samples", options.samples},
@@ -147,10 +149,16 @@ ExitCode run(ViewOptions& options) {
     if (options.explain_effects && !options.json) print_effects(composed.scene, plan);
 
     std::optional<Drawn> drawn;
-    if (options.output) {
+    std::optional<ReferenceComparison> comparison;
+    if (options.output || options.reference) {
+        const Image reference = options.reference ? read_reference(options) : Image{};
         drawn = draw(options, composed, stages, report);
         const Image picture = picture_of(drawn->frame, composed.scene);
-        stages.run("write", [&] { write_image(*options.output, picture); });
+        if (options.output) stages.run("write", [&] { write_image(*options.output, picture); });
+        if (options.reference) {
+            comparison = stages.run(
+                "compare", [&] { return compare_with_reference(options, picture, reference); });
+        }
     }
 
     Findings findings;
@@ -158,12 +166,15 @@ ExitCode run(ViewOptions& options) {
     if (options.json) {
         nlohmann::ordered_json json = summary_json(options, composed, findings, stages);
         if (drawn) json["picture"] = picture_json(options, *drawn);
+        if (comparison) json["comparison"] = comparison_json(options, *comparison);
         if (options.explain_effects) json["effects"] = effects_json(composed.scene, plan);
         print_json(json);
     } else if (drawn && !options.general.quiet) {
         if (options.explain_effects) fmt::print("\n");
         print_summary(options, composed, *drawn, findings, stages);
+        if (comparison) print_entry("compared", in_words(*comparison));
     }
+    if (comparison) require_match(options, *comparison);
     return ExitCode::done;
 }
 

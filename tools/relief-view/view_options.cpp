@@ -7,6 +7,7 @@
 
 #include "common/map_choices.h"
 #include "common/text.h"
+#include "picture_reference.h"
 
 namespace relief::tools {
 namespace {
@@ -135,7 +136,7 @@ void refuse(bool useless, const std::string& option, const std::string& because,
 }
 
 void check_output(const ViewOptions& options) {
-    if (!options.output && !options.explain_effects)
+    if (!options.output && !options.explain_effects && !options.reference)
         throw UsageError("--output is missing",
                          "name a picture to write, or ask for --explain-effects");
     if (!options.output) return;
@@ -206,6 +207,7 @@ void add_view_options(CLI::App& app, ViewOptions& options) {
     add_map_options(app, options);
     add_material_options(app, options);
     add_light_options(app, options);
+    add_reference_options(app, options);
     const Choices<Backend> backends = {
         {"auto", Backend::automatic}, {"osmesa", Backend::osmesa}, {"egl", Backend::egl}};
     add_choice(app, "--backend", options.backend, backends,
@@ -218,13 +220,16 @@ void settle(ViewOptions& options) {
     give_back_model(options);
     if (options.model.empty()) throw UsageError("MODEL is missing");
     check_output(options);
+    check_reference(options);
     check_maps(options);
     check_environment(options);
     check_lights(options);
 }
 
 bool is_linear_output(const ViewOptions& options) {
-    return options.output && extension_of(*options.output) == ".exr";
+    const std::optional<std::filesystem::path>& file =
+        options.output ? options.output : options.reference;
+    return file && (extension_of(*file) == ".exr" || extension_of(*file) == ".hdr");
 }
 
 }  // namespace relief::tools

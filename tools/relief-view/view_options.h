@@ -34,6 +34,10 @@ struct ViewOptions {
     glm::ivec2 size{1024, 1024};
     int samples = 4;
 
+    std::optional<std::filesystem::path> reference;
+    std::optional<double> max_difference;  ///< From the reference; absent: 0.
+    std::optional<std::filesystem::path> difference_map;
+
     std::optional<std::filesystem::path> normal_map;
     std::optional<float> normal_scale;
     std::optional<Green> green;
@@ -68,7 +72,7 @@ void add_view_options(CLI::App& app, ViewOptions& options);
 /// Settles what parsing left open and refuses what contradicts itself. \throws UsageError
 void settle(ViewOptions& options);
 
-/// Float radiance (.exr), not display colour (.png).
+/// Float radiance (.exr), not display colour (.png): as the output is, or else the reference.
 bool is_linear_output(const ViewOptions& options);
 
 }  // namespace relief::tools
