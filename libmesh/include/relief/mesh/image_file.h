@@ -2,8 +2,8 @@
 /// \file
 /// Image files: PNG, JPEG, TIFF, EXR, HDR and what else OpenImageIO reads.
 ///
-/// OpenImageIO stands behind a module that is loaded at the first call and not before, because
-/// loading it alone costs 0.2 s and 120 MB; a program that touches no image never pays that. The
+/// PNG files of the usual kinds have a direct way. OpenImageIO stands behind a module that is loaded
+/// when another image needs it and not before, because loading it alone costs 0.2 s and 120 MB. The
 /// module is looked for in $RELIEF_MODULE_DIR, then in ../lib/relief beside the program.
 /// Tests: tests/mesh/io/image/image_file_test.cpp.
 #pragma once

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reading and writing image files: bytes -> container checks -> the image module -> Image.
+// Reading and writing image files: bytes -> container checks -> a decoder -> Image. The usual PNG
+// and JPEG files have a direct way; all else goes through the image module.
 // Samples arrive as stored and from the top row; memory is taken as rows decode, so that a header
 // that lies costs nothing. Damaged, truncated, empty or oversized files are a FileError.
 // Tests: tests/mesh/io/image/image_file_test.cpp.
@@ -10,6 +11,7 @@
 #include <algorithm>
 #include <memory>
 #include <new>
+#include <optional>
 #include <string_view>
 #include <utility>
 
@@ -17,6 +19,8 @@
 #include "file_replacement.h"
 #include "io/image/image_file_container.h"
 #include "io/image/image_file_module.h"
+#include "io/image/png_decoder.h"
+#include "io/image/png_encoder.h"
 #include "relief/mesh/error.h"
 
 namespace relief {
@@ -98,13 +102,19 @@ std::string folded_description(const Metadata& metadata) {
     return description;
 }
 
-OpenImage open_image(std::span<const std::byte> bytes, const std::filesystem::path& name) {
+/// What a decoder is given: PNG and JPEG without what does not define their samples.
+std::span<const std::byte> encoded_in(const ImageContainer& container,
+                                      std::span<const std::byte> bytes) {
+    return container.stripped.empty() ? bytes : std::span(container.stripped);
+}
+
+/// \param bytes  of which `container` was made
+OpenImage open_image(ImageContainer container, std::span<const std::byte> bytes,
+                     const std::filesystem::path& name) {
     OpenImage image;
-    image.container = examine_image(bytes, name);
+    image.container = std::move(container);
     const ImageModule& module = image_module(name);
-    const std::span<const std::byte> encoded =
-        image.container.stripped.empty() ? bytes
-                                         : std::span(std::as_const(image.container.stripped));
+    const std::span<const std::byte> encoded = encoded_in(image.container, bytes);
     Metadata text;
     std::string reason;
     image.reader = {module.open(image.container.format, encoded.data(), encoded.size(),
@@ -164,31 +174,51 @@ std::string read_bytes(const std::filesystem::path& file) {
     return read_file(file);
 }
 
-Image read_encoded(std::span<const std::byte> bytes, const std::filesystem::path& name,
-                   ImageUse use) {
-    const OpenImage open = open_image(bytes, name);
+/// By way of the image module.
+Image read_by_module(const OpenImage& open, const std::filesystem::path& name, ImageUse use) {
     Image image{static_cast<int>(open.header.width),
                 static_cast<int>(open.header.height),
                 static_cast<int>(open.header.channels),
                 color_space_of(use, open.header.bits),
                 {}};
-    try {
-        switch (open.header.bits) {
-            case 8:
-                image.samples = read_samples<std::uint8_t>(open, name);
-                break;
-            case 16:
-                image.samples = read_samples<std::uint16_t>(open, name);
-                break;
-            default:
-                image.samples = read_samples<float>(open, name);
-                break;
-        }
-    } catch (const std::bad_alloc&) {
-        throw FileError(name, fmt::format("does not fit into memory: {} x {} texels", image.width,
-                                          image.height));
+    switch (open.header.bits) {
+        case 8:
+            image.samples = read_samples<std::uint8_t>(open, name);
+            break;
+        case 16:
+            image.samples = read_samples<std::uint16_t>(open, name);
+            break;
+        default:
+            image.samples = read_samples<float>(open, name);
+            break;
     }
     return image;
+}
+
+/// Without the image module; nothing where the file is of no usual kind, or not intact.
+std::optional<PlainPng> plain_png_in(const ImageContainer& container) {
+    if (std::string_view(container.format) != "png") return std::nullopt;
+    return open_plain_png(container.stripped);
+}
+
+std::optional<Image> read_directly(const ImageContainer& container, ImageUse use) {
+    const std::optional<PlainPng> png = plain_png_in(container);
+    if (!png) return std::nullopt;
+    std::optional<Image::Samples> samples = decode(*png);
+    if (!samples) return std::nullopt;
+    return Image{png->width, png->height, png->channels, color_space_of(use, png->bits()),
+                 std::move(*samples)};
+}
+
+Image read_encoded(std::span<const std::byte> bytes, const std::filesystem::path& name,
+                   ImageUse use) {
+    try {
+        ImageContainer container = examine_image(bytes, name);
+        if (std::optional<Image> image = read_directly(container, use)) return std::move(*image);
+        return read_by_module(open_image(std::move(container), bytes, name), name, use);
+    } catch (const std::bad_alloc&) {
+        throw FileError(name, "does not fit into memory");
+    }
 }
 
 // ---------------------------------------------------------------------------------------------
@@ -243,7 +273,7 @@ void check_metadata(const Metadata& metadata) {
 
 /// The metadata in the form that the format can hold.
 Metadata entries_for(std::string_view format, const Metadata& metadata) {
-    if (format == "png" || format == "openexr") return metadata;
+    if (format == "openexr") return metadata;
     if (format == "tiff" && !metadata.empty())
         return {{"ImageDescription", folded_description(metadata)}};
     return {};
@@ -262,7 +292,11 @@ Image read_image(std::span<const std::byte> bytes, const std::string& name, Imag
 
 ImageInfo read_image_info(const std::filesystem::path& file) {
     const std::string contents = read_bytes(file);
-    const OpenImage open = open_image(std::as_bytes(std::span(contents)), file);
+    const auto bytes = std::as_bytes(std::span(contents));
+    ImageContainer container = examine_image(bytes, file);
+    if (const std::optional<PlainPng> png = plain_png_in(container))
+        return {png->width, png->height, png->channels, png->bits(), std::move(container.text)};
+    const OpenImage open = open_image(std::move(container), bytes, file);
     return {static_cast<int>(open.header.width), static_cast<int>(open.header.height),
             static_cast<int>(open.header.channels), open.header.bits, open.metadata};
 }
@@ -271,6 +305,11 @@ void write_image(const std::filesystem::path& file, const Image& image, const Me
     const std::string_view format = format_by_extension(file);
     check_writable(format, image);
     check_metadata(metadata);
+    if (format == "png") {
+        const std::string encoded = encode_png(image, metadata);
+        replace_file(file, std::as_bytes(std::span(encoded)));
+        return;
+    }
     const Metadata entries = entries_for(format, metadata);
     std::vector<const char*> keys, values;
     for (const auto& [key, value] : entries) {

@@ -36,11 +36,6 @@ Function in_libpng(const char* name) {
 
 void say_nothing(void*, const char*) {}
 
-void* create_silent(const char* function, const char* version) {
-    const auto create = in_libpng<Create>(function);
-    return create == nullptr ? nullptr : create(version, nullptr, leave_by_jump, say_nothing);
-}
-
 }  // namespace
 
 namespace relief {
@@ -54,13 +49,8 @@ std::string last_png_complaint() {
 extern "C" __attribute__((visibility("default"))) void* png_create_read_struct(const char* version,
                                                                                void*, Handler,
                                                                                Handler) {
-    return create_silent("png_create_read_struct", version);
-}
-
-extern "C" __attribute__((visibility("default"))) void* png_create_write_struct(const char* version,
-                                                                                void*, Handler,
-                                                                                Handler) {
-    return create_silent("png_create_write_struct", version);
+    const auto create = in_libpng<Create>("png_create_read_struct");
+    return create == nullptr ? nullptr : create(version, nullptr, leave_by_jump, say_nothing);
 }
 
 extern "C" __attribute__((visibility("default"))) void png_set_error_fn(void* png, void* receiver,

@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: Apache-2.0
+// Plain PNG files: chunks with their checksums -> zlib stream -> filtered rows -> samples.
+// Whatever is odd gives nothing, and the image module is asked instead: a file that is wrong in any
+// way, or of the few kinds not known here. Source: [ISO/IEC 15948].
+// Tests: tests/mesh/io/image/png_test.cpp, image_file_real_test.cpp.
+#include "io/image/png_decoder.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <string_view>
+
+#include "io/image/deflate.h"
+#include "io/image/png_filter.h"
+#include "relief/mesh/image_file.h"
+
+namespace relief {
+namespace {
+
+using Bytes = std::span<const std::byte>;
+
+constexpr int palette_type = 3;
+
+std::uint32_t big32(Bytes bytes, std::size_t at) {
+    std::uint32_t value = 0;
+    for (std::size_t i = 0; i < 4; ++i)
+        value = value << 8 | std::to_integer<std::uint32_t>(bytes[at + i]);
+    return value;
+}
+
+int byte_at(Bytes bytes, std::size_t at) {
+    return std::to_integer<int>(bytes[at]);
+}
+
+/// The chunks' contents, or nothing where a checksum is wrong or their order is not the usual one.
+struct Chunks {
+    Bytes header;
+    Bytes palette;
+    Bytes transparency;
+    std::vector<std::byte> packed;
+};
+
+std::optional<Chunks> chunks_of(Bytes stripped) {
+    constexpr std::size_t signature = 8;
+    constexpr std::size_t frame = 12;  // Length, type and checksum around a chunk's data.
+    Chunks chunks;
+    chunks.packed.reserve(stripped.size());
+    for (std::size_t at = signature; stripped.size() - at >= frame;) {
+        const std::size_t length = big32(stripped, at);
+        if (length > stripped.size() - at - frame) return std::nullopt;
+        const Bytes data = stripped.subspan(at + 8, length);
+        if (crc32(stripped.subspan(at + 4, length + 4)) != big32(stripped, at + 8 + length))
+            return std::nullopt;
+        const Bytes type_bytes = stripped.subspan(at + 4, 4);
+        const std::string_view type(reinterpret_cast<const char*>(type_bytes.data()), 4);
+        if ((type == "IHDR") != (at == signature)) return std::nullopt;
+        if (type == "IHDR") chunks.header = data;
+        if (type == "PLTE") {
+            if (!chunks.palette.empty() || !chunks.packed.empty()) return std::nullopt;
+            chunks.palette = data;
+        }
+        if (type == "tRNS") {
+            if (!chunks.transparency.empty() || !chunks.packed.empty()) return std::nullopt;
+            chunks.transparency = data;
+        }
+        if (type == "IDAT") chunks.packed.insert(chunks.packed.end(), data.begin(), data.end());
+        if (type == "IEND") return chunks;
+        at += length + frame;
+    }
+    return std::nullopt;
+}
+
+/// RGB, or RGBA where some entry is not opaque; nothing where the chunks do not fit together.
+std::optional<std::vector<std::uint8_t>> palette_from(const Chunks& chunks, int bits) {
+    const std::size_t count = chunks.palette.size() / 3;
+    const std::size_t opaque_from = chunks.transparency.size();
+    if (count == 0 || count * 3 != chunks.palette.size() || count > std::size_t{1} << bits ||
+        opaque_from > count) {
+        return std::nullopt;
+    }
+    std::vector<std::uint8_t> palette;
+    for (std::size_t i = 0; i < count; ++i) {
+        for (std::size_t k = 0; k < 3; ++k)
+            palette.push_back(static_cast<std::uint8_t>(chunks.palette[3 * i + k]));
+        if (opaque_from > 0) {
+            palette.push_back(i < opaque_from ? static_cast<std::uint8_t>(chunks.transparency[i])
+                                              : std::uint8_t{255});
+        }
+    }
+    return palette;
+}
+
+bool is_allowed(int type, int bits) {
+    if (bits == 8) return true;
+    if (bits == 16) return type != palette_type;
+    return (type == 0 || type == palette_type) && (bits == 1 || bits == 2 || bits == 4);
+}
+
+/// Every `Step` bytes, or indices, of a row as it is stored, as texels behind `samples`.
+/// \return false where an index is beyond the palette
+bool append_row(const PlainPng& png, std::span<const std::uint8_t> row,
+                std::vector<std::uint8_t>& samples) {
+    if (png.stored_bits == 8 && png.palette.empty()) {
+        samples.insert(samples.end(), row.begin(), row.end());
+        return true;
+    }
+    const auto bits = static_cast<unsigned>(png.stored_bits);
+    const unsigned mask = (1U << bits) - 1U;
+    const auto channels = static_cast<std::size_t>(png.channels);
+    for (unsigned x = 0; x < static_cast<unsigned>(png.width); ++x) {
+        const unsigned bit = x * bits;
+        const unsigned value = row[bit / 8] >> (8 - bits - bit % 8) & mask;
+        if (png.palette.empty()) {
+            samples.push_back(static_cast<std::uint8_t>(value * 255U / mask));
+            continue;
+        }
+        if ((value + 1) * channels > png.palette.size()) return false;
+        const auto entry = png.palette.begin() + static_cast<std::ptrdiff_t>(value * channels);
+        samples.insert(samples.end(), entry, entry + png.channels);
+    }
+    return true;
+}
+
+bool append_row(const PlainPng&, std::span<const std::uint8_t> row,
+                std::vector<std::uint16_t>& samples) {
+    const std::size_t begin = samples.size();
+    samples.resize(begin + row.size() / 2);
+    for (std::size_t i = 0; i < row.size() / 2; ++i)
+        samples[begin + i] = static_cast<std::uint16_t>(row[2 * i] << 8 | row[2 * i + 1]);
+    return true;
+}
+
+template <typename Sample>
+std::optional<Image::Samples> decode_as(const PlainPng& png) {
+    const auto width = static_cast<std::size_t>(png.width);
+    const auto height = static_cast<std::size_t>(png.height);
+    const auto texel_bits = static_cast<std::size_t>(png.stored_bits * png.stored_channels);
+    const std::size_t row_size = (width * texel_bits + 7) / 8;
+    const std::size_t step = std::max<std::size_t>(texel_bits / 8, 1);
+    const std::size_t filtered_size = (row_size + 1) * height;
+    const auto filtered = std::make_unique_for_overwrite<std::uint8_t[]>(filtered_size);
+    if (!inflate(png.packed, std::as_writable_bytes(std::span(filtered.get(), filtered_size))))
+        return std::nullopt;
+    const std::vector<std::uint8_t> zeros(row_size, 0);
+    std::span<const std::uint8_t> above = zeros;
+    std::vector<Sample> samples;
+    samples.reserve(width * height * static_cast<std::size_t>(png.channels));
+    for (std::size_t y = 0; y < height; ++y) {
+        std::uint8_t* const line = filtered.get() + y * (row_size + 1);
+        const std::span<std::uint8_t> row(line + 1, row_size);
+        if (!undo_filter(line[0], step, row, above) || !append_row(png, row, samples))
+            return std::nullopt;
+        above = row;
+    }
+    return samples;
+}
+
+}  // namespace
+
+std::optional<PlainPng> open_plain_png(std::span<const std::byte> stripped) {
+    std::optional<Chunks> chunks = chunks_of(stripped);
+    if (!chunks || chunks->header.size() != 13) return std::nullopt;
+    const Bytes header = chunks->header;
+    static constexpr std::array channels_of_type{1, 0, 3, 1, 2, 0, 4};
+    const std::uint64_t width = big32(header, 0);
+    const std::uint64_t height = big32(header, 4);
+    const int type = byte_at(header, 9);
+    PlainPng png;
+    png.stored_bits = byte_at(header, 8);
+    if (type >= static_cast<int>(channels_of_type.size()) || !is_allowed(type, png.stored_bits))
+        return std::nullopt;
+    png.stored_channels = channels_of_type[static_cast<std::size_t>(type)];
+    const bool is_usual = byte_at(header, 10) == 0 && byte_at(header, 11) == 0;
+    const bool is_interlaced = byte_at(header, 12) != 0;
+    constexpr std::uint64_t most_texels = max_image_samples / 4;
+    if (png.stored_channels == 0 || !is_usual || is_interlaced || width == 0 || height == 0 ||
+        width > most_texels / height) {
+        return std::nullopt;
+    }
+    png.channels = png.stored_channels;
+    if (type == palette_type) {
+        auto palette = palette_from(*chunks, png.stored_bits);
+        if (!palette) return std::nullopt;
+        png.palette = std::move(*palette);
+        png.channels = chunks->transparency.empty() ? 3 : 4;
+    } else if (!chunks->transparency.empty()) {
+        return std::nullopt;
+    }
+    png.width = static_cast<int>(width);
+    png.height = static_cast<int>(height);
+    png.packed = std::move(chunks->packed);
+    return png;
+}
+
+std::optional<Image::Samples> decode(const PlainPng& png) {
+    return png.bits() == 16 ? decode_as<std::uint16_t>(png) : decode_as<std::uint8_t>(png);
+}
+
+}  // namespace relief
