@@ -8,8 +8,8 @@
 #include <set>
 
 #include "common/text.h"
-#include "framing.h"
 #include "material_overrides.h"
+#include "relief/shade/framing.h"
 #include "relief/shade/scene_file.h"
 
 namespace relief::tools {
@@ -51,10 +51,6 @@ void set_environment(Scene& scene, const ViewOptions& options) {
     }
 }
 
-glm::vec3 center_of(const Bounds& bounds) {
-    return bounds.empty() ? glm::vec3(0.0F) : 0.5F * (bounds.min + bounds.max);
-}
-
 Camera camera_for(const Scene& scene, const ViewOptions& options) {
     if (scene.camera && !options.camera) {
         Camera camera = *scene.camera;
@@ -63,13 +59,8 @@ Camera camera_for(const Scene& scene, const ViewOptions& options) {
     }
     const CameraOption view = options.camera.value_or(default_camera);
     const float aspect = static_cast<float>(options.size.x) / static_cast<float>(options.size.y);
-    const Bounds bounds = world_bounds(scene);
-    const glm::vec3 center = center_of(bounds);
-    const Camera camera = framed(bounds, view.azimuth, view.elevation,
-                                 options.vertical_fov.value_or(default_fov), aspect);
-    // The box's corners are mostly empty: go by the vertices.
-    const float factor = view.distance_factor * fitting_factor(scene, camera, center, aspect);
-    return at_distance(camera, center, factor);
+    return framed(scene, view.azimuth, view.elevation, options.vertical_fov.value_or(default_fov),
+                  aspect, view.distance_factor);
 }
 
 std::size_t light_count(const Scene& scene) {

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// From a glTF document to a scene: primitives become meshes (one for each, however often placed),
-// metallic-roughness becomes Phong (phong.cpp), light units become irradiance over pi. World space
-// is glTF's. What cannot be drawn as meant is counted in the report; see scene_file.h for the list.
+// From a glTF document to a scene: primitives become meshes (one for each, however often placed)
+// with the texture coordinates that their material uses, light units become irradiance over pi.
+// World space is glTF's. What cannot be drawn as meant is counted in the report; see scene_file.h
+// for the list.
 // Tests: tests/shade/scene/scene_file_test.cpp.
 #include "scene/gltf_scene.h"
 
@@ -11,151 +12,25 @@
 #include <utility>
 #include <vector>
 
-#include "parallel.h"
-#include "relief/mesh/error.h"
 #include "relief/mesh/frames.h"
-#include "relief/shade/scene_file.h"
-#include "scene/image_source.h"
-#include "scene/texture_means.h"
+#include "scene/gltf_materials.h"
 
 namespace relief {
 
 namespace {
 
-/// A texture as the scene has it, or nothing where it cannot be placed.
-std::optional<Texture> texture_from(const std::optional<GltfTexture>& texture, std::size_t material,
-                                    Report& report) {
-    if (!texture) return std::nullopt;
-    if (texture->texcoord_set != 0) {
-        report.add("texture on a further texture coordinate set", "material", material, "left out");
-        return std::nullopt;
-    }
-    if (texture->has_transform) {
-        report.add("texture transform", "material", material, "drawn without it");
-    }
-    return Texture{texture->image, texture->wrap_u, texture->wrap_v, texture->filter};
-}
-
-/// The mean of a texture's image, or nothing where it cannot be read. A colour image is kept
-/// decoded if no other use needs its bytes, so that drawing need not decode it again.
-std::optional<glm::vec3> mean_of(ImageSource& image, ImageUse use, bool keep) {
-    try {
-        Image decoded = decode(image, use);
-        const glm::vec3 mean = mean_color(decoded);
-        if (keep) image.source = std::move(decoded);
-        return mean;
-    } catch (const Error&) {
-        return std::nullopt;
-    }
-}
-
-/// The means of one kind of texture over all materials that want it, each image decoded once, on
-/// all threads.
-class MeansOfImages {
-  public:
-    MeansOfImages(std::vector<ImageSource>& images, ImageUse use, const std::vector<bool>& keep)
-        : images_(images), use_(use), keep_(keep) {}
-
-    void want(std::size_t image) { means_.try_emplace(image, std::nullopt); }
-
-    void decode_all() {
-        std::vector<std::size_t> wanted;
-        for (const auto& [image, mean] : means_)
-            wanted.push_back(image);
-        std::vector<std::optional<glm::vec3>> results(wanted.size());
-        parallel_for(wanted.size(), 1, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t i = begin; i < end; ++i) {
-                results[i] = mean_of(images_[wanted[i]], use_, keep_[wanted[i]]);
-            }
-        });
-        for (std::size_t i = 0; i < wanted.size(); ++i)
-            means_[wanted[i]] = results[i];
-    }
-
-    /// The mean, or 1 and an entry in the report where the image could not be read.
-    glm::vec3 mean(std::size_t image, std::size_t material, Report& report) const {
-        const std::optional<glm::vec3>& found = means_.at(image);
-        if (found) return *found;
-        report.add("unreadable texture", "material", material,
-                   "its mean counts as 1 in the material's Phong equivalent");
-        return glm::vec3(1.0F);
-    }
-
-  private:
-    std::vector<ImageSource>& images_;
-    ImageUse use_;
-    const std::vector<bool>& keep_;
-    std::map<std::size_t, std::optional<glm::vec3>> means_;
-};
-
-/// Which images nothing but a colour texture uses.
-std::vector<bool> color_only(const GltfView& view) {
-    std::vector<bool> result(view.images.size(), true);
-    for (const GltfMaterial& material : view.materials) {
-        if (material.normal_texture) result[material.normal_texture->image] = false;
-        if (material.metallic_roughness_texture) {
-            result[material.metallic_roughness_texture->image] = false;
-        }
-    }
-    return result;
-}
-
-std::vector<TextureMeans> texture_means(const GltfView& view, std::vector<ImageSource>& images,
-                                        Report& report) {
-    const std::size_t count = view.materials.size();
-    std::vector<TextureMeans> means(count);
-
-    const std::vector<bool> keep_none(images.size(), false);
-    MeansOfImages surfaces(images, ImageUse::data, keep_none);
-    const auto has_surface = [&](const GltfMaterial& material) {
-        return material.metallic_roughness_texture && !material.unlit &&
-               (material.metallic > 0.0F || material.roughness > 0.0F);
-    };
-    for (const GltfMaterial& material : view.materials) {
-        if (has_surface(material)) surfaces.want(material.metallic_roughness_texture->image);
-    }
-    surfaces.decode_all();
-    for (std::size_t i = 0; i < count; ++i) {
-        if (!has_surface(view.materials[i])) continue;
-        const glm::vec3 mean =
-            surfaces.mean(view.materials[i].metallic_roughness_texture->image, i, report);
-        means[i].roughness = mean.y;
-        means[i].metallic = mean.z;
-    }
-
-    // A base colour's mean tints reflections, and only those of metals.
-    const std::vector<bool> keep = color_only(view);
-    MeansOfImages colors(images, ImageUse::color, keep);
-    const auto is_textured_metal = [&](std::size_t i) {
-        const GltfMaterial& material = view.materials[i];
-        return material.base_color_texture && !material.unlit &&
-               material.metallic * means[i].metallic > 0.0F;
-    };
-    for (std::size_t i = 0; i < count; ++i) {
-        if (is_textured_metal(i)) colors.want(view.materials[i].base_color_texture->image);
-    }
-    colors.decode_all();
-    for (std::size_t i = 0; i < count; ++i) {
-        if (!is_textured_metal(i)) continue;
-        means[i].base_color = colors.mean(view.materials[i].base_color_texture->image, i, report);
-    }
-    return means;
-}
-
-Material material_from(const GltfMaterial& material, const TextureMeans& means, std::size_t index,
-                       Report& report) {
-    Material phong = phong_from_metallic_roughness(material, means);
-    phong.diffuse_texture = texture_from(material.base_color_texture, index, report);
-    phong.emission_texture = texture_from(material.emission_texture, index, report);
-    if (const auto normal = texture_from(material.normal_texture, index, report)) {
-        phong.normal_map = NormalMap{*normal, material.normal_scale, Green::up, std::nullopt};
-    }
-    if (material.alpha_mode == GltfMaterial::AlphaMode::blend) {
-        report.add("blended alpha", "material", index, "drawn opaque");
-    } else if (material.alpha_mode == GltfMaterial::AlphaMode::mask) {
-        report.add("masked alpha", "material", index, "drawn opaque");
-    }
-    return phong;
+/// A primitive with the texture coordinates at which its material looks its images up.
+Mesh mesh_from(const GltfDocument& document, GltfPrimitiveId id,
+               const std::vector<GltfMaterial>& materials) {
+    Mesh mesh = document.mesh(id);
+    if (mesh.material_ranges.empty() || !mesh.material_ranges.front().material) return mesh;
+    const TexcoordSource source =
+        texcoord_source(materials[*mesh.material_ranges.front().material]);
+    if (source.set != 0) mesh = document.mesh(id, source.set);
+    if (source.transform == GltfTextureTransform{}) return mesh;
+    for (glm::vec2& texcoord : mesh.texcoords)
+        texcoord = transformed(source.transform, texcoord);
+    return mesh;
 }
 
 /// Meshes and their places; a primitive that stands in several places is read once.
@@ -171,7 +46,7 @@ void add_instances(const GltfDocument& document, const GltfView& view, Scene& sc
         const auto key = std::pair(placed.what.mesh, placed.what.primitive);
         const auto [entry, is_new] = mesh_of.try_emplace(key, scene.meshes.size());
         if (is_new) {
-            Mesh mesh = document.mesh(placed.what);
+            Mesh mesh = mesh_from(document, placed.what, view.materials);
             if (mesh.normals.empty()) mesh = with_frames(std::move(mesh), options, report).mesh;
             scene.meshes.push_back(std::move(mesh));
         }
@@ -234,7 +109,7 @@ void add_camera(const GltfView& view, Scene& scene, Report& report) {
 
 }  // namespace
 
-Scene scene_from(const GltfDocument& document, Report& report) {
+Scene scene_from(const GltfDocument& document, const SceneOptions& options, Report& report) {
     const GltfView view = document.view();
     Scene scene;
     for (const GltfImage& image : view.images) {
@@ -243,10 +118,7 @@ Scene scene_from(const GltfDocument& document, Report& report) {
         std::visit([&](const auto& encoded) { source.source = encoded; }, image.source);
         scene.images.push_back(std::move(source));
     }
-    const std::vector<TextureMeans> means = texture_means(view, scene.images, report);
-    for (std::size_t i = 0; i < view.materials.size(); ++i) {
-        scene.materials.push_back(material_from(view.materials[i], means[i], i, report));
-    }
+    scene.materials = materials_from(view, options, scene.images, report);
     add_instances(document, view, scene, report);
     add_lights(view, scene);
     add_camera(view, scene, report);

@@ -5,12 +5,12 @@
 
 #include "relief/mesh/gltf_document.h"
 #include "relief/mesh/report.h"
-#include "relief/shade/scene.h"
+#include "relief/shade/scene_file.h"
 
 namespace relief {
 
 /// The document's default scene; see load_scene for what is translated and how.
 /// \throws InvalidInput if a primitive cannot be read
-Scene scene_from(const GltfDocument& document, Report& report);
+Scene scene_from(const GltfDocument& document, const SceneOptions& options, Report& report);
 
 }  // namespace relief

@@ -45,6 +45,12 @@ Material material_from(const MtlMaterial& material, std::size_t index, ImagesByP
                        Report& report) {
     Material phong = phong_from_mtl(material);
     if (material.diffuse_map) phong.diffuse_texture = images.texture(*material.diffuse_map);
+    if (material.specular_map) {
+        phong.specular_texture = images.texture(*material.specular_map);
+        // map_Ks alone means the map as it is.
+        if (phong.specular == glm::vec3(0.0F) && material.illumination_model >= 2)
+            phong.specular = glm::vec3(1.0F);
+    }
     if (material.emission_map) {
         phong.emission_texture = images.texture(*material.emission_map);
         // map_Ke alone means the map as it is.
@@ -54,11 +60,17 @@ Material material_from(const MtlMaterial& material, std::size_t index, ImagesByP
         phong.normal_map =
             NormalMap{images.texture(*material.normal_map), 1.0F, Green::up, std::nullopt};
     }
-    if (material.bump_map) {
-        report.add("bump map", "material", index,
-                   "not drawn: make a normal map of it with relief-bake bump");
+    if (material.bump_map && material.normal_map) {
+        report.add("bump map beside a normal map", "material", index, "left out");
+    } else if (material.bump_map) {
+        phong.bump_map = BumpMap{images.texture(*material.bump_map)};
+        phong.bump_map->strength *= material.bump_strength;
     }
-    if (material.opacity < 1.0F) report.add("transparency", "material", index, "drawn opaque");
+    // The diffuse map itself as map_d means its alpha, which blending takes anyway.
+    if (material.opacity_map && material.opacity_map != material.diffuse_map)
+        phong.opacity_texture = images.texture(*material.opacity_map);
+    for (const std::string& statement : material.more)
+        report.add(statement + " in MTL", "material", index, "left out");
     return phong;
 }
 
@@ -98,12 +110,12 @@ Scene scene_from(MeshFile contents, Report& report) {
 
 }  // namespace
 
-Scene load_scene(const std::filesystem::path& file, Report& report) {
+Scene load_scene(const std::filesystem::path& file, const SceneOptions& options, Report& report) {
     const std::string extension = lower_extension(file);
     Scene scene;
     try {
         if (extension == ".gltf" || extension == ".glb") {
-            scene = scene_from(GltfDocument::read(file, report), report);
+            scene = scene_from(GltfDocument::read(file, report), options, report);
         } else {
             scene = scene_from(read_mesh(file, report), report);
         }
@@ -112,6 +124,10 @@ Scene load_scene(const std::filesystem::path& file, Report& report) {
         throw FileError(file, error.what());
     }
     return scene;
+}
+
+Scene load_scene(const std::filesystem::path& file, Report& report) {
+    return load_scene(file, SceneOptions{}, report);
 }
 
 }  // namespace relief

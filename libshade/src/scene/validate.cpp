@@ -8,6 +8,7 @@
 #include <string>
 
 #include "relief/mesh/error.h"
+#include "relief/shade/labels.h"
 #include "relief/shade/scene.h"
 
 namespace relief {
@@ -120,8 +121,9 @@ void validate_metallic_roughness(const std::string& thing, const Material& mater
     }
 }
 
-void validate_material(const Material& material, std::size_t index, std::size_t image_count) {
-    const std::string thing = fmt::format("material {} '{}': ", index, material.name);
+void validate_material(const Scene& scene, std::size_t index) {
+    const Material& material = scene.materials[index];
+    const std::string thing = material_label(scene, index) + ": ";
     check_color(thing + "ambient", material.ambient, max_reflectance);
     check_color(thing + "diffuse", material.diffuse, max_reflectance);
     check_color(thing + "specular", material.specular, max_reflectance);
@@ -131,7 +133,7 @@ void validate_material(const Material& material, std::size_t index, std::size_t 
     check_range(thing + "opacity", material.opacity, 0.0F, 1.0F);
     check_range(thing + "alpha cutoff", material.alpha_cutoff, 0.0F, max_reflectance);
     validate_reflection(thing, material);
-    validate_textures(thing, material, image_count);
+    validate_textures(thing, material, scene.images.size());
     if (material.metallic_roughness) validate_metallic_roughness(thing, material);
 }
 
@@ -178,7 +180,7 @@ void validate_lights(const Scene& scene) {
 
 void validate_instance(const Scene& scene, std::size_t index) {
     const Instance& instance = scene.instances[index];
-    const std::string thing = fmt::format("instance {} '{}'", index, instance.name);
+    const std::string thing = instance_label(scene, index);
     check_index(thing, "mesh", instance.mesh, scene.meshes.size());
     check_finite(thing + " matrix", instance.world_from_object);
     for (const MaterialRange& range : scene.meshes[instance.mesh].material_ranges) {
@@ -211,13 +213,11 @@ void validate(const Scene& scene) {
         try {
             validate(scene.meshes[i]);
         } catch (const InvalidInput& error) {
-            throw InvalidInput(
-                fmt::format("mesh {} '{}': {}", i, scene.meshes[i].name, error.what()));
+            throw InvalidInput(fmt::format("{}: {}", mesh_label(scene, i), error.what()));
         }
     }
-    for (std::size_t i = 0; i < scene.materials.size(); ++i) {
-        validate_material(scene.materials[i], i, scene.images.size());
-    }
+    for (std::size_t i = 0; i < scene.materials.size(); ++i)
+        validate_material(scene, i);
     for (std::size_t i = 0; i < scene.instances.size(); ++i)
         validate_instance(scene, i);
     validate_lights(scene);

@@ -111,7 +111,6 @@ TEST(PhongFromMetallicRoughness, IsValidForEveryFactor) {
     Scene scene;
     for (const float metallic : {-1.0F, 0.0F, 0.5F, 1.0F, 9.0F, std::nanf("")}) {
         for (const float roughness : {-1.0F, 0.0F, 1e-20F, 0.5F, 1.0F, 9.0F}) {
-            if (std::isnan(metallic)) continue;
             scene.materials.push_back(
                 phong_from_metallic_roughness(surface(metallic, roughness), {}));
         }
@@ -142,16 +141,45 @@ TEST(PhongFromMtl, FollowsTheIlluminationModel) {
     EXPECT_TRUE(with(2).double_sided);
 }
 
+TEST(PhongFromMtl, BlendsOrRefractsWhatIsNotSolid) {
+    MtlMaterial mtl;
+    mtl.opacity = 0.25F;
+    mtl.refractive_index = 1.33F;
+    for (const int model : {0, 1, 2, 3, 4, 5, 8, 9}) {
+        mtl.illumination_model = model;
+        const Material phong = phong_from_mtl(mtl);
+        EXPECT_EQ(phong.alpha_mode, AlphaMode::blend) << model;
+        EXPECT_EQ(phong.opacity, 0.25F) << model;
+        EXPECT_EQ(phong.transmission, 0.0F) << model;
+    }
+    for (const int model : {6, 7}) {
+        mtl.illumination_model = model;
+        const Material phong = phong_from_mtl(mtl);
+        EXPECT_EQ(phong.alpha_mode, AlphaMode::opaque) << model;
+        EXPECT_EQ(phong.transmission, 0.75F) << model;
+        EXPECT_EQ(phong.refractive_index, 1.33F) << model;
+    }
+    mtl.opacity = 1.0F;
+    mtl.illumination_model = 2;
+    EXPECT_EQ(phong_from_mtl(mtl).alpha_mode, AlphaMode::opaque);
+    mtl.opacity_map = "holes.png";
+    EXPECT_EQ(phong_from_mtl(mtl).alpha_mode, AlphaMode::blend);
+}
+
 TEST(PhongFromMtl, IsValidForEveryNumber) {
     MtlMaterial mtl;
     mtl.specular = {5, -1, std::nanf("")};
     mtl.shininess = 1e9F;
     mtl.illumination_model = 3;
+    mtl.opacity = std::nanf("");
+    mtl.refractive_index = -2.0F;
     Scene scene;
     scene.materials = {phong_from_mtl(mtl)};
     EXPECT_NO_THROW(validate(scene));
     EXPECT_EQ(scene.materials[0].shininess, 1e6F);
     EXPECT_EQ(scene.materials[0].specular, glm::vec3(5, 0, 0));
+    EXPECT_EQ(scene.materials[0].opacity, 0.0F);
+    EXPECT_EQ(scene.materials[0].refractive_index, 1.0F);
     EXPECT_EQ(scene.materials[0].reflectivity, glm::vec3(1, 0, 0));
 }
 

@@ -32,7 +32,8 @@ TEST(LoadScene, ReadsObjWithItsMaterials) {
     write_text(folder / "paint.mtl",
                "newmtl paint\nKa 0.1 0.1 0.1\nKd 0.5 0.6 0.7\nKs 0.2 0.3 0.4\nNs 40\nillum 2\n"
                "map_Kd missing.png\nnorm missing_too.png\n"
-               "newmtl glow\nKe 0 0 0\nmap_Ke glow.png\nmap_bump heights.png\nd 0.5\n");
+               "newmtl glow\nKe 0 0 0\nmap_Ke glow.png\nmap_bump -bm 0.5 heights.png\nd 0.5\n"
+               "map_Ks shine.png\nmap_d holes.png\nmap_Ns gloss.png\n");
     Report report;
     const Scene scene = load_scene(folder / "model.obj", report);
     ASSERT_EQ(scene.materials.size(), 2U);
@@ -45,14 +46,41 @@ TEST(LoadScene, ReadsObjWithItsMaterials) {
     EXPECT_EQ(std::get<std::filesystem::path>(scene.images[paint.diffuse_texture->image].source),
               folder / "missing.png");
     EXPECT_EQ(paint.normal_map->green, Green::up);
-    EXPECT_EQ(scene.materials[1].emission, glm::vec3(1.0F));  // The map as it is.
-    EXPECT_EQ(report.count("bump map"), 1U);
-    EXPECT_EQ(report.count("transparency"), 1U);
+    const Material& glow = scene.materials[1];
+    EXPECT_EQ(glow.emission, glm::vec3(1.0F));  // The map as it is.
+    EXPECT_EQ(glow.specular, glm::vec3(1.0F));  // Likewise.
+    EXPECT_EQ(glow.alpha_mode, AlphaMode::blend);
+    EXPECT_EQ(glow.opacity, 0.5F);
+    ASSERT_TRUE(glow.bump_map && glow.specular_texture && glow.opacity_texture);
+    EXPECT_EQ(glow.bump_map->strength, 8.0F);  // Half of 16 texels.
+    EXPECT_EQ(scene.images[glow.opacity_texture->image].name, (folder / "holes.png").string());
+    EXPECT_FALSE(glow.unlit);  // No illum statement: model 2.
+    EXPECT_EQ(paint.alpha_mode, AlphaMode::opaque);
+    EXPECT_EQ(report.count("map_Ns in MTL"), 1U);
+    EXPECT_EQ(report.findings().size(), 1U);
     ASSERT_EQ(scene.meshes.size(), 1U);
     EXPECT_EQ(scene.meshes[0].normals.size(), scene.meshes[0].positions.size());
     EXPECT_TRUE(scene.meshes[0].tangents.empty());
     EXPECT_FALSE(scene.camera);
     EXPECT_TRUE(scene.directional_lights.empty());
+}
+
+TEST(LoadScene, TakesTheDiffuseMapAsOpacityMapByItsAlpha) {
+    const test::TemporaryDirectory folder;
+    write_text(folder / "model.obj", two_triangles);
+    write_text(folder / "paint.mtl",
+               "newmtl paint\nmap_Kd leaf.png\nmap_d leaf.png\nmap_Ka leaf.png\nnewmtl glow\n"
+               "norm n.png\nbump h.png\n");
+    Report report;
+    const Scene scene = load_scene(folder / "model.obj", report);
+    EXPECT_EQ(scene.materials[0].alpha_mode, AlphaMode::blend);
+    EXPECT_TRUE(scene.materials[0].diffuse_texture);
+    EXPECT_FALSE(scene.materials[0].opacity_texture);
+    // One normal, so one of the two maps.
+    EXPECT_TRUE(scene.materials[1].normal_map);
+    EXPECT_FALSE(scene.materials[1].bump_map);
+    EXPECT_EQ(report.count("bump map beside a normal map"), 1U);
+    EXPECT_EQ(report.findings().size(), 1U);
 }
 
 TEST(LoadScene, GivesSurfacesWithoutMaterialBothSides) {
@@ -67,7 +95,7 @@ TEST(LoadScene, GivesSurfacesWithoutMaterialBothSides) {
     EXPECT_EQ(scene.meshes[0].normals[0], glm::vec3(0, 0, 1));
 }
 
-/// One triangle with lights, a camera under a scaled node, and materials that Phong cannot show.
+/// One triangle with lights, a camera under a scaled node, and a material with everything.
 std::string lit_triangle() {
     return R"({
   "asset": {"version": "2.0"},
@@ -87,17 +115,24 @@ std::string lit_triangle() {
     {"extensions": {"KHR_lights_punctual": {"light": 1}}},
     {"extensions": {"KHR_lights_punctual": {"light": 2}}}],
   "cameras": [{"type": "perspective", "perspective": {"yfov": 0.5, "znear": 0.25}}],
-  "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 1, "material": 0}]}],
+  "meshes": [{"primitives": [{"attributes": {"POSITION": 0, "TEXCOORD_1": 2}, "indices": 1, "material": 0}]}],
   "materials": [{"name": "glass", "alphaMode": "BLEND", "doubleSided": true,
     "pbrMetallicRoughness": {"metallicFactor": 0, "roughnessFactor": 0.5,
-      "baseColorTexture": {"index": 0, "texCoord": 1}},
-    "normalTexture": {"index": 0, "scale": 0.5,
-      "extensions": {"KHR_texture_transform": {"scale": [2, 2]}}}}],
+      "baseColorFactor": [0.5, 0.25, 1, 0.75],
+      "baseColorTexture": {"index": 0, "texCoord": 1,
+        "extensions": {"KHR_texture_transform": {"scale": [2, 3], "offset": [0.5, 0]}}},
+      "metallicRoughnessTexture": {"index": 0, "texCoord": 1,
+        "extensions": {"KHR_texture_transform": {"scale": [2, 3], "offset": [0.5, 0]}}}},
+    "occlusionTexture": {"index": 0, "strength": 0.25},
+    "emissiveTexture": {"index": 0, "texCoord": 1},
+    "normalTexture": {"index": 0, "scale": 0.5, "texCoord": 1,
+      "extensions": {"KHR_texture_transform": {"scale": [2, 3], "offset": [0.5, 0]}}}}],
   "textures": [{"source": 0}],
   "images": [{"uri": "missing.png"}],
   "accessors": [
     {"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [0, 0, 0], "max": [1, 1, 0]},
-    {"bufferView": 1, "componentType": 5123, "count": 3, "type": "SCALAR"}],
+    {"bufferView": 1, "componentType": 5123, "count": 3, "type": "SCALAR"},
+    {"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC2"}],
   "bufferViews": [{"buffer": 0, "byteLength": 36}, {"buffer": 0, "byteOffset": 36, "byteLength": 6}],
   "buffers": [{"byteLength": 42, "uri": "data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAAAAABAAIA"}]
 })";
@@ -136,6 +171,44 @@ TEST(LoadScene, PlacesWhatAGltfFileHolds) {
     EXPECT_LT(scene.camera->far, 10.0F);
 }
 
+TEST(LoadScene, GivesGltfsMaterialsAsTheirAuthorsMeant) {
+    const test::TemporaryDirectory folder;
+    write_text(folder / "lit.gltf", lit_triangle());
+    Report report;
+    const Scene scene = load_scene(folder / "lit.gltf", report);
+    const Material& glass = scene.materials.at(0);
+    ASSERT_TRUE(glass.metallic_roughness);
+    EXPECT_EQ(glass.metallic_roughness->base_color, glm::vec3(0.5F, 0.25F, 1.0F));
+    EXPECT_EQ(glass.metallic_roughness->metallic, 0.0F);
+    EXPECT_EQ(glass.metallic_roughness->roughness, 0.5F);
+    EXPECT_TRUE(glass.metallic_roughness->texture && glass.diffuse_texture && glass.normal_map);
+    EXPECT_EQ(glass.alpha_mode, AlphaMode::blend);
+    EXPECT_EQ(glass.opacity, 0.75F);
+    EXPECT_TRUE(glass.double_sided);
+    EXPECT_EQ(glass.occlusion_strength, 0.25F);
+    // The set that the base colour uses, by its transform: (x, y) to (2 x + 0.5, 3 y).
+    EXPECT_EQ(scene.meshes[0].texcoords,
+              (std::vector<glm::vec2>{{0.5F, 0.0F}, {0.5F, 3.0F}, {0.5F, 0.0F}}));
+    // What Phong would make of the factors stays at hand.
+    EXPECT_NEAR(glass.shininess, 30.0F, 1e-4F);
+    EXPECT_NEAR(glass.diffuse.x, 0.5F, 1e-6F);
+}
+
+TEST(LoadScene, TranslatesGltfsMaterialsToPhongByChoice) {
+    const test::TemporaryDirectory folder;
+    write_text(folder / "lit.gltf", lit_triangle());
+    Report report;
+    const Scene scene =
+        load_scene(folder / "lit.gltf", {.model = SceneOptions::MaterialModel::phong}, report);
+    const Material& glass = scene.materials.at(0);
+    EXPECT_FALSE(glass.metallic_roughness);
+    EXPECT_EQ(glass.diffuse, glm::vec3(0.5F, 0.25F, 1.0F));
+    EXPECT_EQ(glass.alpha_mode, AlphaMode::blend);
+    EXPECT_TRUE(glass.diffuse_texture);
+    // The image is missing, and only Phong's means need to look into it.
+    EXPECT_EQ(report.count("unreadable texture"), 1U);
+}
+
 TEST(LoadScene, CountsWhatIsNotDrawnAsMeant) {
     const test::TemporaryDirectory folder;
     write_text(folder / "lit.gltf", lit_triangle());
@@ -143,20 +216,23 @@ TEST(LoadScene, CountsWhatIsNotDrawnAsMeant) {
     const Scene scene = load_scene(folder / "lit.gltf", report);
     const Material& material = scene.materials.at(0);
     EXPECT_TRUE(material.double_sided);
-    EXPECT_FALSE(material.diffuse_texture);  // On a further set of texture coordinates.
+    EXPECT_FALSE(material.occlusion_texture);  // On another set than the base colour.
+    EXPECT_TRUE(material.emission_texture);
     ASSERT_TRUE(material.normal_map);
     EXPECT_EQ(material.normal_map->scale, 0.5F);
     EXPECT_EQ(material.normal_map->green, Green::up);
-    EXPECT_EQ(report.count("blended alpha"), 1U);
-    EXPECT_EQ(report.count("texture transform"), 1U);
-    EXPECT_EQ(report.count("texture on a further texture coordinate set"), 1U);
+    EXPECT_EQ(report.count("texture transform of its own"), 1U);                 // emission
+    EXPECT_EQ(report.count("texture on a further texture coordinate set"), 1U);  // occlusion
+    EXPECT_EQ(report.count("missing image"), 1U);
+    EXPECT_EQ(report.findings().size(), 3U);
 }
 
 TEST(LoadScene, ReadsMeansOfRealTexturesAndGoesOnWithoutMissingOnes) {
     RELIEF_NEEDS_SHARED(bottle, "data/models/gltf/WaterBottle/glTF/WaterBottle.gltf");
     RELIEF_NEEDS_SHARED(corset, "data/models/gltf/Corset");
     Report report;
-    const Scene scene = load_scene(bottle, report);
+    const SceneOptions phong{.model = SceneOptions::MaterialModel::phong};
+    const Scene scene = load_scene(bottle, phong, report);
     EXPECT_TRUE(report.empty());
     const Material& material = scene.materials.at(0);
     EXPECT_GT(material.shininess, 0.5F);   // Factor 1 alone would give 0.
@@ -169,6 +245,8 @@ TEST(LoadScene, ReadsMeansOfRealTexturesAndGoesOnWithoutMissingOnes) {
     }
     ASSERT_FALSE(file.empty());
     EXPECT_NO_THROW((void)load_scene(file, report));
+    EXPECT_EQ(report.count("unreadable texture"), 0U);  // As authored, nothing is looked into.
+    EXPECT_NO_THROW((void)load_scene(file, phong, report));
     EXPECT_GT(report.count("unreadable texture"), 0U);
 }
 

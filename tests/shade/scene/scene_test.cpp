@@ -139,15 +139,15 @@ TEST(ValidateScene, AcceptsSoundScenes) {
 
 TEST(ValidateScene, NamesIndicesThatNameNothing) {
     EXPECT_EQ(verdict([](Scene& s) { s.instances[0].mesh = 3; }),
-              "instance 0 'node' names mesh 3, but there are only 1");
+              "instance 'node' names mesh 3, but there are only 1");
     EXPECT_EQ(verdict([](Scene& s) { s.meshes[0].material_ranges[0].material = 7; }),
-              "instance 0 'node' names material 7, but there are only 1");
+              "instance 'node' names material 7, but there are only 1");
     EXPECT_EQ(verdict([](Scene& s) { s.materials[0].diffuse_texture = Texture{4}; }),
-              "material 0 'paint': diffuse texture names image 4, but there are only 1");
+              "material 'paint': diffuse texture names image 4, but there are only 1");
     EXPECT_EQ(verdict([](Scene& s) { s.materials[0].normal_map = NormalMap{Texture{1}}; }),
-              "material 0 'paint': normal map names image 1, but there are only 1");
+              "material 'paint': normal map names image 1, but there are only 1");
     EXPECT_EQ(verdict([](Scene& s) { s.meshes[0].triangles[2].y = 99; }),
-              "mesh 0 '': triangle 2 names vertex 99, but there are only 24");
+              "mesh 0: triangle 2 names vertex 99, but there are only 24");
 }
 
 TEST(ValidateScene, NamesNumbersOutOfRange) {
@@ -197,7 +197,7 @@ TEST(ValidateScene, NamesNumbersOutOfRange) {
     for (std::size_t i = 0; i < spoils.size(); ++i)
         EXPECT_NE(verdict(spoils[i]), "valid") << i;
     EXPECT_EQ(verdict(spoils[0]),
-              "material 0 'paint': diffuse is (0.8, -0.5, 0.8), but every channel must be within "
+              "material 'paint': diffuse is (0.8, -0.5, 0.8), but every channel must be within "
               "[0, 1000000000]");
     EXPECT_EQ(
         verdict(spoils[12]),

@@ -35,6 +35,18 @@ struct GltfPrimitiveId {
 enum class TextureWrap { repeat, clamp, mirror };
 enum class TextureFilter { linear, nearest };
 
+/// KHR_texture_transform: texture coordinates are scaled, then turned, then shifted.
+struct GltfTextureTransform {
+    glm::vec2 offset{0.0F};
+    float rotation = 0.0F;  ///< Radians; the image turns clockwise.
+    glm::vec2 scale{1.0F};
+
+    friend bool operator==(const GltfTextureTransform&, const GltfTextureTransform&) = default;
+};
+
+/// The coordinates at which the image is looked up. Both have v downwards.
+glm::vec2 transformed(const GltfTextureTransform& transform, const glm::vec2& texcoord);
+
 /// A use of an image as a texture.
 struct GltfTexture {
     std::size_t image = 0;  ///< Index into GltfView::images.
@@ -42,7 +54,7 @@ struct GltfTexture {
     TextureWrap wrap_v = TextureWrap::repeat;
     TextureFilter filter = TextureFilter::linear;
     int texcoord_set = 0;
-    bool has_transform = false;  ///< Carries KHR_texture_transform.
+    GltfTextureTransform transform;
 };
 
 /// An image in its encoded form: bytes from the document, or a file beside it.
@@ -63,7 +75,9 @@ struct GltfMaterial {
     std::optional<GltfTexture> metallic_roughness_texture;  ///< Green roughness, blue metallic.
     std::optional<GltfTexture> normal_texture;
     std::optional<GltfTexture> emission_texture;
+    std::optional<GltfTexture> occlusion_texture;  ///< Red: how much of the surroundings gets here.
     float normal_scale = 1.0F;
+    float occlusion_strength = 1.0F;
     enum class AlphaMode { opaque, mask, blend } alpha_mode = AlphaMode::opaque;
     float alpha_cutoff = 0.5F;  ///< Of AlphaMode::mask: what is below is not there.
     bool double_sided = false;
@@ -123,10 +137,10 @@ class GltfDocument {
     /// A new document with one mesh, a primitive for each material range over its own vertices, and
     /// materials translated from MTL: Kd and d to base colour (within [0,1]), roughness =
     /// (2 / (Ns + 2))^(1/4), metallic 0, Ke to emission (KHR_materials_emissive_strength above 1),
-    /// norm to the normal map. Images are embedded as they are; bump maps (heights) have no place
-    /// in glTF and are left out. Normals of other than unit length, which OBJ allows, are scaled.
-    /// \throws FileError if an image is missing or neither PNG nor JPEG; InvalidInput if the mesh
-    /// is
+    /// norm to the normal map. Images are embedded as they are; bump maps (heights), specular and
+    /// opacity maps have no place in glTF and are left out. Normals of other than unit length,
+    /// which OBJ allows, are scaled. \throws FileError if an image is missing or neither PNG nor
+    /// JPEG; InvalidInput if the mesh is
     ///         not valid, has no triangle or names a material that is not there
     static GltfDocument from_mesh(const MeshFile& contents);
 
@@ -153,12 +167,13 @@ class GltfDocument {
     [[nodiscard]] std::string describe(GltfPrimitiveId id) const;
 
     /// A primitive in plain arrays: indices made explicit, strips and fans unrolled, sparse and
-    /// normalised-integer accessors made float; texture coordinate set 0, colour set 0. Its one
+    /// normalised-integer accessors made float; one texture coordinate set, colour set 0. Its one
     /// material range names the document's material. Where primitives share an array of vertices
     /// and this one uses only a part of it, the mesh has that part, in the same order.
+    /// \param texcoord_set  TEXCOORD_n; the mesh has no texture coordinates where there is none
     /// \throws InvalidInput if indices are out of range or make no whole triangles, if attributes
     ///         differ in number or have the wrong type, or if there is no such primitive
-    [[nodiscard]] Mesh mesh(GltfPrimitiveId id) const;
+    [[nodiscard]] Mesh mesh(GltfPrimitiveId id, int texcoord_set = 0) const;
 
     /// Replaces a primitive's NORMAL and TANGENT by those of `framed`, which with_frames() made
     /// from mesh(id). Where vertices were split, indices are rewritten and every other attribute

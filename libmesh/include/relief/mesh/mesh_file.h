@@ -26,12 +26,18 @@ struct MtlMaterial {
     glm::vec3 emission{0.0F};                           ///< Ke
     float shininess = 0.0F;                             ///< Ns
     float opacity = 1.0F;                               ///< d, or 1 - Tr
+    float refractive_index = 1.0F;                      ///< Ni
     int illumination_model = 2;                         ///< illum; 3 and above reflect
     std::optional<std::filesystem::path> diffuse_map;   ///< map_Kd
+    std::optional<std::filesystem::path> specular_map;  ///< map_Ks
     std::optional<std::filesystem::path> emission_map;  ///< map_Ke
+    std::optional<std::filesystem::path> opacity_map;   ///< map_d
     std::optional<std::filesystem::path> normal_map;    ///< norm
     std::optional<std::filesystem::path> bump_map;      ///< map_bump, bump: heights
     float bump_strength = 1.0F;                         ///< -bm of the bump map
+    /// What the file says beyond that: "map_Ka", "map_Ns", "disp", "refl"; and "-s", "-o" where one
+    /// of the maps above has a scale or an offset.
+    std::vector<std::string> more;
 };
 
 /// A mesh and the materials that its ranges name.

@@ -73,8 +73,8 @@ std::string GltfDocument::describe(GltfPrimitiveId id) const {
     return describe_primitive(contents_->data, id);
 }
 
-Mesh GltfDocument::mesh(GltfPrimitiveId id) const {
-    return read_primitive(contents_->data, id);
+Mesh GltfDocument::mesh(GltfPrimitiveId id, int texcoord_set) const {
+    return read_primitive(contents_->data, id, texcoord_set);
 }
 
 void GltfDocument::set_frames(GltfPrimitiveId id, const FramedMesh& framed) {

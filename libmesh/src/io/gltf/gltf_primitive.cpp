@@ -179,7 +179,7 @@ GltfTriangles read_triangles(const GltfContents& contents, GltfPrimitiveId id) {
     return result;
 }
 
-Mesh read_primitive(const GltfContents& contents, GltfPrimitiveId id) {
+Mesh read_primitive(const GltfContents& contents, GltfPrimitiveId id, int texcoord_set) {
     try {
         const Json& primitive = primitive_json(contents, id);
         const GltfTriangles triangles = read_triangles(contents, id);
@@ -188,7 +188,9 @@ Mesh read_primitive(const GltfContents& contents, GltfPrimitiveId id) {
         mesh.positions = attribute<glm::vec3>(contents, primitive, "POSITION", triangles);
         mesh.normals = attribute<glm::vec3>(contents, primitive, "NORMAL", triangles);
         mesh.tangents = attribute<glm::vec4>(contents, primitive, "TANGENT", triangles);
-        mesh.texcoords = attribute<glm::vec2>(contents, primitive, "TEXCOORD_0", triangles);
+        mesh.texcoords =
+            attribute<glm::vec2>(contents, primitive,
+                                 fmt::format("TEXCOORD_{}", texcoord_set).c_str(), triangles);
         mesh.colors = colors(contents, primitive, triangles);
         mesh.triangles = compacted(triangles);
         if (!mesh.triangles.empty()) {

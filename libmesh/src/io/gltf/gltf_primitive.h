@@ -32,7 +32,7 @@ struct GltfTriangles {
 GltfTriangles read_triangles(const GltfContents& contents, GltfPrimitiveId id);
 
 /// See GltfDocument::mesh.
-Mesh read_primitive(const GltfContents& contents, GltfPrimitiveId id);
+Mesh read_primitive(const GltfContents& contents, GltfPrimitiveId id, int texcoord_set);
 
 /// See GltfDocument::set_frames.
 void replace_frames(GltfContents& contents, GltfPrimitiveId id, const FramedMesh& framed);

@@ -4,10 +4,12 @@
 // World space, right-handed, +Y up; colours linear; angles in radians. What the plain scene has no
 // place for is left to the document. Instance attributes of a wrong type throw InvalidInput.
 // Source: glTF 2.0 (ISO/IEC 12113), KHR_lights_punctual, KHR_materials_emissive_strength,
-// KHR_materials_unlit, EXT_mesh_gpu_instancing. Tests: tests/mesh/io/gltf/gltf_view_test.cpp.
+// KHR_materials_unlit, KHR_texture_transform, EXT_mesh_gpu_instancing.
+// Tests: tests/mesh/io/gltf/gltf_view_test.cpp.
 #include "io/gltf/gltf_view.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/gtc/quaternion.hpp>
@@ -100,9 +102,11 @@ std::optional<GltfTexture> texture_in(const Json& root, const Json& holder, cons
     result.image = *image;
     result.texcoord_set = static_cast<int>(size_in(*info, "texCoord"));
     if (const Json* transform = find(*info, "extensions", "KHR_texture_transform")) {
-        result.has_transform = true;
-        const Json* set = find(*transform, "texCoord");
-        if (set != nullptr && set->is_number_unsigned()) result.texcoord_set = set->get<int>();
+        result.transform.offset = vector_in(*transform, "offset", glm::vec2(0.0F));
+        result.transform.rotation = float_in(*transform, "rotation", 0.0F);
+        result.transform.scale = vector_in(*transform, "scale", glm::vec2(1.0F));
+        result.texcoord_set = static_cast<int>(
+            size_in(*transform, "texCoord", static_cast<std::size_t>(result.texcoord_set)));
     }
     if (const auto number = index_in(texture, "sampler")) {
         const Json& sampler = root["samplers"][*number];
@@ -128,6 +132,10 @@ GltfMaterial material_from(const Json& root, const Json& json) {
     material.normal_texture = texture_in(root, json, "normalTexture");
     if (const Json* normal = find(json, "normalTexture")) {
         material.normal_scale = float_in(*normal, "scale", 1.0F);
+    }
+    material.occlusion_texture = texture_in(root, json, "occlusionTexture");
+    if (const Json* occlusion = find(json, "occlusionTexture")) {
+        material.occlusion_strength = float_in(*occlusion, "strength", 1.0F);
     }
     material.emission_texture = texture_in(root, json, "emissiveTexture");
     material.emission = vector_in(json, "emissiveFactor", glm::vec3(0.0F));
@@ -273,6 +281,14 @@ class Placer {
 };
 
 }  // namespace
+
+glm::vec2 transformed(const GltfTextureTransform& transform, const glm::vec2& texcoord) {
+    const glm::vec2 scaled = transform.scale * texcoord;
+    const float cosine = std::cos(transform.rotation);
+    const float sine = std::sin(transform.rotation);
+    return {cosine * scaled.x + sine * scaled.y + transform.offset.x,
+            cosine * scaled.y - sine * scaled.x + transform.offset.y};
+}
 
 std::vector<GltfPrimitiveId> triangle_primitives_of(const GltfContents& contents) {
     std::vector<GltfPrimitiveId> result;

@@ -56,8 +56,12 @@ std::string mtl_text(const MeshFile& contents, const std::vector<std::string>& n
         color("Ke", material.emission);
         fmt::format_to(out, "Ns {}\nd {}\nillum {}\n", material.shininess, material.opacity,
                        material.illumination_model);
+        if (material.refractive_index != 1.0F)
+            fmt::format_to(out, "Ni {}\n", material.refractive_index);
         map("map_Kd", material.diffuse_map);
+        map("map_Ks", material.specular_map);
         map("map_Ke", material.emission_map);
+        map("map_d", material.opacity_map);
         map("norm", material.normal_map);
         map(material.bump_strength == 1.0F ? "map_Bump"
                                            : fmt::format("map_Bump -bm {}", material.bump_strength),

@@ -12,6 +12,16 @@
 
 namespace relief {
 
+/// What load_scene leaves to choice.
+struct SceneOptions {
+    /// Which model glTF's materials follow.
+    enum class MaterialModel {
+        as_authored,  ///< Metallic-roughness, which is what they are.
+        phong,        ///< Phong's, by phong_from_metallic_roughness with the means of textures.
+    };
+    MaterialModel model = MaterialModel::as_authored;
+};
+
 /// Reads .gltf, .glb, .obj, .ply, .stl or .off as a scene.
 ///
 /// Meshes without normals get flat ones from glTF (its rule) and angle-weighted ones otherwise.
@@ -20,12 +30,21 @@ namespace relief {
 /// glTF's light units (lux, candela) become irradiance over pi, so that the picture is the one that
 /// KHR_lights_punctual describes.
 ///
-/// \param report  counts what is not drawn as its author meant: blended or masked alpha, texture
-///                transforms, further texture coordinate sets (such a texture is left out), bump
-///                maps and transparency in MTL, unreadable metallic-roughness textures (their mean
-///                counts as 1)
+/// A glTF mesh carries the texture coordinates that its material's first texture uses, with that
+/// texture's KHR_texture_transform applied. MTL's bump multiplier -bm, which has no unit, counts in
+/// BumpMap's default strength: -bm 1 is 16 texels. Beside metallic_roughness a material has its
+/// Phong equivalent by the factors alone, for whoever takes metallic_roughness away.
+///
+/// \param report  counts what is not drawn as its author meant: textures with further texture
+///                coordinate sets (left out) or another transform than their material's first;
+///                statements of MTL that a material has no place for (map_Ka, map_Ns, disp, refl,
+///                scaled or shifted maps); and, for MaterialModel::phong, unreadable textures whose
+///                mean counts as 1
 /// \throws FileError as the readers do. An image file that is missing is found missing when it is
 ///         decoded, and only what is shown is decoded
+Scene load_scene(const std::filesystem::path& file, const SceneOptions& options, Report& report);
+
+/// The same with the default options.
 Scene load_scene(const std::filesystem::path& file, Report& report);
 
 /// What Phong keeps of the textures that it has no place for: their means, colours linear; 1 where
@@ -62,7 +81,9 @@ struct TextureMeans {
 Material phong_from_metallic_roughness(const GltfMaterial& material, const TextureMeans& means);
 
 /// MTL's own Phong, textures left out: illum 0 is unlit, 1 has no highlight, 3 to 9 reflect by Ks,
-/// with Fresnel's effect for 5 and 7 only. Ns above 1e6 counts as 1e6; colours below 0 as 0.
+/// with Fresnel's effect for 5 and 7 only. Where d is below 1, illum 6 and 7 refract (transmission
+/// 1 - d, by Ni); every other model, and map_d, blend, as viewers of OBJ do. Ns above 1e6 counts as
+/// 1e6, Ni is kept within [1, 1000]; colours below 0 count as 0.
 /// Source: the MTL format's illumination models (Blinn's half vector for all highlights).
 Material phong_from_mtl(const MtlMaterial& material);
 

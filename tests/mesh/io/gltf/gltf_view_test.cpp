@@ -40,9 +40,9 @@ TEST_F(GltfViewTest, MaterialsHaveTheirValuesOrGltfsDefaults) {
         "materials": [{}, {"name": "m",
             "pbrMetallicRoughness": {"baseColorFactor": [0.1, 0.2, 0.3, 0.4], "metallicFactor": 0.5,
                 "roughnessFactor": 0.25, "baseColorTexture": {"index": 1, "texCoord": 1,
-                    "extensions": {"KHR_texture_transform": {"texCoord": 2}}},
+                    "extensions": {"KHR_texture_transform": {"texCoord": 2, "offset": [0.5, 0.25], "rotation": 1.5, "scale": [2, 3]}}},
                 "metallicRoughnessTexture": {"index": 2}},
-            "normalTexture": {"index": 0, "scale": 0.75}, "emissiveTexture": {"index": 3},
+            "normalTexture": {"index": 0, "scale": 0.75}, "occlusionTexture": {"index": 1, "strength": 0.5}, "emissiveTexture": {"index": 3},
             "emissiveFactor": [1, 0.5, 0], "alphaMode": "MASK", "alphaCutoff": 0.25,
             "doubleSided": true, "extensions": {"KHR_materials_unlit": {},
                 "KHR_materials_emissive_strength": {"emissiveStrength": 4}}}]})"))
@@ -70,7 +70,10 @@ TEST_F(GltfViewTest, MaterialsHaveTheirValuesOrGltfsDefaults) {
     EXPECT_EQ(base.wrap_v, TextureWrap::mirror);
     EXPECT_EQ(base.filter, TextureFilter::nearest);
     EXPECT_EQ(base.texcoord_set, 2);
-    EXPECT_TRUE(base.has_transform);
+    EXPECT_EQ(base.transform, (GltfTextureTransform{{0.5F, 0.25F}, 1.5F, {2.0F, 3.0F}}));
+    EXPECT_EQ(full.normal_texture->transform, GltfTextureTransform{});
+    EXPECT_EQ(full.occlusion_texture->image, 1U);
+    EXPECT_EQ(full.occlusion_strength, 0.5F);
     EXPECT_EQ(full.normal_texture->wrap_u, TextureWrap::repeat);
     EXPECT_EQ(full.metallic_roughness_texture->image, 1U);
     EXPECT_FALSE(full.emission_texture);
@@ -78,6 +81,14 @@ TEST_F(GltfViewTest, MaterialsHaveTheirValuesOrGltfsDefaults) {
     EXPECT_EQ(std::get<std::vector<std::byte>>(view.images[1].source).size(), 3U);
     // Outside the folder: never opened, so empty.
     EXPECT_TRUE(std::get<std::vector<std::byte>>(view.images[2].source).empty());
+}
+
+TEST_F(GltfViewTest, TextureTransformsScaleThenTurnThenShift) {
+    const GltfTextureTransform transform{{0.5F, 0.25F}, 1.5707963F, {2.0F, 3.0F}};
+    const glm::vec2 at = transformed(transform, {0.25F, 0.5F});
+    // (0.5, 1.5), turned by a quarter: counter-clockwise as seen with v down, so to (1.5, -0.5).
+    EXPECT_NEAR(at.x, 2.0F, 1e-6F);
+    EXPECT_NEAR(at.y, -0.25F, 1e-6F);
 }
 
 TEST_F(GltfViewTest, LightsAndCamerasStandWhereTheirNodesAre) {

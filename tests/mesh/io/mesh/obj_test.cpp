@@ -134,16 +134,18 @@ TEST_F(Obj, WhatCannotBeReadIsRefusedByLineAndValue) {
 TEST_F(Obj, TrianglesAreGroupedByMaterialInOrderOfFirstUse) {
     write("m.mtl",
           "newmtl red\nKd 1 0 0\nNs 50\nd 0.5\nmap_Kd tex\\a b.png\nmap_Bump -bm 0.25 h.png\n"
-          "norm n.png\nKe 0 2 0\nillum 3\n");
+          "norm n.png\nKe 0 2 0\nillum 3\nNi 1.5\nmap_Ks s.png\nmap_d d.png\nmap_Ka amb.png\n"
+          "newmtl plain\nmap_Kd -s 2 2 2 -o 0.5 0 0 a.png\nmap_Ka a.png\n");
     const MeshFile file = read(three +
                                "mtllib m.mtl\nf 1 2 3\nusemtl red\nf 2 3 1\nusemtl other\nf 3 1 2\n"
-                               "usemtl red\nf 1 3 2\n");
+                               "usemtl red\nf 1 3 2\nusemtl plain\nf 1 3 2\n");
     EXPECT_THAT(file.mesh.material_ranges,
                 ElementsAre(MaterialRange{0, 1, std::nullopt}, MaterialRange{1, 2, 0U},
-                            MaterialRange{3, 1, 1U}));
-    EXPECT_THAT(file.mesh.triangles, ElementsAre(glm::uvec3(0, 1, 2), glm::uvec3(1, 2, 0),
-                                                 glm::uvec3(0, 2, 1), glm::uvec3(2, 0, 1)));
-    ASSERT_EQ(file.materials.size(), 2U);
+                            MaterialRange{3, 1, 1U}, MaterialRange{4, 1, 2U}));
+    EXPECT_THAT(file.mesh.triangles,
+                ElementsAre(glm::uvec3(0, 1, 2), glm::uvec3(1, 2, 0), glm::uvec3(0, 2, 1),
+                            glm::uvec3(2, 0, 1), glm::uvec3(0, 2, 1)));
+    ASSERT_EQ(file.materials.size(), 3U);
     const MtlMaterial& red = file.materials[0];
     EXPECT_EQ(red.name, "red");
     EXPECT_EQ(red.diffuse, glm::vec3(1, 0, 0));
@@ -155,7 +157,13 @@ TEST_F(Obj, TrianglesAreGroupedByMaterialInOrderOfFirstUse) {
     EXPECT_EQ(red.normal_map, folder_ / "n.png");
     EXPECT_EQ(red.bump_map, folder_ / "h.png");
     EXPECT_EQ(red.bump_strength, 0.25F);
+    EXPECT_EQ(red.refractive_index, 1.5F);
+    EXPECT_EQ(red.specular_map, folder_ / "s.png");
+    EXPECT_EQ(red.opacity_map, folder_ / "d.png");
+    EXPECT_THAT(red.more, ElementsAre("map_Ka"));
     EXPECT_EQ(file.materials[1].name, "other");
+    EXPECT_EQ(file.materials[2].illumination_model, 2);  // MTL says nothing, and 0 is no light.
+    EXPECT_THAT(file.materials[2].more, ElementsAre("-s", "-o"));
     EXPECT_EQ(report_.count("unknown material"), 1U);
 }
 
@@ -203,6 +211,9 @@ TEST_F(Obj, MaterialsComeBack) {
     contents.materials[0].diffuse_map = folder_ / "a b.png";
     contents.materials[0].bump_map = folder_ / "sub/h.png";
     contents.materials[0].bump_strength = 2.5F;
+    contents.materials[0].specular_map = folder_ / "s.png";
+    contents.materials[0].opacity_map = folder_ / "d.png";
+    contents.materials[0].refractive_index = 1.5F;
     contents.materials[1].name = "with blank";  // The same: names are made different.
     contents.materials[1].emission = glm::vec3(0.1F, 0.2F, 0.3F);
     write_mesh(folder_ / "c.obj", contents);
@@ -216,6 +227,10 @@ TEST_F(Obj, MaterialsComeBack) {
     EXPECT_EQ(read.materials[1].diffuse_map, folder_ / "a b.png");
     EXPECT_EQ(read.materials[1].bump_map, folder_ / "sub/h.png");
     EXPECT_EQ(read.materials[1].bump_strength, 2.5F);
+    EXPECT_EQ(read.materials[1].specular_map, folder_ / "s.png");
+    EXPECT_EQ(read.materials[1].opacity_map, folder_ / "d.png");
+    EXPECT_EQ(read.materials[1].refractive_index, 1.5F);
+    EXPECT_EQ(read.materials[0].refractive_index, 1.0F);
     EXPECT_TRUE(report_.empty());
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "framing.h"
+// The depth range that moves along, and the smallest distance from which all vertices are seen.
+#include "relief/shade/framing.h"
 
 #include <gtest/gtest.h>
 
@@ -7,10 +8,11 @@
 #include <cmath>
 #include <limits>
 
+#include "relief/mesh/error.h"
 #include "support/angle.h"
 #include "support/shapes.h"
 
-namespace relief::tools {
+namespace relief {
 namespace {
 
 /// Depth of the farthest corner of the cube from -1 to 1.
@@ -64,21 +66,38 @@ TEST(Framing, EveryVertexIsSeenAndTheModelFillsThePicture) {
     scene.instances.emplace_back();
     scene.instances[0].world_from_object[3] = glm::vec4(10, 20, -30, 1);
     const glm::vec3 center(10, 20, -30);
-    const Bounds box{center - 1.0F, center + 1.0F};
     for (const float aspect : {0.5F, 1.0F, 2.0F}) {
-        const Camera boxed = framed(box, 0.7F, 0.4F, 0.6F, aspect);
-        const float factor = fitting_factor(scene, boxed, center, aspect);
-        EXPECT_LT(factor, 0.9F) << "a sphere is smaller than its box's corners";
-        const float extent = extent_in_picture(scene, at_distance(boxed, center, factor), aspect);
+        const float boxed = glm::distance(
+            glm::vec3(framed(world_bounds(scene), 0.7F, 0.4F, 0.6F, aspect).world_from_view[3]),
+            center);
+        const Camera camera = framed(scene, 0.7F, 0.4F, 0.6F, aspect);
+        EXPECT_NO_THROW(validate(camera));
+        const float distance = glm::distance(glm::vec3(camera.world_from_view[3]), center);
+        EXPECT_LT(distance, 0.9F * boxed) << "a sphere is smaller than its box's corners";
+        const float extent = extent_in_picture(scene, camera, aspect);
         EXPECT_LT(extent, 1.0F);
         EXPECT_GT(extent, 0.94F);
+        const Camera twice = framed(scene, 0.7F, 0.4F, 0.6F, aspect, 2.0F);
+        EXPECT_NEAR(glm::distance(glm::vec3(twice.world_from_view[3]), center), 2.0F * distance,
+                    1e-4F);
     }
 }
 
-TEST(Framing, WithoutAnyVertexTheCameraStays) {
-    Scene scene;
-    EXPECT_EQ(fitting_factor(scene, Camera{}, glm::vec3(0.0F), 1.0F), 1.0F);
+TEST(Framing, OfNothingStandsAtDistanceOne) {
+    EXPECT_EQ(framed(Scene{}, 0, 0, 0.7F, 1).world_from_view[3], glm::vec4(0, 0, 1, 1));
+    Scene point;
+    point.meshes.resize(1);
+    point.meshes[0].positions = {{2, 3, 4}};
+    point.instances.emplace_back();
+    EXPECT_EQ(framed(point, 0, 0, 0.7F, 1, 3.0F).world_from_view[3], glm::vec4(2, 3, 7, 1));
+}
+
+TEST(Framing, RefusesADistanceThatIsNone) {
+    for (const float factor : {0.0F, -1.0F, std::numeric_limits<float>::infinity(),
+                               std::numeric_limits<float>::quiet_NaN()}) {
+        EXPECT_THROW((void)framed(Scene{}, 0, 0, 0.7F, 1, factor), InvalidInput) << factor;
+    }
 }
 
 }  // namespace
-}  // namespace relief::tools
+}  // namespace relief
