@@ -9,44 +9,12 @@
 #include <algorithm>
 #include <cstdio>
 #include <memory>
-#include <numeric>
-#include <optional>
 
 #include "common/help_format.h"
+#include "near_names.h"
 
 namespace relief::tools {
 namespace {
-
-/// Insertions, deletions and replacements between two words.
-std::size_t edit_distance(std::string_view a, std::string_view b) {
-    std::vector<std::size_t> row(b.size() + 1);
-    std::iota(row.begin(), row.end(), std::size_t{0});
-    for (std::size_t i = 0; i < a.size(); ++i) {
-        std::size_t diagonal = row[0];
-        row[0] = i + 1;
-        for (std::size_t j = 0; j < b.size(); ++j) {
-            const std::size_t replaced = diagonal + (a[i] == b[j] ? 0 : 1);
-            diagonal = row[j + 1];
-            row[j + 1] = std::min({replaced, row[j] + 1, diagonal + 1});
-        }
-    }
-    return row.back();
-}
-
-/// The word that was most likely meant, if one is near enough.
-std::optional<std::string> nearest(const std::string& word, const std::vector<std::string>& known) {
-    constexpr std::size_t max_distance = 3;
-    std::optional<std::string> best;
-    std::size_t best_distance = std::min(max_distance, word.size() / 2) + 1;
-    for (const std::string& candidate : known) {
-        const std::size_t distance = edit_distance(word, candidate);
-        if (distance < best_distance) {
-            best = candidate;
-            best_distance = distance;
-        }
-    }
-    return best;
-}
 
 std::vector<std::string> option_names(const CLI::App& app) {
     std::vector<std::string> names;
@@ -81,9 +49,10 @@ UsageError unexpected(const CLI::App& app, const std::string& argument) {
     const bool is_option = argument.size() > 1 && argument.front() == '-';
     const std::vector<std::string> commands = command_names(app);
     const std::string word = argument.substr(0, argument.find('='));
-    const std::optional<std::string> meant =
-        nearest(word, is_option ? option_names(app) : commands);
-    const std::string remedy = meant ? fmt::format("did you mean {}?", *meant) : "";
+    const std::vector<std::string> meant =
+        near_names(word, is_option ? option_names(app) : commands);
+    const std::string remedy =
+        meant.empty() ? "" : fmt::format("did you mean {}?", fmt::join(meant, " or "));
     if (is_option) return UsageError(word + ": unknown option", remedy);
     if (!commands.empty()) return UsageError(word + ": unknown command", remedy);
     return UsageError(argument + ": one argument too many");

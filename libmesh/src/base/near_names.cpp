@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+// Names near to one that is not known, by edit distance. Tests:
+// tests/shade/scene/near_names_test.cpp.
+#include "near_names.h"
+
+#include <algorithm>
+#include <cctype>
+#include <utility>
+
+namespace relief {
+
+namespace {
+
+/// Small letters, and a blank for every separator.
+std::string plain(std::string_view name) {
+    std::string result;
+    for (const char c : name) {
+        const auto letter = static_cast<unsigned char>(c);
+        result += std::isalnum(letter) != 0 ? static_cast<char>(std::tolower(letter)) : ' ';
+    }
+    return result;
+}
+
+/// Letters to insert, leave out or change to get from one to the other.
+std::size_t edit_distance(const std::string& a, const std::string& b) {
+    std::vector<std::size_t> row(b.size() + 1);
+    for (std::size_t j = 0; j <= b.size(); ++j)
+        row[j] = j;
+    for (std::size_t i = 0; i < a.size(); ++i) {
+        std::size_t diagonal = std::exchange(row[0], i + 1);
+        for (std::size_t j = 0; j < b.size(); ++j) {
+            const std::size_t changed = diagonal + (a[i] == b[j] ? 0 : 1);
+            diagonal = row[j + 1];
+            row[j + 1] = std::min({changed, row[j] + 1, row[j + 1] + 1});
+        }
+    }
+    return row.back();
+}
+
+bool has_word(const std::string& text, const std::string& word) {
+    return !word.empty() && (" " + text + " ").find(" " + word + " ") != std::string::npos;
+}
+
+}  // namespace
+
+std::vector<std::string> near_names(std::string_view wanted, std::span<const std::string> known) {
+    constexpr std::size_t most = 3;
+    constexpr std::size_t most_slips = 3;
+    const std::string name = plain(wanted);
+    std::vector<std::pair<std::size_t, std::string>> found;
+    for (const std::string& candidate : known) {
+        const std::string other = plain(candidate);
+        const std::size_t distance = edit_distance(name, other);
+        const std::size_t allowed = std::min(most_slips, std::max(name.size(), other.size()) / 3);
+        if (distance <= allowed || has_word(other, name)) found.emplace_back(distance, candidate);
+    }
+    std::sort(found.begin(), found.end());
+    std::vector<std::string> names;
+    for (std::size_t i = 0; i < std::min(most, found.size()); ++i)
+        names.push_back(found[i].second);
+    return names;
+}
+
+std::string did_you_mean(std::string_view wanted, std::span<const std::string> known) {
+    const std::vector<std::string> names = near_names(wanted, known);
+    if (names.empty()) return "";
+    std::string text = "; did you mean ";
+    for (std::size_t i = 0; i < names.size(); ++i) {
+        if (i > 0) text += i + 1 == names.size() ? " or " : ", ";
+        text += "'" + names[i] + "'";
+    }
+    return text + "?";
+}
+
+}  // namespace relief
