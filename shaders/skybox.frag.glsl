@@ -4,12 +4,11 @@
 in vec3 direction_world;
 out vec4 color;
 
-uniform samplerCube environment;
-uniform float environment_intensity;
+#include "common/environment.glsl"
 
 #include <output>
 
 void main() {
-    vec3 radiance = texture(environment, direction_world).rgb * environment_intensity;
+    vec3 radiance = environment_radiance(direction_world);
     color = vec4(coded(radiance), 1.0);
 }

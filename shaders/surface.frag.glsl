@@ -1,38 +1,32 @@
 // SPDX-License-Identifier: Apache-2.0
-// The radiance that a surface sends to the eye, as scene.h's Material defines it. World space.
+// The radiance that a surface sends to the eye, as material.h's Material defines it. World space.
 // Every included <step> is chosen by the effect plan; one that cannot show is in absent/.
 
 out vec4 color;
 
-// What a light does at one point: before the surface's tint, and as highlights.
-struct Lighting {
-    vec3 scattered;
-    vec3 highlights;
-};
-
+#include "light/lighting.glsl"
+#include <alpha>
 #include <surface>
-#include <diffuse>
-#include <specular>
-#include <directional_lights>
-#include <point_lights>
-#include <spot_lights>
+#include <lamps>
 #include <ambient>
-#include <diffuse_texture>
-#include <vertex_color>
+#include <environment_light>
+#include <tint>
+#include <specular_texture>
 #include <reflection>
 #include <emission>
 #include <output>
 
 void main() {
+    float alpha = alpha_here();
     Surface surface = surface_here();
 
-    Lighting lighting = Lighting(ambient_radiance(), vec3(0.0));
-    add_directional_lights(surface, lighting);
-    add_point_lights(surface, lighting);
-    add_spot_lights(surface, lighting);
+    Lighting lighting = Lighting(vec3(0.0), vec3(0.0));
+    add_ambient(surface, lighting);
+    add_lamps(surface, lighting);
+    add_environment_light(surface, lighting);
 
-    vec3 scattered = lighting.scattered * diffuse_texture_color() * vertex_tint();
-    vec3 radiance =
-        with_reflection(surface, scattered) + lighting.highlights + emitted_radiance();
-    color = vec4(coded(radiance), 1.0);
+    vec3 scattered = lighting.scattered * scattering_tint(surface);
+    vec3 highlights = lighting.highlights * specular_texture_color();
+    vec3 radiance = with_reflection(surface, scattered) + highlights + emitted_radiance();
+    color = vec4(coded(radiance), alpha);
 }

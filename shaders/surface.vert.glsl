@@ -12,6 +12,7 @@ uniform mat4 clip_from_object;
 #include <pass_normal>
 #include <pass_texcoord>
 #include <pass_color>
+#include <pass_lamps>
 
 void main() {
     gl_Position = clip_from_object * vec4(position_object, 1.0);
@@ -19,4 +20,5 @@ void main() {
     pass_normal();
     pass_texcoord();
     pass_color();
+    pass_lamps();
 }

@@ -5,8 +5,13 @@ out vec4 color;
 
 uniform vec3 diffuse_color;
 
+#include <alpha>
 #include <diffuse_texture>
 #include <vertex_color>
 #include <output>
 
-void main() { color = vec4(coded(diffuse_color * diffuse_texture_color() * vertex_tint()), 1.0); }
+void main() {
+    float alpha = alpha_here();
+    vec3 radiance = diffuse_color * diffuse_texel().rgb * vertex_tint().rgb;
+    color = vec4(coded(radiance), alpha);
+}

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The diffuse texture, decoded from sRGB by the lookup.
+// The diffuse texture, decoded from sRGB by the lookup; its alpha is as stored.
 
 #include "common/texcoord.glsl"
 
 uniform sampler2D diffuse_texture;
 
-vec3 diffuse_texture_color() { return texture(diffuse_texture, texcoord_surface).rgb; }
+vec4 diffuse_texel() { return texture(diffuse_texture, texcoord_surface); }

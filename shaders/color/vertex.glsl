@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The interpolated vertex colour.
+// The interpolated vertex colour, and how much the surface covers there.
 
-in vec3 color_surface;
+in vec4 color_surface;
 
-vec3 vertex_tint() { return color_surface; }
+vec4 vertex_tint() { return color_surface; }

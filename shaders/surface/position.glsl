@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The surface for lights that have a place: normal and point.
 
-#include "common/position.glsl"
+#include <position>
 #include <normal>
 
 struct Surface {

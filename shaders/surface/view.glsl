@@ -3,7 +3,7 @@
 // the eye touches the surface, that vector is the normal.
 
 #include "common/normalized_or.glsl"
-#include "common/position.glsl"
+#include <position>
 #include <normal>
 
 uniform vec3 eye_world;

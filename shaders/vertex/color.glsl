@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The vertex's colour, linear.
+// The vertex's colour, linear, and its coverage.
 
 in vec4 color_linear;
-out vec3 color_surface;
+out vec4 color_surface;
 
-void pass_color() { color_surface = color_linear.rgb; }
+void pass_color() { color_surface = color_linear; }

@@ -33,14 +33,18 @@ OutputCoding coding_of(const ViewOptions& options) {
     return is_linear_output(options) ? OutputCoding::linear : OutputCoding::srgb;
 }
 
+FrameSettings settings_of(const ViewOptions& options) {
+    return {.width = options.size.x,
+            .height = options.size.y,
+            .samples = options.samples,
+            .output = coding_of(options)};
+}
+
 Drawn draw(const ViewOptions& options, const ComposedScene& composed, Stages& stages,
            Report& report) {
     const std::unique_ptr<Context> context =
         stages.run("context", [&] { return std::make_unique<Context>(options.backend); });
-    const FrameSettings settings{.width = options.size.x,
-                                 .height = options.size.y,
-                                 .samples = options.samples,
-                                 .output = coding_of(options)};
+    const FrameSettings settings = settings_of(options);
     const std::unique_ptr<Renderer> renderer = stages.run("prepare", [&] {
         return std::make_unique<Renderer>(*context, composed.scene, settings, report);
     });
@@ -145,7 +149,7 @@ ExitCode run(ViewOptions& options) {
     Stages stages(options.general.quiet);
     Report report;
     const ComposedScene composed = compose_scene(options, stages, report);
-    const FramePlan plan = plan_effects(composed.scene, coding_of(options));
+    const FramePlan plan = plan_effects(composed.scene, settings_of(options));
     if (options.explain_effects && !options.json) print_effects(composed.scene, plan);
 
     std::optional<Drawn> drawn;

@@ -3,6 +3,10 @@
 // in words. Pure. Tests: tests/shade/effects/effects_test.cpp.
 #include <fmt/format.h>
 
+#include <array>
+#include <map>
+#include <string_view>
+
 #include "effects/light_rows.h"
 #include "relief/shade/effects.h"
 
@@ -10,8 +14,20 @@ namespace relief {
 
 namespace {
 
-std::uint32_t light_count(const Features& f) {
+std::uint32_t lamp_count(const Features& f) {
     return f.directional_lights + f.point_lights + f.spot_lights;
+}
+
+/// What an opaque surface has no use for.
+void drop_alpha(Features& f) {
+    if (f.alpha == AlphaMode::opaque) f.opacity_texture = false;
+}
+
+/// Exposure and tone mapping belong to sRGB pictures.
+void drop_tone(Features& f) {
+    if (f.output == OutputCoding::srgb) return;
+    f.tone_mapping = ToneMapping::none;
+    f.exposure = false;
 }
 
 /// An unlit surface shows its tinted diffuse colour and nothing else.
@@ -20,11 +36,89 @@ Features unlit_only(const Features& f) {
     result.unlit = true;
     result.diffuse_texture = f.diffuse_texture;
     result.vertex_colors = f.vertex_colors;
+    result.alpha = f.alpha;
+    result.opacity_texture = f.opacity_texture;
     result.output = f.output;
+    result.tone_mapping = f.tone_mapping;
+    result.exposure = f.exposure;
+    drop_alpha(result);
+    drop_tone(result);
     return result;
 }
 
-std::string counted(std::uint32_t count, const char* kind) {
+/// glTF's model has one term for all that lamps do, and reflects by its own Fresnel factor.
+void settle_model(Features& f) {
+    if (f.metallic_roughness) {
+        f.specular = SpecularTerm::none;
+        f.specular_texture = f.highlight_colors = f.refraction = false;
+        f.fresnel = FresnelTerm::constant;
+        if (f.reflection != ReflectionTerm::none) f.reflection = ReflectionTerm::glossy;
+        if (f.interpolation == Interpolation::gouraud) f.interpolation = Interpolation::per_pixel;
+    } else {
+        f.metallic_roughness_texture = false;
+    }
+    if (f.reflection == ReflectionTerm::none) {
+        f.fresnel = FresnelTerm::constant;
+        f.refraction = false;
+    }
+}
+
+void drop_lamps(Features& f) {
+    if (lamp_count(f) == 0) {
+        f.diffuse = false;
+        f.specular = SpecularTerm::none;
+    }
+    if (!f.diffuse && f.specular == SpecularTerm::none) {
+        f.directional_lights = f.point_lights = f.spot_lights = 0;
+    }
+    if (f.point_lights + f.spot_lights == 0) {
+        f.light_ranges = false;
+        f.falloff = FalloffTerm::inverse_square;
+    }
+    if (f.specular == SpecularTerm::none) f.specular_texture = f.highlight_colors = false;
+    if (lamp_count(f) == 0) f.lights_in_buffer = false;
+    if (light_row_layout(f).count > max_block_rows) f.lights_in_buffer = true;
+    if (lamp_count(f) == 0 && f.interpolation == Interpolation::gouraud) {
+        f.interpolation = Interpolation::per_pixel;
+    }
+}
+
+void drop_normal(Features& f) {
+    const bool per_pixel_lamps = lamp_count(f) > 0 && f.interpolation != Interpolation::gouraud;
+    const bool seen =
+        per_pixel_lamps || f.reflection != ReflectionTerm::none || f.environment_diffuse;
+    if (!seen) {
+        f.detail = NormalDetail::none;
+        if (f.interpolation == Interpolation::flat) f.interpolation = Interpolation::per_pixel;
+    }
+    if (f.interpolation != Interpolation::per_pixel) f.detail = NormalDetail::none;
+    // Gouraud's lamps have two sides as well; a triangle's plane turns to the eye by itself.
+    if ((!seen && lamp_count(f) == 0) || f.interpolation == Interpolation::flat) {
+        f.double_sided = false;
+    }
+    if (f.detail == NormalDetail::none || f.detail == NormalDetail::object_normal_map) {
+        f.frame = TangentFrame::stored;
+    }
+    const bool mapped =
+        f.detail == NormalDetail::normal_map || f.detail == NormalDetail::object_normal_map;
+    const bool sharp =
+        f.specular != SpecularTerm::none ||
+        (f.metallic_roughness && (lamp_count(f) > 0 || f.reflection != ReflectionTerm::none));
+    if (!mapped || !sharp) f.specular_antialiasing = false;
+}
+
+void drop_colors(Features& f) {
+    const bool from_everywhere = f.ambient || f.environment_diffuse ||
+                                 (f.metallic_roughness && f.reflection != ReflectionTerm::none);
+    if (!from_everywhere) f.occlusion_texture = false;
+    if (!from_everywhere && !f.diffuse) {
+        f.metallic_roughness = f.metallic_roughness_texture = false;
+        if (f.alpha == AlphaMode::opaque) f.diffuse_texture = f.vertex_colors = false;
+    }
+    if (!f.emission) f.emission_texture = false;
+}
+
+std::string counted(std::uint32_t count, std::string_view kind) {
     return fmt::format("{} {} light{}", count, kind, count == 1 ? "" : "s");
 }
 
@@ -32,48 +126,31 @@ std::string counted(std::uint32_t count, const char* kind) {
 
 Features canonical(Features f) {
     if (f.unlit) return unlit_only(f);
-    if (light_count(f) == 0) {
-        f.diffuse = false;
-        f.specular = SpecularTerm::none;
-    }
-    if (!f.diffuse && f.specular == SpecularTerm::none) {
-        f.directional_lights = f.point_lights = f.spot_lights = 0;
-    }
-    if (f.point_lights + f.spot_lights == 0) f.light_ranges = false;
-    if (light_count(f) == 0) f.lights_in_buffer = false;
-    if (light_row_layout(f).count > max_block_rows) f.lights_in_buffer = true;
-    const bool normal_shows = f.diffuse || f.specular != SpecularTerm::none || f.reflection;
-    if (!normal_shows) f.normal_map = f.double_sided = false;
-    if (!f.ambient && !f.diffuse) f.diffuse_texture = f.vertex_colors = false;
-    if (!f.emission) f.emission_texture = false;
+    settle_model(f);
+    drop_lamps(f);
+    drop_normal(f);
+    drop_colors(f);
+    drop_alpha(f);
+    drop_tone(f);
     return f;
 }
 
 std::string describe(const Features& f) {
+    const std::map<std::string_view, std::uint32_t> lamps = {
+        {"directional", f.directional_lights}, {"point", f.point_lights}, {"spot", f.spot_lights}};
     std::vector<std::string> parts;
-    const auto add_if = [&](bool on, const char* name) {
-        if (on) parts.emplace_back(name);
-    };
-    add_if(f.unlit, "unlit");
-    add_if(f.diffuse_texture, "diffuse texture");
-    add_if(f.vertex_colors, "vertex colours");
-    add_if(f.normal_map, "normal map");
-    add_if(f.double_sided, "double-sided");
-    add_if(f.ambient, "ambient");
-    if (f.directional_lights > 0) parts.push_back(counted(f.directional_lights, "directional"));
-    if (f.point_lights > 0) parts.push_back(counted(f.point_lights, "point"));
-    if (f.spot_lights > 0) parts.push_back(counted(f.spot_lights, "spot"));
-    add_if(f.light_ranges, "light ranges");
-    add_if(f.lights_in_buffer, "light buffer");
-    add_if(f.diffuse, "diffuse");
-    add_if(f.specular == SpecularTerm::phong, "Phong");
-    add_if(f.specular == SpecularTerm::blinn_phong, "Blinn-Phong");
-    add_if(f.reflection, "reflection");
-    add_if(f.emission, "emission");
-    add_if(f.emission_texture, "emission texture");
-    add_if(f.output == OutputCoding::linear, "linear");
-    add_if(f.output == OutputCoding::clamped, "clamped");
-    add_if(f.output == OutputCoding::srgb, "sRGB");
+    for (const Effect& effect : effects()) {
+        if (!effect.on(f)) continue;
+        const std::string_view name = effect.name;
+        const auto lamp = lamps.find(name.substr(0, name.find(" light")));
+        if (lamp == lamps.end()) {
+            parts.emplace_back(name);
+        } else {
+            parts.push_back(counted(lamp->second, lamp->first));
+        }
+    }
+    constexpr std::array<const char*, 4> codings = {"linear", "clamped", "sRGB", "half"};
+    parts.emplace_back(codings.at(static_cast<std::size_t>(f.output)));
     return fmt::format("{}", fmt::join(parts, ", "));
 }
 

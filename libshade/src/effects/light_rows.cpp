@@ -19,6 +19,10 @@ glm::vec4 place_of(const PointLight& light) {
     return {light.position_world, light.range ? 1.0F / *light.range : 0.0F};
 }
 
+glm::vec4 power_of(const PointLight& light) {
+    return {light.intensity, light.falloff == Falloff::inverse_square ? 1.0F : 0.0F};
+}
+
 void add(std::vector<glm::vec4>& rows, const DirectionalLight& light) {
     rows.emplace_back(-unit(light.direction_world), 0.0F);
     rows.emplace_back(light.irradiance, 0.0F);
@@ -26,7 +30,7 @@ void add(std::vector<glm::vec4>& rows, const DirectionalLight& light) {
 
 void add(std::vector<glm::vec4>& rows, const PointLight& light) {
     rows.push_back(place_of(light));
-    rows.emplace_back(light.intensity, 0.0F);
+    rows.push_back(power_of(light));
 }
 
 void add(std::vector<glm::vec4>& rows, const SpotLight& light) {
@@ -35,16 +39,30 @@ void add(std::vector<glm::vec4>& rows, const SpotLight& light) {
     const double outer = std::cos(static_cast<double>(light.outer_cone));
     const double inner = std::cos(static_cast<double>(light.inner_cone));
     const double scale = 1.0 / std::max(inner - outer, least_difference);
+    const glm::dvec3 axis = glm::normalize(glm::dvec3(light.direction_world));
     rows.push_back(place_of(light.point));
-    rows.emplace_back(light.point.intensity, static_cast<float>(scale));
-    rows.emplace_back(unit(light.direction_world), static_cast<float>(-outer * scale));
+    rows.push_back(power_of(light.point));
+    rows.emplace_back(glm::vec3(axis * scale), static_cast<float>(-outer * scale));
+}
+
+glm::vec3 highlights_of(const DirectionalLight& light) {
+    return light.highlight_irradiance.value_or(light.irradiance);
+}
+glm::vec3 highlights_of(const PointLight& light) {
+    return light.highlight_intensity.value_or(light.intensity);
+}
+glm::vec3 highlights_of(const SpotLight& light) {
+    return highlights_of(light.point);
 }
 
 /// Rows of the shining lights of one kind, and black rows up to the planned count.
 template <typename Light>
-void add_all(std::vector<glm::vec4>& rows, const std::vector<Light>& lights, std::size_t end) {
+void add_all(std::vector<glm::vec4>& rows, const std::vector<Light>& lights, std::size_t end,
+             bool highlight_colors) {
     for (const Light& light : lights) {
-        if (shines(light) && rows.size() < end) add(rows, light);
+        if (!shines(light) || rows.size() >= end) continue;
+        add(rows, light);
+        if (highlight_colors) rows.emplace_back(highlights_of(light), 0.0F);
     }
     rows.resize(end, glm::vec4(0.0F));
 }
@@ -56,30 +74,35 @@ bool any(const glm::vec3& color) {
 }  // namespace
 
 LightRowLayout light_row_layout(const Features& features) {
+    const std::uint32_t more = features.highlight_colors ? 1 : 0;
     LightRowLayout layout;
-    layout.first_point = 2 * features.directional_lights;
-    layout.first_spot = layout.first_point + 2 * features.point_lights;
-    layout.count = layout.first_spot + 3 * features.spot_lights;
+    layout.directional_rows += more;
+    layout.point_rows += more;
+    layout.spot_rows += more;
+    layout.first_point = layout.directional_rows * features.directional_lights;
+    layout.first_spot = layout.first_point + layout.point_rows * features.point_lights;
+    layout.count = layout.first_spot + layout.spot_rows * features.spot_lights;
     return layout;
 }
 
 bool shines(const DirectionalLight& light) {
-    return any(light.irradiance);
+    return any(light.irradiance) || any(highlights_of(light));
 }
 bool shines(const PointLight& light) {
-    return any(light.intensity);
+    return any(light.intensity) || any(highlights_of(light));
 }
 bool shines(const SpotLight& light) {
-    return any(light.point.intensity);
+    return shines(light.point);
 }
 
 std::vector<glm::vec4> light_rows(const Scene& scene, const Features& features) {
     const LightRowLayout layout = light_row_layout(features);
     std::vector<glm::vec4> rows;
     rows.reserve(layout.count);
-    add_all(rows, scene.directional_lights, layout.first_point);
-    add_all(rows, scene.point_lights, layout.first_spot);
-    add_all(rows, scene.spot_lights, layout.count);
+    const bool colors = features.highlight_colors;
+    add_all(rows, scene.directional_lights, layout.first_point, colors);
+    add_all(rows, scene.point_lights, layout.first_spot, colors);
+    add_all(rows, scene.spot_lights, layout.count, colors);
     return rows;
 }
 

@@ -3,12 +3,14 @@
 /// A scene's lights as rows of four floats, as shaders/light/*.glsl read them. World space.
 ///
 ///     directional: (unit direction to the light, 0) (irradiance, 0)
-///     point:       (position, 1 / range) (intensity, 0)
-///     spot:        (position, 1 / range) (intensity, cone scale) (unit axis, cone offset)
+///     point:       (position, 1 / range) (intensity, law)
+///     spot:        (position, 1 / range) (intensity, law) (unit axis * cone scale, cone offset)
 ///
-/// first all directional lights, then point lights, then spot lights. 1 / range is 0 without a
-/// range; cone scale and offset turn the cosine between axis and ray into 1 at the inner cone and 0
-/// at the outer (KHR_lights_punctual). Black lights have no row.
+/// each followed by a row (highlight irradiance or intensity, 0) where highlights have colours of
+/// their own; first all directional lights, then point lights, then spot lights. 1 / range is 0
+/// without a range; law is 1 for the inverse square and 0 for none; cone scale and offset turn the
+/// cosine between axis and ray into 1 at the inner cone and 0 at the outer (KHR_lights_punctual).
+/// Black lights have no row.
 /// Tests: tests/shade/effects/light_rows_test.cpp.
 #pragma once
 
@@ -25,6 +27,9 @@ inline constexpr std::uint32_t max_block_rows = 1024;
 
 /// Where each kind starts, and how many rows there are.
 struct LightRowLayout {
+    std::uint32_t directional_rows = 2;  ///< Of one light.
+    std::uint32_t point_rows = 2;
+    std::uint32_t spot_rows = 3;
     std::uint32_t first_point = 0;
     std::uint32_t first_spot = 0;
     std::uint32_t count = 0;

@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <functional>
+#include <string_view>
 
 #include "effects/light_rows.h"
 #include "relief/shade/effects.h"
@@ -49,23 +49,95 @@ bool decide_texture(Wishes& wishes, const Subject& subject, const char* effect, 
                          subject.name + " has one and the mesh has texture coordinates");
 }
 
-void decide_surface(Wishes& wishes, const Subject& subject) {
+void decide_model(Wishes& wishes, const Subject& subject) {
     const Material& material = subject.material;
+    const bool physical = material.metallic_roughness.has_value();
     Features& f = wishes.features;
     f.unlit = wishes.decide("unlit", material.unlit,
                             subject.name + (material.unlit ? " is unlit" : " is lit"));
+    f.metallic_roughness =
+        wishes.decide("metallic-roughness", physical,
+                      subject.name + (physical ? " is glTF's model" : " is Phong's model"));
+    f.metallic_roughness_texture =
+        decide_texture(wishes, subject, "metallic-roughness texture",
+                       physical && material.metallic_roughness->texture.has_value());
+    f.interpolation = material.interpolation;
+    const bool gouraud = material.interpolation == Interpolation::gouraud;
+    const bool flat = material.interpolation == Interpolation::flat;
+    wishes.decide("Gouraud", gouraud,
+                  subject.name + (gouraud ? " is lit at its vertices" : " is lit at every pixel"));
+    wishes.decide("flat", flat,
+                  subject.name + (flat ? " shows its facets" : " interpolates its normals"));
+}
+
+/// Whether vertex colours change anything, alpha included where it counts.
+bool has_tint(const Subject& subject) {
+    const bool alpha_counts = subject.material.alpha_mode != AlphaMode::opaque;
+    const auto& colors = subject.mesh.colors;
+    return std::any_of(colors.begin(), colors.end(), [&](const glm::vec4& color) {
+        return glm::vec3(color) != glm::vec3(1.0F) || (alpha_counts && color.a != 1.0F);
+    });
+}
+
+/// Alpha is looked at only where something says less than 1.
+AlphaMode shown_alpha_mode(const Subject& subject, bool textured, bool tinted) {
+    const Material& material = subject.material;
+    if (material.alpha_mode == AlphaMode::opaque) return AlphaMode::opaque;
+    const bool varies = textured || tinted || material.opacity < 1.0F;
+    if (material.alpha_mode == AlphaMode::blend) {
+        return varies ? AlphaMode::blend : AlphaMode::opaque;
+    }
+    const bool all_there = !varies && material.alpha_cutoff <= 1.0F;
+    return all_there ? AlphaMode::opaque : AlphaMode::mask;
+}
+
+void decide_color(Wishes& wishes, const Subject& subject) {
+    const Material& material = subject.material;
+    Features& f = wishes.features;
     f.diffuse_texture =
         decide_texture(wishes, subject, "diffuse texture", material.diffuse_texture.has_value());
+    const bool tinted = has_tint(subject);
     const auto& colors = subject.mesh.colors;
-    const bool tinted = std::any_of(colors.begin(), colors.end(), [](const glm::vec4& color) {
-        return glm::vec3(color) != glm::vec3(1.0F);
-    });
     f.vertex_colors = wishes.decide("vertex colours", tinted,
                                     fmt::format("mesh '{}' has {}", subject.mesh.name,
                                                 colors.empty() ? "none"
                                                 : tinted       ? "them"
                                                                : "only white ones"));
-    f.normal_map = decide_texture(wishes, subject, "normal map", material.normal_map.has_value());
+    const bool opacity = material.opacity_texture && !subject.mesh.texcoords.empty();
+    f.alpha = shown_alpha_mode(subject, f.diffuse_texture || opacity, tinted);
+    const std::string reason =
+        material.alpha_mode == AlphaMode::opaque ? subject.name + " is opaque"
+        : f.alpha == AlphaMode::opaque           ? subject.name + " is covered everywhere"
+        : f.alpha == AlphaMode::mask ? subject.name + " has holes where alpha is below its cutoff"
+                                     : subject.name + " lets through what is behind it";
+    wishes.decide("alpha mask", f.alpha == AlphaMode::mask, reason);
+    wishes.decide("alpha blending", f.alpha == AlphaMode::blend, reason);
+    f.opacity_texture =
+        decide_texture(wishes, subject, "opacity texture", material.opacity_texture.has_value());
+}
+
+void decide_normal(Wishes& wishes, const Subject& subject) {
+    const Material& material = subject.material;
+    Features& f = wishes.features;
+    const bool object_space =
+        material.normal_map && material.normal_map->space == NormalSpace::object;
+    if (decide_texture(wishes, subject, "normal map", material.normal_map && !object_space)) {
+        f.detail = NormalDetail::normal_map;
+    }
+    if (decide_texture(wishes, subject, "object-space normal map", object_space)) {
+        f.detail = NormalDetail::object_normal_map;
+    }
+    if (decide_texture(wishes, subject, "bump map", material.bump_map.has_value())) {
+        f.detail = NormalDetail::bump_map;
+    }
+    const bool derived = material.tangent_frame == TangentFrame::derivatives;
+    f.frame = material.tangent_frame;
+    wishes.decide("derivative frames", derived,
+                  subject.name + (derived ? " takes its frame from derivatives"
+                                          : " uses the mesh's tangents"));
+    f.specular_antialiasing = wishes.decide(
+        "specular antialiasing", material.specular_antialiasing,
+        subject.name + (material.specular_antialiasing ? " asks for it" : " does not ask for it"));
     f.double_sided = wishes.decide(
         "double-sided normals", material.double_sided,
         subject.name + (material.double_sided ? " shows both sides" : " shows its front only"));
@@ -83,108 +155,211 @@ std::uint32_t decide_lights(Wishes& wishes, const char* effect, const std::vecto
     return shining;
 }
 
-bool has_ranges(const Scene& scene) {
-    const auto ranged = [](const PointLight& light) { return shines(light) && light.range; };
-    return std::any_of(scene.point_lights.begin(), scene.point_lights.end(), ranged) ||
-           std::any_of(scene.spot_lights.begin(), scene.spot_lights.end(),
-                       [&](const SpotLight& light) { return ranged(light.point); });
+/// The shining lamps that have a place.
+std::vector<const PointLight*> placed_lamps(const Scene& scene) {
+    std::vector<const PointLight*> lamps;
+    for (const PointLight& light : scene.point_lights)
+        if (shines(light)) lamps.push_back(&light);
+    for (const SpotLight& light : scene.spot_lights)
+        if (shines(light)) lamps.push_back(&light.point);
+    return lamps;
 }
 
-void decide_lighting(Wishes& wishes, const Subject& subject) {
-    const Material& material = subject.material;
+void decide_falloff(Wishes& wishes, const Scene& scene) {
+    Features& f = wishes.features;
+    const std::vector<const PointLight*> lamps = placed_lamps(scene);
+    const auto falling = std::count_if(lamps.begin(), lamps.end(), [](const PointLight* light) {
+        return light->falloff == Falloff::inverse_square;
+    });
+    const bool all_fall = falling == std::ssize(lamps);
+    f.falloff = all_fall       ? FalloffTerm::inverse_square
+                : falling == 0 ? FalloffTerm::none
+                               : FalloffTerm::mixed;
+    wishes.decide("no falloff", f.falloff == FalloffTerm::none,
+                  all_fall       ? "every lamp falls off with the squared distance"
+                  : falling == 0 ? "no lamp falls off with distance"
+                                 : "some lamps fall off with distance");
+    wishes.decide("mixed falloff", f.falloff == FalloffTerm::mixed,
+                  all_fall || falling == 0 ? "all lamps follow one law"
+                                           : "some lamps fall off with distance and some do not");
+    const bool ranges = std::any_of(lamps.begin(), lamps.end(), [](const PointLight* light) {
+        return light->range.has_value();
+    });
+    f.light_ranges = wishes.decide("light ranges", ranges,
+                                   ranges ? "a point or spot light has one" : "no light has one");
+}
+
+bool has_highlight_colors(const Scene& scene) {
+    const auto differs = [](const std::optional<glm::vec3>& highlights, const glm::vec3& light) {
+        return highlights && *highlights != light;
+    };
+    const std::vector<const PointLight*> lamps = placed_lamps(scene);
+    return std::any_of(lamps.begin(), lamps.end(),
+                       [&](const PointLight* light) {
+                           return differs(light->highlight_intensity, light->intensity);
+                       }) ||
+           std::any_of(scene.directional_lights.begin(), scene.directional_lights.end(),
+                       [&](const DirectionalLight& light) {
+                           return differs(light.highlight_irradiance, light.irradiance);
+                       });
+}
+
+void decide_lamps(Wishes& wishes, const Subject& subject) {
     const Scene& scene = subject.scene;
     Features& f = wishes.features;
-    f.ambient = wishes.decide("ambient", any(scene.ambient * material.ambient),
-                              !any(scene.ambient)     ? "the scene has no ambient light"
-                              : any(material.ambient) ? subject.name + " scatters ambient light"
-                                                      : subject.name + " scatters none");
     f.directional_lights = decide_lights(wishes, "directional lights", scene.directional_lights);
     f.point_lights = decide_lights(wishes, "point lights", scene.point_lights);
     f.spot_lights = decide_lights(wishes, "spot lights", scene.spot_lights);
-    const bool ranges = has_ranges(scene);
-    f.light_ranges = wishes.decide("light ranges", ranges,
-                                   ranges ? "a point or spot light has one" : "no light has one");
+    decide_falloff(wishes, scene);
+    const bool colors = has_highlight_colors(scene);
+    f.highlight_colors =
+        wishes.decide("highlight colours", colors,
+                      colors ? "a lamp's highlights have a colour of their own"
+                             : "every lamp's highlights have the colour of its light");
     const std::uint32_t rows = light_row_layout(f).count;
     f.lights_in_buffer = wishes.decide(
         "light buffer", rows > max_block_rows,
         fmt::format("the lights take {} of the {} rows of a uniform block", rows, max_block_rows));
-    f.diffuse =
-        wishes.decide("diffuse", any(material.diffuse),
-                      subject.name + (any(material.diffuse) ? " scatters light" : " is black"));
-    const bool phong = material.specular_model == SpecularModel::phong;
-    if (wishes.decide("highlights", any(material.specular),
-                      !any(material.specular) ? subject.name + " has none"
-                      : phong                 ? subject.name + " has Phong's"
-                                              : subject.name + " has Blinn and Phong's")) {
-        f.specular = phong ? SpecularTerm::phong : SpecularTerm::blinn_phong;
-    }
 }
 
-void decide_radiance(Wishes& wishes, const Subject& subject) {
+void decide_scattering(Wishes& wishes, const Subject& subject) {
+    const Material& material = subject.material;
+    const Scene& scene = subject.scene;
+    const bool physical = material.metallic_roughness.has_value();
+    Features& f = wishes.features;
+    const bool takes_ambient = physical || any(material.ambient);
+    f.ambient = wishes.decide("ambient",
+                              physical ? any(scene.ambient) : any(scene.ambient * material.ambient),
+                              !any(scene.ambient) ? "the scene has no ambient light"
+                              : takes_ambient     ? subject.name + " scatters ambient light"
+                                                  : subject.name + " scatters none");
+    const bool scatters = physical || any(material.diffuse);
+    f.diffuse = wishes.decide("diffuse", scatters,
+                              subject.name + (scatters ? " scatters light" : " is black"));
+    const bool sheds = scene.environment && scene.environment->lights;
+    f.environment_diffuse = wishes.decide(
+        "environment light", sheds && scatters,
+        !scene.environment ? "the scene has no environment"
+        : !sheds           ? "the environment is not to light surfaces"
+                 : subject.name + (scatters ? " scatters the environment's light" : " is black"));
+    f.occlusion_texture = decide_texture(
+        wishes, subject, "occlusion texture",
+        material.occlusion_texture.has_value() && material.occlusion_strength > 0.0F);
+}
+
+void decide_highlights(Wishes& wishes, const Subject& subject) {
     const Material& material = subject.material;
     Features& f = wishes.features;
+    const bool physical = material.metallic_roughness.has_value();
+    const bool phong = material.specular_model == SpecularModel::phong;
+    const bool shiny = !physical && any(material.specular);
+    const std::string reason =
+        physical ? subject.name + " has those of its own model"
+        : !shiny ? subject.name + " has none"
+                 : subject.name + (phong ? " has Phong's" : " has the half vector's");
+    if (wishes.decide("Phong highlights", shiny && phong, reason)) f.specular = SpecularTerm::phong;
+    if (wishes.decide("Blinn-Phong highlights", shiny && !phong, reason)) {
+        f.specular = SpecularTerm::blinn_phong;
+    }
+    f.specular_texture =
+        decide_texture(wishes, subject, "specular texture", material.specular_texture.has_value());
     f.emission = wishes.decide("emission", any(material.emission),
                                subject.name + (any(material.emission) ? " shines" : " has none"));
     f.emission_texture =
         decide_texture(wishes, subject, "emission texture", material.emission_texture.has_value());
-    const bool environment = subject.scene.environment.has_value();
-    f.reflection = wishes.decide("reflection", environment && any(material.reflectivity),
-                                 !any(material.reflectivity) ? subject.name + " reflects nothing"
-                                 : environment               ? subject.name +
-                                                     " reflects and there is an "
-                                                     "environment"
-                                               : "the scene has no environment");
 }
 
-/// An effect that was wished for and is gone after canonical(): how to see that, and why.
-struct Dropped {
-    const char* effect;
-    std::function<bool(const Features&)> on;
-    const char* reason;
-};
-
-/// Why canonical() drops what it drops, in words.
-const std::vector<Dropped>& droppable() {
-    const char* const unlit_or_dark = "no light reaches the surface, or it does nothing with it";
-    static const std::vector<Dropped> all = {
-        {"diffuse texture", [](const Features& f) { return f.diffuse_texture; },
-         "nothing is scattered that it could tint"},
-        {"vertex colours", [](const Features& f) { return f.vertex_colors; },
-         "nothing is scattered that they could tint"},
-        {"normal map", [](const Features& f) { return f.normal_map; },
-         "neither light nor reflection shows the normal"},
-        {"double-sided normals", [](const Features& f) { return f.double_sided; },
-         "neither light nor reflection shows the normal"},
-        {"ambient", [](const Features& f) { return f.ambient; }, "the material is unlit"},
-        {"directional lights", [](const Features& f) { return f.directional_lights > 0; },
-         "the material does nothing with light"},
-        {"point lights", [](const Features& f) { return f.point_lights > 0; },
-         "the material does nothing with light"},
-        {"spot lights", [](const Features& f) { return f.spot_lights > 0; },
-         "the material does nothing with light"},
-        {"light ranges", [](const Features& f) { return f.light_ranges; }, unlit_or_dark},
-        {"light buffer", [](const Features& f) { return f.lights_in_buffer; }, unlit_or_dark},
-        {"diffuse", [](const Features& f) { return f.diffuse; }, "no light reaches the surface"},
-        {"highlights", [](const Features& f) { return f.specular != SpecularTerm::none; },
-         "no light reaches the surface"},
-        {"emission", [](const Features& f) { return f.emission; }, "the material is unlit"},
-        {"emission texture", [](const Features& f) { return f.emission_texture; },
-         "the material has no emission that it could tint"},
-        {"reflection", [](const Features& f) { return f.reflection; }, "the material is unlit"},
+void decide_fresnel(Wishes& wishes, const Subject& subject, bool reflects) {
+    const Material& material = subject.material;
+    const bool varies = material.grazing_reflectivity != material.reflectivity;
+    const FresnelTerm term = material.fresnel == FresnelModel::dielectric  ? FresnelTerm::dielectric
+                             : material.fresnel == FresnelModel::conductor ? FresnelTerm::conductor
+                             : varies                                      ? FresnelTerm::schlick
+                                                                           : FresnelTerm::constant;
+    wishes.features.fresnel = term;
+    const std::string none = !reflects                     ? subject.name + " reflects nothing"
+                             : material.metallic_roughness ? subject.name + " has its own model's"
+                                                           : "";
+    const auto decide = [&](const char* effect, FresnelTerm which, const char* otherwise) {
+        const bool on = none.empty() && term == which;
+        wishes.decide(effect, on, !none.empty() ? none : on ? subject.name + " has it" : otherwise);
     };
-    return all;
+    decide("Schlick's Fresnel", FresnelTerm::schlick,
+           varies ? "an exact form is asked for" : "reflectivity is the same at every angle");
+    decide("dielectric Fresnel", FresnelTerm::dielectric, "it is not asked for");
+    decide("conductor Fresnel", FresnelTerm::conductor, "it is not asked for");
+}
+
+void decide_reflection(Wishes& wishes, const Subject& subject) {
+    const Material& material = subject.material;
+    Features& f = wishes.features;
+    const bool physical = material.metallic_roughness.has_value();
+    const bool environment = subject.scene.environment.has_value();
+    const bool mirrors = physical || any(material.reflectivity);
+    const bool rough = physical || material.reflection_roughness > 0.0F;
+    const bool reflects = environment && mirrors;
+    const std::string reason = !mirrors       ? subject.name + " reflects nothing"
+                               : !environment ? "the scene has no environment"
+                               : rough ? subject.name + " is rough and there is an environment"
+                                       : subject.name + " is a mirror and there is an environment";
+    wishes.decide("mirror reflection", reflects && !rough, reason);
+    wishes.decide("glossy reflection", reflects && rough, reason);
+    f.reflection = !reflects ? ReflectionTerm::none
+                   : rough   ? ReflectionTerm::glossy
+                             : ReflectionTerm::mirror;
+    decide_fresnel(wishes, subject, reflects);
+    f.refraction =
+        wishes.decide("refraction", material.transmission > 0.0F && reflects,
+                      !(material.transmission > 0.0F) ? subject.name + " lets nothing through"
+                      : reflects ? subject.name + " lets through what it does not mirror"
+                                 : reason);
+}
+
+void decide_picture(Wishes& wishes, const Scene& scene) {
+    Features& f = wishes.features;
+    f.exposure = wishes.decide("exposure", scene.exposure != 1.0F,
+                               fmt::format("the scene's exposure is {}", scene.exposure));
+    f.tone_mapping = scene.tone_mapping;
+    const bool none = scene.tone_mapping == ToneMapping::none;
+    const auto decide = [&](const char* effect, ToneMapping which) {
+        const bool on = scene.tone_mapping == which;
+        wishes.decide(effect, on,
+                      on     ? "the scene asks for it"
+                      : none ? "radiance above 1 is shown as 1"
+                             : "the scene asks for another curve");
+    };
+    decide("Reinhard tone mapping", ToneMapping::reinhard);
+    decide("ACES tone mapping", ToneMapping::aces);
+}
+
+/// Why something that the features hold no more is gone; what decides more than canonical() says.
+std::string why_hidden(const Effect& effect, const Features& wished, const Features& shown) {
+    if (shown.unlit) return "the material is unlit";
+    const bool detail =
+        std::string_view(effect.name).ends_with("map") && wished.detail != shown.detail;
+    if (detail && wished.interpolation == Interpolation::gouraud) {
+        return "Gouraud shading knows the normal at vertices only";
+    }
+    if (detail && wished.interpolation == Interpolation::flat) {
+        return "flat shading knows the triangle's plane only";
+    }
+    if (wished.interpolation == Interpolation::flat &&
+        std::string_view(effect.name) == "double-sided normals") {
+        return "a triangle's plane turns to the eye by itself";
+    }
+    return effect.hidden;
 }
 
 /// The wishes that can show, and the reasons put right for those that cannot.
 Wishes granted(Wishes wishes) {
     const Features shown = canonical(wishes.features);
-    for (const Dropped& dropped : droppable()) {
-        if (!dropped.on(wishes.features) || dropped.on(shown)) continue;
+    for (const Effect& effect : effects()) {
         const auto entry =
             std::find_if(wishes.reasons.begin(), wishes.reasons.end(),
-                         [&](const EffectReason& r) { return r.effect == dropped.effect; });
+                         [&](const EffectReason& r) { return r.effect == effect.name; });
+        if (entry == wishes.reasons.end() || !entry->on || effect.on(shown)) continue;
         entry->on = false;
-        entry->reason = shown.unlit ? "the material is unlit" : dropped.reason;
+        entry->reason = why_hidden(effect, wishes.features, shown);
     }
     wishes.features = shown;
     return wishes;
@@ -194,48 +369,83 @@ Wishes decide(const Scene& scene, const Material& material, const Mesh& mesh, Ou
     const Subject subject{scene, material, mesh, fmt::format("material '{}'", material.name)};
     Wishes wishes;
     wishes.features.output = output;
-    decide_surface(wishes, subject);
-    decide_lighting(wishes, subject);
-    decide_radiance(wishes, subject);
+    decide_model(wishes, subject);
+    decide_color(wishes, subject);
+    decide_normal(wishes, subject);
+    decide_lamps(wishes, subject);
+    decide_scattering(wishes, subject);
+    decide_highlights(wishes, subject);
+    decide_reflection(wishes, subject);
+    decide_picture(wishes, scene);
     return granted(std::move(wishes));
 }
 
-/// The plan of one range, with what its normal map asks of the mesh.
+/// The plan of one range, with what its maps ask of the mesh.
 DrawPlan plan_draw(const Scene& scene, std::size_t instance, const MaterialRange& range,
                    OutputCoding output) {
     const Mesh& mesh = scene.meshes[scene.instances[instance].mesh];
     const Material& material =
         range.material ? scene.materials[*range.material] : default_material();
     Wishes wishes = decide(scene, material, mesh, output);
+    const Features& f = wishes.features;
     DrawPlan draw;
     draw.instance = instance;
     draw.range = range;
-    draw.features = wishes.features;
-    draw.needs_tangents = draw.features.normal_map && mesh.tangents.empty();
+    draw.features = f;
+    const bool uses_tangents =
+        (f.detail == NormalDetail::normal_map || f.detail == NormalDetail::bump_map) &&
+        f.frame == TangentFrame::stored;
+    draw.needs_tangents = uses_tangents && mesh.tangents.empty();
     wishes.decide("computed tangents", draw.needs_tangents,
-                  !draw.features.normal_map ? "nothing uses tangents"
-                  : draw.needs_tangents     ? fmt::format("mesh '{}' has none", mesh.name)
-                                            : fmt::format("mesh '{}' has its own", mesh.name));
+                  !uses_tangents        ? "nothing uses tangents"
+                  : draw.needs_tangents ? fmt::format("mesh '{}' has none", mesh.name)
+                                        : fmt::format("mesh '{}' has its own", mesh.name));
     draw.reasons = std::move(wishes.reasons);
     return draw;
 }
 
-void plan_frame_effects(const Scene& scene, FramePlan& plan) {
-    const bool present = scene.environment.has_value();
-    plan.skybox = present && scene.environment->skybox;
-    plan.reasons.push_back({"skybox", plan.skybox,
-                            plan.skybox ? "the environment is to be seen behind the model"
-                            : present   ? "the environment is not to be seen itself"
-                                        : "the scene has no environment"});
-    const bool reflected =
-        std::any_of(plan.draws.begin(), plan.draws.end(),
-                    [](const DrawPlan& draw) { return draw.features.reflection; });
-    plan.environment_map = plan.skybox || reflected;
-    plan.reasons.push_back({"environment map", plan.environment_map,
-                            reflected     ? "a material reflects it"
-                            : plan.skybox ? "the skybox shows it"
-                            : present     ? "nothing shows it"
-                                          : "the scene has no environment"});
+template <typename Condition>
+bool any_draw(const FramePlan& plan, Condition condition) {
+    return std::any_of(plan.draws.begin(), plan.draws.end(),
+                       [&](const DrawPlan& draw) { return condition(draw.features); });
+}
+
+void plan_environment(const Scene& scene, FramePlan& plan) {
+    const auto decide = [&](const char* effect, bool on, const char* why, const char* why_not) {
+        plan.reasons.push_back({effect, on,
+                                on                  ? why
+                                : scene.environment ? why_not
+                                                    : "the scene has no environment"});
+        return on;
+    };
+    plan.skybox = decide("skybox", scene.environment && scene.environment->skybox,
+                         "the environment is to be seen behind the model",
+                         "the environment is not to be seen itself");
+    const bool mirrored = any_draw(plan, [](const Features& f) {
+        return f.reflection == ReflectionTerm::mirror || f.refraction;
+    });
+    plan.prefiltered_map = decide(
+        "prefiltered environment",
+        any_draw(plan, [](const Features& f) { return f.reflection == ReflectionTerm::glossy; }),
+        "a rough material reflects it", "no rough material reflects it");
+    plan.environment_brdf = decide(
+        "environment BRDF table",
+        any_draw(plan,
+                 [](const Features& f) {
+                     return f.metallic_roughness &&
+                            (f.reflection == ReflectionTerm::glossy || f.environment_diffuse);
+                 }),
+        "a metallic-roughness material reflects the environment",
+        "no metallic-roughness material reflects it");
+    plan.environment_irradiance =
+        decide("environment irradiance",
+               any_draw(plan, [](const Features& f) { return f.environment_diffuse; }),
+               "a material scatters its light", "no material scatters its light");
+    plan.environment_map =
+        decide("environment map",
+               plan.skybox || mirrored || plan.prefiltered_map || plan.environment_irradiance,
+               mirrored ? "a material mirrors it" : "the effects above are made from it",
+               "nothing shows it");
 }
 
 }  // namespace
@@ -254,19 +464,43 @@ Features features_of(const Scene& scene, const Material& material, const Mesh& m
     return decide(scene, material, mesh, output).features;
 }
 
-FramePlan plan_effects(const Scene& scene, OutputCoding output) {
+void plan_frame(const Scene& scene, const FrameSettings& settings, FramePlan& plan) {
+    plan.reasons.clear();
+    plan_environment(scene, plan);
+    plan.sorted_blending =
+        any_draw(plan, [](const Features& f) { return f.alpha == AlphaMode::blend; });
+    plan.reasons.push_back({"sorted blending", plan.sorted_blending,
+                            plan.sorted_blending ? "a material lets through what is behind it"
+                                                 : "every material is opaque or has holes only"});
+    const bool averaged = settings.samples > 1;
+    plan.finishing_pass = averaged || plan.sorted_blending;
+    plan.reasons.push_back(
+        {"finishing pass", plan.finishing_pass,
+         averaged ? fmt::format("{} samples a pixel are averaged in linear light", settings.samples)
+         : plan.sorted_blending
+             ? "what is blended must be in linear light"
+             : "one sample a pixel, and nothing is blended: surfaces write codes"});
+    for (DrawPlan& draw : plan.draws) {
+        draw.features.output = !plan.finishing_pass                      ? settings.output
+                               : settings.output == OutputCoding::linear ? OutputCoding::linear
+                                                                         : OutputCoding::half;
+        draw.features = canonical(draw.features);
+    }
+}
+
+FramePlan plan_effects(const Scene& scene, const FrameSettings& settings) {
     FramePlan plan;
     for (std::size_t i = 0; i < scene.instances.size(); ++i) {
         const Mesh& mesh = scene.meshes[scene.instances[i].mesh];
         const MaterialRange whole{0, static_cast<std::uint32_t>(mesh.triangles.size()),
                                   std::nullopt};
         const std::vector<MaterialRange>& ranges = mesh.material_ranges;
-        if (ranges.empty()) plan.draws.push_back(plan_draw(scene, i, whole, output));
+        if (ranges.empty()) plan.draws.push_back(plan_draw(scene, i, whole, settings.output));
         for (const MaterialRange& range : ranges) {
-            plan.draws.push_back(plan_draw(scene, i, range, output));
+            plan.draws.push_back(plan_draw(scene, i, range, settings.output));
         }
     }
-    plan_frame_effects(scene, plan);
+    plan_frame(scene, settings, plan);
     return plan;
 }
 

@@ -21,10 +21,15 @@ struct SurfaceProgram {
 /// \throws GpuError if a file is missing (an override folder may hold broken ones)
 SurfaceProgram surface_program(const Features& features);
 
-/// The files chosen for each step of both stages.
-ShaderSteps chosen_steps(const Features& features);
+/// The files chosen for each step of a stage.
+struct ChosenSteps {
+    ShaderSteps vertex;
+    ShaderSteps fragment;
+};
+ChosenSteps chosen_steps(const Features& features);
 
-/// The file that codes the picture's last line.
-std::string_view output_file(OutputCoding coding);
+/// The files that code a picture's last line, with the scene's exposure and tone curve where this
+/// coding has them: for passes that are no surface.
+ShaderSteps output_steps(OutputCoding coding, const Scene& scene);
 
 }  // namespace relief

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Colour and depth to draw into, resolving, and reading back. See framebuffer.h.
+// Colour and depth to draw into, and reading back. See framebuffer.h.
 // Tests: tests/shade/gl/framebuffer_test.cpp.
 #include "gl/framebuffer.h"
 
@@ -60,6 +60,16 @@ Texture color_texture(const Api& api, int width, int height, ColorFormat format)
     return texture;
 }
 
+Texture multisample_texture(const Api& api, int width, int height, ColorFormat format,
+                            int samples) {
+    Texture texture(api);
+    api->BindTexture(GL_TEXTURE_2D_MULTISAMPLE, texture.name());
+    api->TexImage2DMultisample(GL_TEXTURE_2D_MULTISAMPLE, samples, internal_format(format), width,
+                               height, GL_TRUE);
+    api->BindTexture(GL_TEXTURE_2D_MULTISAMPLE, 0);
+    return texture;
+}
+
 /// \param samples  1 makes a plain one: 0 in OpenGL's counting
 Renderbuffer renderbuffer(const Api& api, int width, int height, GLenum format, int samples) {
     Renderbuffer buffer(api);
@@ -98,25 +108,14 @@ void flip_rows(Image& image) {
 RenderTarget::RenderTarget(const Api& api, int width, int height, ColorFormat format, int samples)
     : api_(&api), width_(width), height_(height), format_(format), samples_(samples) {
     check_size(api, width, height, samples);
-    color_ = color_texture(api, width, height, format);
+    color_ = samples > 1 ? multisample_texture(api, width, height, format, samples)
+                         : color_texture(api, width, height, format);
     depth_ = renderbuffer(api, width, height, GL_DEPTH_COMPONENT24, samples);
-    if (samples > 1) {
-        color_samples_ = renderbuffer(api, width, height, internal_format(format), samples);
-        resolved_ = Framebuffer(api);
-        api->BindFramebuffer(GL_FRAMEBUFFER, resolved_.name());
-        api->FramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D,
-                                  color_.name(), 0);
-        check_complete(api, width, height);
-    }
     draw_ = Framebuffer(api);
     api->BindFramebuffer(GL_FRAMEBUFFER, draw_.name());
-    if (samples > 1) {
-        api->FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER,
-                                     color_samples_.name());
-    } else {
-        api->FramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D,
-                                  color_.name(), 0);
-    }
+    api->FramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0,
+                              samples > 1 ? GL_TEXTURE_2D_MULTISAMPLE : GL_TEXTURE_2D,
+                              color_.name(), 0);
     api->FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER,
                                  depth_.name());
     check_complete(api, width, height);
@@ -128,24 +127,22 @@ void RenderTarget::bind() const {
     (*api_)->Viewport(0, 0, width_, height_);
 }
 
-void RenderTarget::resolve() const {
-    if (samples_ == 1) return;
-    const Api& api = *api_;
-    api->BindFramebuffer(GL_READ_FRAMEBUFFER, draw_.name());
-    api->BindFramebuffer(GL_DRAW_FRAMEBUFFER, resolved_.name());
-    api->BlitFramebuffer(0, 0, width_, height_, 0, 0, width_, height_, GL_COLOR_BUFFER_BIT,
-                         GL_NEAREST);
-    api->BindFramebuffer(GL_FRAMEBUFFER, draw_.name());
-}
-
 Image RenderTarget::read(ColorSpace color_space) const {
     const Api& api = *api_;
-    resolve();
+    if (samples_ > 1) {
+        const RenderTarget averaged(api, width_, height_, format_, 1);
+        api->BindFramebuffer(GL_READ_FRAMEBUFFER, draw_.name());
+        api->BlitFramebuffer(0, 0, width_, height_, 0, 0, width_, height_, GL_COLOR_BUFFER_BIT,
+                             GL_NEAREST);
+        Image image = averaged.read(color_space);
+        bind();
+        return image;
+    }
     const bool is_byte = format_ == ColorFormat::rgba8;
     Image image = make_image(width_, height_, 4, is_byte ? 8 : 32, color_space);
     void* samples =
         std::visit([](auto& values) { return static_cast<void*>(values.data()); }, image.samples);
-    api->BindFramebuffer(GL_READ_FRAMEBUFFER, samples_ == 1 ? draw_.name() : resolved_.name());
+    api->BindFramebuffer(GL_READ_FRAMEBUFFER, draw_.name());
     api->ReadPixels(0, 0, width_, height_, GL_RGBA, is_byte ? GL_UNSIGNED_BYTE : GL_FLOAT, samples);
     api->BindFramebuffer(GL_FRAMEBUFFER, draw_.name());
     api.check("reading a picture back");

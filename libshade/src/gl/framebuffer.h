@@ -28,16 +28,13 @@ class RenderTarget {
     /// Draws go here from now on; the viewport is all of it.
     void bind() const;
 
-    /// Averages the samples into color(); nothing to do with 1 sample. Leaves the draw framebuffer
-    /// of bind() bound.
-    void resolve() const;
-
-    /// The (resolved) colour as a texture, row 0 at the bottom of the picture. One level, linear,
-    /// clamped.
+    /// The colour as drawn, row 0 at the bottom of the picture: with 1 sample a GL_TEXTURE_2D of
+    /// one level, linear, clamped; with 4 a GL_TEXTURE_2D_MULTISAMPLE.
     [[nodiscard]] const Texture& color() const { return color_; }
 
-    /// Resolves, waits for the drawing to finish and reads the colour back: four channels, row 0 on
-    /// top. \param color_space  what the shader wrote; it is only noted, nothing is converted
+    /// Waits for the drawing to finish and reads the colour back, samples averaged: four channels,
+    /// row 0 on top. \param color_space  what the shader wrote; it is only noted, nothing is
+    /// converted
     [[nodiscard]] Image read(ColorSpace color_space) const;
 
   private:
@@ -47,10 +44,8 @@ class RenderTarget {
     ColorFormat format_;
     int samples_;
     Texture color_;
-    Renderbuffer color_samples_;  ///< Only with 4 samples.
     Renderbuffer depth_;
     Framebuffer draw_;
-    Framebuffer resolved_;  ///< Only with 4 samples.
 };
 
 }  // namespace relief::gl

@@ -32,11 +32,29 @@ const std::map<std::string_view, Setter>& setters() {
         {"specular_color", set_member<&DrawValues::specular_color>},
         {"shininess", set_member<&DrawValues::shininess>},
         {"emission_color", set_member<&DrawValues::emission_color>},
+        {"base_color", set_member<&DrawValues::base_color>},
+        {"metallic", set_member<&DrawValues::metallic>},
+        {"roughness", set_member<&DrawValues::roughness>},
+        {"occlusion_strength", set_member<&DrawValues::occlusion_strength>},
+        {"opacity", set_member<&DrawValues::opacity>},
+        {"alpha_cutoff", set_member<&DrawValues::alpha_cutoff>},
         {"reflectivity", set_member<&DrawValues::reflectivity>},
         {"grazing_reflectivity", set_member<&DrawValues::grazing_reflectivity>},
+        {"refractive_index", set_member<&DrawValues::refractive_index>},
+        {"refraction_ratio", set_member<&DrawValues::refraction_ratio>},
+        {"conductor_index", set_member<&DrawValues::conductor_index>},
+        {"conductor_absorption", set_member<&DrawValues::conductor_absorption>},
+        {"reflection_roughness", set_member<&DrawValues::reflection_roughness>},
+        {"transmission", set_member<&DrawValues::transmission>},
         {"environment_intensity", set_member<&DrawValues::environment_intensity>},
+        {"blurred_levels", set_member<&DrawValues::blurred_levels>},
+        {"irradiance_sh", set_member<&DrawValues::irradiance_sh>},
         {"normal_map_scale", set_member<&DrawValues::normal_map_scale>},
         {"normal_map_bias", set_member<&DrawValues::normal_map_bias>},
+        {"normal_map_unscale", set_member<&DrawValues::normal_map_unscale>},
+        {"normal_map_rounding", set_member<&DrawValues::normal_map_rounding>},
+        {"bump_strength", set_member<&DrawValues::bump_strength>},
+        {"exposure", set_member<&DrawValues::exposure>},
     };
     return all;
 }
@@ -63,14 +81,31 @@ bool set_uniform(const gl::LinkedProgram& program, std::string_view name,
 void set_material(DrawValues& values, const Material& material, const Scene& scene) {
     values.ambient_scattered = material.ambient * scene.ambient;
     values.diffuse_color = material.diffuse;
-    values.specular_color = material.specular;
+    values.specular_color = material.specular * specular_normalization(material);
     values.shininess = material.shininess;
     values.emission_color = material.emission;
-    if (scene.environment && material.reflectivity != glm::vec3(0.0F)) {
-        values.reflectivity = material.reflectivity;
-        values.grazing_reflectivity = material.grazing_reflectivity;
-        values.environment_intensity = scene.environment->intensity;
+    if (const auto& physical = material.metallic_roughness) {
+        values.ambient_scattered = scene.ambient;
+        values.diffuse_color = values.base_color = physical->base_color;
+        values.metallic = physical->metallic;
+        values.roughness = physical->roughness;
     }
+    values.occlusion_strength = material.occlusion_texture ? material.occlusion_strength : 0.0F;
+    values.opacity = material.alpha_mode == AlphaMode::opaque ? 1.0F : material.opacity;
+    values.alpha_cutoff = material.alpha_mode == AlphaMode::mask ? material.alpha_cutoff : 0.0F;
+    if (material.bump_map) values.bump_strength = material.bump_map->strength;
+    values.exposure = scene.exposure;
+    if (!scene.environment) return;
+    values.environment_intensity = scene.environment->intensity;
+    if (material.reflectivity == glm::vec3(0.0F)) return;
+    values.reflectivity = material.reflectivity;
+    values.grazing_reflectivity = material.grazing_reflectivity;
+    values.refractive_index = material.refractive_index;
+    values.refraction_ratio = 1.0F / material.refractive_index;
+    values.conductor_index = material.conductor_index;
+    values.conductor_absorption = material.conductor_absorption;
+    values.reflection_roughness = material.reflection_roughness;
+    values.transmission = material.transmission;
 }
 
 void set_place(DrawValues& values, const glm::mat4& world_from_object) {
@@ -84,19 +119,24 @@ void set_place(DrawValues& values, const glm::mat4& world_from_object) {
     values.handedness = mirrors ? -1.0F : 1.0F;
 }
 
-NormalMapNumbers normal_map_numbers(int bits, FlatCode flat, Green green, float scale) {
+void set_normal_map(DrawValues& values, const NormalMap& map, int bits, FlatCode flat) {
+    const double largest = bits == 8 ? 255.0 : 65535.0;
     glm::dvec3 factor(2.0);
     glm::dvec3 bias(-1.0);
     if (flat == FlatCode::middle && bits < 32) {
         // n = (code - middle) / (middle - 1), and a texel is looked up as code / largest.
-        const double largest = bits == 8 ? 255.0 : 65535.0;
         const double middle = bits == 8 ? 128.0 : 32768.0;
         factor = glm::dvec3(largest / (middle - 1.0));
         bias = glm::dvec3(-middle / (middle - 1.0));
     }
-    const double along = static_cast<double>(scale);
-    const glm::dvec3 by_channel(along, green == Green::up ? along : -along, 1.0);
-    return {glm::vec3(factor * by_channel), glm::vec3(bias * by_channel)};
+    const double along = map.space == NormalSpace::tangent ? static_cast<double>(map.scale) : 1.0;
+    const glm::dvec3 by_channel(along, map.green == Green::up ? along : -along, 1.0);
+    values.normal_map_scale = glm::vec3(factor * by_channel);
+    values.normal_map_bias = glm::vec3(bias * by_channel);
+    const double unscale = along == 0.0 ? 0.0 : 1.0 / along;
+    values.normal_map_unscale = glm::vec3(glm::dvec3(unscale, unscale, 1.0));
+    // Each component is off by half a code at most: by half of 2 / largest.
+    values.normal_map_rounding = bits < 32 ? static_cast<float>(std::sqrt(3.0) / largest) : 1e-6F;
 }
 
 glm::dmat4 clip_from_world(const Camera& camera, double aspect) {

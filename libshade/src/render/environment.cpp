@@ -4,6 +4,7 @@
 // tests/shade/render/environment_test.cpp.
 #include "render/environment.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "effects/shader_source.h"
@@ -28,10 +29,31 @@ std::span<const ImageSource> sources_of(const Environment& environment) {
         environment.source);
 }
 
-gl::LinkedProgram skybox_program(const gl::Api& api, OutputCoding output) {
-    const ShaderSteps steps{{"output", output_file(output)}};
+gl::LinkedProgram skybox_program(const gl::Api& api, const Scene& scene, OutputCoding output) {
+    const ShaderSteps steps = output_steps(output, scene);
     return link(api, "skybox", assemble("skybox.vert.glsl", steps, {}),
                 assemble("skybox.frag.glsl", steps, {}));
+}
+
+gl::CubeMap black_cube_map(const gl::Api& api) {
+    const std::vector<Image> faces(6, make_image(1, 1, 3, 32, ColorSpace::linear));
+    Report nothing_to_find;
+    return gl::make_cube_map(api, faces, "black", nothing_to_find);
+}
+
+gl::CubeMap cube_map_of(const gl::Api& api, const Environment& environment,
+                        std::span<const Image> images, Report& report) {
+    const std::string& name = sources_of(environment).front().name;
+    if (std::holds_alternative<CubeFaces>(environment.source)) {
+        return gl::make_cube_map(api, images, name, report);
+    }
+    return gl::make_cube_map_from_panorama(api, images.front(), name, report);
+}
+
+template <typename Condition>
+bool any_draw(const FramePlan& plan, Condition condition) {
+    return std::any_of(plan.draws.begin(), plan.draws.end(),
+                       [&](const DrawPlan& draw) { return condition(draw.features); });
 }
 
 }  // namespace
@@ -46,23 +68,50 @@ std::vector<Image> decode_environment(const Environment& environment) {
     return images;
 }
 
-gl::CubeMap make_environment(const gl::Api& api, const Environment& environment,
-                             std::span<const Image> images, Report& report) {
-    const std::string& name = sources_of(environment).front().name;
-    if (std::holds_alternative<CubeFaces>(environment.source)) {
-        return gl::make_cube_map(api, images, name, report);
+EnvironmentMaps::EnvironmentMaps(const gl::Api& api, const Scene& scene, const FramePlan& plan,
+                                 std::span<const Image> images, Report& report) {
+    const bool blurs =
+        any_draw(plan, [](const Features& f) { return f.reflection == ReflectionTerm::glossy; });
+    const bool mirrors = any_draw(plan, [](const Features& f) {
+        return f.reflection == ReflectionTerm::mirror || f.refraction;
+    });
+    const bool sheds = any_draw(plan, [](const Features& f) { return f.environment_diffuse; });
+    if (!images.empty()) {
+        sharp_ = cube_map_of(api, *scene.environment, images, report);
+    } else if (mirrors || blurs || sheds || plan.skybox) {
+        sharp_ = black_cube_map(api);
     }
-    return gl::make_cube_map_from_panorama(api, images.front(), name, report);
+    if (blurs) blurred_ = black_cube_map(api);
 }
 
-gl::CubeMap make_black_environment(const gl::Api& api) {
-    const std::vector<Image> faces(6, make_image(1, 1, 3, 32, ColorSpace::linear));
-    Report nothing_to_find;
-    return gl::make_cube_map(api, faces, "black", nothing_to_find);
+void EnvironmentMaps::bind(const gl::Api& api) const {
+    const auto bind_to = [&](TextureUnit unit, GLenum target, const gl::Texture& texture) {
+        api->ActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
+        api->BindTexture(target, texture.name());
+        api->BindSampler(static_cast<GLuint>(unit), 0);
+    };
+    if (sharp_) bind_to(TextureUnit::environment, GL_TEXTURE_CUBE_MAP, sharp_->texture);
+    if (blurred_) {
+        bind_to(TextureUnit::blurred_environment, GL_TEXTURE_CUBE_MAP, blurred_->texture);
+    }
+    if (brdf_) bind_to(TextureUnit::environment_brdf, GL_TEXTURE_2D, *brdf_);
 }
 
-Skybox::Skybox(const gl::Api& api, OutputCoding output, float intensity)
-    : program_(skybox_program(api, output)), nothing_(api), intensity_(intensity) {}
+std::size_t EnvironmentMaps::texture_count() const {
+    return static_cast<std::size_t>(sharp_.has_value()) +
+           static_cast<std::size_t>(blurred_.has_value()) +
+           static_cast<std::size_t>(brdf_.has_value());
+}
+
+float EnvironmentMaps::blurred_levels() const {
+    return blurred_ ? static_cast<float>(blurred_->levels - 1) : 0.0F;
+}
+
+Skybox::Skybox(const gl::Api& api, const Scene& scene, OutputCoding output)
+    : program_(skybox_program(api, scene, output)),
+      nothing_(api),
+      intensity_(scene.environment ? scene.environment->intensity : 0.0F),
+      exposure_(scene.exposure) {}
 
 void Skybox::draw(const gl::Api& api, const Camera& camera, float aspect) const {
     const float y = std::tan(camera.vertical_fov * 0.5F);
@@ -72,6 +121,7 @@ void Skybox::draw(const gl::Api& api, const Camera& camera, float aspect) const 
     program_.use();
     program_.set("world_from_screen", world_from_screen);
     program_.set("environment_intensity", intensity_);
+    program_.set("exposure", exposure_);
     api->BindVertexArray(nothing_.name());
     api->DrawArrays(GL_TRIANGLES, 0, 3);
 }

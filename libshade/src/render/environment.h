@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// The surroundings on the GPU, and their picture behind the model.
-/// Tests: tests/shade/render/environment_test.cpp.
+/// The surroundings on the GPU, in the forms that the plan calls for, and their picture behind the
+/// model. Tests: tests/shade/render/environment_test.cpp.
 #pragma once
 
+#include <array>
 #include <optional>
 
 #include "gl/cube_map.h"
@@ -18,18 +19,37 @@ namespace relief {
 /// \throws FileError if one cannot be read
 std::vector<Image> decode_environment(const Environment& environment);
 
-/// A cube map of them. \throws InvalidInput if six do not fit together; GpuError
-gl::CubeMap make_environment(const gl::Api& api, const Environment& environment,
-                             std::span<const Image> images, Report& report);
+/// What the plan's effects look up. A plan may name an environment where there is none: it is
+/// black.
+class EnvironmentMaps {
+  public:
+    /// \param images  decoded; empty where the scene has none or nothing shows it
+    /// \throws InvalidInput if images do not fit together; GpuError
+    EnvironmentMaps(const gl::Api& api, const Scene& scene, const FramePlan& plan,
+                    std::span<const Image> images, Report& report);
 
-/// A cube map without light, for a plan that names an environment where there is none.
-gl::CubeMap make_black_environment(const gl::Api& api);
+    /// To their texture units.
+    void bind(const gl::Api& api) const;
+
+    [[nodiscard]] std::size_t texture_count() const;
+    /// The last level of the blurred map, which stands for roughness 1.
+    [[nodiscard]] float blurred_levels() const;
+    /// The nine numbers of shaders/light/environment_irradiance.glsl, times the intensity.
+    [[nodiscard]] const std::array<glm::vec4, 9>& irradiance_sh() const { return irradiance_sh_; }
+
+  private:
+    std::optional<gl::CubeMap> sharp_;
+    std::optional<gl::CubeMap> blurred_;
+    std::optional<gl::Texture> brdf_;
+    std::array<glm::vec4, 9> irradiance_sh_{};
+};
 
 /// Draws the environment wherever nothing is nearer.
 class Skybox {
   public:
+    /// \param output  what surfaces write (picture.h)
     /// \throws GpuError
-    Skybox(const gl::Api& api, OutputCoding output, float intensity);
+    Skybox(const gl::Api& api, const Scene& scene, OutputCoding output);
 
     /// The environment must be bound to its texture unit.
     void draw(const gl::Api& api, const Camera& camera, float aspect) const;
@@ -38,6 +58,7 @@ class Skybox {
     gl::LinkedProgram program_;
     gl::VertexArray nothing_;  ///< Core OpenGL draws only with a vertex array.
     float intensity_;
+    float exposure_;
 };
 
 }  // namespace relief

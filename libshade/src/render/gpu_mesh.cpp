@@ -57,6 +57,19 @@ void GpuMesh::draw(const gl::Api& api, const MaterialRange& range) const {
                       reinterpret_cast<const void*>(first));
 }
 
+void GpuMesh::draw(const gl::Api& api, std::span<const glm::uvec3> triangles) {
+    if (!ordered_) {
+        ordered_ = gl::make_buffer(api, triangles, "sorted triangles", GL_DYNAMIC_DRAW);
+    } else {
+        gl::replace_content(api, ordered_, std::as_bytes(triangles), "sorted triangles");
+    }
+    api->BindVertexArray(vertices_.name());
+    api->BindBuffer(GL_ELEMENT_ARRAY_BUFFER, ordered_.name());
+    api->DrawElements(GL_TRIANGLES, static_cast<GLsizei>(3 * triangles.size()), GL_UNSIGNED_INT,
+                      nullptr);
+    api->BindBuffer(GL_ELEMENT_ARRAY_BUFFER, buffers_.back().name());
+}
+
 void set_attribute_constants(const gl::Api& api) {
     const auto set = [&](Attribute attribute, const glm::vec4& value) {
         api->VertexAttrib4f(static_cast<GLuint>(attribute), value.x, value.y, value.z, value.w);

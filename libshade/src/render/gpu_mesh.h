@@ -4,6 +4,7 @@
 /// Tests: tests/shade/render/renderer_test.cpp.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "gl/buffer.h"
@@ -36,9 +37,13 @@ class GpuMesh {
     /// Draws a run of triangles with the current program.
     void draw(const gl::Api& api, const MaterialRange& range) const;
 
+    /// Draws these triangles in this order, whatever the mesh's own are.
+    void draw(const gl::Api& api, std::span<const glm::uvec3> triangles);
+
   private:
     gl::VertexArray vertices_;
-    std::vector<gl::Buffer> buffers_;
+    std::vector<gl::Buffer> buffers_;  ///< The last holds the triangles.
+    gl::Buffer ordered_;  ///< Only where triangles were drawn in an order of their own.
 };
 
 /// Sets what an attribute reads where a mesh has no stream for it: normal and tangent frame of a

@@ -10,7 +10,8 @@
 namespace relief {
 
 LightStorage::Key LightStorage::key(const Features& f) {
-    return {f.directional_lights, f.point_lights, f.spot_lights, f.lights_in_buffer};
+    return {f.directional_lights, f.point_lights, f.spot_lights, f.highlight_colors,
+            f.lights_in_buffer};
 }
 
 void LightStorage::add(const gl::Api& api, const Scene& scene, const Features& features) {
@@ -18,10 +19,18 @@ void LightStorage::add(const gl::Api& api, const Scene& scene, const Features& f
     const auto [entry, is_new] = lights_.try_emplace(key(features));
     if (!is_new) return;
     const std::vector<glm::vec4> rows = light_rows(scene, features);
-    entry->second.rows = gl::make_buffer(api, rows, "lights");
+    entry->second.features = features;
+    entry->second.rows = gl::make_buffer(api, rows, "lights", GL_DYNAMIC_DRAW);
     if (features.lights_in_buffer) {
         entry->second.texture = gl::make_buffer_texture(api, entry->second.rows, GL_RGBA32F,
                                                         rows.size() * sizeof(glm::vec4), "lights");
+    }
+}
+
+void LightStorage::update(const gl::Api& api, const Scene& scene) {
+    for (const auto& [key, lights] : lights_) {
+        const std::vector<glm::vec4> rows = light_rows(scene, lights.features);
+        gl::replace_content(api, lights.rows, std::as_bytes(std::span(rows)), "lights");
     }
 }
 

@@ -19,15 +19,19 @@ class LightStorage {
     /// Uploads what these features want, at first sight. \throws GpuError
     void add(const gl::Api& api, const Scene& scene, const Features& features);
 
+    /// Uploads the lights again, from the same scene at another time. \throws GpuError
+    void update(const gl::Api& api, const Scene& scene);
+
     /// Binds what the program for these features reads.
     void bind(const gl::Api& api, const Features& features) const;
 
   private:
     struct Lights {
+        Features features;
         gl::Buffer rows;
         gl::Texture texture;  ///< Only for lights in a buffer.
     };
-    using Key = std::tuple<std::uint32_t, std::uint32_t, std::uint32_t, bool>;
+    using Key = std::tuple<std::uint32_t, std::uint32_t, std::uint32_t, bool, bool>;
     static Key key(const Features& features);
 
     std::map<Key, Lights> lights_;

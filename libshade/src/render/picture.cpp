@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Render targets of a picture and the pass that averages and codes samples. Linear light; sRGB
-// codes by IEC 61966-2-1. Bad sizes throw as RenderTarget says. Tests:
+// Render targets of a picture and the pass that finishes samples. Linear light; sRGB codes by
+// [IEC 61966-2-1]. Bad sizes throw as RenderTarget says. Tests:
 // tests/shade/render/renderer_test.cpp.
 #include "render/picture.h"
 
@@ -8,59 +8,76 @@
 
 #include "effects/shader_source.h"
 #include "effects/surface_program.h"
+#include "relief/mesh/error.h"
 #include "render/program_cache.h"
 
 namespace relief {
 
 namespace {
 
-gl::ColorFormat format_of(OutputCoding coding, int samples) {
-    if (coding == OutputCoding::srgb) return gl::ColorFormat::rgba8;
-    // Half floats keep [0,1] finer than 8-bit codes can tell, at half the memory.
-    const bool for_codes = coding == OutputCoding::clamped && samples > 1;
-    return for_codes ? gl::ColorFormat::rgba16f : gl::ColorFormat::rgba32f;
-}
-
-/// The background as a shader would have written it.
-glm::vec4 coded(const glm::vec4& background, OutputCoding coding) {
-    glm::vec3 color(background);
-    if (coding != OutputCoding::linear) color = glm::min(color, glm::vec3(1.0F));
-    if (coding == OutputCoding::srgb) {
-        for (int i = 0; i < 3; ++i)
-            color[i] = srgb_from_linear(color[i]);
+gl::ColorFormat format_of(OutputCoding coding) {
+    switch (coding) {
+        case OutputCoding::srgb:
+            return gl::ColorFormat::rgba8;
+        case OutputCoding::half:
+            return gl::ColorFormat::rgba16f;
+        default:
+            return gl::ColorFormat::rgba32f;
     }
-    return {color, background.a};
 }
 
-gl::LinkedProgram coding_program(const gl::Api& api, OutputCoding output) {
-    const ShaderSteps steps{{"output", output_file(output)}};
-    return link(api, "resolve", assemble("resolve.vert.glsl", steps, {}),
-                assemble("resolve.frag.glsl", steps, {}));
+/// The background as it is to be seen, linear.
+glm::vec4 shown_background(const glm::vec4& background, OutputCoding output) {
+    if (output == OutputCoding::linear) return background;
+    return {glm::min(glm::vec3(background), glm::vec3(1.0F)), background.a};
+}
+
+gl::LinkedProgram finishing_program(const gl::Api& api, const Scene& scene, OutputCoding output,
+                                    int samples) {
+    ShaderSteps steps = output_steps(output, scene);
+    steps["samples"] = samples > 1 ? "picture/four_samples.glsl" : "picture/one_sample.glsl";
+    return link(api, "picture", assemble("picture.vert.glsl", steps, {}),
+                assemble("picture.frag.glsl", steps, {}));
 }
 
 }  // namespace
 
-OutputCoding Picture::drawn_coding(const FrameSettings& settings) {
-    const bool codes_later = settings.samples > 1 && settings.output == OutputCoding::srgb;
-    return codes_later ? OutputCoding::clamped : settings.output;
+OutputCoding drawn_coding(const FrameSettings& settings, bool finishes) {
+    if (!finishes || settings.output == OutputCoding::linear) return settings.output;
+    return OutputCoding::half;
 }
 
-Picture::Picture(const gl::Api& api, const FrameSettings& settings)
+Picture::Picture(const gl::Api& api, const Scene& scene, const FrameSettings& settings,
+                 bool finishes)
     : api_(&api),
-      drawn_(drawn_coding(settings)),
+      sample_count_(settings.samples),
       output_(settings.output),
-      samples_(api, settings.width, settings.height, format_of(drawn_, settings.samples),
+      background_(shown_background(scene.background, settings.output)),
+      exposure_(scene.exposure),
+      samples_(api, settings.width, settings.height, format_of(drawn_coding(settings, finishes)),
                settings.samples),
       nothing_(api) {
-    if (settings.samples == 1) return;
-    coded_.emplace(api, settings.width, settings.height, format_of(output_, 1), 1);
-    coding_.emplace(coding_program(api, output_));
+    if (settings.output == OutputCoding::half) {
+        throw InvalidInput("half is what a finishing pass reads, not a picture's coding");
+    }
+    if (!finishes && settings.samples > 1) {
+        throw InvalidInput("samples are to be averaged, but the plan has no finishing pass");
+    }
+    if (!finishes) return;
+    finished_.emplace(api, settings.width, settings.height, format_of(output_), 1);
+    finishing_.emplace(finishing_program(api, scene, output_, settings.samples));
 }
 
-void Picture::begin(const glm::vec4& background) const {
+void Picture::begin() const {
     samples_.bind();
-    glm::vec4 color = coded(background, drawn_);
-    if (averages()) color = {glm::vec3(color) * color.a, color.a};
+    glm::vec4 color(0.0F);
+    if (!finishing_) {
+        color = background_;
+        if (output_ == OutputCoding::srgb) {
+            for (int i = 0; i < 3; ++i)
+                color[i] = srgb_from_linear(color[i]);
+        }
+    }
     const gl::Api& gl = *api_;
     gl->ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
     gl->DepthMask(GL_TRUE);
@@ -71,24 +88,29 @@ void Picture::begin(const glm::vec4& background) const {
 
 void Picture::finish() const {
     const gl::Api& gl = *api_;
-    if (averages()) {
-        samples_.resolve();
-        coded_->bind();
+    if (finishing_) {
+        finished_->bind();
         gl->Disable(GL_DEPTH_TEST);
         gl->Disable(GL_CULL_FACE);
-        coding_->use();
-        gl->ActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(TextureUnit::averaged));
-        gl->BindTexture(GL_TEXTURE_2D, samples_.color().name());
-        gl->BindSampler(static_cast<GLuint>(TextureUnit::averaged), 0);
+        gl->Disable(GL_BLEND);
+        finishing_->use();
+        finishing_->set("background",
+                        glm::vec4(glm::vec3(background_) * background_.a, background_.a));
+        finishing_->set("exposure", exposure_);
+        gl->ActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(TextureUnit::drawn));
+        const GLenum target = sample_count_ > 1 ? GL_TEXTURE_2D_MULTISAMPLE : GL_TEXTURE_2D;
+        gl->BindTexture(target, samples_.color().name());
+        gl->BindSampler(static_cast<GLuint>(TextureUnit::drawn), 0);
         gl->BindVertexArray(nothing_.name());
         gl->DrawArrays(GL_TRIANGLES, 0, 3);
+        gl->BindTexture(target, 0);
     }
     gl->Finish();
 }
 
 Image Picture::read() const {
     const ColorSpace space = output_ == OutputCoding::srgb ? ColorSpace::srgb : ColorSpace::linear;
-    return (averages() ? *coded_ : samples_).read(space);
+    return (finished_ ? *finished_ : samples_).read(space);
 }
 
 }  // namespace relief

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// From drawn samples to the finished picture: how they are stored, averaged and coded.
-/// Tests: tests/shade/render/renderer_test.cpp.
+/// From drawn samples to the finished picture: how they are stored, tone-mapped, averaged and
+/// coded. Tests: tests/shade/render/renderer_test.cpp, picture_test.cpp.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -9,25 +9,27 @@
 
 #include "gl/framebuffer.h"
 #include "gl/program.h"
-#include "relief/shade/renderer.h"
+#include "relief/shade/frame_settings.h"
+#include "relief/shade/scene.h"
 
 namespace relief {
 
-/// With one sample a pixel the shaders write the picture's own codes, and it is read back as it is.
-/// With four they write linear light, no more than the picture can show, which is averaged and then
-/// coded by a last pass: averaging codes would darken edges.
+/// Without a finishing pass (one sample a pixel, nothing blended) the shaders write the picture's
+/// own codes, and it is read back as it is. With one they write linear radiance with alpha
+/// multiplied in; the pass exposes and tone-maps each sample, lays it over the background, averages
+/// in linear light and codes. Averaging codes would darken edges, and averaging radiance before the
+/// tone curve would leave edges against bright light jagged.
 class Picture {
   public:
-    /// \throws InvalidInput, GpuError as RenderTarget does
-    Picture(const gl::Api& api, const FrameSettings& settings);
+    /// \param finishes  the plan's finishing_pass
+    /// \throws InvalidInput, GpuError as RenderTarget does; InvalidInput if samples are to be
+    ///         averaged without a finishing pass
+    Picture(const gl::Api& api, const Scene& scene, const FrameSettings& settings, bool finishes);
 
-    /// What the shaders that draw into it must write.
-    static OutputCoding drawn_coding(const FrameSettings& settings);
+    /// Makes it the target of draws, cleared.
+    void begin() const;
 
-    /// Makes it the target of draws, filled with the background (linear, alpha not multiplied in).
-    void begin(const glm::vec4& background) const;
-
-    /// Averages and codes the samples, and waits until all is drawn.
+    /// Finishes the samples, and waits until all is drawn.
     void finish() const;
 
     [[nodiscard]] Image read() const;
@@ -37,15 +39,18 @@ class Picture {
     }
 
   private:
-    [[nodiscard]] bool averages() const { return coded_.has_value(); }
-
     const gl::Api* api_;
-    OutputCoding drawn_;
+    int sample_count_;
     OutputCoding output_;
+    glm::vec4 background_;  ///< As it is to be seen, linear, alpha multiplied in.
+    float exposure_;
     gl::RenderTarget samples_;
-    std::optional<gl::RenderTarget> coded_;  ///< Only with four samples.
-    std::optional<gl::LinkedProgram> coding_;
+    std::optional<gl::RenderTarget> finished_;
+    std::optional<gl::LinkedProgram> finishing_;
     gl::VertexArray nothing_;  ///< Core OpenGL draws only with a vertex array.
 };
+
+/// What surfaces write: the picture's coding, or linear light for the finishing pass.
+OutputCoding drawn_coding(const FrameSettings& settings, bool finishes);
 
 }  // namespace relief

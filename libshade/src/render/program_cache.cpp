@@ -10,6 +10,7 @@
 
 #include "effects/surface_program.h"
 #include "relief/shade/error.h"
+#include "render/stopwatch.h"
 
 namespace relief {
 
@@ -25,13 +26,20 @@ std::vector<gl::Location> attribute_locations() {
             at("color_linear", Attribute::color_linear)};
 }
 
-constexpr std::array<std::pair<const char*, TextureUnit>, 6> texture_units{{
+constexpr std::array<std::pair<const char*, TextureUnit>, 13> texture_units{{
     {"diffuse_texture", TextureUnit::diffuse_texture},
-    {"normal_texture", TextureUnit::normal_texture},
+    {"specular_texture", TextureUnit::specular_texture},
     {"emission_texture", TextureUnit::emission_texture},
+    {"occlusion_texture", TextureUnit::occlusion_texture},
+    {"opacity_texture", TextureUnit::opacity_texture},
+    {"metallic_roughness_texture", TextureUnit::metallic_roughness_texture},
+    {"normal_texture", TextureUnit::normal_texture},
+    {"bump_texture", TextureUnit::bump_texture},
     {"environment", TextureUnit::environment},
+    {"blurred_environment", TextureUnit::blurred_environment},
+    {"environment_brdf", TextureUnit::environment_brdf},
     {"light_buffer", TextureUnit::light_buffer},
-    {"averaged", TextureUnit::averaged},
+    {"drawn", TextureUnit::drawn},
 }};
 
 }  // namespace
@@ -57,11 +65,13 @@ gl::LinkedProgram link(const gl::Api& api, const std::string& name, const Shader
 const DrawProgram& ProgramCache::get(const Features& features) {
     std::unique_ptr<DrawProgram>& entry = programs_[features];
     if (!entry) {
+        Stopwatch stopwatch;
         const SurfaceProgram source = surface_program(features);
         entry = std::make_unique<DrawProgram>(
             DrawProgram{link(*api_, fmt::format("surface ({})", describe(features)), source.vertex,
                              source.fragment),
                         planned_interface(features)});
+        milliseconds_ += stopwatch.lap();
     }
     return *entry;
 }

@@ -25,15 +25,25 @@ enum class Attribute : GLuint {
     color_linear
 };
 
-/// Texture units, by the samplers' GLSL names.
+/// Texture units, by the samplers' GLSL names. Those of materials come first.
 enum class TextureUnit : GLint {
     diffuse_texture,
-    normal_texture,
+    specular_texture,
     emission_texture,
+    occlusion_texture,
+    opacity_texture,
+    metallic_roughness_texture,
+    normal_texture,
+    bump_texture,
     environment,
+    blurred_environment,
+    environment_brdf,
     light_buffer,
-    averaged,
+    drawn,
 };
+
+/// How many units materials have.
+inline constexpr std::size_t material_unit_count = 8;
 
 /// The binding point of the uniform block Lights.
 inline constexpr GLuint lights_binding = 0;
@@ -58,9 +68,13 @@ class ProgramCache {
 
     [[nodiscard]] std::size_t size() const { return programs_.size(); }
 
+    /// Wall-clock milliseconds that assembling, compiling and linking took so far.
+    [[nodiscard]] double milliseconds() const { return milliseconds_; }
+
   private:
     const gl::Api* api_;
     std::map<Features, std::unique_ptr<DrawProgram>> programs_;
+    double milliseconds_ = 0;
 };
 
 }  // namespace relief

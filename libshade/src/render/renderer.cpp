@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // Draws a scene as its effect plan says: decodes and uploads what the plan names and nothing else,
-// then one pass over the draws, the skybox behind them, and the finished picture. World space,
-// linear light. Tests: tests/shade/render/renderer_test.cpp, forced_effects_test.cpp.
+// then the opaque draws, the skybox behind them, the blended ones in painter's order, and the
+// finished picture. World space, linear light. Tests: tests/shade/render/renderer_test.cpp,
+// forced_effects_test.cpp.
 #include "relief/shade/renderer.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <utility>
 
 #include "relief/mesh/error.h"
@@ -16,38 +16,33 @@
 #include "render/environment.h"
 #include "render/gpu_mesh.h"
 #include "render/light_storage.h"
+#include "render/material_textures.h"
 #include "render/picture.h"
 #include "render/program_cache.h"
 #include "render/scene_textures.h"
+#include "render/sorted_triangles.h"
+#include "render/stopwatch.h"
 
 namespace relief {
 
 namespace {
 
-/// Milliseconds since the last lap, by the wall clock: timer queries are wrong on llvmpipe.
-class Stopwatch {
-  public:
-    double lap() {
-        const auto now = std::chrono::steady_clock::now();
-        const double elapsed = std::chrono::duration<double, std::milli>(now - last_).count();
-        last_ = now;
-        return elapsed;
-    }
-
-  private:
-    std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
-};
-
 /// Everything that one draw binds and sets.
 struct Draw {
     const DrawProgram* program = nullptr;
     Features features;
+    std::size_t instance = 0;
     std::size_t mesh = 0;
     MaterialRange range;
     DrawValues values;
     bool both_sides = false;
-    std::array<BoundTexture, 3> textures;  ///< By TextureUnit: diffuse, normal, emission.
+    std::array<BoundTexture, material_unit_count> textures;  ///< By TextureUnit.
+    std::unique_ptr<SortedTriangles> sorted;                 ///< Only of blended draws.
 };
+
+bool is_blended(const Draw& draw) {
+    return draw.features.alpha == AlphaMode::blend;
+}
 
 /// The parts of one draw's plan, looked up in the scene.
 struct Planned {
@@ -62,33 +57,13 @@ Planned planned(const Scene& scene, const DrawPlan& draw) {
             scene.meshes[scene.instances[draw.instance].mesh]};
 }
 
-/// The material's textures that this draw samples: without texture coordinates, none. A forced plan
-/// may name textures that do not exist.
-struct PlannedTextures {
-    const Texture* diffuse = nullptr;
-    const NormalMap* normal = nullptr;
-    const Texture* emission = nullptr;
-};
-
-PlannedTextures planned_textures(const Planned& p) {
-    PlannedTextures textures;
-    if (p.mesh.texcoords.empty()) return textures;
-    const auto pick = [](bool on, const auto& texture) {
-        return on && texture ? &*texture : nullptr;
-    };
-    textures.diffuse = pick(p.features.diffuse_texture, p.material.diffuse_texture);
-    textures.normal = pick(p.features.normal_map, p.material.normal_map);
-    textures.emission = pick(p.features.emission_texture, p.material.emission_texture);
-    return textures;
-}
-
 DecodedImages decode_planned(const Scene& scene, const FramePlan& plan) {
     DecodedImages images;
     for (const DrawPlan& draw : plan.draws) {
-        const PlannedTextures textures = planned_textures(planned(scene, draw));
-        if (textures.diffuse != nullptr) images.want(textures.diffuse->image, ImageUse::color);
-        if (textures.normal != nullptr) images.want(textures.normal->texture.image, ImageUse::data);
-        if (textures.emission != nullptr) images.want(textures.emission->image, ImageUse::color);
+        const Planned p = planned(scene, draw);
+        for (const UsedTexture& used : used_textures(p.features, p.material, p.mesh)) {
+            if (used.texture != nullptr) images.want(used.texture->image, used.use);
+        }
     }
     images.decode_all(scene.images);
     return images;
@@ -98,12 +73,16 @@ DecodedImages decode_planned(const Scene& scene, const FramePlan& plan) {
 void report_missing_texcoords(const Scene& scene, const FramePlan& plan, Report& report) {
     for (std::size_t i = 0; i < plan.draws.size(); ++i) {
         const Planned p = planned(scene, plan.draws[i]);
-        const bool textured =
-            p.material.diffuse_texture || p.material.normal_map || p.material.emission_texture;
-        if (!textured || !p.mesh.texcoords.empty()) continue;
+        if (!has_textures(p.material) || !p.mesh.texcoords.empty()) continue;
         report.add("textured material on a mesh without texture coordinates", "draw", i,
                    "drawn without its textures");
     }
+}
+
+/// How many lamps and instances there are: what stays the same when a scene moves.
+std::array<std::size_t, 4> population(const Scene& scene) {
+    return {scene.instances.size(), scene.directional_lights.size(), scene.point_lights.size(),
+            scene.spot_lights.size()};
 }
 
 }  // namespace
@@ -113,26 +92,28 @@ struct Renderer::Implementation {
                    const FrameSettings& settings, Report& report);
 
     void prepare_meshes(const Scene& scene, Report& report);
-    void prepare_environment(const Scene& scene, std::span<const Image> images,
-                             const FrameSettings& settings, Report& report);
     void prepare_draws(const Scene& scene, const DecodedImages& images);
     Draw prepare_draw(const Scene& scene, const DrawPlan& plan_of_draw,
                       const DecodedImages& images);
+    void set_environment_values(Draw& draw) const;
+    void move(const Scene& scene);
     void bind_textures(const Draw& draw) const;
-    void issue(const Draw& draw, const glm::dmat4& to_clip, const Camera& camera) const;
-    void draw_frame(const Camera& camera) const;
+    void set_state(const Draw& draw) const;
+    void issue(Draw& draw, const glm::dmat4& to_clip, const Camera& camera);
+    void issue_blended(const glm::dmat4& to_clip, const Camera& camera);
+    void draw_frame(const Camera& camera);
 
     const gl::Api& api;
     FramePlan plan;
-    glm::vec4 background;
+    std::array<std::size_t, 4> things;
     FrameTimes times;
     Picture picture;
     ProgramCache programs;
     SceneTextures textures;
     LightStorage lights;
     std::vector<GpuMesh> meshes;
-    std::vector<Draw> draws;
-    std::optional<gl::CubeMap> environment;
+    std::vector<Draw> draws;  ///< Opaque ones first.
+    std::optional<EnvironmentMaps> environment;
     std::optional<Skybox> skybox;
 };
 
@@ -141,12 +122,10 @@ Renderer::Implementation::Implementation(const Context& context, const Scene& sc
                                          Report& report)
     : api(context.api()),
       plan(std::move(frame_plan)),
-      background(scene.background),
-      picture(api, settings),
+      things(population(scene)),
+      picture(api, scene, settings, plan.finishing_pass),
       programs(api),
       textures(api) {
-    for (DrawPlan& draw : plan.draws)
-        draw.features = canonical(draw.features);
     report_missing_texcoords(scene, plan, report);
 
     Stopwatch stopwatch;
@@ -159,10 +138,14 @@ Renderer::Implementation::Implementation(const Context& context, const Scene& sc
 
     prepare_meshes(scene, report);
     textures.upload(images, scene.images);
-    prepare_environment(scene, surroundings, settings, report);
+    environment.emplace(api, scene, plan, surroundings, report);
+    if (plan.skybox) {
+        skybox.emplace(api, scene, drawn_coding(settings, plan.finishing_pass));
+    }
     prepare_draws(scene, images);
     api->Finish();
     api.check("preparing the scene");
+    times.link = programs.milliseconds();
     times.prepare = stopwatch.lap();
 }
 
@@ -184,23 +167,6 @@ void Renderer::Implementation::prepare_meshes(const Scene& scene, Report& report
     }
 }
 
-void Renderer::Implementation::prepare_environment(const Scene& scene,
-                                                   std::span<const Image> images,
-                                                   const FrameSettings& settings, Report& report) {
-    const bool mirrored =
-        std::any_of(plan.draws.begin(), plan.draws.end(),
-                    [](const DrawPlan& draw) { return draw.features.reflection; });
-    if (!images.empty()) {
-        environment = make_environment(api, *scene.environment, images, report);
-    } else if (mirrored || plan.skybox) {
-        environment = make_black_environment(api);
-    }
-    if (plan.skybox) {
-        const float intensity = scene.environment ? scene.environment->intensity : 0.0F;
-        skybox.emplace(api, Picture::drawn_coding(settings), intensity);
-    }
-}
-
 void Renderer::Implementation::prepare_draws(const Scene& scene, const DecodedImages& images) {
     for (const DrawPlan& draw : plan.draws) {
         if (draw.range.triangle_count == 0) continue;
@@ -208,47 +174,54 @@ void Renderer::Implementation::prepare_draws(const Scene& scene, const DecodedIm
         draws.push_back(prepare_draw(scene, draw, images));
     }
     // Neighbours with one program need no change of it; the depth buffer makes order invisible.
-    std::stable_sort(draws.begin(), draws.end(),
-                     [](const Draw& a, const Draw& b) { return a.features < b.features; });
+    std::stable_sort(draws.begin(), draws.end(), [](const Draw& a, const Draw& b) {
+        if (is_blended(a) != is_blended(b)) return is_blended(b);
+        return a.features < b.features;
+    });
 }
 
 Draw Renderer::Implementation::prepare_draw(const Scene& scene, const DrawPlan& plan_of_draw,
                                             const DecodedImages& images) {
     const Planned p = planned(scene, plan_of_draw);
-    const PlannedTextures used = planned_textures(p);
     const Instance& instance = scene.instances[plan_of_draw.instance];
     Draw draw;
     draw.program = &programs.get(p.features);
     draw.features = p.features;
+    draw.instance = plan_of_draw.instance;
     draw.mesh = instance.mesh;
     draw.range = plan_of_draw.range;
     draw.both_sides = p.material.double_sided;
     set_material(draw.values, p.material, scene);
+    set_environment_values(draw);
     set_place(draw.values, instance.world_from_object);
-    const auto unit = [&](TextureUnit name) -> BoundTexture& {
-        return draw.textures[static_cast<std::size_t>(name)];
-    };
-    if (p.features.diffuse_texture) {
-        unit(TextureUnit::diffuse_texture) =
-            used.diffuse ? textures.get(*used.diffuse, ImageUse::color) : textures.white();
+    for (const UsedTexture& used : used_textures(p.features, p.material, p.mesh)) {
+        BoundTexture& bound = draw.textures[static_cast<std::size_t>(used.unit)];
+        const bool is_normal_map = used.unit == TextureUnit::normal_texture;
+        if (used.texture == nullptr) {
+            bound = is_normal_map ? textures.flat() : textures.white();
+            continue;
+        }
+        bound = textures.get(*used.texture, used.use);
+        if (is_normal_map) {
+            const Image& image = images.get(used.texture->image, used.use);
+            const NormalMap& map = *p.material.normal_map;
+            const FlatCode flat = flat_code_of(map, image, scene.images[used.texture->image]);
+            set_normal_map(draw.values, map, image.bits(), flat);
+        }
     }
-    if (p.features.emission_texture) {
-        unit(TextureUnit::emission_texture) =
-            used.emission ? textures.get(*used.emission, ImageUse::color) : textures.white();
-    }
-    if (p.features.normal_map && used.normal != nullptr) {
-        const NormalMap& map = *used.normal;
-        const Image& image = images.get(map.texture.image, ImageUse::data);
-        const FlatCode flat = flat_code_of(map, image, scene.images[map.texture.image]);
-        const NormalMapNumbers numbers =
-            normal_map_numbers(image.bits(), flat, map.green, map.scale);
-        draw.values.normal_map_scale = numbers.scale;
-        draw.values.normal_map_bias = numbers.bias;
-        unit(TextureUnit::normal_texture) = textures.get(map.texture, ImageUse::data);
-    } else if (p.features.normal_map) {
-        unit(TextureUnit::normal_texture) = textures.flat();
-    }
+    if (is_blended(draw)) draw.sorted = std::make_unique<SortedTriangles>(p.mesh, draw.range);
     return draw;
+}
+
+void Renderer::Implementation::set_environment_values(Draw& draw) const {
+    draw.values.blurred_levels = environment->blurred_levels();
+    draw.values.irradiance_sh = environment->irradiance_sh();
+}
+
+void Renderer::Implementation::move(const Scene& scene) {
+    lights.update(api, scene);
+    for (Draw& draw : draws)
+        set_place(draw.values, scene.instances[draw.instance].world_from_object);
 }
 
 void Renderer::Implementation::bind_textures(const Draw& draw) const {
@@ -261,8 +234,17 @@ void Renderer::Implementation::bind_textures(const Draw& draw) const {
     lights.bind(api, draw.features);
 }
 
-void Renderer::Implementation::issue(const Draw& draw, const glm::dmat4& to_clip,
-                                     const Camera& camera) const {
+void Renderer::Implementation::set_state(const Draw& draw) const {
+    if (draw.both_sides) {
+        api->Disable(GL_CULL_FACE);
+    } else {
+        api->Enable(GL_CULL_FACE);
+    }
+    // A mirroring matrix turns counter-clockwise triangles clockwise; the front stays the front.
+    api->FrontFace(draw.values.handedness < 0.0F ? GL_CW : GL_CCW);
+}
+
+void Renderer::Implementation::issue(Draw& draw, const glm::dmat4& to_clip, const Camera& camera) {
     DrawValues values = draw.values;
     values.clip_from_object = glm::mat4(to_clip * glm::dmat4(values.world_from_object));
     values.eye_world = glm::vec3(camera.world_from_view[3]);
@@ -271,35 +253,59 @@ void Renderer::Implementation::issue(const Draw& draw, const glm::dmat4& to_clip
         set_uniform(draw.program->linked, name, values);
     }
     bind_textures(draw);
-    if (draw.both_sides) {
-        api->Disable(GL_CULL_FACE);
-    } else {
-        api->Enable(GL_CULL_FACE);
+    set_state(draw);
+    if (!draw.sorted) {
+        meshes[draw.mesh].draw(api, draw.range);
+        return;
     }
-    // A mirroring matrix turns counter-clockwise triangles clockwise; the front stays the front.
-    api->FrontFace(draw.values.handedness < 0.0F ? GL_CW : GL_CCW);
-    meshes[draw.mesh].draw(api, draw.range);
+    const glm::vec3 farther_world(-camera.world_from_view[2]);
+    const glm::vec3 farther_object =
+        glm::transpose(glm::mat3(values.world_from_object)) * farther_world;
+    meshes[draw.mesh].draw(api, draw.sorted->sort(farther_object));
 }
 
-void Renderer::Implementation::draw_frame(const Camera& camera) const {
-    picture.begin(background);
+/// Blended draws over all others, those whose centre is farthest first. They hide nothing, so they
+/// leave the depth buffer alone.
+void Renderer::Implementation::issue_blended(const glm::dmat4& to_clip, const Camera& camera) {
+    const auto depth = [&](const Draw& draw) {
+        const glm::vec3 center(draw.values.world_from_object *
+                               glm::vec4(draw.sorted->center(), 1.0F));
+        return glm::dot(center - glm::vec3(camera.world_from_view[3]),
+                        -glm::vec3(camera.world_from_view[2]));
+    };
+    std::vector<std::pair<float, Draw*>> blended;
+    for (Draw& draw : draws) {
+        if (is_blended(draw)) blended.emplace_back(depth(draw), &draw);
+    }
+    std::stable_sort(blended.begin(), blended.end(),
+                     [](const auto& a, const auto& b) { return a.first > b.first; });
+    api->Enable(GL_BLEND);
+    api->BlendEquation(GL_FUNC_ADD);
+    api->BlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+    api->DepthMask(GL_FALSE);
+    for (const auto& [distance, draw] : blended)
+        issue(*draw, to_clip, camera);
+    api->DepthMask(GL_TRUE);
+    api->Disable(GL_BLEND);
+}
+
+void Renderer::Implementation::draw_frame(const Camera& camera) {
+    picture.begin();
     api->Disable(GL_BLEND);
     api->Enable(GL_DEPTH_TEST);
     api->DepthFunc(GL_LEQUAL);
     api->CullFace(GL_BACK);
-    if (environment) {
-        api->ActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(TextureUnit::environment));
-        api->BindTexture(GL_TEXTURE_CUBE_MAP, environment->texture.name());
-        api->BindSampler(static_cast<GLuint>(TextureUnit::environment), 0);
-    }
+    environment->bind(api);
     set_attribute_constants(api);
     const glm::dmat4 to_clip = clip_from_world(camera, static_cast<double>(picture.aspect()));
-    for (const Draw& draw : draws)
-        issue(draw, to_clip, camera);
+    for (Draw& draw : draws) {
+        if (!is_blended(draw)) issue(draw, to_clip, camera);
+    }
     if (skybox) {
         api->Disable(GL_CULL_FACE);
         skybox->draw(api, camera, picture.aspect());
     }
+    if (plan.sorted_blending) issue_blended(to_clip, camera);
     picture.finish();
     api.check("drawing the scene");
 }
@@ -309,31 +315,39 @@ namespace {
 /// The plan that the renderer makes itself, of a scene found valid.
 FramePlan checked_plan(const Scene& scene, const FrameSettings& settings) {
     validate(scene);
-    return plan_effects(scene, Picture::drawn_coding(settings));
+    return plan_effects(scene, settings);
 }
 
-/// Another's plan must name what the scene has.
+void check_draw(const Scene& scene, const DrawPlan& draw) {
+    if (draw.instance >= scene.instances.size()) {
+        throw InvalidInput(fmt::format("the plan names instance {}, but there are only {}",
+                                       draw.instance, scene.instances.size()));
+    }
+    const Mesh& mesh = scene.meshes[scene.instances[draw.instance].mesh];
+    const std::uint64_t end = std::uint64_t{draw.range.first_triangle} + draw.range.triangle_count;
+    if (end > mesh.triangles.size()) {
+        throw InvalidInput(
+            fmt::format("the plan names triangle {} of mesh '{}', but there are only {}", end - 1,
+                        mesh.name, mesh.triangles.size()));
+    }
+    if (draw.range.material && *draw.range.material >= scene.materials.size()) {
+        throw InvalidInput(fmt::format("the plan names material {}, but there are only {}",
+                                       *draw.range.material, scene.materials.size()));
+    }
+}
+
+/// Another's plan must name what the scene has; what draws need of the frame is put in.
 FramePlan checked_plan(const Scene& scene, FramePlan plan, const FrameSettings& settings) {
     validate(scene);
     for (DrawPlan& draw : plan.draws) {
-        if (draw.instance >= scene.instances.size()) {
-            throw InvalidInput(fmt::format("the plan names instance {}, but there are only {}",
-                                           draw.instance, scene.instances.size()));
-        }
-        const Mesh& mesh = scene.meshes[scene.instances[draw.instance].mesh];
-        const std::uint64_t end =
-            std::uint64_t{draw.range.first_triangle} + draw.range.triangle_count;
-        if (end > mesh.triangles.size()) {
-            throw InvalidInput(
-                fmt::format("the plan names triangle {} of mesh '{}', but there are "
-                            "only {}",
-                            end - 1, mesh.name, mesh.triangles.size()));
-        }
-        if (draw.range.material && *draw.range.material >= scene.materials.size()) {
-            throw InvalidInput(fmt::format("the plan names material {}, but there are only {}",
-                                           *draw.range.material, scene.materials.size()));
-        }
-        draw.features.output = Picture::drawn_coding(settings);
+        check_draw(scene, draw);
+        draw.features = canonical(draw.features);
+        plan.sorted_blending |= draw.features.alpha == AlphaMode::blend;
+    }
+    plan.finishing_pass |= plan.sorted_blending || settings.samples > 1;
+    for (DrawPlan& draw : plan.draws) {
+        draw.features.output = drawn_coding(settings, plan.finishing_pass);
+        draw.features = canonical(draw.features);
     }
     return plan;
 }
@@ -356,6 +370,15 @@ const FramePlan& Renderer::plan() const {
     return implementation_->plan;
 }
 
+void Renderer::move(const Scene& scene) {
+    validate(scene);
+    if (population(scene) != implementation_->things) {
+        throw InvalidInput(
+            "a moved scene has the instances and lamps that it had, no fewer or more");
+    }
+    implementation_->move(scene);
+}
+
 Frame Renderer::draw(const Camera& camera) {
     validate(camera);
     Implementation& self = *implementation_;
@@ -367,7 +390,7 @@ Frame Renderer::draw(const Camera& camera) {
     self.times.read_back = stopwatch.lap();
     frame.times = self.times;
     frame.programs = self.programs.size();
-    frame.textures = self.textures.size() + (self.environment ? 1 : 0);
+    frame.textures = self.textures.size() + self.environment->texture_count();
     return frame;
 }
 

@@ -41,8 +41,19 @@ class ImagesByPath {
     std::map<std::filesystem::path, std::size_t> index_of_;
 };
 
-Material material_from(const MtlMaterial& material, std::size_t index, ImagesByPath& images,
+/// A material that cannot be seen at all is nobody's wish: some programs write opacity where MTL
+/// has transparency (Tr).
+MtlMaterial made_visible(MtlMaterial material, std::size_t index, Report& report) {
+    if (material.opacity <= 0.0F && !material.opacity_map) {
+        material.opacity = 1.0F;
+        report.add("invisible material (Tr 1 or d 0)", "material", index, "drawn opaque");
+    }
+    return material;
+}
+
+Material material_from(const MtlMaterial& read, std::size_t index, ImagesByPath& images,
                        Report& report) {
+    const MtlMaterial material = made_visible(read, index, report);
     Material phong = phong_from_mtl(material);
     if (material.diffuse_map) phong.diffuse_texture = images.texture(*material.diffuse_map);
     if (material.specular_map) {

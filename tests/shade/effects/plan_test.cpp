@@ -36,7 +36,7 @@ const EffectReason& reason(const std::vector<EffectReason>& reasons, const char*
 }
 
 Features features(const Scene& scene) {
-    return plan_effects(scene, OutputCoding::srgb).draws.at(0).features;
+    return plan_effects(scene, {.samples = 1}).draws.at(0).features;
 }
 
 TEST(EffectPlan, OfAGreySurfaceIsDiffuseLightAlone) {
@@ -51,8 +51,8 @@ TEST(EffectPlan, WithoutLightIsNothing) {
     scene.directional_lights.clear();
     scene.materials[0].normal_map = NormalMap{};
     EXPECT_EQ(features(scene), Features{});
-    const FramePlan plan = plan_effects(scene, OutputCoding::srgb);
-    EXPECT_EQ(reason(plan.draws[0].reasons, "diffuse").reason, "no light reaches the surface");
+    const FramePlan plan = plan_effects(scene, {.samples = 1});
+    EXPECT_EQ(reason(plan.draws[0].reasons, "diffuse").reason, "no lamp reaches the surface");
     EXPECT_EQ(reason(plan.draws[0].reasons, "normal map").reason,
               "neither light nor reflection shows the normal");
     EXPECT_FALSE(plan.draws[0].needs_tangents);
@@ -63,7 +63,7 @@ TEST(EffectPlan, LeavesBlackLightsOut) {
     scene.directional_lights.push_back({{0, -1, 0}, {0, 0, 0}});
     scene.point_lights.push_back({{0, 0, 1}, {0, 0, 0}, 3.0F});
     EXPECT_EQ(features(scene), features(lit_scene(gray())));
-    const FramePlan plan = plan_effects(scene, OutputCoding::srgb);
+    const FramePlan plan = plan_effects(scene, {.samples = 1});
     EXPECT_EQ(reason(plan.draws[0].reasons, "directional lights").reason,
               "the scene has 2, 1 of them black");
     EXPECT_FALSE(reason(plan.draws[0].reasons, "point lights").on);
@@ -75,16 +75,16 @@ TEST(EffectPlan, NeedsTextureCoordinatesForTextures) {
     scene.materials[0].diffuse_texture = Texture{};
     scene.materials[0].normal_map = NormalMap{};
     EXPECT_TRUE(features(scene).diffuse_texture);
-    EXPECT_TRUE(features(scene).normal_map);
-    FramePlan plan = plan_effects(scene, OutputCoding::srgb);
+    EXPECT_EQ(features(scene).detail, NormalDetail::normal_map);
+    FramePlan plan = plan_effects(scene, {.samples = 1});
     EXPECT_EQ(reason(plan.draws[0].reasons, "normal map").reason,
               "material 'body' has one and the mesh has texture coordinates");
     EXPECT_TRUE(plan.draws[0].needs_tangents);
 
     scene.meshes[0].texcoords.clear();
     EXPECT_FALSE(features(scene).diffuse_texture);
-    EXPECT_FALSE(features(scene).normal_map);
-    plan = plan_effects(scene, OutputCoding::srgb);
+    EXPECT_EQ(features(scene).detail, NormalDetail::none);
+    plan = plan_effects(scene, {.samples = 1});
     EXPECT_EQ(reason(plan.draws[0].reasons, "normal map").reason,
               "material 'body' has one, but mesh 'plane' has no texture coordinates");
 }
@@ -93,8 +93,8 @@ TEST(EffectPlan, ComputesTangentsOnlyWhereThereAreNone) {
     Scene scene = lit_scene(gray());
     scene.materials[0].normal_map = NormalMap{};
     scene.meshes[0].tangents.assign(4, glm::vec4(1, 0, 0, 1));
-    const FramePlan plan = plan_effects(scene, OutputCoding::srgb);
-    EXPECT_TRUE(plan.draws[0].features.normal_map);
+    const FramePlan plan = plan_effects(scene, {.samples = 1});
+    EXPECT_EQ(plan.draws[0].features.detail, NormalDetail::normal_map);
     EXPECT_FALSE(plan.draws[0].needs_tangents);
     EXPECT_EQ(reason(plan.draws[0].reasons, "computed tangents").reason,
               "mesh 'plane' has its own");
@@ -128,7 +128,7 @@ TEST(EffectPlan, OfAnUnlitMaterialDropsEverythingButItsColours) {
     expected.unlit = true;
     expected.diffuse_texture = true;
     EXPECT_EQ(features(scene), expected);
-    EXPECT_EQ(reason(plan_effects(scene, OutputCoding::srgb).draws[0].reasons, "emission").reason,
+    EXPECT_EQ(reason(plan_effects(scene, {.samples = 1}).draws[0].reasons, "emission").reason,
               "the material is unlit");
 }
 
@@ -136,16 +136,17 @@ TEST(EffectPlan, ReflectsOnlyWithAnEnvironmentAndReflectivity) {
     Material mirror = gray();
     mirror.reflectivity = {0, 0, 0.5F};
     Scene scene = lit_scene(mirror);
-    EXPECT_FALSE(features(scene).reflection);
+    EXPECT_EQ(features(scene).reflection, ReflectionTerm::none);
     scene.environment = Environment{Equirectangular{}, 1.0F, false};
-    FramePlan plan = plan_effects(scene, OutputCoding::srgb);
-    EXPECT_TRUE(plan.draws[0].features.reflection);
+    FramePlan plan = plan_effects(scene, {.samples = 1});
+    EXPECT_EQ(plan.draws[0].features.reflection, ReflectionTerm::mirror);
+    EXPECT_EQ(plan.draws[0].features.fresnel, FresnelTerm::schlick);
     EXPECT_TRUE(plan.environment_map);
     EXPECT_FALSE(plan.skybox);
-    EXPECT_EQ(reason(plan.reasons, "environment map").reason, "a material reflects it");
+    EXPECT_EQ(reason(plan.reasons, "environment map").reason, "a material mirrors it");
 
     scene.materials[0].reflectivity = {0, 0, 0};
-    plan = plan_effects(scene, OutputCoding::srgb);
+    plan = plan_effects(scene, {.samples = 1});
     EXPECT_FALSE(plan.environment_map);
     EXPECT_EQ(reason(plan.reasons, "environment map").reason, "nothing shows it");
 }
@@ -153,10 +154,10 @@ TEST(EffectPlan, ReflectsOnlyWithAnEnvironmentAndReflectivity) {
 TEST(EffectPlan, ShowsTheSkyboxOnRequest) {
     Scene scene = lit_scene(gray());
     scene.environment = Environment{Equirectangular{}, 1.0F, true};
-    const FramePlan plan = plan_effects(scene, OutputCoding::srgb);
+    const FramePlan plan = plan_effects(scene, {.samples = 1});
     EXPECT_TRUE(plan.skybox);
     EXPECT_TRUE(plan.environment_map);
-    EXPECT_EQ(reason(plan.reasons, "environment map").reason, "the skybox shows it");
+    EXPECT_EQ(reason(plan.reasons, "environment map").reason, "the effects above are made from it");
 }
 
 TEST(EffectPlan, KnowsHighlightsAndRanges) {
@@ -179,7 +180,7 @@ TEST(EffectPlan, HasOneDrawForEachRangeOfEachInstance) {
     scene.materials.push_back(second);
     scene.meshes[0].material_ranges = {{0, 1, 1}, {1, 1, std::nullopt}};
     scene.instances.push_back({0, glm::mat4(2), "again"});
-    const FramePlan plan = plan_effects(scene, OutputCoding::linear);
+    const FramePlan plan = plan_effects(scene, {.samples = 1, .output = OutputCoding::linear});
     ASSERT_EQ(plan.draws.size(), 4U);
     EXPECT_EQ(plan.draws[0].features.specular, SpecularTerm::blinn_phong);
     EXPECT_EQ(plan.draws[1].features.specular, SpecularTerm::none);  // The default material.
@@ -189,8 +190,11 @@ TEST(EffectPlan, HasOneDrawForEachRangeOfEachInstance) {
 }
 
 TEST(EffectPlan, SaysForEveryEffectWhetherItIsOnAndWhy) {
-    const FramePlan plan = plan_effects(lit_scene(gray()), OutputCoding::srgb);
-    EXPECT_EQ(plan.draws[0].reasons.size(), 17U);
+    const FramePlan plan = plan_effects(lit_scene(gray()), {.samples = 1});
+    // Every effect, and whether tangents are computed.
+    EXPECT_EQ(plan.draws[0].reasons.size(), effects().size() + 1);
+    for (const Effect& effect : effects())
+        EXPECT_NO_THROW((void)reason(plan.draws[0].reasons, effect.name));
     for (const EffectReason& r : plan.draws[0].reasons)
         EXPECT_FALSE(r.reason.empty()) << r.effect;
     const auto on = std::count_if(plan.draws[0].reasons.begin(), plan.draws[0].reasons.end(),

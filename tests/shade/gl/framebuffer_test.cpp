@@ -152,19 +152,23 @@ TEST_P(RenderTargets, DepthHidesWhatIsBehind) {
     EXPECT_THAT(picture.as<std::uint8_t>().subspan(0, 4), ElementsAre(255, 0, 0, 255));
 }
 
-TEST_P(RenderTargets, TheResolvedColourServesAsATexture) {
-    const RenderTarget first(api(), 5, 3, ColorFormat::rgba8, 4);
-    test::cover(api(), coordinates_shader,
-                [](const LinkedProgram& program) { program.set("height", 3); });
-    first.resolve();
-    const RenderTarget second(api(), 5, 3, ColorFormat::rgba8, 1);
-    api()->BindTexture(GL_TEXTURE_2D, first.color().name());
-    test::cover(api(),
-                "uniform sampler2D picture;\nout vec4 color;\nvoid main() {\n"
-                "    color = texelFetch(picture, ivec2(gl_FragCoord.xy), 0);\n}\n",
-                [](const LinkedProgram& program) { program.set("picture", 0); });
-    api()->BindTexture(GL_TEXTURE_2D, 0);
-    EXPECT_EQ(second.read(ColorSpace::data).samples, first.read(ColorSpace::data).samples);
+TEST_P(RenderTargets, TheirColourServesAsATextureSampleBySample) {
+    for (const int samples : {1, 4}) {
+        const RenderTarget first(api(), 5, 3, ColorFormat::rgba8, samples);
+        test::cover(api(), coordinates_shader,
+                    [](const LinkedProgram& program) { program.set("height", 3); });
+        const RenderTarget second(api(), 5, 3, ColorFormat::rgba8, 1);
+        const GLenum target = samples > 1 ? GL_TEXTURE_2D_MULTISAMPLE : GL_TEXTURE_2D;
+        api()->BindTexture(target, first.color().name());
+        test::cover(
+            api(),
+            fmt::format("uniform {} picture;\nout vec4 color;\nvoid main() {{\n"
+                        "    color = texelFetch(picture, ivec2(gl_FragCoord.xy), {});\n}}\n",
+                        samples > 1 ? "sampler2DMS" : "sampler2D", samples - 1),
+            [](const LinkedProgram& program) { program.set("picture", 0); });
+        api()->BindTexture(target, 0);
+        EXPECT_EQ(second.read(ColorSpace::data).samples, first.read(ColorSpace::data).samples);
+    }
 }
 
 TEST_P(RenderTargets, SizesAndSamplesThatCannotBeAreRefusedWithTheLimit) {

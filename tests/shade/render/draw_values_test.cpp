@@ -57,33 +57,43 @@ TEST(DrawValues, OfAFlatteningMatrixPointOutOfThePlane) {
     EXPECT_EQ(values.world_from_object_normal, glm::mat3(0.0F));
 }
 
+/// The numbers of a map of this many bits.
+DrawValues numbers(int bits, FlatCode flat, Green green = Green::up, float scale = 1.0F) {
+    DrawValues values;
+    set_normal_map(values, NormalMap{{}, scale, green}, bits, flat);
+    return values;
+}
+
 TEST(NormalMapNumbers, DecodeTheCodesOfBothConventions) {
-    const auto decode = [](const NormalMapNumbers& n, double texel) {
-        return texel * static_cast<double>(n.scale.x) + static_cast<double>(n.bias.x);
+    const auto decode = [](const DrawValues& n, double texel) {
+        return texel * static_cast<double>(n.normal_map_scale.x) +
+               static_cast<double>(n.normal_map_bias.x);
     };
     // A float's rounding of numbers near 1.
     constexpr double rounding = 2e-7;
-    const NormalMapNumbers middle = normal_map_numbers(8, FlatCode::middle, Green::up, 1.0F);
+    const DrawValues middle = numbers(8, FlatCode::middle);
     EXPECT_NEAR(decode(middle, 128.0 / 255), 0.0, rounding);
     EXPECT_NEAR(decode(middle, 1.0), 1.0, rounding);
     EXPECT_NEAR(decode(middle, 1.0 / 255), -1.0, rounding);
-    const NormalMapNumbers half = normal_map_numbers(8, FlatCode::half, Green::up, 1.0F);
+    const DrawValues half = numbers(8, FlatCode::half);
     EXPECT_NEAR(decode(half, 0.0), -1.0, rounding);
     EXPECT_NEAR(decode(half, 1.0), 1.0, rounding);
-    const NormalMapNumbers fine = normal_map_numbers(16, FlatCode::middle, Green::up, 1.0F);
+    const DrawValues fine = numbers(16, FlatCode::middle);
     EXPECT_NEAR(decode(fine, 32768.0 / 65535), 0.0, rounding);
     EXPECT_NEAR(decode(fine, 1.0), 1.0, rounding);
-    const NormalMapNumbers real = normal_map_numbers(32, FlatCode::middle, Green::up, 1.0F);
+    const DrawValues real = numbers(32, FlatCode::middle);
     EXPECT_EQ(decode(real, 0.5), 0.0);
 }
 
 TEST(NormalMapNumbers, HoldGreenAndScale) {
-    const NormalMapNumbers up = normal_map_numbers(8, FlatCode::half, Green::up, 0.5F);
-    const NormalMapNumbers down = normal_map_numbers(8, FlatCode::half, Green::down, 0.5F);
-    EXPECT_EQ(up.scale, glm::vec3(1, 1, 2));
-    EXPECT_EQ(up.bias, glm::vec3(-0.5F, -0.5F, -1));
-    EXPECT_EQ(down.scale, glm::vec3(1, -1, 2));
-    EXPECT_EQ(down.bias, glm::vec3(-0.5F, 0.5F, -1));
+    const DrawValues up = numbers(8, FlatCode::half, Green::up, 0.5F);
+    const DrawValues down = numbers(8, FlatCode::half, Green::down, 0.5F);
+    EXPECT_EQ(up.normal_map_scale, glm::vec3(1, 1, 2));
+    EXPECT_EQ(up.normal_map_bias, glm::vec3(-0.5F, -0.5F, -1));
+    EXPECT_EQ(down.normal_map_scale, glm::vec3(1, -1, 2));
+    EXPECT_EQ(down.normal_map_bias, glm::vec3(-0.5F, 0.5F, -1));
+    EXPECT_EQ(down.normal_map_unscale, glm::vec3(2, 2, 1));
+    EXPECT_EQ(numbers(8, FlatCode::half, Green::up, 0.0F).normal_map_unscale, glm::vec3(0, 0, 1));
 }
 
 TEST(ClipFromWorld, PutsNearAndFarAtTheEndsOfDepth) {

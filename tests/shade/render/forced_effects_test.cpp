@@ -22,7 +22,7 @@ const std::vector<Forced>& forced_effects() {
     static const std::vector<Forced> all = {
         {"diffuse texture", [](DrawPlan& d) { d.features.diffuse_texture = true; }},
         {"vertex colours", [](DrawPlan& d) { d.features.vertex_colors = true; }},
-        {"normal map", [](DrawPlan& d) { d.features.normal_map = true; }},
+        {"normal map", [](DrawPlan& d) { d.features.detail = NormalDetail::normal_map; }},
         {"double-sided normals", [](DrawPlan& d) { d.features.double_sided = true; }},
         {"ambient", [](DrawPlan& d) { d.features.ambient = true; }},
         {"directional light", [](DrawPlan& d) { d.features.directional_lights += 1; }},
@@ -39,7 +39,7 @@ const std::vector<Forced>& forced_effects() {
         {"light buffer", [](DrawPlan& d) { d.features.lights_in_buffer = true; }},
         {"emission", [](DrawPlan& d) { d.features.emission = true; }},
         {"emission texture", [](DrawPlan& d) { d.features.emission_texture = true; }},
-        {"reflection", [](DrawPlan& d) { d.features.reflection = true; }},
+        {"reflection", [](DrawPlan& d) { d.features.reflection = ReflectionTerm::mirror; }},
     };
     return all;
 }
@@ -98,7 +98,7 @@ class ForcedEffects : public test::DrawTest {
     /// \param tolerance  relative to 1, in linear pictures that vertex colours are forced on
     void expect_no_change(const Scene& scene, OutputCoding output, double tolerance) const {
         const FrameSettings settings{48, 48, 1, output};
-        const FramePlan plan = plan_effects(scene, output);
+        const FramePlan plan = plan_effects(scene, {.samples = 1, .output = output});
         const Image as_planned = render(scene, plan, settings).image;
         FramePlan all_forced = plan;
         for (const Forced& forced : forced_effects()) {
@@ -135,7 +135,7 @@ TEST_F(ForcedEffects, ChangeNoBitOfALinearPicture) {
 
 TEST_F(ForcedEffects, ThatAreTakenAwayDoChangeThePicture) {
     const Scene scene = base_scene();
-    FramePlan plan = plan_effects(scene, OutputCoding::srgb);
+    FramePlan plan = plan_effects(scene, {.samples = 1});
     const FrameSettings settings{48, 48, 1, OutputCoding::srgb};
     const Image whole = render(scene, plan, settings).image;
     plan.draws[0].features.diffuse = false;

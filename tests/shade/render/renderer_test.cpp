@@ -312,11 +312,11 @@ TEST_F(Rendering, RefusesWhatItCannotDraw) {
     camera.near = 0.0F;
     EXPECT_THROW(renderer.draw(camera), InvalidInput);
 
-    FramePlan plan = plan_effects(scene, OutputCoding::srgb);
+    FramePlan plan = plan_effects(scene, {.samples = 1});
     plan.draws[0].instance = 1;
     EXPECT_THROW(Renderer(context(), scene, plan, {8, 8, 1, OutputCoding::srgb}, report),
                  InvalidInput);
-    plan = plan_effects(scene, OutputCoding::srgb);
+    plan = plan_effects(scene, {.samples = 1});
     plan.draws[0].range.first_triangle = 1;
     EXPECT_THROW(Renderer(context(), scene, plan, {8, 8, 1, OutputCoding::srgb}, report),
                  InvalidInput);

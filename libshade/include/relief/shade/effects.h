@@ -15,41 +15,75 @@
 #include <string>
 #include <vector>
 
+#include "relief/shade/frame_settings.h"
 #include "relief/shade/scene.h"
 
 namespace relief {
 
+/// What bends the normal.
+enum class NormalDetail : std::uint8_t { none, normal_map, object_normal_map, bump_map };
+
 enum class SpecularTerm : std::uint8_t { none, phong, blinn_phong };
 
-/// How the finished radiance is stored: part of the program, since it is its last line.
-enum class OutputCoding : std::uint8_t {
-    linear,   ///< Radiance as it is.
-    clamped,  ///< Linear, no more than 1: what multisampled srgb frames average.
-    srgb,     ///< No more than 1, as sRGB codes.
+/// How the environment is mirrored.
+enum class ReflectionTerm : std::uint8_t {
+    none,
+    mirror,
+    glossy,  ///< Blurred, from a prefiltered chain of mip levels.
+};
+
+/// How much of it, by angle.
+enum class FresnelTerm : std::uint8_t { constant, schlick, dielectric, conductor };
+
+/// How a lamp's light gets less with distance.
+enum class FalloffTerm : std::uint8_t {
+    inverse_square,
+    none,
+    mixed,  ///< Some lamps fall off and some do not.
 };
 
 /// What one draw needs. Two draws with equal Features share one program.
 struct Features {
-    // What multiplies the colours that are scattered.
-    bool diffuse_texture = false;
-    bool vertex_colors = false;
-    // The normal: the interpolated one, or bent by a tangent-space map.
-    bool normal_map = false;
-    bool double_sided = false;  ///< Back faces show the opposite of their normal.
-    // The light.
+    // Where and by which model light is computed.
     bool unlit = false;  ///< No light at all: the diffuse colour is the picture.
+    bool metallic_roughness = false;
+    Interpolation interpolation = Interpolation::per_pixel;
+    // What multiplies the colours.
+    bool diffuse_texture = false;
+    bool specular_texture = false;
+    bool metallic_roughness_texture = false;
+    bool occlusion_texture = false;
+    bool vertex_colors = false;
+    // What is there at all.
+    AlphaMode alpha = AlphaMode::opaque;
+    bool opacity_texture = false;
+    // The normal.
+    NormalDetail detail = NormalDetail::none;
+    TangentFrame frame = TangentFrame::stored;  ///< Of a normal map in tangent space or a bump map.
+    bool specular_antialiasing = false;
+    bool double_sided = false;  ///< Back faces show the opposite of their normal.
+    // Light.
     bool ambient = false;
     std::uint32_t directional_lights = 0;
     std::uint32_t point_lights = 0;
     std::uint32_t spot_lights = 0;
-    bool diffuse = false;  ///< Any light scattered diffusely (not for black surfaces).
-    SpecularTerm specular = SpecularTerm::none;
+    FalloffTerm falloff = FalloffTerm::inverse_square;
     bool light_ranges = false;      ///< Some point or spot light has a range.
+    bool highlight_colors = false;  ///< Some lamp's highlights have a colour of their own.
     bool lights_in_buffer = false;  ///< Too many for a uniform block.
+    bool environment_diffuse = false;
+    bool diffuse = false;  ///< Lamps scattered diffusely (not for black surfaces).
+    SpecularTerm specular = SpecularTerm::none;  ///< Phong's model only.
     bool emission = false;
     bool emission_texture = false;
-    bool reflection = false;  ///< Of the environment, with Schlick's Fresnel term.
+    // The environment in the surface.
+    ReflectionTerm reflection = ReflectionTerm::none;
+    FresnelTerm fresnel = FresnelTerm::constant;  ///< Phong's model only.
+    bool refraction = false;
+    // The picture.
     OutputCoding output = OutputCoding::srgb;
+    ToneMapping tone_mapping = ToneMapping::none;
+    bool exposure = false;
 
     friend auto operator<=>(const Features&, const Features&) = default;
 };
@@ -76,8 +110,13 @@ struct DrawPlan {
 /// The whole frame.
 struct FramePlan {
     std::vector<DrawPlan> draws;
-    bool environment_map = false;  ///< Decoded and uploaded at all.
+    bool environment_map = false;         ///< Decoded and uploaded at all.
+    bool prefiltered_map = false;         ///< Blurred into mip levels for glossy reflections.
+    bool environment_brdf = false;        ///< The table of GGX's directional albedo.
+    bool environment_irradiance = false;  ///< Its spherical harmonics.
     bool skybox = false;
+    bool sorted_blending = false;       ///< Blended draws last, farthest triangle first.
+    bool finishing_pass = false;        ///< Samples are averaged and coded after all is drawn.
     std::vector<EffectReason> reasons;  ///< Of the frame-wide effects.
 };
 
@@ -86,11 +125,28 @@ Features features_of(const Scene& scene, const Material& material, const Mesh& m
                      OutputCoding output = OutputCoding::srgb);
 
 /// The whole scene's plan; the scene must be valid.
-FramePlan plan_effects(const Scene& scene, OutputCoding output);
+FramePlan plan_effects(const Scene& scene, const FrameSettings& settings);
+
+/// Sets what is frame-wide from the draws: after features were changed by hand.
+void plan_frame(const Scene& scene, const FrameSettings& settings, FramePlan& plan);
 
 /// Drops what cannot show: without light no normal, without normal no normal map, and so on.
 /// features_of() already returns canonical values; canonical(canonical(f)) == canonical(f).
 Features canonical(Features features);
+
+/// An effect as users name it.
+struct Effect {
+    const char* name;
+    /// Whether these features have it.
+    bool (*on)(const Features& features);
+    /// Puts it in, with as little as it takes, or takes it out. What canonical() says comes after.
+    void (*set)(Features& features, bool on);
+    /// Why canonical() drops it where it cannot show.
+    const char* hidden;
+};
+
+/// Every effect that a draw may have, in the order of the plan's reasons.
+const std::vector<Effect>& effects();
 
 /// Everything that a draw's program takes from outside, by GLSL name, each list sorted.
 struct PlannedInterface {

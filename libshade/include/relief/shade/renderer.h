@@ -9,25 +9,16 @@
 #include "relief/mesh/report.h"
 #include "relief/shade/context.h"
 #include "relief/shade/effects.h"
+#include "relief/shade/frame_settings.h"
 #include "relief/shade/scene.h"
 
 namespace relief {
-
-struct FrameSettings {
-    int width = 1024;
-    int height = 1024;
-    /// Per pixel: 1 or 4 (multisampling; edges only). Samples are averaged in linear light, each no
-    /// brighter than what the output can show.
-    int samples = 4;
-    /// srgb: 8-bit RGBA, ready for a screen. linear: float RGBA radiance. clamped: the same up
-    /// to 1.
-    OutputCoding output = OutputCoding::srgb;
-};
 
 /// What drawing took, in milliseconds of wall clock around finished work.
 struct FrameTimes {
     double decode_images = 0;  ///< Reading and decoding the textures that the plan calls for.
     double prepare = 0;        ///< Tangents where missing, uploads, programs.
+    double link = 0;           ///< Of that, compiling and linking programs.
     double draw =
         0;  ///< The frame itself; the driver may compile shaders to machine code at first.
     double read_back = 0;
@@ -60,7 +51,8 @@ class Renderer {
              Report& report);
 
     /// Draws by another plan of the same scene: a plan_effects() plan with effects added, which
-    /// changes no pixel, or taken away. Sets that contradict themselves are made canonical.
+    /// changes no pixel, or taken away. Sets that contradict themselves are made canonical, and a
+    /// finishing pass that samples or blending need is put in.
     Renderer(const Context& context, const Scene& scene, FramePlan plan,
              const FrameSettings& settings, Report& report);
     ~Renderer();
@@ -68,6 +60,12 @@ class Renderer {
     Renderer& operator=(const Renderer&) = delete;
 
     [[nodiscard]] const FramePlan& plan() const;
+
+    /// Takes over where things stand and how lamps shine from the same scene at another time
+    /// (scene_graph.h): matrices of instances, lights, exposure and background stay within the plan
+    /// made for the first. \throws InvalidInput if instances or lamps are not as many as they were,
+    /// or the scene is not valid
+    void move(const Scene& scene);
 
     /// Draws the scene as the camera sees it. \throws InvalidInput if the camera is not valid
     /// (scene.h); GpuError
