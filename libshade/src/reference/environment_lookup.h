@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// The environment in a direction, blurred, and as it is shed on a surface, straight from its
+/// images, in double. World space, linear light, times the environment's intensity. Images are laid
+/// out as scene.h says; faces as in gl/cube_map.h. Samples that are not finite count as 0.
+/// Tests: tests/shade/reference/environment_lookup_test.cpp.
+#pragma once
+
+#include <array>
+#include <glm/glm.hpp>
+#include <vector>
+
+#include "reference/texels.h"
+#include "relief/shade/scene.h"
+
+namespace relief::reference {
+
+class EnvironmentLookup {
+  public:
+    /// \throws FileError if an image cannot be read
+    explicit EnvironmentLookup(const Environment& environment);
+
+    /// \param direction_world  of any length but 0
+    [[nodiscard]] glm::dvec3 radiance(const glm::dvec3& direction_world) const;
+
+    /// What a surface mirrors of it whose microfacets have GGX's distribution, seen and facing
+    /// along the direction: the mean over directions l, mirrored at normals h that are drawn from
+    /// the distribution, weighted by n.l.
+    /// \param roughness  0 is a mirror
+    [[nodiscard]] glm::dvec3 blurred(const glm::dvec3& direction_world, double roughness) const;
+
+    /// Irradiance over pi on a surface of this normal, by spherical harmonics of order 2
+    /// [Ramamoorthi and Hanrahan 2001]. May be negative where the light is nearly all from behind.
+    [[nodiscard]] glm::dvec3 diffuse(const glm::dvec3& normal_world) const;
+
+  private:
+    enum class Layout { faces, equirectangular, angular };
+
+    [[nodiscard]] glm::dvec3 face_radiance(const glm::dvec3& direction) const;
+    void project();
+
+    Layout layout_ = Layout::faces;
+    bool left_handed_ = false;
+    double intensity_ = 1.0;
+    std::vector<Texels> images_;  ///< Six, or one.
+    std::array<glm::dvec3, 9> harmonics_{};
+};
+
+/// GGX's directional albedo for f0 (x) and for 1 - f0 (y), by integration over the distribution.
+glm::dvec2 directional_albedo(double n_dot_v, double roughness);
+
+}  // namespace relief::reference

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// Which triangles a ray from the eye meets, and exactly where. View space: the eye at the origin,
+/// looking along -z. Embree, which works in float, says which triangles may be hit; where they are
+/// hit is computed in double. The only home of Embree. Triangles without area, and those with a
+/// vertex that is not finite, are never met. Tests: tests/shade/reference/visibility_test.cpp.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <memory>
+#include <span>
+#include <vector>
+
+namespace relief::reference {
+
+/// Triangles of one instance; both spans must outlive their use.
+struct ViewMesh {
+    std::span<const glm::dvec3> positions_view;
+    std::span<const glm::uvec3> triangles;
+};
+
+struct Hit {
+    std::uint32_t instance = 0;
+    std::uint32_t triangle = 0;
+    double depth = 0.0;             ///< Distance along -z.
+    glm::dvec3 barycentric{0.0};    ///< Of the triangle itself: correct for perspective.
+    bool counter_clockwise = true;  ///< As the eye sees it.
+};
+
+class Visibility {
+  public:
+    /// \param near, far  depths within which there is something to see
+    Visibility(std::vector<ViewMesh> meshes, double near, double far);
+    ~Visibility();
+    Visibility(const Visibility&) = delete;
+    Visibility& operator=(const Visibility&) = delete;
+
+    /// All hits of the ray through (x, y, -1), nearest first; of two triangles that share an edge
+    /// that the ray meets, one.
+    [[nodiscard]] std::vector<Hit> hits(double x, double y) const;
+
+  private:
+    struct EmbreeScene;
+
+    [[nodiscard]] bool shares_edge(const Hit& a, int opposite_corner, const Hit& b) const;
+    [[nodiscard]] bool is_outside(const std::vector<Hit>& all, std::size_t index) const;
+
+    std::vector<ViewMesh> meshes_;
+    double near_;
+    double far_;
+    std::unique_ptr<EmbreeScene> embree_;
+};
+
+}  // namespace relief::reference

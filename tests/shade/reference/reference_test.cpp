@@ -1,0 +1,224 @@
+// SPDX-License-Identifier: Apache-2.0
+// Whole pictures of the reference: composition, what is drawn at all, hard cases, determinism.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "relief/mesh/error.h"
+#include "relief/mesh/threads.h"
+#include "relief/shade/image_compare.h"
+#include "support/shapes.h"
+#include "traced.h"
+
+namespace relief {
+namespace {
+
+using test::pixel;
+
+constexpr float not_a_number = std::numeric_limits<float>::quiet_NaN();
+
+/// Squares of unlit colours, one behind the other, the first nearest: at z = 0, -0.5, -1, ...
+Scene stacked(const std::vector<Material>& materials) {
+    Scene scene = test::scene_of(test::facing_square(), Material{});
+    scene.materials = materials;
+    scene.meshes.clear();
+    scene.instances.clear();
+    for (std::uint32_t i = 0; i < materials.size(); ++i) {
+        Mesh mesh = test::facing_square();
+        mesh.material_ranges = {{0, 2, i}};
+        scene.meshes.push_back(mesh);
+        glm::mat4 place(1.0F);
+        place[3].z = -0.5F * static_cast<float>(i);
+        scene.instances.push_back({i, place, "layer"});
+    }
+    return scene;
+}
+
+Material unlit(const glm::vec3& color, AlphaMode mode = AlphaMode::opaque, float opacity = 1.0F) {
+    Material material;
+    material.unlit = true;
+    material.diffuse = color;
+    material.alpha_mode = mode;
+    material.opacity = opacity;
+    return material;
+}
+
+glm::dvec4 in_the_middle(const Scene& scene) {
+    return pixel(test::traced(scene, 3).radiance, 1, 1);
+}
+
+TEST(Reference, ShowsTheNearestOpaqueSurface) {
+    const Scene scene = stacked({unlit({1, 0, 0}), unlit({0, 1, 0})});
+    EXPECT_EQ(in_the_middle(scene), glm::dvec4(1, 0, 0, 1));
+    EXPECT_EQ(test::traced(scene, 3).hits[4].instance, 0U);
+}
+
+TEST(Reference, ComposesBlendedSurfacesFarthestFirst) {
+    const Scene scene =
+        stacked({unlit({1, 0, 0}, AlphaMode::blend, 0.5F),
+                 unlit({0, 1, 0}, AlphaMode::blend, 0.25F), unlit({0, 0, 1}), unlit({9, 9, 9})});
+    EXPECT_EQ(in_the_middle(scene), glm::dvec4(0.5, 0.125, 0.375, 1));
+}
+
+TEST(Reference, LeavesBlendedSurfacesTheirShareOfTheBackground) {
+    const Scene scene = stacked(
+        {unlit({1, 0, 0}, AlphaMode::blend, 0.5F), unlit({0, 1, 0}, AlphaMode::blend, 0.5F)});
+    const glm::dvec4 found = in_the_middle(scene);
+    EXPECT_NEAR(found.r, 2.0 / 3, 1e-7);
+    EXPECT_NEAR(found.g, 1.0 / 3, 1e-7);
+    EXPECT_EQ(found.a, 0.75);
+}
+
+TEST(Reference, BlendsTheEdgeBetweenTwoTrianglesOnce) {
+    // 16 pixels: the diagonal passes through the centres of 16 of them.
+    const Scene scene = stacked({unlit({1, 1, 1}, AlphaMode::blend, 0.5F)});
+    const Image image = test::traced(scene, 16).radiance;
+    for (int i = 0; i < 16; ++i)
+        EXPECT_EQ(pixel(image, i, i).a, 0.5) << i;
+}
+
+TEST(Reference, CutsMasksAtTheirCutoff) {
+    Material cut = unlit({1, 0, 0}, AlphaMode::mask, 0.5F);
+    cut.alpha_cutoff = 0.5F;
+    EXPECT_EQ(in_the_middle(stacked({cut, unlit({0, 1, 0})})), glm::dvec4(1, 0, 0, 1));
+    cut.opacity = 0.4375F;
+    EXPECT_EQ(in_the_middle(stacked({cut, unlit({0, 1, 0})})), glm::dvec4(0, 1, 0, 1));
+}
+
+TEST(Reference, AlphaIsTheProductOfAllItsSources) {
+    Material material = unlit({1, 1, 1}, AlphaMode::blend, 0.5F);
+    material.diffuse_texture = Texture{0};
+    material.opacity_texture = Texture{1};
+    Scene scene = stacked({material});
+    scene.images = {{"diffuse", test::constant_image({1, 1, 1, 0.5F}, 4, 32, ColorSpace::linear)},
+                    {"opacity", test::constant_image({0.75F, 0, 0, 0}, 3, 32, ColorSpace::data)}};
+    scene.meshes[0].colors.assign(4, {1, 1, 1, 0.5F});
+    EXPECT_EQ(in_the_middle(scene), glm::dvec4(1, 1, 1, 0.5 * 0.5 * 0.75 * 0.5));
+    scene.materials[0].alpha_mode = AlphaMode::opaque;
+    EXPECT_EQ(in_the_middle(scene).a, 1.0);
+}
+
+TEST(Reference, DrawsBackFacesOfDoubleSidedMaterialsOnly) {
+    Scene scene = stacked({unlit({1, 0, 0}), unlit({0, 1, 0})});
+    for (glm::uvec3& triangle : scene.meshes[0].triangles)
+        std::swap(triangle.y, triangle.z);
+    EXPECT_EQ(in_the_middle(scene), glm::dvec4(0, 1, 0, 1));
+    scene.materials[0].double_sided = true;
+    EXPECT_EQ(in_the_middle(scene), glm::dvec4(1, 0, 0, 1));
+    EXPECT_TRUE(test::traced(scene, 3).hits[4].back);
+}
+
+TEST(Reference, ShowsTheSkyboxBehindEverything) {
+    Scene scene = stacked({unlit({1, 0, 0}, AlphaMode::blend, 0.5F)});
+    scene.environment = test::constant_environment({0.25F, 0.5F, 1.0F}, true);
+    EXPECT_EQ(in_the_middle(scene), glm::dvec4(0.625, 0.25, 0.5, 1));
+    scene.instances.clear();
+    EXPECT_EQ(in_the_middle(scene), glm::dvec4(0.25, 0.5, 1, 1));
+    scene.environment->skybox = false;
+    EXPECT_EQ(in_the_middle(scene), glm::dvec4(0.0));
+}
+
+TEST(Reference, IsTheSameForAnyNumberOfThreads) {
+    Material material;
+    material.specular = glm::vec3(0.5F);
+    material.alpha_mode = AlphaMode::blend;
+    material.opacity = 0.5F;
+    Scene scene = test::scene_of(test::sphere(64, 32), material);
+    scene.point_lights = {{{1, 2, 3}, {4, 4, 4}}};
+    set_thread_limit(1);
+    const Reference one = test::traced(scene, 48);
+    set_thread_limit(0);
+    const Reference many = test::traced(scene, 48);
+    EXPECT_TRUE(test::same_bits(one.radiance, many.radiance));
+    EXPECT_TRUE(test::same_bits(one.edges, many.edges));
+    EXPECT_EQ(one.hits, many.hits);
+}
+
+TEST(Reference, HoldsNoNumbersThatAreNone) {
+    Scene scene = test::scene_of(test::facing_square(), Material{});
+    scene.ambient = glm::vec3(1.0F);
+    Mesh& mesh = scene.meshes[0];
+    mesh.colors.assign(4, glm::vec4(1.0F));
+    mesh.colors[0] = glm::vec4(not_a_number);
+    mesh.positions.emplace_back(not_a_number, 0.0F, 0.0F);
+    mesh.normals.emplace_back(0.0F, 0.0F, 1.0F);
+    mesh.texcoords.emplace_back(0.0F, 0.0F);
+    mesh.colors.emplace_back(1.0F);
+    mesh.triangles.emplace_back(0, 1, 4);
+    mesh.material_ranges[0].triangle_count = 3;
+    Report report;
+    const Reference reference = render_reference(scene, {16, 16}, report);
+    EXPECT_EQ(report.count("vertex that is not finite"), 1U);
+    for (const float sample : reference.radiance.as<float>())
+        EXPECT_TRUE(std::isfinite(sample) && sample >= 0.0F);
+    // Corner 0, the upper left, belongs to both triangles: black everywhere.
+    EXPECT_EQ(pixel(reference.radiance, 2, 2), glm::dvec4(0, 0, 0, 1));
+}
+
+TEST(Reference, IsBlackWhereAColourIsNotANumberAndTheLargestWhereItIsInfinite) {
+    Image image = make_image(1, 1, 3, 32, ColorSpace::linear);
+    image.samples = std::vector<float>{not_a_number, std::numeric_limits<float>::infinity(), -1.0F};
+    Material material = unlit({1, 1, 1});
+    material.diffuse_texture = Texture{0};
+    // Between texels infinity times no weight is not a number.
+    material.diffuse_texture->filter = TextureFilter::nearest;
+    Scene scene = stacked({material});
+    scene.images = {{"texture", image}};
+    const glm::dvec4 found = in_the_middle(scene);
+    EXPECT_EQ(found.r, 0.0);
+    EXPECT_GT(found.g, 1e38);
+    EXPECT_EQ(found.b, 0.0);
+}
+
+TEST(Reference, DrawsWhatASingularMatrixLeaves) {
+    Scene scene = test::scene_of(test::sphere(32, 16), unlit({1, 1, 1}));
+    scene.instances[0].world_from_object[2].z = 0.0F;
+    EXPECT_EQ(in_the_middle(scene).a, 1.0);
+    scene.instances[0].world_from_object[1].y = 0.0F;
+    EXPECT_EQ(in_the_middle(scene).a, 0.0);
+    scene.instances[0].world_from_object = glm::mat4(0.0F);
+    EXPECT_EQ(in_the_middle(scene).a, 0.0);
+}
+
+TEST(Reference, IsTheSamePictureAtEveryScaleAndPlace) {
+    Material material;
+    material.specular = glm::vec3(0.5F);
+    Scene scene = test::scene_of(test::sphere(32, 16), material);
+    scene.directional_lights = {{{-1, -2, -3}, {1, 1, 1}}};
+    const Image expected = test::traced(scene, 16).radiance;
+    for (const float scale : {1e-12F, 1e12F}) {
+        Scene scaled = scene;
+        scaled.instances[0].world_from_object = glm::mat4(scale);
+        scaled.instances[0].world_from_object[3] = {0, 0, 0, 1};
+        scaled.camera->world_from_view[3] = {0, 0, 3.0F * scale, 1};
+        scaled.camera->near *= scale;
+        scaled.camera->far *= scale;
+        EXPECT_LE(compare(test::traced(scaled, 16).radiance, expected).max, 1e-6) << scale;
+    }
+    const glm::vec3 away(1048576.0F, -2097152.0F, 524288.0F);
+    scene.instances[0].world_from_object[3] = {away, 1};
+    scene.camera->world_from_view[3] = {away + glm::vec3(0, 0, 3), 1};
+    EXPECT_LE(compare(test::traced(scene, 16).radiance, expected).max, 1e-6);
+}
+
+TEST(Reference, RefusesWhatItCannotDraw) {
+    Scene scene = test::scene_of(test::facing_square(), Material{});
+    Report report;
+    EXPECT_THROW((void)render_reference(scene, {0, 8}, report), InvalidInput);
+    EXPECT_THROW((void)render_reference(scene, {8, 8, -1.0}, report), InvalidInput);
+    scene.materials[0].shininess = -1.0F;
+    EXPECT_THROW((void)render_reference(scene, {8, 8}, report), InvalidInput);
+    scene.materials[0].shininess = 1.0F;
+    scene.camera.reset();
+    try {
+        (void)render_reference(scene, {8, 8}, report);
+        FAIL() << "a scene without a camera was drawn";
+    } catch (const InvalidInput& error) {
+        EXPECT_THAT(error.what(), testing::HasSubstr("camera"));
+    }
+}
+
+}  // namespace
+}  // namespace relief
