@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A film-like curve: a rational fit to the ACES reference rendering, by channel.
-// Source: [Narkowicz 2015].
+// Source: [Narkowicz 2016].
 
 #include "common/displayable.glsl"
 

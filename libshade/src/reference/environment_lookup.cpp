@@ -200,7 +200,7 @@ glm::dvec3 EnvironmentLookup::diffuse(const glm::dvec3& normal_world) const {
     glm::dvec3 sum(0.0);
     for (std::size_t i = 0; i < 9; ++i)
         sum += harmonics_.at(i) * (cosine.at(i) * at.at(i));
-    return sum;
+    return glm::max(sum, 0.0);
 }
 
 glm::dvec2 directional_albedo(double n_dot_v, double roughness) {

@@ -30,7 +30,7 @@ class EnvironmentLookup {
     [[nodiscard]] glm::dvec3 blurred(const glm::dvec3& direction_world, double roughness) const;
 
     /// Irradiance over pi on a surface of this normal, by spherical harmonics of order 2
-    /// [Ramamoorthi and Hanrahan 2001]. May be negative where the light is nearly all from behind.
+    /// [Ramamoorthi and Hanrahan 2001]; 0 where their sum is negative.
     [[nodiscard]] glm::dvec3 diffuse(const glm::dvec3& normal_world) const;
 
   private:

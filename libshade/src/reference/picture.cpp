@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "reference/limited.h"
+#include "relief/mesh/error.h"
 #include "relief/shade/reference.h"
 
 namespace relief {
@@ -31,7 +32,10 @@ double coded(double light) {
     return light <= 0.0031308 ? 12.92 * light : 1.055 * std::pow(light, 1.0 / 2.4) - 0.055;
 }
 
-glm::dvec3 shown(const glm::dvec3& radiance, const Scene& scene) {
+/// Radiance as it shows in a picture, not coded yet.
+glm::dvec3 shown(const glm::dvec3& radiance, const Scene& scene, OutputCoding output) {
+    if (output == OutputCoding::linear) return limited(radiance, reference::largest_radiance);
+    if (output == OutputCoding::clamped) return limited(radiance, 1.0);
     glm::dvec3 light =
         limited(radiance * static_cast<double>(scene.exposure), reference::largest_radiance);
     for (int i = 0; i < 3; ++i)
@@ -50,6 +54,7 @@ glm::dvec4 over(const glm::dvec4& front, const glm::dvec4& background) {
 }  // namespace
 
 Image reference_picture(const Image& radiance, const Scene& scene, OutputCoding output) {
+    if (output == OutputCoding::half) throw InvalidInput("half is no picture's coding");
     const bool codes = output == OutputCoding::srgb;
     Image picture = make_image(radiance.width, radiance.height, 4, 32,
                                codes ? ColorSpace::srgb : ColorSpace::linear);
@@ -58,10 +63,9 @@ Image reference_picture(const Image& radiance, const Scene& scene, OutputCoding 
     glm::dvec4 background(scene.background);
     if (output != OutputCoding::linear) background = glm::min(background, glm::dvec4(1.0));
     for (std::size_t i = 0; i < to.size(); i += 4) {
-        glm::dvec3 color(from[i], from[i + 1], from[i + 2]);
-        color = output == OutputCoding::linear ? limited(color, reference::largest_radiance)
-                                               : shown(color, scene);
-        const glm::dvec4 pixel = over({color, static_cast<double>(from[i + 3])}, background);
+        const glm::dvec3 color(from[i], from[i + 1], from[i + 2]);
+        const glm::dvec4 pixel =
+            over({shown(color, scene, output), static_cast<double>(from[i + 3])}, background);
         for (int channel = 0; channel < 4; ++channel) {
             const double value = pixel[channel];
             to[i + static_cast<std::size_t>(channel)] =

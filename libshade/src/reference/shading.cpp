@@ -178,7 +178,9 @@ glm::dvec3 scattered_by(const Microfacets& facets, const Surface& at, const glm:
                         double n_dot_l) {
     const glm::dvec3 sum = light + at.view_world;
     const double length = glm::length(sum);
-    const glm::dvec3 half = length > 1e-15 ? sum / length : glm::dvec3(0.0);
+    // Without a half vector nothing is mirrored.
+    if (!(length > 1e-15)) return facets.scattering;
+    const glm::dvec3 half = sum / length;
     const double n_dot_v = std::clamp(glm::dot(at.normal_world, at.view_world), 0.0, 1.0);
     const double n_dot_h = std::clamp(glm::dot(at.normal_world, half), 0.0, 1.0);
     const double v_dot_h = std::clamp(glm::dot(at.view_world, half), 0.0, 1.0);

@@ -110,8 +110,7 @@ glm::dvec3 mapped_vector(const PreparedScene& prepared, const NormalMap& map,
                    map.green);
 }
 
-/// The normal of heights: half the difference of the heights half a texel to either side, which
-/// between texel centres is the slope of the bilinear field, and at them the central difference.
+/// The normal of heights: central differences over one texel to either side.
 glm::dvec3 bumped_vector(const PreparedScene& prepared, const BumpMap& map,
                          const glm::dvec2& texcoord, Decisions& decisions) {
     const Texels& texels = prepared.texels.get(map.texture.image, ImageUse::data);
@@ -120,8 +119,8 @@ glm::dvec3 bumped_vector(const PreparedScene& prepared, const BumpMap& map,
         return prepared.texels.look_up(map.texture, ImageUse::data, place, decisions).x;
     };
     const double strength = static_cast<double>(map.strength);
-    const double along_u = strength * (height(0.5, 0.0) - height(-0.5, 0.0));
-    const double along_v = strength * (height(0.0, 0.5) - height(0.0, -0.5));
+    const double along_u = 0.5 * strength * (height(1.0, 0.0) - height(-1.0, 0.0));
+    const double along_v = 0.5 * strength * (height(0.0, 1.0) - height(0.0, -1.0));
     return {-along_u, along_v, 1.0};
 }
 
@@ -159,7 +158,9 @@ glm::dvec3 front_normal(const PreparedScene& prepared, const Hit& hit, const Mat
                                   ? front_of_plane(triangle)
                                   : triangle.interpolated(triangle.instance.normals_world);
     const glm::dvec3 fallback = unit_or(normal, z_axis);
-    const bool has_map = material.normal_map || material.bump_map;
+    // Flat shading knows the triangle's plane only, and Gouraud's the normals of vertices.
+    const bool has_map = material.interpolation == Interpolation::per_pixel &&
+                         (material.normal_map || material.bump_map);
     if (!has_map || triangle.instance.mesh->texcoords.empty()) return fallback;
     if (material.normal_map && material.normal_map->space == NormalSpace::object) {
         return unit_or(stored_normal(prepared, hit, *material.normal_map, texcoord, decisions),

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "../render/draw_test.h"
+#include "relief/mesh/error.h"
 #include "relief/shade/reference.h"
 
 namespace relief {
@@ -18,24 +19,33 @@ glm::dvec4 shown(float light, const Scene& scene, OutputCoding output, float alp
     return test::pixel(reference_picture(radiance, scene, output), 0, 0);
 }
 
+/// The light that an sRGB picture shows.
+double shown_light(float light, const Scene& scene, float alpha = 1.0F) {
+    return static_cast<double>(
+        linear_from_srgb(static_cast<float>(shown(light, scene, OutputCoding::srgb, alpha).r)));
+}
+
 TEST(ReferencePicture, IsExposedAndThenToneMapped) {
     Scene scene;
     scene.exposure = 0.5F;
-    EXPECT_NEAR(shown(1.5F, scene, OutputCoding::clamped).r, 0.75, 1e-7);
-    EXPECT_EQ(shown(3.0F, scene, OutputCoding::clamped).r, 1.0);
+    EXPECT_NEAR(shown_light(1.5F, scene), 0.75, 1e-6);
+    EXPECT_NEAR(shown_light(3.0F, scene), 1.0, 1e-6);
     scene.tone_mapping = ToneMapping::reinhard;
-    EXPECT_NEAR(shown(6.0F, scene, OutputCoding::clamped).r, 0.75, 1e-7);
+    EXPECT_NEAR(shown_light(6.0F, scene), 0.75, 1e-6);
     scene.tone_mapping = ToneMapping::aces;
     // x = 1: (2.51 + 0.03) / (2.43 + 0.59 + 0.14)
-    EXPECT_NEAR(shown(2.0F, scene, OutputCoding::clamped).r, 2.54 / 3.16, 1e-7);
-    EXPECT_EQ(shown(1e30F, scene, OutputCoding::clamped).r, 1.0);
+    EXPECT_NEAR(shown_light(2.0F, scene), 2.54 / 3.16, 1e-6);
+    EXPECT_NEAR(shown_light(1e30F, scene), 1.0, 1e-6);
 }
 
-TEST(ReferencePicture, LinearIsRadianceAsItIs) {
+TEST(ReferencePicture, OfLinearLightIsNeitherExposedNorToneMapped) {
     Scene scene;
     scene.exposure = 0.5F;
     scene.tone_mapping = ToneMapping::aces;
     EXPECT_EQ(shown(3.0F, scene, OutputCoding::linear).r, 3.0);
+    EXPECT_EQ(shown(3.0F, scene, OutputCoding::clamped).r, 1.0);
+    EXPECT_EQ(shown(0.5F, scene, OutputCoding::clamped).r, 0.5);
+    EXPECT_THROW((void)shown(0.5F, scene, OutputCoding::half), InvalidInput);
 }
 
 TEST(ReferencePicture, IsCodedByTheStandardsCurve) {
@@ -50,14 +60,13 @@ TEST(ReferencePicture, LiesOverABackgroundThatIsNeitherExposedNorToneMapped) {
     scene.exposure = 2.0F;
     scene.tone_mapping = ToneMapping::reinhard;
     scene.background = {0.25F, 0.25F, 0.25F, 1.0F};
-    EXPECT_EQ(shown(0.0F, scene, OutputCoding::clamped, 0.0F), glm::dvec4(0.25, 0.25, 0.25, 1));
+    EXPECT_NEAR(shown_light(0.0F, scene, 0.0F), 0.25, 1e-6);
     // A half-covering surface of 1.5, which shows as 0.75.
-    EXPECT_NEAR(shown(1.5F, scene, OutputCoding::clamped, 0.5F).r, 0.5, 1e-7);
+    EXPECT_NEAR(shown_light(1.5F, scene, 0.5F), 0.5, 1e-6);
     // Over half a background: (0.75 * 0.5 + 0.25 * 0.25) / 0.75, and alpha 0.75.
     scene.background.a = 0.5F;
-    const glm::dvec4 mixed = shown(1.5F, scene, OutputCoding::clamped, 0.5F);
-    EXPECT_NEAR(mixed.r, 0.4375 / 0.75, 1e-7);
-    EXPECT_NEAR(mixed.a, 0.75, 1e-7);
+    EXPECT_NEAR(shown_light(1.5F, scene, 0.5F), 0.4375 / 0.75, 1e-6);
+    EXPECT_NEAR(shown(1.5F, scene, OutputCoding::srgb, 0.5F).a, 0.75, 1e-7);
 }
 
 TEST(ReferencePicture, HoldsNothingThatIsNotANumber) {

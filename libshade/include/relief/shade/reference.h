@@ -13,7 +13,7 @@
 
 #include "relief/mesh/image.h"
 #include "relief/mesh/report.h"
-#include "relief/shade/effects.h"
+#include "relief/shade/frame_settings.h"
 #include "relief/shade/scene.h"
 
 namespace relief {
@@ -63,8 +63,9 @@ Reference render_reference(const Scene& scene, const ReferenceSettings& settings
 /// The picture of a radiance, composed over the scene's background.
 ///
 /// \param radiance  as in Reference
-/// \return four float channels, alpha not multiplied in. linear: radiance as it is; clamped:
-///         exposed, tone-mapped and within [0,1]; srgb: that, coded, and not rounded to 8 bits
+/// \return four float channels, alpha not multiplied in; as frame_settings.h says, but that srgb is
+///         not rounded to 8 bits
+/// \throws InvalidInput for OutputCoding::half
 ///
 /// Source of ToneMapping::aces: [Narkowicz 2016].
 Image reference_picture(const Image& radiance, const Scene& scene, OutputCoding output);
