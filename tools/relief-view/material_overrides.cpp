@@ -6,6 +6,9 @@
 #include <algorithm>
 
 #include "common/text.h"
+#include "environment_options.h"
+#include "material_options.h"
+#include "near_names.h"
 #include "relief/mesh/bump.h"
 #include "relief/mesh/image_file.h"
 #include "relief/shade/effects.h"
@@ -16,9 +19,11 @@ namespace {
 /// Highlights of a material that has none, where the command line asks for highlights.
 constexpr glm::vec3 plain_specular{0.25F};
 
-bool overrides_anything(const ViewOptions& options) {
-    return options.diffuse_map || options.normal_map || options.height_map ||
-           options.normal_scale || options.specular || options.shininess || options.reflectivity;
+bool overrides_anything(const ViewOptions& o) {
+    return o.diffuse_map || o.normal_map || o.height_map || o.normal_scale || o.tangent_frame ||
+           o.specular_antialiasing || o.interpolation || o.material || o.metallic_roughness ||
+           o.specular || o.shininess || o.reflectivity || o.reflection_roughness || o.fresnel ||
+           o.no_fresnel || o.transmission;
 }
 
 /// Every triangle gets a material: the default one, added once, where it has none.
@@ -70,13 +75,26 @@ void set_diffuse_map(Scene& scene, const std::filesystem::path& file) {
     for (Material& material : scene.materials) {
         material.diffuse = glm::vec3(1.0F);
         material.ambient = glm::vec3(1.0F);
+        if (material.metallic_roughness) material.metallic_roughness->base_color = glm::vec3(1.0F);
         material.diffuse_texture = texture;
     }
 }
 
 void set_normal_map(Scene& scene, const NormalMap& map) {
-    for (Material& material : scene.materials)
+    for (Material& material : scene.materials) {
         material.normal_map = map;
+        material.bump_map.reset();
+    }
+}
+
+void set_bump_map(Scene& scene, const ViewOptions& options) {
+    BumpMap map;
+    map.texture = add_texture(scene, {options.height_map->string(), *options.height_map});
+    map.strength = static_cast<float>(options.strength.value_or(BumpOptions{}.strength));
+    for (Material& material : scene.materials) {
+        material.bump_map = map;
+        material.normal_map.reset();
+    }
 }
 
 /// The height map as a normal map of 16 bits, which is more than the eye can tell apart.
@@ -127,10 +145,48 @@ void set_highlights(Scene& scene, const ViewOptions& options, std::vector<std::s
     }
 }
 
-void set_reflectivity(Scene& scene, float reflectivity) {
+/// \throws UsageError naming near ones if there is no material of that name
+Material named_material(const std::string& name) {
+    if (const std::optional<Material> material = material_by_name(name)) return *material;
+    throw UsageError(fmt::format("--material {}: there is no such material{}", name,
+                                 did_you_mean(name, material_names())),
+                     fmt::format("there are {}", fmt::join(material_names(), ", ")));
+}
+
+/// Colours and highlights of a named material; what the model's own have beside that stays.
+void set_named_material(Scene& scene, const std::string& name) {
+    const Material named = named_material(name);
     for (Material& material : scene.materials) {
-        material.reflectivity = glm::vec3(reflectivity);
-        material.grazing_reflectivity = glm::vec3(1.0F);
+        material.ambient = named.ambient;
+        material.diffuse = named.diffuse;
+        material.specular = named.specular;
+        material.shininess = named.shininess;
+        material.specular_model = named.specular_model;
+        material.metallic_roughness.reset();
+    }
+}
+
+void set_metallic_roughness(Scene& scene, const MetallicOption& option) {
+    for (Material& material : scene.materials) {
+        MetallicRoughness model;
+        const glm::vec3 color = material.metallic_roughness
+                                    ? material.metallic_roughness->base_color
+                                    : material.diffuse;
+        model.base_color = glm::min(color, glm::vec3(1.0F));
+        model.metallic = option.metallic;
+        model.roughness = option.roughness;
+        material.metallic_roughness = model;
+        material.transmission = 0.0F;
+    }
+}
+
+void set_shading(Scene& scene, const ViewOptions& options) {
+    for (Material& material : scene.materials) {
+        material.interpolation = options.interpolation.value_or(material.interpolation);
+        material.tangent_frame = options.tangent_frame.value_or(material.tangent_frame);
+        material.specular_antialiasing =
+            options.specular_antialiasing.value_or(material.specular_antialiasing);
+        set_reflection(material, options);
     }
 }
 
@@ -140,6 +196,13 @@ void override_materials(Scene& scene, const ViewOptions& options, Stages& stages
                         std::vector<std::string>& notes) {
     if (!overrides_anything(options)) return;
     name_all_materials(scene);
+    // Whatever of glTF's model is still there gives way to what only Phong's has.
+    if (!reason_for_phong(options).empty()) {
+        for (Material& material : scene.materials)
+            material.metallic_roughness.reset();
+    }
+    if (options.material) set_named_material(scene, *options.material);
+    if (options.metallic_roughness) set_metallic_roughness(scene, *options.metallic_roughness);
     if (options.diffuse_map) {
         require_texcoords(scene, options, "--diffuse-map", notes);
         set_diffuse_map(scene, *options.diffuse_map);
@@ -150,15 +213,20 @@ void override_materials(Scene& scene, const ViewOptions& options, Stages& stages
         NormalMap map;
         map.texture = add_texture(scene, {file.string(), file});
         map.green = options.green.value_or(map.green);
+        map.space = options.normal_space.value_or(map.space);
         set_normal_map(scene, map);
     }
     if (options.height_map) {
         require_texcoords(scene, options, "--height-map", notes);
-        set_normal_map(scene, converted_height_map(scene, options, stages, report));
+        if (options.height_as == HeightUse::bump_map) {
+            set_bump_map(scene, options);
+        } else {
+            set_normal_map(scene, converted_height_map(scene, options, stages, report));
+        }
     }
     if (options.normal_scale) set_normal_scale(scene, *options.normal_scale);
     if (options.specular || options.shininess) set_highlights(scene, options, notes);
-    if (options.reflectivity) set_reflectivity(scene, *options.reflectivity);
+    set_shading(scene, options);
 }
 
 }  // namespace relief::tools

@@ -4,10 +4,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
-#include <set>
 
 #include "common/text.h"
+#include "environment_options.h"
+#include "material_options.h"
 #include "material_overrides.h"
 #include "relief/shade/framing.h"
 #include "relief/shade/scene_file.h"
@@ -21,33 +21,23 @@ constexpr float default_ambient = 0.08F;
 // #1e2126, linear.
 constexpr glm::vec4 default_background{0.01299F, 0.01521F, 0.01938F, 1.0F};
 
-ImageSource image_file(const std::filesystem::path& file) {
-    return {file.string(), file};
-}
-
-Environment environment_of(const std::vector<std::filesystem::path>& files) {
-    if (files.size() == 6) {
-        CubeFaces faces;
-        std::transform(files.begin(), files.end(), faces.faces.begin(), image_file);
-        return {.source = std::move(faces)};
-    }
-    if (std::filesystem::is_directory(files.front()))
-        return {.source = cube_faces_in(files.front())};
-    return {.source = Equirectangular{image_file(files.front())}};
+bool is_physical(const Material& material) {
+    return material.metallic_roughness.has_value() && !material.unlit;
 }
 
 void set_environment(Scene& scene, const ViewOptions& options) {
     if (options.environment.empty()) return;
-    scene.environment = environment_of(options.environment);
-    scene.environment->skybox = !options.no_skybox;
+    scene.environment = environment_of(options);
+    const bool physical = std::any_of(scene.materials.begin(), scene.materials.end(), is_physical);
+    scene.environment->lights = options.environment_light.value_or(physical);
     const bool reflected = std::any_of(
         scene.materials.begin(), scene.materials.end(),
         [](const Material& material) { return material.reflectivity != glm::vec3(0.0F); });
-    if (!reflected && options.no_skybox) {
+    if (!reflected && !physical && !scene.environment->lights && options.no_skybox) {
         throw UsageError(
             "--environment: would show nowhere, as no material reflects it and "
             "--no-skybox hides it",
-            "add --reflectivity, or leave --no-skybox out");
+            "add --reflectivity or --environment-light on, or leave --no-skybox out");
     }
 }
 
@@ -104,6 +94,10 @@ void set_lights(ComposedScene& composed, const ViewOptions& options) {
     Scene& scene = composed.scene;
     if (!options.lights.empty()) {
         replace_lights(scene, options.lights, composed.notes);
+    } else if (light_count(scene) == 0 && scene.environment && scene.environment->lights) {
+        composed.notes.emplace_back(
+            "neither the model nor --light gives a light: the environment "
+            "is the only one");
     } else if (light_count(scene) == 0) {
         add_default_lights(scene, composed.camera);
         composed.notes.emplace_back(
@@ -112,46 +106,26 @@ void set_lights(ComposedScene& composed, const ViewOptions& options) {
     if (options.ambient) scene.ambient = glm::vec3(*options.ambient);
 }
 
-}  // namespace
-
-CubeFaces cube_faces_in(const std::filesystem::path& folder) {
-    constexpr std::array<const char*, 6> ends = {"posx", "negx", "posy", "negy", "posz", "negz"};
-    // In order of name, so that the message does not depend on the file system.
-    std::set<std::filesystem::path> files;
-    for (const auto& entry : std::filesystem::directory_iterator(folder))
-        files.insert(entry.path());
-    CubeFaces faces;
-    for (std::size_t i = 0; i < ends.size(); ++i) {
-        std::optional<std::filesystem::path> found;
-        for (const std::filesystem::path& file : files) {
-            if (!file.stem().string().ends_with(ends[i])) continue;
-            if (found) {
-                throw failure(folder,
-                              fmt::format("both {} and {} end in {}", found->filename().string(),
-                                          file.filename().string(), ends[i]),
-                              "name the six files instead");
-            }
-            found = file;
-        }
-        if (!found) {
-            throw failure(folder, fmt::format("no file whose name ends in {}", ends[i]),
-                          "name the six files in the order +x -x +y -y +z -z");
-        }
-        faces.faces[i] = image_file(*found);
-    }
-    return faces;
+SceneOptions scene_options(const ViewOptions& options) {
+    using Model = SceneOptions::MaterialModel;
+    return {reason_for_phong(options).empty() ? Model::as_authored : Model::phong};
 }
+
+}  // namespace
 
 ComposedScene compose_scene(const ViewOptions& options, Stages& stages, Report& report) {
     ComposedScene composed;
     composed.scene = stages.run("read", [&] {
-        return about(options.model, [&] { return load_scene(options.model, report); });
+        return about(options.model,
+                     [&] { return load_scene(options.model, scene_options(options), report); });
     });
     if (composed.scene.instances.empty())
         throw FileError(options.model, "holds no triangles, so there is nothing to draw");
     override_materials(composed.scene, options, stages, report, composed.notes);
     set_environment(composed.scene, options);
     composed.scene.background = options.background.value_or(default_background);
+    composed.scene.exposure = options.exposure.value_or(composed.scene.exposure);
+    composed.scene.tone_mapping = options.tone_mapping.value_or(composed.scene.tone_mapping);
     composed.camera = camera_for(composed.scene, options);
     set_lights(composed, options);
     return composed;

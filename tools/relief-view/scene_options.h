@@ -27,8 +27,4 @@ struct ComposedScene {
 ///         UsageError if an option could show nowhere in this scene
 ComposedScene compose_scene(const ViewOptions& options, Stages& stages, Report& report);
 
-/// Six images in a folder, by the ends of their names: posx, negx, posy, negy, posz, negz.
-/// \throws FileError naming the first that is missing, or two that claim one place
-CubeFaces cube_faces_in(const std::filesystem::path& folder);
-
 }  // namespace relief::tools

@@ -4,9 +4,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
-#include "common/map_choices.h"
 #include "common/text.h"
+#include "environment_options.h"
+#include "map_options.h"
+#include "material_options.h"
 #include "picture_reference.h"
 
 namespace relief::tools {
@@ -33,66 +36,27 @@ void add_output_options(CLI::App& app, ViewOptions& options) {
                                            : glm::vec4(parse_color(subject, text), 1.0F);
               })
         ->group(group);
+    add_value(app, "--exposure", "STOPS",
+              "Doubles the light for every stop, halves it for every stop below 0. Default: as the "
+              "scene says, else 0.",
+              [&](const std::string& subject, const std::string& text) {
+                  const Range range{-30, 30, "stops"};
+                  options.exposure =
+                      static_cast<float>(std::exp2(parse_number(subject, text, range)));
+              })
+        ->group(group);
+    add_choice(app, "--tone-mapping", options.tone_mapping,
+               Choices<ToneMapping>{{"none", ToneMapping::none},
+                                    {"reinhard", ToneMapping::reinhard},
+                                    {"aces", ToneMapping::aces}},
+               "How light brighter than white is shown: as white, or brought down by a curve. "
+               "Default: as the scene says, else none.")
+        ->group(group);
     add_switch(app, "--explain-effects", options.explain_effects,
                "Print which effects the scene calls for and which not, with the reason. Needs no "
                "--output, and then no OpenGL.")
         ->group(group);
     add_switch(app, "--json", options.json, "Print the summary as one JSON object.")->group(group);
-}
-
-void add_map_options(CLI::App& app, ViewOptions& options) {
-    const std::string group = "Maps, for all materials; the model needs texture coordinates";
-    add_path(app, "--diffuse-map", options.diffuse_map,
-             "Colour image that replaces every material's diffuse colour.")
-        ->group(group);
-    add_path(app, "--normal-map", options.normal_map, "Tangent-space normal map.")->group(group);
-    add_choice(app, "--green", options.green, green_choices(),
-               "Where the normal map's green is bright: on slopes facing up in the image (OpenGL, "
-               "glTF) or down (DirectX). Default: up.")
-        ->group(group);
-    add_path(app, "--height-map", options.height_map,
-             "Height map, made into a normal map on the fly.")
-        ->group(group);
-    add_number(app, "--strength", "S", options.strength, {},
-               "Height in texels that the height map's value 1.0 stands for. Default: 16.")
-        ->group(group);
-    add_choice(app, "--kernel", options.kernel, kernel_choices(),
-               "How slopes are taken from the height map. Default: sobel3.")
-        ->group(group);
-    add_number(app, "--normal-scale", "S", options.normal_scale, {-100, 100, ""},
-               "Multiplies the slopes of normal maps, the model's own too. Default: as the model "
-               "says, else 1.")
-        ->group(group);
-}
-
-void add_material_options(CLI::App& app, ViewOptions& options) {
-    const std::string group = "Highlights and reflection, for all materials";
-    const Choices<SpecularModel> models = {{"phong", SpecularModel::phong},
-                                           {"blinn_phong", SpecularModel::blinn_phong}};
-    add_choice(app, "--specular", options.specular, models,
-               "Model of highlights. Materials without a specular colour get a grey one of 0.25. "
-               "Default: as the model says, else blinn_phong.")
-        ->group(group);
-    add_number(app, "--shininess", "N", options.shininess, {0, 1e6, ""},
-               "Exponent of highlights: larger is smaller and sharper. Materials without a "
-               "specular colour get a grey one of 0.25. Default: as the model says, else 32.")
-        ->group(group);
-    add_repeatable(app, "--environment", "FILE...",
-                   "Surroundings: a panorama by longitude and latitude, six square images in the "
-                   "order +x -x +y -y +z -z, or a folder with six images whose names end in posx, "
-                   "negx, posy, negy, posz, negz.",
-                   [&](const std::string&, const std::string& text) {
-                       options.environment.emplace_back(text);
-                   })
-        ->group(group)
-        ->expected(1, 7);
-    add_number(app, "--reflectivity", "R", options.reflectivity, {0, 1, ""},
-               "Share of the environment that materials reflect, seen head on; more at grazing "
-               "angles. Default: as the model says, else 0.")
-        ->group(group);
-    add_switch(app, "--no-skybox", options.no_skybox,
-               "Reflect the environment but do not show it behind the model.")
-        ->group(group);
 }
 
 void add_light_options(CLI::App& app, ViewOptions& options) {
@@ -112,6 +76,9 @@ void add_light_options(CLI::App& app, ViewOptions& options) {
     add_number(app, "--ambient", "A", options.ambient, {0, 1000, ""},
                "Light from everywhere. Default: 0, or 0.08 with the key and fill light.")
         ->group(group);
+    add_number(app, "--light-markers", "R", options.light_markers, {1e-6, 1, ""},
+               "Show point and spot lights as small spheres, of R times the scene's size.")
+        ->group(group);
     add_value(app, "--camera", "AZIMUTH,ELEVATION[,FACTOR]",
               "From where the camera looks, in degrees from +z towards +x and above the horizon, "
               "and how far away it is as a factor of the distance that shows all. Default: the "
@@ -130,43 +97,20 @@ void add_light_options(CLI::App& app, ViewOptions& options) {
         ->group(group);
 }
 
-void refuse(bool useless, const std::string& option, const std::string& because,
-            const std::string& remedy) {
-    if (useless) throw UsageError(option + ": " + because, remedy);
-}
-
 void check_output(const ViewOptions& options) {
     if (!options.output && !options.explain_effects && !options.reference)
         throw UsageError("--output is missing",
                          "name a picture to write, or ask for --explain-effects");
+    refuse(is_linear_output(options) && (options.exposure || options.tone_mapping),
+           options.exposure ? "--exposure" : "--tone-mapping",
+           "belongs to display colours, and this picture holds linear radiance",
+           "write a .png, or leave it out");
     if (!options.output) return;
     const std::string extension = extension_of(*options.output);
     refuse(extension != ".png" && extension != ".exr", "--output " + options.output->string(),
            "no format to write a picture in", "use .png or .exr");
     refuse(*options.output == options.model, "--output", "would overwrite the model", "");
     require_folder_of(*options.output);
-}
-
-void check_maps(const ViewOptions& options) {
-    refuse(options.normal_map && options.height_map, "--height-map",
-           "contradicts --normal-map, as both give the normals", "leave one of them out");
-    refuse(options.green && !options.normal_map, "--green", "says how to read a --normal-map",
-           "give a normal map too, or leave it out");
-    refuse(options.strength && !options.height_map, "--strength", "says how to read a --height-map",
-           "give a height map too, or leave it out");
-    refuse(options.kernel && !options.height_map, "--kernel", "says how to read a --height-map",
-           "give a height map too, or leave it out");
-}
-
-void check_environment(const ViewOptions& options) {
-    const std::size_t files = options.environment.size();
-    refuse(files != 0 && files != 1 && files != 6, "--environment",
-           fmt::format("takes one file, six files or a folder, not {} files", files), "");
-    refuse(options.no_skybox && files == 0, "--no-skybox", "there is no --environment to hide", "");
-    refuse(options.reflectivity && files == 0, "--reflectivity",
-           "there is no --environment to reflect", "give one, or leave it out");
-    refuse(options.background && files != 0 && !options.no_skybox, "--background",
-           "the environment hides it", "add --no-skybox, or leave one of them out");
 }
 
 void check_lights(const ViewOptions& options) {
@@ -187,6 +131,11 @@ void give_back_model(ViewOptions& options) {
 
 }  // namespace
 
+void refuse(bool useless, const std::string& option, const std::string& because,
+            const std::string& remedy) {
+    if (useless) throw UsageError(option + ": " + because, remedy);
+}
+
 CameraOption parse_camera(const std::string& subject, const std::string& text) {
     const std::vector<std::string> fields = split(text, ',');
     if (fields.size() < 2 || fields.size() > 3)
@@ -206,6 +155,7 @@ void add_view_options(CLI::App& app, ViewOptions& options) {
     add_output_options(app, options);
     add_map_options(app, options);
     add_material_options(app, options);
+    add_environment_options(app, options);
     add_light_options(app, options);
     add_reference_options(app, options);
     const Choices<Backend> backends = {
@@ -222,6 +172,7 @@ void settle(ViewOptions& options) {
     check_output(options);
     check_reference(options);
     check_maps(options);
+    check_materials(options);
     check_environment(options);
     check_lights(options);
 }

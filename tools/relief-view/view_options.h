@@ -17,6 +17,7 @@
 #include "relief/mesh/normal_map.h"
 #include "relief/shade/context.h"
 #include "relief/shade/scene.h"
+#include "relief/shade/scene_file.h"
 
 namespace relief::tools {
 
@@ -27,12 +28,31 @@ struct CameraOption {
     float distance_factor = 1;  ///< Of the distance from which all of the model is seen.
 };
 
+/// What a height map becomes.
+enum class HeightUse { normal_map, bump_map };
+
+/// How one environment image is laid out.
+enum class EnvironmentLayout {
+    automatic,  ///< Told by its shape: 2:1 a panorama, 4:3 or 3:4 a cross, 1:1 a probe.
+    panorama,
+    cross,
+    probe,
+};
+
+/// Metallic and roughness that all materials take on.
+struct MetallicOption {
+    float metallic = 0;
+    float roughness = 1;
+};
+
 /// Everything on the command line. What was not given is absent.
 struct ViewOptions {
     std::filesystem::path model;
     std::optional<std::filesystem::path> output;
     glm::ivec2 size{1024, 1024};
     int samples = 4;
+    std::optional<float> exposure;  ///< The factor, not the stops.
+    std::optional<ToneMapping> tone_mapping;
 
     std::optional<std::filesystem::path> reference;
     std::optional<double> max_difference;  ///< From the reference; absent: 0.
@@ -41,19 +61,38 @@ struct ViewOptions {
     std::optional<std::filesystem::path> normal_map;
     std::optional<float> normal_scale;
     std::optional<Green> green;
+    std::optional<NormalSpace> normal_space;
+    std::optional<TangentFrame> tangent_frame;
     std::optional<std::filesystem::path> height_map;
+    std::optional<HeightUse> height_as;
     std::optional<double> strength;
     std::optional<Kernel> kernel;
     std::optional<std::filesystem::path> diffuse_map;
+    std::optional<bool> specular_antialiasing;
 
-    std::vector<std::filesystem::path> environment;  ///< A panorama, a folder, or six files.
-    bool no_skybox = false;
-    std::optional<float> reflectivity;
+    std::optional<SceneOptions::MaterialModel> shading;
+    std::optional<Interpolation> interpolation;
+    std::optional<std::string> material;  ///< A name of the classic table.
+    std::optional<MetallicOption> metallic_roughness;
     std::optional<float> shininess;
     std::optional<SpecularModel> specular;
 
+    std::vector<std::filesystem::path> environment;  ///< One image, a folder, or six files.
+    std::optional<EnvironmentLayout> environment_layout;
+    std::optional<bool> environment_light;  ///< Absent: where materials are metallic-roughness.
+    std::optional<float> environment_intensity;
+    bool left_handed_environment = false;
+    bool no_skybox = false;
+    std::optional<float> reflectivity;
+    std::optional<float> reflection_roughness;
+    std::optional<FresnelModel> fresnel;
+    bool no_fresnel = false;
+    std::optional<float> refractive_index;
+    std::optional<float> transmission;
+
     std::vector<LightOption> lights;
     std::optional<float> ambient;
+    std::optional<float> light_markers;  ///< Radius in units of the scene's size.
     std::optional<CameraOption> camera;
     std::optional<float> vertical_fov;
     std::optional<glm::vec4> background;  ///< Linear RGB and coverage.
@@ -68,6 +107,11 @@ struct ViewOptions {
 CameraOption parse_camera(const std::string& subject, const std::string& text);
 
 void add_view_options(CLI::App& app, ViewOptions& options);
+
+/// Refuses an option that could show nothing, or that contradicts another.
+/// \throws UsageError "OPTION: BECAUSE (REMEDY)" if useless
+void refuse(bool useless, const std::string& option, const std::string& because,
+            const std::string& remedy);
 
 /// Settles what parsing left open and refuses what contradicts itself. \throws UsageError
 void settle(ViewOptions& options);
