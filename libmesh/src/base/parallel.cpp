@@ -13,6 +13,9 @@ namespace relief {
 
 void parallel_for(std::size_t count, std::size_t grain,
                   const std::function<void(std::size_t, std::size_t)>& body) {
+    if (count == 0) return;
+    // Nothing to share out: a program that never has more than this never starts oneTBB.
+    if (count <= grain) return body(0, count);
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, grain),
                       [&](const auto& piece) { body(piece.begin(), piece.end()); });
 }

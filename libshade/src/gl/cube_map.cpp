@@ -243,7 +243,7 @@ CubeMap make_cube_map(const Api& api, std::span<const Image> faces, std::string_
         const Image& uploaded = converted ? *converted : face;
         TexelFormat format = texel_format(uploaded, FloatStorage::half);
         if (!is_coded_color(face)) format.internal = GL_RGBA16F;
-        upload_level_0(api, face_target(i), format, uploaded);
+        upload_level(api, face_target(i), 0, format, uploaded);
     }
     finish(api);
     api.check(fmt::format("uploading cube map '{}', six faces of {} x {}", name, size, size));

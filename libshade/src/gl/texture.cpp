@@ -11,6 +11,7 @@
 #include <cassert>
 
 #include "relief/mesh/error.h"
+#include "relief/mesh/mip_levels.h"
 #include "relief/shade/error.h"
 
 namespace relief::gl {
@@ -111,11 +112,12 @@ std::optional<Image> converted_for_upload(const Image& image) {
     return std::nullopt;
 }
 
-void upload_level_0(const Api& api, GLenum target, const TexelFormat& format, const Image& image) {
+void upload_level(const Api& api, GLenum target, GLint level, const TexelFormat& format,
+                  const Image& image) {
     const void* samples = std::visit(
         [](const auto& values) { return static_cast<const void*>(values.data()); }, image.samples);
-    api->TexImage2D(target, 0, static_cast<GLint>(format.internal), image.width, image.height, 0,
-                    format.format, format.type, samples);
+    api->TexImage2D(target, level, static_cast<GLint>(format.internal), image.width, image.height,
+                    0, format.format, format.type, samples);
 }
 
 void set_sampling(const Api& api, GLenum target, const Sampling& sampling) {
@@ -151,17 +153,23 @@ Texture make_texture(const Api& api, const Image& image, std::string_view name, 
     const Image& uploaded = converted ? *converted : image;
     Texture texture(api);
     api->BindTexture(GL_TEXTURE_2D, texture.name());
-    upload_level_0(api, GL_TEXTURE_2D, texel_format(uploaded, storage), uploaded);
-    set_swizzle(api, uploaded.channels);
+    // Before any level: whether there will be more of them decides how much memory Mesa takes.
     Sampling sampling;
-    if (mipmaps) {
-        api->GenerateMipmap(GL_TEXTURE_2D);
-    } else {
+    if (!mipmaps) {
         sampling.minify = GL_LINEAR;
         // Complete with any sampler object.
         api->TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAX_LEVEL, 0);
     }
     set_sampling(api, GL_TEXTURE_2D, sampling);
+    set_swizzle(api, uploaded.channels);
+    const TexelFormat format = texel_format(uploaded, storage);
+    upload_level(api, GL_TEXTURE_2D, 0, format, uploaded);
+    if (mipmaps) {
+        // Not glGenerateMipmap: on Mesa's rasteriser it compiles shaders for 70 ms per format.
+        GLint level = 0;
+        for (const Image& smaller : mip_levels(uploaded))
+            upload_level(api, GL_TEXTURE_2D, ++level, format, smaller);
+    }
     api->BindTexture(GL_TEXTURE_2D, 0);
     api.check(fmt::format("uploading texture '{}', {} x {}", name, image.width, image.height));
     return texture;

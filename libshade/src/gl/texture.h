@@ -30,7 +30,7 @@ enum class FloatStorage { full, half };
 /// An image as a complete 2D texture.
 ///
 /// \param name  for messages: the file, or "material 'body': normal map"
-/// \param mipmaps  makes all levels; colours are averaged in linear light
+/// \param mipmaps  makes all levels, by mip_levels()
 /// \param storage  half takes half the memory; finite values beyond 65504 become infinite
 /// \return 8-bit sRGB colours stored as they are and decoded by the GPU at lookup; 8- and 16-bit
 ///         data unchanged; 16-bit and float sRGB, which no format holds, decoded to linear float.
@@ -71,8 +71,9 @@ TexelFormat texel_format(const Image& image, FloatStorage storage);
 /// as linear float. Empty where the image has one already.
 std::optional<Image> converted_for_upload(const Image& image);
 
-/// The image's samples as level 0 of the texture bound to `target`, which may be a cube's face.
-void upload_level_0(const Api& api, GLenum target, const TexelFormat& format, const Image& image);
+/// The image's samples as a level of the texture bound to `target`, which may be a cube's face.
+void upload_level(const Api& api, GLenum target, GLint level, const TexelFormat& format,
+                  const Image& image);
 
 /// Reads a level of a texture back, coded as it is stored.
 ///

@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <memory>
+#include <cstring>
 #include <string_view>
 
 #include "io/image/deflate.h"
@@ -97,63 +97,71 @@ bool is_allowed(int type, int bits) {
     return (type == 0 || type == palette_type) && (bits == 1 || bits == 2 || bits == 4);
 }
 
-/// Every `Step` bytes, or indices, of a row as it is stored, as texels behind `samples`.
-/// \return false where an index is beyond the palette
-bool append_row(const PlainPng& png, std::span<const std::uint8_t> row,
-                std::vector<std::uint8_t>& samples) {
-    if (png.stored_bits == 8 && png.palette.empty()) {
-        samples.insert(samples.end(), row.begin(), row.end());
-        return true;
+/// How the rows of a PNG lie in its stream.
+struct Rows {
+    std::size_t size = 0;  ///< In bytes, without the one that names the filter.
+    std::size_t step = 0;  ///< From a sample to the same of the texel on the left.
+    std::size_t count = 0;
+};
+
+Rows rows_of(const PlainPng& png) {
+    const auto texel_bits = static_cast<std::size_t>(png.stored_bits * png.stored_channels);
+    return {(static_cast<std::size_t>(png.width) * texel_bits + 7) / 8,
+            std::max<std::size_t>(texel_bits / 8, 1), static_cast<std::size_t>(png.height)};
+}
+
+/// All rows, one behind the other, in one piece of memory: each moves to the front by the filter
+/// bytes before it.
+std::optional<std::vector<std::uint8_t>> unfiltered_rows(const PlainPng& png) {
+    const Rows rows = rows_of(png);
+    std::vector<std::uint8_t> bytes((rows.size + 1) * rows.count);
+    if (!inflate(png.packed, std::as_writable_bytes(std::span(bytes)))) return std::nullopt;
+    const std::vector<std::uint8_t> zeros(rows.size, 0);
+    std::span<const std::uint8_t> above = zeros;
+    for (std::size_t y = 0; y < rows.count; ++y) {
+        std::uint8_t* const line = bytes.data() + y * (rows.size + 1);
+        if (!undo_filter(line[0], rows.step, {line + 1, rows.size}, above)) return std::nullopt;
+        std::uint8_t* const row = bytes.data() + y * rows.size;
+        std::memmove(row, line + 1, rows.size);
+        above = {row, rows.size};
     }
+    bytes.resize(rows.size * rows.count);
+    return bytes;
+}
+
+/// Samples of 1, 2, 4 or 8 bits as 8-bit ones, indices as their palette's texels; nothing where an
+/// index is beyond the palette.
+std::optional<std::vector<std::uint8_t>> unpacked(const PlainPng& png,
+                                                  const std::vector<std::uint8_t>& bytes) {
+    const std::size_t row_size = rows_of(png).size;
     const auto bits = static_cast<unsigned>(png.stored_bits);
     const unsigned mask = (1U << bits) - 1U;
     const auto channels = static_cast<std::size_t>(png.channels);
-    for (unsigned x = 0; x < static_cast<unsigned>(png.width); ++x) {
-        const unsigned bit = x * bits;
-        const unsigned value = row[bit / 8] >> (8 - bits - bit % 8) & mask;
-        if (png.palette.empty()) {
-            samples.push_back(static_cast<std::uint8_t>(value * 255U / mask));
-            continue;
+    std::vector<std::uint8_t> samples;
+    samples.reserve(static_cast<std::size_t>(png.width) * static_cast<std::size_t>(png.height) *
+                    channels);
+    for (std::size_t row = 0; row < bytes.size(); row += row_size) {
+        for (unsigned x = 0; x < static_cast<unsigned>(png.width); ++x) {
+            const unsigned bit = x * bits;
+            const unsigned value = bytes[row + bit / 8] >> (8 - bits - bit % 8) & mask;
+            if (png.palette.empty()) {
+                samples.push_back(static_cast<std::uint8_t>(value * 255U / mask));
+                continue;
+            }
+            if ((value + 1) * channels > png.palette.size()) return std::nullopt;
+            const auto entry = png.palette.begin() + static_cast<std::ptrdiff_t>(value * channels);
+            samples.insert(samples.end(), entry, entry + png.channels);
         }
-        if ((value + 1) * channels > png.palette.size()) return false;
-        const auto entry = png.palette.begin() + static_cast<std::ptrdiff_t>(value * channels);
-        samples.insert(samples.end(), entry, entry + png.channels);
-    }
-    return true;
-}
-
-bool append_row(const PlainPng&, std::span<const std::uint8_t> row,
-                std::vector<std::uint16_t>& samples) {
-    const std::size_t begin = samples.size();
-    samples.resize(begin + row.size() / 2);
-    for (std::size_t i = 0; i < row.size() / 2; ++i)
-        samples[begin + i] = static_cast<std::uint16_t>(row[2 * i] << 8 | row[2 * i + 1]);
-    return true;
-}
-
-template <typename Sample>
-std::optional<Image::Samples> decode_as(const PlainPng& png) {
-    const auto width = static_cast<std::size_t>(png.width);
-    const auto height = static_cast<std::size_t>(png.height);
-    const auto texel_bits = static_cast<std::size_t>(png.stored_bits * png.stored_channels);
-    const std::size_t row_size = (width * texel_bits + 7) / 8;
-    const std::size_t step = std::max<std::size_t>(texel_bits / 8, 1);
-    const std::size_t filtered_size = (row_size + 1) * height;
-    const auto filtered = std::make_unique_for_overwrite<std::uint8_t[]>(filtered_size);
-    if (!inflate(png.packed, std::as_writable_bytes(std::span(filtered.get(), filtered_size))))
-        return std::nullopt;
-    const std::vector<std::uint8_t> zeros(row_size, 0);
-    std::span<const std::uint8_t> above = zeros;
-    std::vector<Sample> samples;
-    samples.reserve(width * height * static_cast<std::size_t>(png.channels));
-    for (std::size_t y = 0; y < height; ++y) {
-        std::uint8_t* const line = filtered.get() + y * (row_size + 1);
-        const std::span<std::uint8_t> row(line + 1, row_size);
-        if (!undo_filter(line[0], step, row, above) || !append_row(png, row, samples))
-            return std::nullopt;
-        above = row;
     }
     return samples;
+}
+
+/// PNG has the high byte first.
+std::vector<std::uint16_t> words_of(const std::vector<std::uint8_t>& bytes) {
+    std::vector<std::uint16_t> words(bytes.size() / 2);
+    for (std::size_t i = 0; i < words.size(); ++i)
+        words[i] = static_cast<std::uint16_t>(bytes[2 * i] << 8 | bytes[2 * i + 1]);
+    return words;
 }
 
 }  // namespace
@@ -194,7 +202,11 @@ std::optional<PlainPng> open_plain_png(std::span<const std::byte> stripped) {
 }
 
 std::optional<Image::Samples> decode(const PlainPng& png) {
-    return png.bits() == 16 ? decode_as<std::uint16_t>(png) : decode_as<std::uint8_t>(png);
+    std::optional<std::vector<std::uint8_t>> bytes = unfiltered_rows(png);
+    if (!bytes) return std::nullopt;
+    if (png.stored_bits == 16) return words_of(*bytes);
+    if (png.stored_bits == 8 && png.palette.empty()) return std::move(*bytes);
+    return unpacked(png, *bytes);
 }
 
 }  // namespace relief

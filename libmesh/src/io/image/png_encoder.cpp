@@ -18,7 +18,7 @@
 namespace relief {
 namespace {
 
-constexpr std::size_t rows_per_piece = 64;
+constexpr std::size_t bytes_per_piece = std::size_t{1} << 22;
 constexpr std::size_t largest_chunk = std::size_t{1} << 30;  // PNG's own limit is twice that.
 
 void append_big32(std::string& to, std::uint32_t value) {
@@ -73,7 +73,7 @@ FilteredRows filtered_rows(const Image& image) {
     FilteredRows filtered;
     filtered.size = (row_size + 1) * height;
     filtered.bytes = std::make_unique_for_overwrite<std::uint8_t[]>(filtered.size);
-    parallel_for(height, rows_per_piece, [&](std::size_t begin, std::size_t end) {
+    parallel_for(height, bytes_per_piece / row_size + 1, [&](std::size_t begin, std::size_t end) {
         std::vector<std::uint8_t> above(row_size, 0), row(row_size);
         if (begin > 0) copy_row(image, begin - 1, above);
         for (std::size_t y = begin; y < end; ++y) {
