@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// The classic table of OpenGL materials, as numbers of Phong's model. Colours are taken as linear,
-// which is how the equations of courses use them. Names that are not in it give nothing.
-// Sources: [Kilgard 1994] for the gems, plastics, rubbers and plain metals,
-// [McReynolds and Blythe 1998] for pewter and the polished metals.
-// Tests: tests/shade/scene/material_table_test.cpp.
+// The classic table of OpenGL materials, as numbers of Phong's model. It was made by eye, on
+// screens that showed radiance as it is, so its colours are the codes that were seen: they are
+// decoded as sRGB, else gold would be pale. Names that are not in it give nothing. Sources:
+// [Kilgard 1994] for the gems, plastics, rubbers and plain metals, [McReynolds and Blythe 1998] for
+// pewter and the polished metals. Tests: tests/shade/scene/material_table_test.cpp.
 #include <algorithm>
 #include <array>
 #include <cctype>
 
+#include "relief/mesh/image.h"
 #include "relief/shade/material.h"
 
 namespace relief {
@@ -133,6 +134,10 @@ std::string as_in_table(std::string_view name) {
     return result;
 }
 
+glm::vec3 decoded(const glm::vec3& codes) {
+    return {linear_from_srgb(codes.r), linear_from_srgb(codes.g), linear_from_srgb(codes.b)};
+}
+
 }  // namespace
 
 std::optional<Material> material_by_name(std::string_view name) {
@@ -142,9 +147,9 @@ std::optional<Material> material_by_name(std::string_view name) {
     if (row == std::end(table)) return std::nullopt;
     Material material;
     material.name = row->name;
-    material.ambient = row->ambient;
-    material.diffuse = row->diffuse;
-    material.specular = row->specular;
+    material.ambient = decoded(row->ambient);
+    material.diffuse = decoded(row->diffuse);
+    material.specular = decoded(row->specular);
     material.shininess = 128.0F * row->shininess;
     material.specular_model = SpecularModel::phong;
     return material;

@@ -179,7 +179,8 @@ struct Material {
 float specular_normalization(const Material& material);
 
 /// A material of the classic table by name ("gold", "emerald", "red plastic"), as Phong's model
-/// with Phong's highlights. \return nothing if there is none of that name
+/// with Phong's highlights; its colours, made by eye on screens, are decoded from sRGB. \return
+/// nothing if there is none of that name
 std::optional<Material> material_by_name(std::string_view name);
 
 /// Every name that material_by_name knows, sorted.
