@@ -202,6 +202,143 @@ TEST(EffectPlan, SaysForEveryEffectWhetherItIsOnAndWhy) {
     EXPECT_EQ(on, 2);  // Directional lights and diffuse.
 }
 
+Material metallic() {
+    Material material = gray("metal");
+    material.metallic_roughness = MetallicRoughness{};
+    return material;
+}
+
+TEST(EffectPlan, OfAMetallicRoughnessMaterialNeedsTheBlurredEnvironmentAndItsTable) {
+    Scene scene = lit_scene(metallic());
+    scene.environment = Environment{Equirectangular{}, 1.0F, false, true};
+    const FramePlan plan = plan_effects(scene, {.samples = 1});
+    const Features& f = plan.draws[0].features;
+    EXPECT_TRUE(f.metallic_roughness);
+    EXPECT_EQ(f.reflection, ReflectionTerm::glossy);
+    EXPECT_EQ(f.fresnel, FresnelTerm::constant);
+    EXPECT_TRUE(f.environment_diffuse);
+    EXPECT_TRUE(plan.prefiltered_map);
+    EXPECT_TRUE(plan.environment_brdf);
+    EXPECT_TRUE(plan.environment_irradiance);
+    EXPECT_EQ(reason(plan.draws[0].reasons, "Schlick's Fresnel").reason,
+              "material 'metal' has its own model's");
+}
+
+TEST(EffectPlan, OfAMirrorBlursNothing) {
+    Material mirror = gray();
+    mirror.reflectivity = glm::vec3(0.5F);
+    Scene scene = lit_scene(mirror);
+    scene.environment = Environment{Equirectangular{}, 1.0F, false};
+    FramePlan plan = plan_effects(scene, {.samples = 1});
+    EXPECT_FALSE(plan.prefiltered_map);
+    EXPECT_FALSE(plan.environment_brdf);
+    EXPECT_FALSE(plan.environment_irradiance);
+    scene.materials[0].reflection_roughness = 0.3F;
+    plan = plan_effects(scene, {.samples = 1});
+    EXPECT_TRUE(plan.prefiltered_map);
+    EXPECT_FALSE(plan.environment_brdf);  // Phong's surfaces have Fresnel's factor instead.
+}
+
+TEST(EffectPlan, HasNoFresnelWhereReflectivityIsTheSameAtEveryAngle) {
+    Material mirror = gray();
+    mirror.reflectivity = mirror.grazing_reflectivity = glm::vec3(1.0F);
+    Scene scene = lit_scene(mirror);
+    scene.environment = Environment{Equirectangular{}, 1.0F, false};
+    EXPECT_EQ(features(scene).fresnel, FresnelTerm::constant);
+    EXPECT_EQ(
+        reason(plan_effects(scene, {.samples = 1}).draws[0].reasons, "Schlick's Fresnel").reason,
+        "reflectivity is the same at every angle");
+    scene.materials[0].fresnel = FresnelModel::conductor;
+    EXPECT_EQ(features(scene).fresnel, FresnelTerm::conductor);
+    scene.materials[0].transmission = 0.5F;
+    EXPECT_TRUE(features(scene).refraction);
+    scene.environment.reset();
+    EXPECT_FALSE(features(scene).refraction);
+}
+
+TEST(EffectPlan, HasNoNormalMapWhereLightIsComputedAtVerticesOrByPlanes) {
+    Material mapped = gray();
+    mapped.normal_map = NormalMap{};
+    mapped.interpolation = Interpolation::gouraud;
+    Scene scene = lit_scene(mapped);
+    EXPECT_EQ(features(scene).detail, NormalDetail::none);
+    EXPECT_EQ(features(scene).interpolation, Interpolation::gouraud);
+    EXPECT_EQ(reason(plan_effects(scene, {.samples = 1}).draws[0].reasons, "normal map").reason,
+              "Gouraud shading knows the normal at vertices only");
+    scene.materials[0].interpolation = Interpolation::flat;
+    EXPECT_EQ(features(scene).detail, NormalDetail::none);
+    EXPECT_EQ(reason(plan_effects(scene, {.samples = 1}).draws[0].reasons, "normal map").reason,
+              "flat shading knows the triangle's plane only");
+}
+
+TEST(EffectPlan, ComputesNoTangentsForFramesFromDerivativesOrObjectSpaceMaps) {
+    Material mapped = gray();
+    mapped.bump_map = BumpMap{};
+    Scene scene = lit_scene(mapped);
+    EXPECT_TRUE(plan_effects(scene, {.samples = 1}).draws[0].needs_tangents);
+    scene.materials[0].tangent_frame = TangentFrame::derivatives;
+    EXPECT_FALSE(plan_effects(scene, {.samples = 1}).draws[0].needs_tangents);
+    scene.materials[0].bump_map.reset();
+    scene.materials[0].normal_map = NormalMap{};
+    scene.materials[0].normal_map->space = NormalSpace::object;
+    EXPECT_EQ(features(scene).detail, NormalDetail::object_normal_map);
+    EXPECT_EQ(features(scene).frame, TangentFrame::stored);  // There is none to choose.
+    EXPECT_FALSE(plan_effects(scene, {.samples = 1}).draws[0].needs_tangents);
+}
+
+TEST(EffectPlan, LooksAtAlphaOnlyWhereSomethingIsNotOpaque) {
+    Scene scene = lit_scene(gray());
+    scene.materials[0].alpha_mode = AlphaMode::blend;
+    EXPECT_EQ(features(scene).alpha, AlphaMode::opaque);
+    scene.materials[0].opacity = 0.5F;
+    EXPECT_EQ(features(scene).alpha, AlphaMode::blend);
+    const FramePlan plan = plan_effects(scene, {.samples = 1});
+    EXPECT_TRUE(plan.sorted_blending);
+    EXPECT_TRUE(plan.finishing_pass);
+    EXPECT_EQ(plan.draws[0].features.output, OutputCoding::half);
+    EXPECT_EQ(reason(plan.reasons, "finishing pass").reason,
+              "what is blended must be in linear light");
+    scene.materials[0].opacity = 1.0F;
+    scene.materials[0].alpha_mode = AlphaMode::mask;
+    EXPECT_EQ(features(scene).alpha, AlphaMode::opaque);
+    scene.meshes[0].colors.assign(4, glm::vec4(1, 1, 1, 0.5F));
+    EXPECT_EQ(features(scene).alpha, AlphaMode::mask);
+    EXPECT_TRUE(features(scene).vertex_colors);  // White, but their alpha counts now.
+}
+
+TEST(EffectPlan, KnowsHowLampsFallOffAndWhatTheirHighlightsLookLike) {
+    Material shiny = gray();
+    shiny.specular = glm::vec3(0.5F);
+    Scene scene = lit_scene(shiny);
+    scene.point_lights = {{{0, 0, 1}, {1, 1, 1}, std::nullopt, Falloff::none}};
+    EXPECT_EQ(features(scene).falloff, FalloffTerm::none);
+    scene.point_lights.push_back({{0, 0, 1}, {1, 1, 1}});
+    EXPECT_EQ(features(scene).falloff, FalloffTerm::mixed);
+    scene.point_lights.erase(scene.point_lights.begin());
+    EXPECT_EQ(features(scene).falloff, FalloffTerm::inverse_square);
+    EXPECT_FALSE(features(scene).highlight_colors);
+    scene.point_lights[0].highlight_intensity = glm::vec3(1.0F);  // The same as its light.
+    EXPECT_FALSE(features(scene).highlight_colors);
+    scene.point_lights[0].highlight_intensity = glm::vec3(1, 0, 0);
+    EXPECT_TRUE(features(scene).highlight_colors);
+}
+
+TEST(EffectPlan, FinishesWhereSamplesAreAveraged) {
+    Scene scene = lit_scene(gray());
+    scene.tone_mapping = ToneMapping::aces;
+    scene.exposure = 2.0F;
+    FramePlan plan = plan_effects(scene, {.samples = 4});
+    EXPECT_TRUE(plan.finishing_pass);
+    EXPECT_EQ(plan.draws[0].features.output, OutputCoding::half);
+    EXPECT_FALSE(plan.draws[0].features.exposure);  // The finishing pass exposes.
+    plan = plan_effects(scene, {.samples = 1});
+    EXPECT_FALSE(plan.finishing_pass);
+    EXPECT_TRUE(plan.draws[0].features.exposure);
+    EXPECT_EQ(plan.draws[0].features.tone_mapping, ToneMapping::aces);
+    plan = plan_effects(scene, {.samples = 4, .output = OutputCoding::linear});
+    EXPECT_EQ(plan.draws[0].features.output, OutputCoding::linear);
+}
+
 TEST(FeaturesOf, AgreeWithThePlan) {
     const Scene scene = lit_scene(gray());
     EXPECT_EQ(features_of(scene, scene.materials[0], scene.meshes[0]), features(scene));
