@@ -225,6 +225,134 @@ TEST_F(HardCases, NotANumberInATextureShowsBlackAndSpoilsNothingElse) {
     EXPECT_EQ(pixel(image, 12, 8).r, 0.25);
 }
 
+/// A square with a bump map that tilts everything, in a frame from derivatives.
+Scene bumped_square() {
+    Scene scene = lit_square();
+    Image ramp = make_image(64, 64, 1, 32, ColorSpace::data);
+    auto& samples = std::get<std::vector<float>>(ramp.samples);
+    for (std::size_t i = 0; i < samples.size(); ++i)
+        samples[i] = static_cast<float>(i % 64) / 64.0F;
+    scene.images = {{"ramp", ramp}};
+    BumpMap map;
+    map.texture.wrap_u = map.texture.wrap_v = TextureWrap::clamp;
+    map.strength = 64.0F;  // One texel up for one across: 45 degrees.
+    scene.materials[0].bump_map = map;
+    scene.materials[0].tangent_frame = TangentFrame::derivatives;
+    return scene;
+}
+
+TEST_F(HardCases, TextureCoordinatesThatDoNotChangeLeaveTheNormalAsItIs) {
+    Scene scene = bumped_square();
+    const double tilted = pixel(finite_radiance(scene), 8, 8).r;
+    EXPECT_NEAR(tilted, 0.5 * std::sqrt(0.5), 1e-4);
+    for (glm::vec2& texcoord : scene.meshes[0].texcoords)
+        texcoord = glm::vec2(0.5F);
+    EXPECT_EQ(pixel(finite_radiance(scene), 8, 8), fully_lit);
+    for (glm::vec2& texcoord : scene.meshes[0].texcoords)
+        texcoord = glm::vec2(not_a_number);
+    (void)finite_radiance(scene);
+    for (glm::vec2& texcoord : scene.meshes[0].texcoords)
+        texcoord *= infinite;
+    (void)finite_radiance(scene);
+}
+
+TEST_F(HardCases, DerivativeFramesAndFlatShadingDoNotMindScale) {
+    for (const Interpolation interpolation : {Interpolation::per_pixel, Interpolation::flat}) {
+        Scene plain = bumped_square();
+        plain.materials[0].interpolation = interpolation;
+        const Image expected = finite_radiance(plain);
+        for (const float scale : {1e-12F, 1e-3F, 1e3F, 1e12F}) {
+            SCOPED_TRACE(scale);
+            Scene scene = plain;
+            scene.instances[0].world_from_object = glm::mat4(scale);
+            scene.instances[0].world_from_object[3].w = 1.0F;
+            scene.camera->world_from_view[3] = glm::vec4(0, 0, 3.0F * scale, 1);
+            scene.camera->near *= scale;
+            scene.camera->far *= scale;
+            // Differences of neighbouring positions are worth some 1e-4 of themselves.
+            EXPECT_LE(compare(finite_radiance(scene), expected).max, 1e-3);
+        }
+    }
+}
+
+TEST_F(HardCases, MirroredTexturesBendTheNormalTheOtherWay) {
+    Scene scene = bumped_square();
+    scene.directional_lights = {{{1, 0, -1}, glm::vec3(0.5F)}};  // From the left.
+    const double upright = pixel(finite_radiance(scene), 8, 8).r;
+    for (glm::vec2& texcoord : scene.meshes[0].texcoords)
+        texcoord.x = 1.0F - texcoord.x;
+    const double mirrored = pixel(finite_radiance(scene), 8, 8).r;
+    EXPECT_NEAR(upright, 0.5, 1e-4);   // Tilted towards the light.
+    EXPECT_NEAR(mirrored, 0.0, 1e-4);  // At right angles to it.
+}
+
+TEST_F(HardCases, ANormalBentBehindTheSurfaceIsFiniteByEveryModel) {
+    Scene scene = lit_square();
+    Image map = make_image(1, 1, 3, 32, ColorSpace::data);
+    map.samples = std::vector<float>{1.0F, 0.5F, 0.1F};  // (1, 0, -0.8).
+    scene.images = {{"bent", map}};
+    scene.materials[0].normal_map = NormalMap{};
+    scene.materials[0].specular = glm::vec3(1.0F);
+    scene.environment = test::constant_environment(glm::vec3(0.5F), true);
+    scene.environment->lights = true;
+    scene.directional_lights = {{{-1, 0, 0.5F}, glm::vec3(1.0F)}, {{0, 0, -1}, glm::vec3(1.0F)}};
+    Material& material = scene.materials[0];
+    material.reflectivity = glm::vec3(0.2F);
+    for (const FresnelModel fresnel :
+         {FresnelModel::schlick, FresnelModel::dielectric, FresnelModel::conductor}) {
+        material.fresnel = fresnel;
+        material.transmission = 0.5F;
+        (void)finite_radiance(scene);
+    }
+    material.transmission = 0.0F;
+    material.metallic_roughness = MetallicRoughness{};
+    for (const float roughness : {0.0F, 0.5F, 1.0F}) {
+        material.metallic_roughness->roughness = roughness;
+        (void)finite_radiance(scene);
+    }
+}
+
+TEST_F(HardCases, AMetalLitFromExactlyBehindTheEyesLineIsFinite) {
+    Scene scene = lit_square();
+    scene.materials[0].metallic_roughness =
+        MetallicRoughness{glm::vec3(1.0F), 1.0F, 0.0F, std::nullopt};
+    scene.meshes[0].normals.assign(4, glm::vec3(0, 0, -1));
+    scene.directional_lights = {{{0, 0, 1}, glm::vec3(1.0F)}};
+    // No half vector, or after rounding one across the normal: facets of the least roughness,
+    // 0.045, mirror half of its square there.
+    EXPECT_NEAR(pixel(finite_radiance(scene, 17), 8, 8).r, 0.0, 0.5 * 0.045 * 0.045 * 1.01);
+    // The brightest there is: a mirror that faces the lamp, and the lamp at its brightest.
+    scene.meshes[0].normals.assign(4, glm::vec3(0, 0, 1));
+    scene.directional_lights = {{{0, 0, -1}, glm::vec3(max_light)}};
+    (void)finite_radiance(scene, 17);
+}
+
+TEST_F(HardCases, ExactFresnelFactorsAreFiniteFromHeadOnToGrazing) {
+    Scene scene = test::scene_of(test::sphere(64, 32), test::black_material());
+    scene.environment = test::constant_environment(glm::vec3(0.5F), false);
+    Material& material = scene.materials[0];
+    material.reflectivity = glm::vec3(1.0F);
+    for (const float index : {1.0F, 1.5F, 1000.0F}) {
+        material.fresnel = FresnelModel::dielectric;
+        material.refractive_index = index;
+        const double head_on = pixel(finite_radiance(scene, 65), 32, 32).r;
+        const double expected = std::pow((static_cast<double>(index) - 1) / (index + 1), 2.0);
+        EXPECT_NEAR(head_on, 0.5 * expected, 1e-3) << index;
+    }
+    material.fresnel = FresnelModel::conductor;
+    for (const float absorption : {0.0F, 3.0F, 1000.0F}) {
+        material.conductor_index = glm::vec3(0.2F);
+        material.conductor_absorption = glm::vec3(absorption);
+        const double k = static_cast<double>(absorption);
+        const double expected = (0.64 + k * k) / (1.44 + k * k);  // ((n-1)^2 + k^2) / ((n+1)^2 ...
+        EXPECT_NEAR(pixel(finite_radiance(scene, 65), 32, 32).r, 0.5 * expected, 2e-3)
+            << absorption;
+    }
+    material.conductor_index = glm::vec3(0.0F);
+    material.conductor_absorption = glm::vec3(0.0F);  // Nothing: all of it is mirrored.
+    (void)finite_radiance(scene, 65);
+}
+
 TEST_F(HardCases, AnEmptySceneIsItsBackground) {
     Scene scene;
     scene.camera = test::front_camera();
