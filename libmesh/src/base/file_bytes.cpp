@@ -10,6 +10,7 @@
 #include <cstring>
 #include <fstream>
 
+#include "large_memory.h"
 #include "relief/mesh/error.h"
 
 namespace relief {
@@ -21,7 +22,11 @@ std::string read_file(const std::filesystem::path& file) {
     if (!std::filesystem::is_regular_file(status)) throw FileError(file, "is not a file");
     std::ifstream stream(file, std::ios::binary);
     if (!stream) throw FileError(file, fmt::format("cannot be opened: {}", std::strerror(errno)));
-    std::string bytes(std::filesystem::file_size(file), '\0');
+    const std::size_t size = std::filesystem::file_size(file);
+    std::string bytes;
+    bytes.reserve(size);
+    expect_filling(bytes.data(), size);
+    bytes.resize(size);
     stream.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
     if (static_cast<std::size_t>(stream.gcount()) != bytes.size()) {
         throw FileError(file, fmt::format("could be read only up to byte {} of {}", stream.gcount(),

@@ -5,6 +5,7 @@
 #include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 
+#include <exception>
 #include <memory>
 
 #include "relief/mesh/threads.h"
@@ -18,6 +19,23 @@ void parallel_for(std::size_t count, std::size_t grain,
     if (count <= grain) return body(0, count);
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, grain),
                       [&](const auto& piece) { body(piece.begin(), piece.end()); });
+}
+
+void parallel_tasks(const std::vector<std::function<void()>>& tasks, bool are_small) {
+    std::vector<std::exception_ptr> failures(tasks.size());
+    parallel_for(tasks.size(), are_small ? tasks.size() : 1,
+                 [&](std::size_t begin, std::size_t end) {
+                     for (std::size_t i = begin; i < end; ++i) {
+                         try {
+                             tasks[i]();
+                         } catch (...) {
+                             failures[i] = std::current_exception();
+                         }
+                     }
+                 });
+    for (const std::exception_ptr& failure : failures) {
+        if (failure) std::rethrow_exception(failure);
+    }
 }
 
 void set_thread_limit(unsigned count) {

@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <vector>
 
 namespace relief {
 
@@ -16,5 +17,11 @@ namespace relief {
 /// the outcome is the same for any number of threads. An exception from a body reaches the caller.
 void parallel_for(std::size_t count, std::size_t grain,
                   const std::function<void(std::size_t begin, std::size_t end)>& body);
+
+/// Runs tasks that do not touch what another writes: at once, or one by one where they are so small
+/// that starting threads would take longer.
+///
+/// Of several that throw, the first in the order given reaches the caller; the others still run.
+void parallel_tasks(const std::vector<std::function<void()>>& tasks, bool are_small);
 
 }  // namespace relief

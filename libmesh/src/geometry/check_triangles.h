@@ -6,9 +6,14 @@
 
 #include <cstddef>
 #include <glm/glm.hpp>
+#include <optional>
 #include <span>
 
 namespace relief {
+
+/// The first corner, counted 3 to a triangle, that names a vertex that is not there.
+std::optional<std::size_t> corner_beyond(std::span<const glm::uvec3> triangles,
+                                         std::size_t vertex_count);
 
 /// \throws InvalidInput naming the first offence: "triangle 7 names vertex 12, but there are only
 /// 8"

@@ -35,5 +35,18 @@ TEST(Parallel, AnExceptionReachesTheCaller) {
                  std::runtime_error);
 }
 
+TEST(Parallel, TasksAllRunAndTheFirstThatThrowsIsHeard) {
+    for (const bool are_small : {true, false}) {
+        std::vector<int> runs(4, 0);
+        const auto fail = [](const char* what) { throw std::runtime_error(what); };
+        const std::vector<std::function<void()>> tasks{
+            [&] { ++runs[0]; }, [&] { ++runs[1], fail("one"); }, [&] { ++runs[2], fail("two"); },
+            [&] { ++runs[3]; }};
+        EXPECT_THAT([&] { parallel_tasks(tasks, are_small); },
+                    testing::ThrowsMessage<std::runtime_error>("one"));
+        EXPECT_THAT(runs, testing::Each(1));
+    }
+}
+
 }  // namespace
 }  // namespace relief

@@ -11,6 +11,7 @@
 #include <cstring>
 #include <limits>
 
+#include "large_memory.h"
 #include "relief/mesh/error.h"
 
 namespace relief {
@@ -78,7 +79,7 @@ float converted(Component value, bool is_fraction) {
 }
 
 template <typename Component, typename Vector>
-void convert(const std::string& elements, std::size_t element_size, bool is_fraction,
+void convert(std::string_view elements, std::size_t element_size, bool is_fraction,
              std::vector<Vector>& result) {
     for (std::size_t i = 0; i < result.size(); ++i) {
         const char* at = elements.data() + i * element_size;
@@ -88,6 +89,35 @@ void convert(const std::string& elements, std::size_t element_size, bool is_frac
                 is_fraction);
         }
     }
+}
+
+/// Bytes as the values that they are.
+template <typename Value>
+std::vector<Value> copied(std::string_view bytes) {
+    const std::size_t count = bytes.size() / sizeof(Value);
+    std::vector<Value> values;
+    reserve_to_fill(values, count);
+    if (reinterpret_cast<std::uintptr_t>(bytes.data()) % alignof(Value) == 0) {
+        // Without zeros beforehand, which would cost as much as the copy.
+        const auto* const begin = reinterpret_cast<const Value*>(bytes.data());
+        values.assign(begin, begin + count);
+    } else {
+        values.resize(count);
+        std::memcpy(values.data(), bytes.data(), count * sizeof(Value));
+    }
+    return values;
+}
+
+/// \throws InvalidInput if an accessor cannot hold indices
+ElementLayout index_layout(const GltfContents& contents, std::size_t accessor) {
+    const ElementLayout layout = element_layout(contents.root["accessors"][accessor]);
+    if (layout.components != 1 ||
+        (layout.component_type != gltf_code::uint8 && layout.component_type != gltf_code::uint16 &&
+         layout.component_type != gltf_code::uint32)) {
+        throw InvalidInput(
+            fmt::format("accessors[{}] holds no indices, which are unsigned scalars", accessor));
+    }
+    return layout;
 }
 
 }  // namespace
@@ -133,25 +163,32 @@ ElementLayout element_layout(const Json& accessor) {
     return layout;
 }
 
-std::string raw_elements(const GltfContents& contents, std::size_t accessor) {
+PackedElements packed_elements(const GltfContents& contents, std::size_t accessor) {
     const Json& json = contents.root["accessors"][accessor];
     const std::size_t size = element_layout(json).size;
     const std::size_t count = size_in(json, "count");
-    std::string elements(count * size, '\0');
+    PackedElements elements;
+    std::string_view bytes;
+    std::size_t stride = size;
     if (json.contains("bufferView") && count > 0) {
-        const std::string_view bytes = view_bytes(contents, json);
+        bytes = view_bytes(contents, json);
         const Json& view = contents.root["bufferViews"][size_in(json, "bufferView")];
-        const std::size_t stride = size_in(view, "byteStride", size);
-        if (stride == size) {
-            std::memcpy(elements.data(), bytes.data(), count * size);
-        } else {
-            for (std::size_t i = 0; i < count; ++i) {
-                std::memcpy(elements.data() + i * size, bytes.data() + i * stride, size);
-            }
+        stride = size_in(view, "byteStride", size);
+        if (stride == size && !json.contains("sparse")) {
+            elements.in_buffer = bytes.substr(0, count * size);
+            return elements;
         }
     }
-    apply_sparse(contents, json, accessor, elements);
+    elements.copy.resize(count * size);
+    for (std::size_t i = 0; !bytes.empty() && i < count; ++i) {
+        std::memcpy(elements.copy.data() + i * size, bytes.data() + i * stride, size);
+    }
+    apply_sparse(contents, json, accessor, elements.copy);
     return elements;
+}
+
+std::string raw_elements(const GltfContents& contents, std::size_t accessor) {
+    return std::string(packed_elements(contents, accessor).bytes());
 }
 
 template <typename Vector>
@@ -163,7 +200,9 @@ std::vector<Vector> float_elements(const GltfContents& contents, std::size_t acc
         throw InvalidInput(fmt::format("accessors[{}] is of type {}, but VEC{} is needed", accessor,
                                        text_in(json, "type"), Vector::length()));
     }
-    const std::string elements = raw_elements(contents, accessor);
+    const PackedElements packed = packed_elements(contents, accessor);
+    const std::string_view elements = packed.bytes();
+    if (layout.component_type == gltf_code::float32) return copied<Vector>(elements);
     std::vector<Vector> result(size_in(json, "count"));
     const bool is_fraction = bool_in(json, "normalized");
     switch (layout.component_type) {
@@ -179,11 +218,9 @@ std::vector<Vector> float_elements(const GltfContents& contents, std::size_t acc
         case gltf_code::uint16:
             convert<std::uint16_t>(elements, layout.size, is_fraction, result);
             break;
-        case gltf_code::uint32:
+        default:
             convert<std::uint32_t>(elements, layout.size, is_fraction, result);
             break;
-        default:
-            if (!elements.empty()) std::memcpy(result.data(), elements.data(), elements.size());
     }
     return result;
 }
@@ -193,18 +230,29 @@ template std::vector<glm::vec3> float_elements(const GltfContents&, std::size_t)
 template std::vector<glm::vec4> float_elements(const GltfContents&, std::size_t);
 
 std::vector<std::uint32_t> index_elements(const GltfContents& contents, std::size_t accessor) {
-    const Json& json = contents.root["accessors"][accessor];
-    const ElementLayout layout = element_layout(json);
-    if (layout.components != 1 ||
-        (layout.component_type != gltf_code::uint8 && layout.component_type != gltf_code::uint16 &&
-         layout.component_type != gltf_code::uint32)) {
-        throw InvalidInput(
-            fmt::format("accessors[{}] holds no indices, which are unsigned scalars", accessor));
-    }
-    const std::string elements = raw_elements(contents, accessor);
-    std::vector<std::uint32_t> result(size_in(json, "count"));
+    const ElementLayout layout = index_layout(contents, accessor);
+    const PackedElements packed = packed_elements(contents, accessor);
+    const std::string_view elements = packed.bytes();
+    std::vector<std::uint32_t> result(elements.size() / layout.size);
     for (std::size_t i = 0; i < result.size(); ++i) {
         result[i] = index_at(elements.data() + i * layout.size, layout.component_type);
+    }
+    return result;
+}
+
+std::vector<glm::uvec3> index_triples(const GltfContents& contents, std::size_t accessor) {
+    const ElementLayout layout = index_layout(contents, accessor);
+    const PackedElements packed = packed_elements(contents, accessor);
+    const std::string_view elements = packed.bytes();
+    const std::size_t count = elements.size() / layout.size;
+    if (count % 3 != 0) {
+        throw InvalidInput(fmt::format("{} indices make no whole triangles", count));
+    }
+    if (layout.component_type == gltf_code::uint32) return copied<glm::uvec3>(elements);
+    std::vector<glm::uvec3> result(count / 3);
+    for (std::size_t i = 0; i < count; ++i) {
+        result[i / 3][static_cast<int>(i % 3)] =
+            index_at(elements.data() + i * layout.size, layout.component_type);
     }
     return result;
 }

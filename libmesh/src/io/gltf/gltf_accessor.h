@@ -43,7 +43,18 @@ struct ElementLayout {
 };
 ElementLayout element_layout(const Json& accessor);
 
-/// All elements, tightly packed. \throws InvalidInput if a sparse index is out of range
+/// All elements, tightly packed: in the buffer itself where they lie so, else in a copy.
+struct PackedElements {
+    std::string copy;
+    std::string_view in_buffer;
+
+    [[nodiscard]] std::string_view bytes() const { return copy.empty() ? in_buffer : copy; }
+};
+
+/// \throws InvalidInput if a sparse index is out of range
+PackedElements packed_elements(const GltfContents& contents, std::size_t accessor);
+
+/// The same, as a copy in any case.
 std::string raw_elements(const GltfContents& contents, std::size_t accessor);
 
 /// All elements as vectors of floats. \throws InvalidInput if they have another number of
@@ -53,5 +64,8 @@ std::vector<Vector> float_elements(const GltfContents& contents, std::size_t acc
 
 /// All elements as numbers. \throws InvalidInput if they are not scalar unsigned integers
 std::vector<std::uint32_t> index_elements(const GltfContents& contents, std::size_t accessor);
+
+/// The same, three by three. \throws InvalidInput also if there is a rest
+std::vector<glm::uvec3> index_triples(const GltfContents& contents, std::size_t accessor);
 
 }  // namespace relief

@@ -10,8 +10,12 @@
 
 #include <algorithm>
 #include <limits>
+#include <numeric>
+#include <utility>
 
+#include "geometry/check_triangles.h"
 #include "io/gltf/gltf_accessor.h"
+#include "parallel.h"
 #include "relief/mesh/error.h"
 
 namespace relief {
@@ -20,19 +24,9 @@ namespace {
 constexpr std::size_t triangle_strip = 5;
 constexpr std::size_t triangle_fan = 6;
 
-/// Calls of glTF's primitive modes on a run of indices. Every second triangle of a strip is turned.
-std::vector<glm::uvec3> triangles_of(const std::vector<std::uint32_t>& indices, std::size_t mode) {
+/// Strips and fans taken apart. Every second triangle of a strip is turned.
+std::vector<glm::uvec3> unrolled(const std::vector<std::uint32_t>& indices, std::size_t mode) {
     std::vector<glm::uvec3> triangles;
-    if (mode != triangle_strip && mode != triangle_fan) {
-        if (indices.size() % 3 != 0) {
-            throw InvalidInput(fmt::format("{} indices make no whole triangles", indices.size()));
-        }
-        triangles.reserve(indices.size() / 3);
-        for (std::size_t i = 0; i < indices.size(); i += 3) {
-            triangles.emplace_back(indices[i], indices[i + 1], indices[i + 2]);
-        }
-        return triangles;
-    }
     for (std::size_t i = 0; i + 2 < indices.size(); ++i) {
         if (mode == triangle_fan) {
             triangles.emplace_back(indices[i + 1], indices[i + 2], indices[0]);
@@ -40,6 +34,48 @@ std::vector<glm::uvec3> triangles_of(const std::vector<std::uint32_t>& indices, 
             triangles.emplace_back(indices[i], indices[i + 1 + i % 2], indices[i + 2 - i % 2]);
         }
     }
+    return triangles;
+}
+
+/// The triangles of a primitive's indices.
+std::vector<glm::uvec3> indexed_triangles(const GltfContents& contents, std::size_t accessor,
+                                          std::size_t mode, std::size_t vertex_count) {
+    const auto refuse = [&](std::size_t index, std::uint32_t vertex) {
+        throw InvalidInput(fmt::format("index {} names vertex {}, but there are only {}", index,
+                                       vertex, vertex_count));
+    };
+    if (mode == triangle_strip || mode == triangle_fan) {
+        const std::vector<std::uint32_t> indices = index_elements(contents, accessor);
+        for (std::size_t i = 0; i < indices.size(); ++i) {
+            if (indices[i] >= vertex_count) refuse(i, indices[i]);
+        }
+        return unrolled(indices, mode);
+    }
+    std::vector<glm::uvec3> triangles = index_triples(contents, accessor);
+    if (const auto corner = corner_beyond(triangles, vertex_count)) {
+        refuse(*corner, triangles[*corner / 3][static_cast<int>(*corner % 3)]);
+    }
+    return triangles;
+}
+
+/// The triangles of vertices in their order.
+std::vector<glm::uvec3> plain_triangles(std::size_t vertex_count, std::size_t mode) {
+    if (vertex_count > std::numeric_limits<std::uint32_t>::max()) {
+        throw InvalidInput(fmt::format("{} vertices are too many", vertex_count));
+    }
+    const auto count = static_cast<std::uint32_t>(vertex_count);
+    if (mode == triangle_strip || mode == triangle_fan) {
+        std::vector<std::uint32_t> indices(count);
+        std::iota(indices.begin(), indices.end(), 0U);
+        return unrolled(indices, mode);
+    }
+    if (count % 3 != 0) {
+        throw InvalidInput(fmt::format("{} indices make no whole triangles", count));
+    }
+    std::vector<glm::uvec3> triangles;
+    triangles.reserve(count / 3);
+    for (std::uint32_t i = 0; i < count; i += 3)
+        triangles.emplace_back(i, i + 1, i + 2);
     return triangles;
 }
 
@@ -82,38 +118,48 @@ std::optional<std::vector<std::uint32_t>> used_vertices(const std::vector<glm::u
     return used;
 }
 
-/// An attribute as floats, of the vertices that the mesh has; empty where it is absent.
+/// An attribute as floats; empty where it is absent.
 template <typename Vector>
-std::vector<Vector> attribute(const GltfContents& contents, const Json& primitive, const char* name,
-                              const GltfTriangles& triangles) {
-    const auto accessor = index_in(primitive["attributes"], name);
-    if (!accessor) return {};
-    std::vector<Vector> all = float_elements<Vector>(contents, *accessor);
-    if (!triangles.used) return all;
-    std::vector<Vector> result;
-    for (const std::uint32_t vertex : *triangles.used)
-        result.push_back(all[vertex]);
-    return result;
+std::vector<Vector> attribute(const GltfContents& contents, const Json& primitive,
+                              const std::string& name) {
+    const auto accessor = index_in(primitive["attributes"], name.c_str());
+    return accessor ? float_elements<Vector>(contents, *accessor) : std::vector<Vector>();
 }
 
 /// Colours with or without alpha.
-std::vector<glm::vec4> colors(const GltfContents& contents, const Json& primitive,
-                              const GltfTriangles& triangles) {
+std::vector<glm::vec4> colors(const GltfContents& contents, const Json& primitive) {
     const auto accessor = index_in(primitive["attributes"], "COLOR_0");
     if (!accessor) return {};
     if (text_in(contents.root["accessors"][*accessor], "type") != "VEC3") {
-        return attribute<glm::vec4>(contents, primitive, "COLOR_0", triangles);
+        return attribute<glm::vec4>(contents, primitive, "COLOR_0");
     }
     std::vector<glm::vec4> result;
-    for (const auto& rgb : attribute<glm::vec3>(contents, primitive, "COLOR_0", triangles)) {
+    for (const auto& rgb : attribute<glm::vec3>(contents, primitive, "COLOR_0")) {
         result.emplace_back(rgb, 1.0F);
     }
     return result;
 }
 
+template <typename Vector>
+void keep_only(const std::vector<std::uint32_t>& used, std::vector<Vector>& values) {
+    if (values.empty()) return;
+    std::vector<Vector> kept;
+    kept.reserve(used.size());
+    for (const std::uint32_t vertex : used)
+        kept.push_back(values[vertex]);
+    values = std::move(kept);
+}
+
+/// Whether reading it takes no longer than starting a thread.
+bool is_small(const GltfContents& contents, const Json& primitive) {
+    constexpr std::size_t few_vertices = 1 << 16;
+    const auto position = index_in(primitive["attributes"], "POSITION");
+    return !position || size_in(contents.root["accessors"][*position], "count") < few_vertices;
+}
+
 /// The same triangles, over the used vertices alone.
-std::vector<glm::uvec3> compacted(const GltfTriangles& all) {
-    if (!all.used) return all.triangles;
+std::vector<glm::uvec3> compacted(GltfTriangles all) {
+    if (!all.used) return std::move(all.triangles);
     std::vector<std::uint32_t> place(all.vertex_count, 0);
     for (std::uint32_t i = 0; i < all.used->size(); ++i)
         place[(*all.used)[i]] = i;
@@ -149,26 +195,11 @@ GltfTriangles read_triangles(const GltfContents& contents, GltfPrimitiveId id) {
     GltfTriangles result;
     result.vertex_count = size_in(contents.root["accessors"][*position], "count");
     check_counts(contents, primitive, result.vertex_count);
-    std::vector<std::uint32_t> indices;
-    if (const auto accessor = index_in(primitive, "indices")) {
-        indices = index_elements(contents, *accessor);
-        const auto largest = std::max_element(indices.begin(), indices.end());
-        if (largest != indices.end() && *largest >= result.vertex_count) {
-            throw InvalidInput(fmt::format("index {} names vertex {}, but there are only {}",
-                                           largest - indices.begin(), *largest,
-                                           result.vertex_count));
-        }
-    } else {
-        if (result.vertex_count > std::numeric_limits<std::uint32_t>::max()) {
-            throw InvalidInput(fmt::format("{} vertices are too many", result.vertex_count));
-        }
-        indices.resize(result.vertex_count);
-        for (std::uint32_t i = 0; i < indices.size(); ++i)
-            indices[i] = i;
-    }
     const std::size_t mode = size_in(primitive, "mode", 4);
     if (mode < 4) throw InvalidInput("it is made of points or lines");
-    result.triangles = triangles_of(indices, mode);
+    const auto indices = index_in(primitive, "indices");
+    result.triangles = indices ? indexed_triangles(contents, *indices, mode, result.vertex_count)
+                               : plain_triangles(result.vertex_count, mode);
     const bool is_shared =
         *position < contents.position_uses.size() && contents.position_uses[*position] > 1;
     // Outlines name vertices by number, so those must stay.
@@ -182,17 +213,26 @@ GltfTriangles read_triangles(const GltfContents& contents, GltfPrimitiveId id) {
 Mesh read_primitive(const GltfContents& contents, GltfPrimitiveId id, int texcoord_set) {
     try {
         const Json& primitive = primitive_json(contents, id);
-        const GltfTriangles triangles = read_triangles(contents, id);
         Mesh mesh;
         mesh.name = text_in(contents.root["meshes"][id.mesh], "name");
-        mesh.positions = attribute<glm::vec3>(contents, primitive, "POSITION", triangles);
-        mesh.normals = attribute<glm::vec3>(contents, primitive, "NORMAL", triangles);
-        mesh.tangents = attribute<glm::vec4>(contents, primitive, "TANGENT", triangles);
-        mesh.texcoords =
-            attribute<glm::vec2>(contents, primitive,
-                                 fmt::format("TEXCOORD_{}", texcoord_set).c_str(), triangles);
-        mesh.colors = colors(contents, primitive, triangles);
-        mesh.triangles = compacted(triangles);
+        GltfTriangles triangles;
+        const std::string texcoord = fmt::format("TEXCOORD_{}", texcoord_set);
+        const auto read = [&]<typename Vector>(std::vector<Vector>& values, std::string name) {
+            return [&, name] { values = attribute<Vector>(contents, primitive, name); };
+        };
+        parallel_tasks(
+            {[&] { triangles = read_triangles(contents, id); }, read(mesh.positions, "POSITION"),
+             read(mesh.normals, "NORMAL"), read(mesh.tangents, "TANGENT"),
+             read(mesh.texcoords, texcoord), [&] { mesh.colors = colors(contents, primitive); }},
+            is_small(contents, primitive));
+        if (triangles.used) {
+            keep_only(*triangles.used, mesh.positions);
+            keep_only(*triangles.used, mesh.normals);
+            keep_only(*triangles.used, mesh.tangents);
+            keep_only(*triangles.used, mesh.texcoords);
+            keep_only(*triangles.used, mesh.colors);
+        }
+        mesh.triangles = compacted(std::move(triangles));
         if (!mesh.triangles.empty()) {
             const auto material = index_in(primitive, "material");
             mesh.material_ranges.push_back(
