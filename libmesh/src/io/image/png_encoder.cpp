@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "io/image/deflate.h"
+#include "io/image/png_chunk.h"
 #include "io/image/png_filter.h"
 #include "parallel.h"
 
@@ -20,19 +21,6 @@ namespace {
 
 constexpr std::size_t bytes_per_piece = std::size_t{1} << 22;
 constexpr std::size_t largest_chunk = std::size_t{1} << 30;  // PNG's own limit is twice that.
-
-void append_big32(std::string& to, std::uint32_t value) {
-    for (int shift = 24; shift >= 0; shift -= 8)
-        to += static_cast<char>(value >> shift);
-}
-
-void append_chunk(std::string& file, std::string_view type, std::string_view data) {
-    append_big32(file, static_cast<std::uint32_t>(data.size()));
-    const std::size_t checked_from = file.size();
-    file += type;
-    file += data;
-    append_big32(file, crc32(std::as_bytes(std::span(file).subspan(checked_from))));
-}
 
 std::string header_of(const Image& image) {
     static constexpr std::array type_of_channels{0, 0, 4, 2, 6};
