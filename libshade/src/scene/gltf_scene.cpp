@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// From a glTF document to a scene: primitives become meshes (one for each, however often placed)
-// with the texture coordinates that their material uses, light units become irradiance over pi.
-// World space is glTF's. What cannot be drawn as meant is counted in the report; see scene_file.h
-// for the list.
+// From a glTF document to a scene graph: primitives become meshes (one for each, however often
+// placed) with the texture coordinates that their material uses, light units become irradiance over
+// pi, node animations become key frames. World space is glTF's. What cannot be drawn as meant is
+// counted in the report; see scene_file.h for the list.
 // Tests: tests/shade/scene/scene_file_test.cpp.
 #include "scene/gltf_scene.h"
 
-#include <algorithm>
 #include <map>
 #include <numbers>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -33,14 +33,27 @@ Mesh mesh_from(const GltfDocument& document, GltfPrimitiveId id,
     return mesh;
 }
 
+/// Counts, once a node, meshes that would bend.
+void report_rest(const GltfView& view, Report& report) {
+    std::set<std::size_t> told;
+    for (const auto& placed : view.primitives) {
+        if (!told.insert(placed.node).second) continue;
+        const GltfNode& node = view.nodes[placed.node];
+        if (node.has_skin) report.add("skinned mesh", "node", placed.node, "drawn at rest");
+        if (node.has_morph_targets)
+            report.add("morph targets", "node", placed.node, "drawn without");
+    }
+}
+
 /// Meshes and their places; a primitive that stands in several places is read once.
-void add_instances(const GltfDocument& document, const GltfView& view, Scene& scene,
+void add_instances(const GltfDocument& document, const GltfView& view, SceneGraph& graph,
                    Report& report) {
     // Without normals, glTF asks for flat ones and says that tangents given do not count; new ones
     // are left to the effect plan.
     FrameOptions options;
     options.if_missing = NormalMode::flat;
     options.tangents = TangentMode::none;
+    Scene& scene = graph.scene;
     std::map<std::pair<std::size_t, std::size_t>, std::size_t> mesh_of;
     for (const auto& placed : view.primitives) {
         const auto key = std::pair(placed.what.mesh, placed.what.primitive);
@@ -51,78 +64,117 @@ void add_instances(const GltfDocument& document, const GltfView& view, Scene& sc
             scene.meshes.push_back(std::move(mesh));
         }
         scene.instances.push_back({entry->second, placed.world_from_object, placed.name});
+        graph.instances.push_back({placed.node, placed.node_from_object});
     }
+    report_rest(view, report);
 }
 
-void add_lights(const GltfView& view, Scene& scene) {
+void add_lights(const GltfView& view, SceneGraph& graph) {
+    Scene& scene = graph.scene;
     for (const auto& placed : view.lights) {
         const GltfLight& light = placed.what;
-        const glm::vec3 direction(-placed.world_from_object[2]);
-        const glm::vec3 position(placed.world_from_object[3]);
         const glm::vec3 power = light.color * light.intensity * std::numbers::inv_pi_v<float>;
-        const PointLight point{position, power, light.range};
+        const PointLight point{glm::vec3(0.0F), power, light.range};
+        const Carried carried{placed.node};
         switch (light.type) {
             case GltfLight::Type::directional:
-                scene.directional_lights.push_back({direction, power});
+                scene.directional_lights.push_back({glm::vec3(0.0F, 0.0F, -1.0F), power});
+                graph.directional_lights.push_back(carried);
                 break;
             case GltfLight::Type::point:
                 scene.point_lights.push_back(point);
+                graph.point_lights.push_back(carried);
                 break;
             case GltfLight::Type::spot:
-                scene.spot_lights.push_back({point, direction, light.inner_cone, light.outer_cone});
+                scene.spot_lights.push_back(
+                    {point, glm::vec3(0.0F, 0.0F, -1.0F), light.inner_cone, light.outer_cone});
+                graph.spot_lights.push_back(carried);
                 break;
         }
     }
 }
 
-/// The first camera, its matrix reduced to rotation and translation; one without depth reaches to
-/// the farthest corner of the scene.
-void add_camera(const GltfView& view, Scene& scene, Report& report) {
+/// The first camera.
+void add_camera(const GltfView& view, SceneGraph& graph, Report& report) {
     if (view.cameras.empty()) return;
     const auto& placed = view.cameras.front();
-    const glm::vec3 eye(placed.world_from_object[3]);
-    const glm::vec3 back = glm::normalize(glm::vec3(placed.world_from_object[2]));
-    const glm::vec3 right =
-        glm::normalize(glm::cross(glm::vec3(placed.world_from_object[1]), back));
-    if (!(glm::length(right) > 0.5F && glm::length(back) > 0.5F)) {
+    const glm::mat3 axes(placed.world_from_object);
+    if (!(glm::length(glm::cross(axes[1], axes[2])) > 0.0F)) {
         report.add("camera without a direction", "camera", 0, "left out");
         return;
     }
-    Camera camera;
-    camera.world_from_view =
-        glm::mat4(glm::vec4(right, 0.0F), glm::vec4(glm::cross(back, right), 0.0F),
-                  glm::vec4(back, 0.0F), glm::vec4(eye, 1.0F));
+    Camera& camera = graph.scene.camera.emplace();
     camera.vertical_fov = placed.what.vertical_fov;
     camera.near = placed.what.near;
-    if (placed.what.far) {
-        camera.far = *placed.what.far;
-    } else {
-        const Bounds bounds = world_bounds(scene);
-        const float reach =
-            bounds.empty()
-                ? 0.0F
-                : glm::length(glm::max(glm::abs(bounds.min - eye), glm::abs(bounds.max - eye)));
-        camera.far = std::max(2.0F * camera.near, 1.01F * reach);
+    camera.far = placed.what.far.value_or(2.0F * camera.near);
+    graph.camera_sees_all = !placed.what.far;
+    graph.camera = Carried{placed.node};
+}
+
+void add_nodes(const GltfView& view, SceneGraph& graph, Report& report) {
+    for (std::size_t i = 0; i < view.nodes.size(); ++i) {
+        const GltfNode& node = view.nodes[i];
+        const glm::vec4& q = node.rotation;
+        SceneNode& result = graph.nodes.emplace_back();
+        result.name = node.name;
+        result.parent = node.parent;
+        result.translation = node.translation;
+        result.scale = node.scale;
+        result.matrix = node.matrix;
+        if (glm::length(q) > 0.0F) {
+            result.rotation = glm::quat(q.w, q.x, q.y, q.z);
+        } else {
+            report.add("rotation without a length", "node", i, "counts as none");
+        }
     }
-    scene.camera = camera;
+}
+
+KeyChannel channel_from(const GltfChannel& channel) {
+    KeyChannel result;
+    result.node = channel.node;
+    result.property = channel.path == GltfChannel::Path::translation
+                          ? KeyChannel::Property::translation
+                      : channel.path == GltfChannel::Path::rotation ? KeyChannel::Property::rotation
+                                                                    : KeyChannel::Property::scale;
+    result.interpolation = channel.interpolation == GltfChannel::Interpolation::step
+                               ? KeyInterpolation::step
+                           : channel.interpolation == GltfChannel::Interpolation::linear
+                               ? KeyInterpolation::linear
+                               : KeyInterpolation::cubic_spline;
+    result.times = channel.times;
+    result.values = channel.values;
+    return result;
+}
+
+/// Animations that move a node; those of skins and morphs alone would only take time.
+void add_animations(const GltfDocument& document, SceneGraph& graph, Report& report) {
+    for (const GltfAnimation& animation : document.animations(report)) {
+        if (animation.channels.empty()) continue;
+        KeyAnimation keys{animation.name, {}};
+        for (const GltfChannel& channel : animation.channels)
+            keys.channels.push_back(channel_from(channel));
+        graph.animations.emplace_back(std::move(keys));
+    }
 }
 
 }  // namespace
 
-Scene scene_from(const GltfDocument& document, const SceneOptions& options, Report& report) {
+SceneGraph graph_from(const GltfDocument& document, const SceneOptions& options, Report& report) {
     const GltfView view = document.view();
-    Scene scene;
+    SceneGraph graph;
     for (const GltfImage& image : view.images) {
         ImageSource source;
         source.name = image.name;
         std::visit([&](const auto& encoded) { source.source = encoded; }, image.source);
-        scene.images.push_back(std::move(source));
+        graph.scene.images.push_back(std::move(source));
     }
-    scene.materials = materials_from(view, options, scene.images, report);
-    add_instances(document, view, scene, report);
-    add_lights(view, scene);
-    add_camera(view, scene, report);
-    return scene;
+    graph.scene.materials = materials_from(view, options, graph.scene.images, report);
+    add_nodes(view, graph, report);
+    add_instances(document, view, graph, report);
+    add_lights(view, graph);
+    add_camera(view, graph, report);
+    add_animations(document, graph, report);
+    return graph;
 }
 
 }  // namespace relief

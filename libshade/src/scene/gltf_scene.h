@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// A glTF document as a scene. Tests: tests/shade/scene/scene_file_test.cpp.
+/// A glTF document as a scene graph. Tests: tests/shade/scene/scene_file_test.cpp.
 #pragma once
 
 #include "relief/mesh/gltf_document.h"
@@ -9,8 +9,8 @@
 
 namespace relief {
 
-/// The document's default scene; see load_scene for what is translated and how.
-/// \throws InvalidInput if a primitive cannot be read
-Scene scene_from(const GltfDocument& document, const SceneOptions& options, Report& report);
+/// The document's default scene, nothing posed yet; see load_scene_graph for what is translated and
+/// how. \throws InvalidInput if a primitive cannot be read
+SceneGraph graph_from(const GltfDocument& document, const SceneOptions& options, Report& report);
 
 }  // namespace relief

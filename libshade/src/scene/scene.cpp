@@ -11,6 +11,7 @@
 #include <numbers>
 
 #include "relief/mesh/error.h"
+#include "scene/orbit_axes.h"
 
 namespace relief {
 
@@ -31,14 +32,6 @@ std::array<glm::vec3, 8> corners_in(const glm::mat3& world_from_view, const glm:
         corners[i] = glm::transpose(world_from_view) * (sign * half_size);
     }
     return corners;
-}
-
-/// The axes of a camera that looks at the origin from this azimuth and elevation, upright.
-glm::mat3 orbit_axes(float azimuth, float elevation) {
-    const glm::vec3 back(std::sin(azimuth) * std::cos(elevation), std::sin(elevation),
-                         std::cos(azimuth) * std::cos(elevation));
-    const glm::vec3 right(std::cos(azimuth), 0.0F, -std::sin(azimuth));
-    return {right, glm::cross(back, right), back};
 }
 
 void check_view(float azimuth, float elevation, float vertical_fov, float aspect) {
@@ -73,7 +66,7 @@ Bounds world_bounds(const Scene& scene) {
 Camera framed(const Bounds& world, float azimuth, float elevation, float vertical_fov,
               float aspect) {
     check_view(azimuth, elevation, vertical_fov, aspect);
-    const glm::mat3 axes = orbit_axes(azimuth, elevation);
+    const glm::mat3 axes = orbit_axes(static_cast<double>(azimuth), static_cast<double>(elevation));
     const glm::vec3 center =
         world.empty() ? glm::vec3(0.0F) : world.min + (world.max - world.min) * 0.5F;
     const glm::vec3 half_size =

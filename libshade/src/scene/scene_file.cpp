@@ -121,20 +121,26 @@ Scene scene_from(MeshFile contents, Report& report) {
 
 }  // namespace
 
-Scene load_scene(const std::filesystem::path& file, const SceneOptions& options, Report& report) {
+SceneGraph load_scene_graph(const std::filesystem::path& file, const SceneOptions& options,
+                            Report& report) {
     const std::string extension = lower_extension(file);
-    Scene scene;
+    SceneGraph graph;
     try {
         if (extension == ".gltf" || extension == ".glb") {
-            scene = scene_from(GltfDocument::read(file, report), options, report);
+            graph = graph_from(GltfDocument::read(file, report), options, report);
         } else {
-            scene = scene_from(read_mesh(file, report), report);
+            graph.scene = scene_from(read_mesh(file, report), report);
         }
-        validate(scene);
+        pose(graph, 0.0);
+        validate(graph);
     } catch (const InvalidInput& error) {
         throw FileError(file, error.what());
     }
-    return scene;
+    return graph;
+}
+
+Scene load_scene(const std::filesystem::path& file, const SceneOptions& options, Report& report) {
+    return load_scene_graph(file, options, report).scene;
 }
 
 Scene load_scene(const std::filesystem::path& file, Report& report) {

@@ -103,17 +103,51 @@ struct GltfCamera {
     std::optional<float> far;  ///< Absent: infinite.
 };
 
+/// A node at rest: where its space stands in its parent's.
+struct GltfNode {
+    std::string name;
+    std::optional<std::size_t> parent;  ///< Absent: the world.
+    glm::vec3 translation{0.0F};
+    glm::vec4 rotation{0.0F, 0.0F, 0.0F, 1.0F};  ///< Quaternion x, y, z, w.
+    glm::vec3 scale{1.0F};
+    std::optional<glm::mat4> matrix;  ///< Takes the place of the three above.
+    bool has_skin = false;
+    bool has_morph_targets = false;  ///< Some primitive of its mesh has.
+};
+
+/// The keys of one property of one node.
+struct GltfChannel {
+    enum class Path { translation, rotation, scale };
+    enum class Interpolation { step, linear, cubic_spline };
+
+    std::size_t node = 0;
+    Path path = Path::translation;
+    Interpolation interpolation = Interpolation::linear;
+    std::vector<float> times;  ///< Seconds.
+    /// One for each time, or three for cubic_spline: in-tangent, value, out-tangent. Rotations are
+    /// quaternions x, y, z, w; of the others w is 0.
+    std::vector<glm::vec4> values;
+};
+
+struct GltfAnimation {
+    std::string name;
+    std::vector<GltfChannel> channels;
+};
+
 /// A thing of the document at its place in the world (the default scene, or the first).
 template <typename T>
 struct GltfPlaced {
     T what;
     glm::mat4 world_from_object{1.0F};
     std::string name;  ///< The node's.
+    std::size_t node = 0;
+    glm::mat4 node_from_object{1.0F};  ///< Of instances of EXT_mesh_gpu_instancing.
 };
 
 /// What a renderer needs of a document, in plain data. Animations and skins are at rest; instances
 /// of EXT_mesh_gpu_instancing are placed one by one; orthographic cameras are left out.
 struct GltfView {
+    std::vector<GltfNode> nodes;                          ///< All of the document's, in its order.
     std::vector<GltfPlaced<GltfPrimitiveId>> primitives;  ///< Triangles only.
     std::vector<GltfPlaced<GltfLight>> lights;
     std::vector<GltfPlaced<GltfCamera>> cameras;
@@ -185,6 +219,14 @@ class GltfDocument {
 
     /// The document as a scene. \throws InvalidInput if it cannot be read
     [[nodiscard]] GltfView view() const;
+
+    /// The animations of nodes, in the document's order.
+    ///
+    /// \param report  counts what is left out: channels of morph weights or of what an extension
+    ///                points at, and of nodes with a matrix, which glTF does not animate; channels
+    ///                whose times or values are not finite, not as many as they must be, or of the
+    ///                wrong type
+    [[nodiscard]] std::vector<GltfAnimation> animations(Report& report) const;
 
     /// What other formats cannot hold: "2 animations", "1 skin", "3 morph targets", ...
     [[nodiscard]] std::vector<std::string> beyond_a_mesh() const;

@@ -225,6 +225,7 @@ std::vector<Vector> float_elements(const GltfContents& contents, std::size_t acc
     return result;
 }
 
+template std::vector<glm::vec1> float_elements(const GltfContents&, std::size_t);
 template std::vector<glm::vec2> float_elements(const GltfContents&, std::size_t);
 template std::vector<glm::vec3> float_elements(const GltfContents&, std::size_t);
 template std::vector<glm::vec4> float_elements(const GltfContents&, std::size_t);

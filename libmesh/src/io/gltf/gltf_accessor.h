@@ -8,6 +8,7 @@
 #pragma once
 
 #include <cstdint>
+#include <glm/ext/vector_float1.hpp>
 #include <glm/glm.hpp>
 #include <string>
 #include <string_view>

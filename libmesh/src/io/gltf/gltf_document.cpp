@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "io/gltf/gltf_animation.h"
 #include "io/gltf/gltf_from_mesh.h"
 #include "io/gltf/gltf_primitive.h"
 #include "io/gltf/gltf_reader.h"
@@ -83,6 +84,10 @@ void GltfDocument::set_frames(GltfPrimitiveId id, const FramedMesh& framed) {
 
 GltfView GltfDocument::view() const {
     return view_of(contents_->data);
+}
+
+std::vector<GltfAnimation> GltfDocument::animations(Report& report) const {
+    return animations_of(contents_->data, report);
 }
 
 std::vector<std::string> GltfDocument::beyond_a_mesh() const {

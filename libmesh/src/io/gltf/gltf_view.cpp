@@ -32,17 +32,43 @@ glm::mat4 transform(const glm::vec3& translation, const glm::vec4& rotation,
            glm::scale(glm::mat4(1.0F), scale);
 }
 
-glm::mat4 parent_from_node(const Json& node) {
-    if (const Json* matrix = find(node, "matrix")) {
-        glm::mat4 result;
-        for (std::size_t i = 0; i < 16; ++i) {
-            result[static_cast<int>(i / 4)][static_cast<int>(i % 4)] = (*matrix)[i].get<float>();
-        }
-        return result;
+GltfNode node_from(const Json& root, const Json& json) {
+    GltfNode node;
+    node.name = text_in(json, "name");
+    node.has_skin = json.contains("skin");
+    if (const auto mesh = index_in(json, "mesh")) {
+        const Json& primitives = root["meshes"][*mesh]["primitives"];
+        node.has_morph_targets = std::any_of(
+            primitives.begin(), primitives.end(),
+            [](const Json& primitive) { return !array_in(primitive, "targets").empty(); });
     }
-    return transform(vector_in(node, "translation", glm::vec3(0.0F)),
-                     vector_in(node, "rotation", glm::vec4(0, 0, 0, 1)),
-                     vector_in(node, "scale", glm::vec3(1.0F)));
+    node.translation = vector_in(json, "translation", node.translation);
+    node.rotation = vector_in(json, "rotation", node.rotation);
+    node.scale = vector_in(json, "scale", node.scale);
+    if (const Json* matrix = find(json, "matrix")) {
+        node.matrix.emplace();
+        for (std::size_t i = 0; i < 16; ++i) {
+            (*node.matrix)[static_cast<int>(i / 4)][static_cast<int>(i % 4)] =
+                (*matrix)[i].get<float>();
+        }
+    }
+    return node;
+}
+
+std::vector<GltfNode> nodes_of(const Json& root) {
+    const Json& nodes = array_in(root, "nodes");
+    std::vector<GltfNode> result;
+    for (const Json& node : nodes)
+        result.push_back(node_from(root, node));
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+        for (const Json& child : array_in(nodes[i], "children"))
+            result[child.get<std::size_t>()].parent = i;
+    }
+    return result;
+}
+
+glm::mat4 parent_from_node(const GltfNode& node) {
+    return node.matrix ? *node.matrix : transform(node.translation, node.rotation, node.scale);
 }
 
 /// Where EXT_mesh_gpu_instancing repeats a node's mesh, or the node's own place once.
@@ -207,8 +233,9 @@ class Placer {
             const Open next = open.back();
             open.pop_back();
             const Json& node = contents_.root["nodes"][next.node];
-            const glm::mat4 world_from_node = next.world_from_parent * parent_from_node(node);
-            place(node, world_from_node);
+            const glm::mat4 world_from_node =
+                next.world_from_parent * parent_from_node(view_.nodes[next.node]);
+            place(next.node, world_from_node);
             const Json& children = array_in(node, "children");
             for (std::size_t i = children.size(); i-- > 0;) {
                 open.push_back({children[i].get<std::size_t>(), world_from_node});
@@ -246,25 +273,29 @@ class Placer {
         return result;
     }
 
-    void place(const Json& node, const glm::mat4& world_from_node) {
-        const std::string name = text_in(node, "name");
+    void place(std::size_t number, const glm::mat4& world_from_node) {
+        const Json& node = contents_.root["nodes"][number];
+        const std::string& name = view_.nodes[number].name;
         if (const auto mesh = index_in(node, "mesh")) {
             const Json& primitives = contents_.root["meshes"][*mesh]["primitives"];
             for (const glm::mat4& node_from_instance : instances(contents_, node)) {
                 for (std::size_t i = 0; i < primitives.size(); ++i) {
                     if (!is_drawn_as_triangles(primitives[i])) continue;
-                    view_.primitives.push_back(
-                        {{*mesh, i}, world_from_node * node_from_instance, name});
+                    view_.primitives.push_back({{*mesh, i},
+                                                world_from_node * node_from_instance,
+                                                name,
+                                                number,
+                                                node_from_instance});
                 }
             }
         }
         if (const Json* light = find(node, "extensions", "KHR_lights_punctual")) {
             const Json& lights = contents_.root["extensions"]["KHR_lights_punctual"]["lights"];
             view_.lights.push_back(
-                {light_from(lights[size_in(*light, "light")]), world_from_node, name});
+                {light_from(lights[size_in(*light, "light")]), world_from_node, name, number});
         }
-        if (const auto number = index_in(node, "camera")) {
-            const Json& json = contents_.root["cameras"][*number];
+        if (const auto index = index_in(node, "camera")) {
+            const Json& json = contents_.root["cameras"][*index];
             const Json* perspective = find(json, "perspective");
             if (perspective == nullptr) return;
             GltfCamera camera;
@@ -272,7 +303,7 @@ class Placer {
             camera.vertical_fov = float_in(*perspective, "yfov", camera.vertical_fov);
             camera.near = float_in(*perspective, "znear", camera.near);
             if (perspective->contains("zfar")) camera.far = float_in(*perspective, "zfar", 0.0F);
-            view_.cameras.push_back({camera, world_from_node, name});
+            view_.cameras.push_back({camera, world_from_node, name, number});
         }
     }
 
@@ -304,6 +335,7 @@ std::vector<GltfPrimitiveId> triangle_primitives_of(const GltfContents& contents
 
 GltfView view_of(const GltfContents& contents) {
     GltfView view;
+    view.nodes = nodes_of(contents.root);
     for (const Json& material : array_in(contents.root, "materials")) {
         view.materials.push_back(material_from(contents.root, material));
     }

@@ -9,10 +9,11 @@
 #include "relief/mesh/mesh_file.h"
 #include "relief/mesh/report.h"
 #include "relief/shade/scene.h"
+#include "relief/shade/scene_graph.h"
 
 namespace relief {
 
-/// What load_scene leaves to choice.
+/// What load_scene_graph leaves to choice.
 struct SceneOptions {
     /// Which model glTF's materials follow.
     enum class MaterialModel {
@@ -22,7 +23,7 @@ struct SceneOptions {
     MaterialModel model = MaterialModel::as_authored;
 };
 
-/// Reads .gltf, .glb, .obj, .ply, .stl or .off as a scene.
+/// Reads .gltf, .glb, .obj, .ply, .stl or .off as a scene graph, posed at time 0.
 ///
 /// Meshes without normals get flat ones from glTF (its rule) and angle-weighted ones otherwise.
 /// Tangents are left to the effect plan. Lights and the first camera come from glTF; nothing is
@@ -38,10 +39,15 @@ struct SceneOptions {
 /// \param report  counts what is not drawn as its author meant: textures with further texture
 ///                coordinate sets (left out) or another transform than their material's first;
 ///                statements of MTL that a material has no place for (map_Ka, map_Ns, disp, refl,
-///                scaled or shifted maps); and, for MaterialModel::phong, unreadable textures whose
+///                scaled or shifted maps); skins and morph targets (drawn at rest), and animations
+///                that cannot be played; and, for MaterialModel::phong, unreadable textures whose
 ///                mean counts as 1
 /// \throws FileError as the readers do. An image file that is missing is found missing when it is
 ///         decoded, and only what is shown is decoded
+SceneGraph load_scene_graph(const std::filesystem::path& file, const SceneOptions& options,
+                            Report& report);
+
+/// The scene of that graph.
 Scene load_scene(const std::filesystem::path& file, const SceneOptions& options, Report& report);
 
 /// The same with the default options.

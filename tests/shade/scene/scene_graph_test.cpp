@@ -1,0 +1,343 @@
+// SPDX-License-Identifier: Apache-2.0
+// Poses by hand: chains of nodes, key frames, orbits, turntables, and what is refused.
+#include "relief/shade/scene_graph.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <numbers>
+
+#include "relief/mesh/error.h"
+#include "relief/shade/scene_file.h"
+#include "scene/key_channel.h"
+#include "support/shapes.h"
+#include "support/shared_data.h"
+
+namespace relief {
+namespace {
+
+constexpr float pi = std::numbers::pi_v<float>;
+/// A few roundings of sines and products of order 1 to 10.
+constexpr float rounding = 2e-6F;
+
+void expect_near(const glm::vec3& a, const glm::vec3& b, float tolerance = rounding) {
+    for (int i = 0; i < 3; ++i)
+        EXPECT_NEAR(a[i], b[i], tolerance) << i;
+}
+
+/// A cube, one light of each kind and a camera, each on a node of its own below a common one.
+SceneGraph one_of_each() {
+    SceneGraph graph;
+    Scene& scene = graph.scene;
+    scene.meshes = {test::cube()};
+    scene.instances.emplace_back();
+    scene.directional_lights.emplace_back();
+    scene.point_lights.emplace_back();
+    scene.spot_lights.emplace_back();
+    scene.spot_lights[0].inner_cone = 0.1F;
+    scene.camera.emplace();
+    graph.nodes.resize(6);
+    for (std::size_t i = 1; i < 6; ++i) {
+        graph.nodes[i].parent = 0;
+        graph.nodes[i].translation = glm::vec3(static_cast<float>(i), 0.0F, 0.0F);
+    }
+    graph.instances = {{1}};
+    graph.directional_lights = {{2}};
+    graph.point_lights = {{3}};
+    graph.spot_lights = {{4}};
+    graph.camera = {5};
+    return graph;
+}
+
+TEST(Pose, PutsEverythingWhereItsNodeIs) {
+    SceneGraph graph = one_of_each();
+    // Turned by a quarter about y: x to -z, z to x.
+    graph.nodes[0].rotation = glm::angleAxis(pi / 2, glm::vec3(0, 1, 0));
+    graph.nodes[0].translation = {0, 10, 0};
+    pose(graph, 0.0);
+    const Scene& scene = graph.scene;
+    expect_near(scene.instances[0].world_from_object[3], {0, 10, -1});
+    expect_near(scene.directional_lights[0].direction_world, {-1, 0, 0});
+    expect_near(scene.point_lights[0].position_world, {0, 10, -3});
+    expect_near(scene.spot_lights[0].point.position_world, {0, 10, -4});
+    expect_near(scene.spot_lights[0].direction_world, {-1, 0, 0});
+    expect_near(scene.camera->world_from_view[3], {0, 10, -5});
+    expect_near(scene.camera->world_from_view[2], {1, 0, 0});
+    EXPECT_NO_THROW(validate(graph));
+}
+
+TEST(Pose, LeavesAloneWhatHangsOnNoNode) {
+    SceneGraph graph = one_of_each();
+    graph.point_lights = {Carried{}};
+    graph.spot_lights.clear();
+    graph.scene.point_lights[0].position_world = {7, 8, 9};
+    graph.scene.spot_lights[0].point.position_world = {1, 1, 1};
+    pose(graph, 3.0);
+    EXPECT_EQ(graph.scene.point_lights[0].position_world, glm::vec3(7, 8, 9));
+    EXPECT_EQ(graph.scene.spot_lights[0].point.position_world, glm::vec3(1, 1, 1));
+    EXPECT_NO_THROW(validate(graph));
+}
+
+TEST(Pose, FindsParentsInAnyOrder) {
+    SceneGraph graph;
+    graph.nodes.resize(3);
+    graph.nodes[0].parent = 1;
+    graph.nodes[1].parent = 2;
+    for (SceneNode& node : graph.nodes)
+        node.translation = {1, 0, 0};
+    graph.nodes[2].scale = glm::vec3(2.0F);
+    graph.scene.point_lights.resize(1);
+    graph.point_lights = {{0}};
+    pose(graph, 0.0);
+    EXPECT_EQ(graph.scene.point_lights[0].position_world, glm::vec3(5, 0, 0));  // 1 + 2 (1 + 1).
+}
+
+TEST(Pose, GivesADirectionEvenAtScaleZero) {
+    SceneGraph graph = one_of_each();
+    for (const float scale : {0.0F, 1e-30F, 1e30F, -2.0F}) {
+        graph.nodes[0].scale = glm::vec3(scale);
+        pose(graph, 0.0);
+        EXPECT_EQ(graph.scene.directional_lights[0].direction_world,
+                  glm::vec3(0, 0, scale < 0.0F ? 1 : -1))
+            << scale;
+        EXPECT_NO_THROW(validate(*graph.scene.camera)) << scale;
+        EXPECT_NEAR(glm::determinant(glm::mat3(graph.scene.camera->world_from_view)), 1.0F,
+                    rounding);
+    }
+}
+
+TEST(Pose, KeepsTheFarPlaneBehindWhatMoves) {
+    SceneGraph graph = one_of_each();
+    graph.camera_sees_all = true;
+    for (const float away : {10.0F, 1000.0F}) {
+        graph.nodes[1].translation = {0, 0, -away};
+        pose(graph, 0.0);
+        EXPECT_GT(graph.scene.camera->far, away + 1.0F);
+        EXPECT_LT(graph.scene.camera->far, 1.05F * (away + 7.0F));
+    }
+}
+
+KeyChannel keys(KeyChannel::Property property, KeyInterpolation interpolation,
+                std::vector<float> times, std::vector<glm::vec4> values) {
+    return {0, property, interpolation, std::move(times), std::move(values)};
+}
+
+TEST(KeyFrames, StepLineAndSpline) {
+    using P = KeyChannel::Property;
+    const KeyChannel step =
+        keys(P::translation, KeyInterpolation::step, {1, 2}, {{0, 0, 0, 0}, {4, 0, 0, 0}});
+    EXPECT_EQ(value_at(step, 0.0).x, 0.0F);
+    EXPECT_EQ(value_at(step, 1.99).x, 0.0F);
+    EXPECT_EQ(value_at(step, 2.0).x, 4.0F);
+    EXPECT_EQ(value_at(step, 9.0).x, 4.0F);
+    KeyChannel line = step;
+    line.interpolation = KeyInterpolation::linear;
+    EXPECT_EQ(value_at(line, 0.5).x, 0.0F);
+    EXPECT_EQ(value_at(line, 1.25).x, 1.0F);
+    EXPECT_EQ(value_at(line, 3.0).x, 4.0F);
+    // Hermite over two seconds, from 0 with slope 1 to 4 with slope 0; at the middle
+    // (0 + 4) / 2 + 2 (1 - 0) / 8.
+    const KeyChannel spline =
+        keys(P::scale, KeyInterpolation::cubic_spline, {0, 2},
+             {{9, 0, 0, 0}, {0, 0, 0, 0}, {1, 0, 0, 0}, {0, 0, 0, 0}, {4, 0, 0, 0}, {9, 0, 0, 0}});
+    EXPECT_NEAR(value_at(spline, 1.0).x, 2.25F, rounding);
+    EXPECT_EQ(value_at(spline, 0.0).x, 0.0F);
+    EXPECT_EQ(value_at(spline, 2.0).x, 4.0F);
+}
+
+TEST(KeyFrames, TurnOnTheShortestArc) {
+    using P = KeyChannel::Property;
+    const float s = std::sqrt(0.5F);
+    // A quarter about y, written with the other sign, and of another length.
+    const KeyChannel turn =
+        keys(P::rotation, KeyInterpolation::linear, {0, 1}, {{0, 0, 0, 2}, {0, -3 * s, 0, -3 * s}});
+    const glm::vec4 half = value_at(turn, 0.5);
+    EXPECT_NEAR(std::abs(half.y), std::sin(pi / 8), rounding);
+    EXPECT_NEAR(std::abs(half.w), std::cos(pi / 8), rounding);
+    EXPECT_NEAR(glm::length(value_at(turn, 2.0)), 1.0F, rounding);
+    // A spline of rotations that passes through nothing keeps the key before.
+    const KeyChannel through = keys(P::rotation, KeyInterpolation::cubic_spline, {0, 1},
+                                    {{}, {0, 0, 0, 1}, {}, {}, {0, 0, 0, -1}, {}});
+    EXPECT_EQ(value_at(through, 0.5), glm::vec4(0, 0, 0, 1));
+}
+
+SceneGraph moving_light(Animation animation) {
+    SceneGraph graph;
+    graph.nodes.resize(1);
+    graph.scene.point_lights.resize(1);
+    graph.scene.spot_lights.resize(1);
+    graph.point_lights = {{0}};
+    graph.spot_lights = {{0}};
+    graph.animations = {std::move(animation)};
+    return graph;
+}
+
+glm::vec3 light_at(SceneGraph& graph, double seconds) {
+    pose(graph, seconds);
+    return graph.scene.point_lights[0].position_world;
+}
+
+TEST(Pose, PlaysKeysAgainAndAgain) {
+    SceneGraph graph =
+        moving_light(KeyAnimation{"move",
+                                  {keys(KeyChannel::Property::translation, KeyInterpolation::linear,
+                                        {0, 4}, {{0, 0, 0, 0}, {8, 0, 0, 0}})}});
+    EXPECT_EQ(duration(graph), 4.0);
+    EXPECT_EQ(light_at(graph, 1.0).x, 2.0F);
+    EXPECT_EQ(light_at(graph, 5.0).x, 2.0F);
+    EXPECT_EQ(light_at(graph, -1.0).x, 6.0F);
+    EXPECT_EQ(light_at(graph, 4.0).x, 0.0F);
+}
+
+TEST(Pose, OrbitsOnSphericalCoordinates) {
+    Orbit orbit;
+    orbit.center = {1, 2, 3};
+    orbit.radius = 5.0F;
+    orbit.azimuth = pi / 2;
+    orbit.azimuth_speed = pi;
+    orbit.faces_center = true;
+    SceneGraph graph = moving_light(orbit);
+    EXPECT_NEAR(duration(graph), 2.0, 1e-6);
+    expect_near(light_at(graph, 0.0), {6, 2, 3});
+    expect_near(graph.scene.spot_lights[0].direction_world, {-1, 0, 0});
+    expect_near(light_at(graph, 0.5), {1, 2, -2});
+    // A day later it is where it was, but for the speed's own rounding: 43200 turns of 4e-8 each.
+    expect_near(light_at(graph, 86400.0), {6, 2, 3}, 0.05F);
+    std::get<Orbit>(graph.animations[0]).elevation = pi / 2;
+    expect_near(light_at(graph, 0.3), {1, 7, 3});
+    expect_near(graph.scene.spot_lights[0].direction_world, {0, -1, 0});
+}
+
+TEST(Pose, TurnsTablesAboutTheirAxis) {
+    SceneGraph graph = moving_light(Turntable{0, {0, 0, 2}, pi / 2, pi / 2});
+    graph.nodes[0].translation = {10, 0, 0};
+    graph.point_lights[0].node_from_object = looking_along({1, 0, 0}, {0, 0, -1});
+    EXPECT_NEAR(duration(graph), 4.0, 1e-6);
+    expect_near(light_at(graph, 0.0), {10, 1, 0});
+    expect_near(light_at(graph, 1.0), {9, 0, 0});
+    std::get<Turntable>(graph.animations[0]).speed = 0.0F;
+    EXPECT_EQ(duration(graph), 0.0);
+}
+
+TEST(LookingAlong, PutsMinusZThere) {
+    for (const glm::vec3 direction :
+         {glm::vec3(0, -1, 0), {0, 1, 0}, {3, 0, 0}, {1, -2, 3}, {0, 0, 1}}) {
+        const glm::mat4 matrix = looking_along({1, 2, 3}, direction);
+        expect_near(-matrix[2], glm::normalize(direction));
+        EXPECT_NEAR(glm::determinant(matrix), 1.0F, rounding);
+        EXPECT_EQ(matrix[3], glm::vec4(1, 2, 3, 1));
+        EXPECT_GE(matrix[1].y, -rounding);
+    }
+}
+
+/// What validate() says, or "valid".
+std::string verdict(const std::function<void(SceneGraph&)>& spoil) {
+    SceneGraph graph = one_of_each();
+    graph.nodes[1].name = "wheel";
+    spoil(graph);
+    try {
+        validate(graph);
+    } catch (const InvalidInput& error) {
+        return error.what();
+    }
+    return "valid";
+}
+
+TEST(ValidateGraph, NamesTheFirstOffence) {
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    using P = KeyChannel::Property;
+    const auto with = [](Animation animation) {
+        return [animation](SceneGraph& g) { g.animations = {animation}; };
+    };
+    const auto with_keys = [&](const KeyChannel& channel) {
+        return with(KeyAnimation{"", {channel}});
+    };
+    EXPECT_EQ(verdict([](SceneGraph&) {}), "valid");
+    EXPECT_EQ(verdict([](SceneGraph& g) { g.nodes[0].parent = 1; }), "node 0 is its own ancestor");
+    EXPECT_EQ(verdict([](SceneGraph& g) { g.nodes[1].parent = 9; }),
+              "node 'wheel''s parent names node 9, but there are only 6");
+    EXPECT_EQ(verdict([&](SceneGraph& g) { g.nodes[1].scale.x = nan; }),
+              "node 'wheel' has a transform that is not finite");
+    EXPECT_EQ(verdict([](SceneGraph& g) {
+                  g.nodes[1].rotation = {0, 0, 0, 0};
+              }),
+              "node 'wheel' has a rotation without a length");
+    EXPECT_EQ(verdict([](SceneGraph& g) { g.point_lights.resize(2); }),
+              "nodes carry 2 point lights, but there are only 1");
+    EXPECT_EQ(verdict([](SceneGraph& g) { g.camera.node = 6; }),
+              "number 0 of the cameras names node 6, but there are only 6");
+    EXPECT_EQ(verdict(with(Orbit{.node = 7})), "animation 0 names node 7, but there are only 6");
+    EXPECT_EQ(verdict(with(Orbit{.node = 1, .radius = -1})),
+              "animation 0 has radius -1, but it must be finite and not negative");
+    EXPECT_EQ(verdict(with(Turntable{.node = 1, .axis = {0, 0, 0}})),
+              "animation 0 has an axis without a length");
+    EXPECT_EQ(verdict([&](SceneGraph& g) {
+                  g.nodes[1].matrix = glm::mat4(1.0F);
+                  g.animations = {Orbit{.node = 1}};
+              }),
+              "animation 0 moves node 'wheel', which has a matrix instead of translation, rotation "
+              "and scale");
+    EXPECT_EQ(verdict(with_keys(keys(P::scale, KeyInterpolation::step, {}, {}))),
+              "animation 0: a channel has no keys");
+    EXPECT_EQ(verdict(with_keys(keys(P::scale, KeyInterpolation::cubic_spline, {0}, {{}}))),
+              "animation 0: a channel of 1 keys has 1 values, but needs 3");
+    EXPECT_EQ(verdict(with_keys(keys(P::scale, KeyInterpolation::step, {1, 1}, {{}, {}}))),
+              "animation 0: time 1 of a channel is 1, but times must be finite and ascending");
+    EXPECT_EQ(verdict(with_keys(keys(P::scale, KeyInterpolation::step, {0}, {{0, nan, 0, 0}}))),
+              "animation 0: value 0 of a channel is (0, nan, 0, 0), but must be finite");
+    EXPECT_EQ(verdict(with_keys(keys(P::rotation, KeyInterpolation::step, {0}, {{}}))),
+              "animation 0: rotation 0 of a channel has no length");
+}
+
+TEST(Pose, RefusesWhatWouldHaveNoEnd) {
+    SceneGraph graph = one_of_each();
+    EXPECT_THROW(pose(graph, std::numeric_limits<double>::infinity()), InvalidInput);
+    graph.nodes[0].parent = 3;
+    EXPECT_THROW(pose(graph, 0.0), InvalidInput);
+    graph.nodes[0].parent = 0;
+    EXPECT_THROW(pose(graph, 0.0), InvalidInput);
+    graph.nodes[0].parent = 100;
+    EXPECT_THROW(pose(graph, 0.0), InvalidInput);
+    graph.nodes[0].parent.reset();
+    graph.instances[0].node = 100;
+    EXPECT_THROW(pose(graph, 0.0), InvalidInput);
+    graph.instances[0].node = 1;
+    graph.animations = {Orbit{.node = 100}};
+    EXPECT_THROW(pose(graph, 0.0), InvalidInput);
+    graph.animations = {KeyAnimation{
+        "", {keys(KeyChannel::Property::scale, KeyInterpolation::linear, {0, 1}, {{}})}}};
+    EXPECT_THROW(pose(graph, 0.0), InvalidInput);
+}
+
+TEST(LoadSceneGraph, MovesTheBoxOfARealAnimation) {
+    RELIEF_NEEDS_SHARED(file, "data/models/gltf/BoxAnimated/glTF-Binary/BoxAnimated.glb");
+    Report report;
+    SceneGraph graph = load_scene_graph(file, {}, report);
+    EXPECT_NEAR(duration(graph), 3.70833, 1e-4);
+    EXPECT_EQ(load_scene(file, report).instances[0].world_from_object,
+              graph.scene.instances[0].world_from_object);
+    const Bounds before = world_bounds(graph.scene);
+    pose(graph, 1.8);
+    const Bounds after = world_bounds(graph.scene);
+    EXPECT_GT(after.max.y, before.max.y + 0.5F);  // The inner box has risen.
+    pose(graph, 0.0);
+    EXPECT_EQ(world_bounds(graph.scene).max, before.max);
+}
+
+TEST(LoadSceneGraph, ReportsWhatStaysAtRest) {
+    RELIEF_NEEDS_SHARED(fox, "data/models/gltf/Fox/glTF-Binary/Fox.glb");
+    RELIEF_NEEDS_SHARED(morph,
+                        "data/models/gltf/AnimatedMorphCube/glTF-Binary/AnimatedMorphCube.glb");
+    Report report;
+    (void)load_scene_graph(fox, {}, report);
+    EXPECT_EQ(report.count("skinned mesh"), 1U);
+    (void)load_scene_graph(morph, {}, report);
+    EXPECT_EQ(report.count("morph targets"), 1U);
+    EXPECT_EQ(report.count("animated morph weights"), 1U);
+}
+
+}  // namespace
+}  // namespace relief
