@@ -2,10 +2,10 @@
 /// \file
 /// Image files: PNG, JPEG, TIFF, EXR, HDR and what else OpenImageIO reads.
 ///
-/// PNG files of the usual kinds have a direct way. OpenImageIO stands behind a module that is loaded
-/// when another image needs it and not before, because loading it alone costs 0.2 s and 120 MB. The
-/// module is looked for in $RELIEF_MODULE_DIR, then in ../lib/relief beside the program.
-/// Tests: tests/mesh/io/image/image_file_test.cpp.
+/// PNG and JPEG files of the usual kinds have a direct way. OpenImageIO stands behind a module that
+/// is loaded when another image needs it and not before, because loading it alone costs 0.2 s and
+/// 120 MB. The module is looked for in $RELIEF_MODULE_DIR, then in ../lib/relief beside the
+/// program. Tests: tests/mesh/io/image/image_file_test.cpp.
 #pragma once
 
 #include <cstddef>

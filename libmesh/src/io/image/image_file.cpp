@@ -18,8 +18,8 @@
 #include "file_bytes.h"
 #include "file_replacement.h"
 #include "io/image/image_file_container.h"
+#include "io/image/image_file_direct.h"
 #include "io/image/image_file_module.h"
-#include "io/image/png_decoder.h"
 #include "io/image/png_encoder.h"
 #include "relief/mesh/error.h"
 
@@ -195,26 +195,14 @@ Image read_by_module(const OpenImage& open, const std::filesystem::path& name, I
     return image;
 }
 
-/// Without the image module; nothing where the file is of no usual kind, or not intact.
-std::optional<PlainPng> plain_png_in(const ImageContainer& container) {
-    if (std::string_view(container.format) != "png") return std::nullopt;
-    return open_plain_png(container.stripped);
-}
-
-std::optional<Image> read_directly(const ImageContainer& container, ImageUse use) {
-    const std::optional<PlainPng> png = plain_png_in(container);
-    if (!png) return std::nullopt;
-    std::optional<Image::Samples> samples = decode(*png);
-    if (!samples) return std::nullopt;
-    return Image{png->width, png->height, png->channels, color_space_of(use, png->bits()),
-                 std::move(*samples)};
-}
-
 Image read_encoded(std::span<const std::byte> bytes, const std::filesystem::path& name,
                    ImageUse use) {
     try {
         ImageContainer container = examine_image(bytes, name);
-        if (std::optional<Image> image = read_directly(container, use)) return std::move(*image);
+        if (std::optional<Image> image = read_directly(container)) {
+            image->color_space = color_space_of(use, image->bits());
+            return std::move(*image);
+        }
         return read_by_module(open_image(std::move(container), bytes, name), name, use);
     } catch (const std::bad_alloc&) {
         throw FileError(name, "does not fit into memory");
@@ -294,8 +282,7 @@ ImageInfo read_image_info(const std::filesystem::path& file) {
     const std::string contents = read_bytes(file);
     const auto bytes = std::as_bytes(std::span(contents));
     ImageContainer container = examine_image(bytes, file);
-    if (const std::optional<PlainPng> png = plain_png_in(container))
-        return {png->width, png->height, png->channels, png->bits(), std::move(container.text)};
+    if (std::optional<ImageInfo> info = read_info_directly(container)) return std::move(*info);
     const OpenImage open = open_image(std::move(container), bytes, file);
     return {static_cast<int>(open.header.width), static_cast<int>(open.header.height),
             static_cast<int>(open.header.channels), open.header.bits, open.metadata};

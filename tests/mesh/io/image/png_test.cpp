@@ -6,15 +6,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <filesystem>
-#include <fstream>
 #include <random>
 
 #include "io/image/deflate.h"
-#include "io/image/image_file_container.h"
-#include "io/image/image_file_module.h"
 #include "io/image/png_encoder.h"
 #include "io/image/png_filter.h"
+#include "module_reference.h"
 #include "relief/mesh/error.h"
 #include "relief/mesh/image_file.h"
 #include "support/shared_data.h"
@@ -23,6 +20,9 @@ namespace relief {
 namespace {
 
 using namespace std::string_literals;
+using test::by_module;
+using test::directly;
+using test::expect_same;
 using testing::HasSubstr;
 
 std::span<const std::byte> bytes_of(const std::string& text) {
@@ -81,43 +81,6 @@ std::string palette(int bits) {
     return chunk("PLTE", colors);
 }
 
-std::optional<Image> directly(const std::string& file) {
-    const ImageContainer container = examine_image(bytes_of(file), "a.png");
-    const std::optional<PlainPng> png = open_plain_png(container.stripped);
-    if (!png) return std::nullopt;
-    std::optional<Image::Samples> samples = decode(*png);
-    if (!samples) return std::nullopt;
-    return Image{png->width, png->height, png->channels, ColorSpace::data, std::move(*samples)};
-}
-
-/// The same by libpng; nothing where that refuses the file.
-std::optional<Image> by_module(const std::string& file) {
-    const ImageContainer container = examine_image(bytes_of(file), "a.png");
-    const ImageModule& module = image_module("a.png");
-    const ImageModuleFailure silent{nullptr, [](void*, const char*) {}};
-    const ImageModuleText none{nullptr, [](void*, const char*, const char*) {}};
-    ImageModuleHeader header;
-    ImageModuleReader* reader = module.open("png", container.stripped.data(),
-                                            container.stripped.size(), &header, none, silent);
-    if (reader == nullptr) return std::nullopt;
-    Image image = make_image(static_cast<int>(header.width), static_cast<int>(header.height),
-                             static_cast<int>(header.channels), header.bits, ColorSpace::data);
-    void* const samples = std::visit([](auto& all) -> void* { return all.data(); }, image.samples);
-    const bool read = module.read(reader, 0, header.height, samples, silent);
-    module.close(reader);
-    if (!read) return std::nullopt;
-    return image;
-}
-
-void expect_same(const std::optional<Image>& found, const std::optional<Image>& expected,
-                 const std::string& what) {
-    ASSERT_TRUE(found && expected) << what;
-    EXPECT_EQ(found->width, expected->width) << what;
-    EXPECT_EQ(found->height, expected->height) << what;
-    EXPECT_EQ(found->channels, expected->channels) << what;
-    EXPECT_TRUE(found->samples == expected->samples) << what;
-}
-
 TEST(PlainPngs, OfEveryKindAndFilterReadAsLibpngReadsThem) {
     for (const auto& [width, height] : {std::pair(1U, 1U), {7U, 6U}, {33U, 11U}}) {
         for (const int type : {0, 2, 3, 4, 6}) {
@@ -140,22 +103,9 @@ TEST(PlainPngs, OfEveryKindAndFilterReadAsLibpngReadsThem) {
 
 TEST(PlainPngs, AmongRealFilesReadAsLibpngReadsThem) {
     RELIEF_NEEDS_SHARED(data, "data");
-    std::size_t direct = 0, left = 0;
-    for (const auto& entry : std::filesystem::recursive_directory_iterator(data)) {
-        if (entry.path().extension() != ".png") continue;
-        std::ifstream stream(entry.path(), std::ios::binary);
-        const std::string file{std::istreambuf_iterator<char>(stream), {}};
-        std::optional<Image> found;
-        try {
-            found = directly(file);
-        } catch (const FileError&) {
-            continue;  // Refused before any decoder sees it.
-        }
-        found ? ++direct : ++left;
-        if (found) expect_same(found, by_module(file), entry.path().string());
-    }
-    EXPECT_GT(direct, 4 * left);
-    EXPECT_GT(direct, 50U);
+    const test::Comparison comparison = test::compare_all(data, ".png");
+    EXPECT_GT(comparison.direct, 50U);
+    EXPECT_GT(comparison.direct, 4 * comparison.left);
 }
 
 TEST(PlainPngs, WhatIsOddOrDamagedIsLeftToTheImageModule) {
