@@ -326,7 +326,7 @@ INSTANTIATE_TEST_SUITE_P(
         Refused{"square.obj", 2,
                 "--output is missing (name a picture to write, or ask for --explain-effects)"},
         Refused{"square.obj --output out/p.jpg", 2,
-                "--output out/p.jpg: no format to write a picture in (use .png or .exr)"},
+                "--output out/p.jpg: no format to write a picture in (use .png, .exr or .apng)"},
         Refused{"square.obj --output out/old.png --size 5", 2,
                 "--size 5: not a size like 1920x1080"},
         Refused{"square.obj --output out/old.png --samples 2", 2, "--samples 2: not one of 1, 4"},

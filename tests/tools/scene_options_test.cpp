@@ -34,13 +34,13 @@ TEST(SceneOptions, NothingAskedForChangesNoMaterial) {
     const Workplace workplace;
     workplace.write_square("square.obj");
     const ComposedScene plain = composed(of(workplace / "square.obj"));
-    for (const Material& material : plain.scene.materials) {
+    for (const Material& material : plain.scene().materials) {
         EXPECT_EQ(material.diffuse, default_material().diffuse);
         EXPECT_EQ(material.specular, default_material().specular);
         EXPECT_FALSE(material.diffuse_texture || material.normal_map);
     }
-    EXPECT_FALSE(plain.scene.environment);
-    EXPECT_THAT(plain.scene.images, IsEmpty());
+    EXPECT_FALSE(plain.scene().environment);
+    EXPECT_THAT(plain.scene().images, IsEmpty());
 }
 
 TEST(SceneOptions, MeshesWithoutAMaterialTakePartInAllMaterials) {
@@ -50,7 +50,7 @@ TEST(SceneOptions, MeshesWithoutAMaterialTakePartInAllMaterials) {
                     "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nusemtl red\nf 1 2 3\n");
     ViewOptions options = of(workplace / "two.obj");
     options.shininess = 77.0F;
-    const Scene scene = composed(options).scene;
+    const Scene scene = composed(options).scene();
     for (const Mesh& mesh : scene.meshes) {
         for (const MaterialRange& range : mesh.material_ranges) {
             ASSERT_TRUE(range.material);
@@ -64,7 +64,7 @@ TEST(SceneOptions, AMapReplacesTheDiffuseColourOfEveryMaterial) {
     workplace.write_square("square.obj");
     ViewOptions options = of(workplace / "square.obj");
     options.diffuse_map = "map.png";
-    const Scene scene = composed(options).scene;
+    const Scene scene = composed(options).scene();
     ASSERT_EQ(scene.images.size(), 1U);
     EXPECT_EQ(std::get<std::filesystem::path>(scene.images[0].source), "map.png")
         << "named, and read only when it is drawn";
@@ -80,10 +80,10 @@ TEST(SceneOptions, DefaultLightsShineFromTheViewersSideWhereverTheCameraIs) {
     for (const float azimuth : {0.0F, 1.0F, 3.0F}) {
         options.camera = CameraOption{.azimuth = azimuth, .elevation = 0.3F};
         const ComposedScene lit = composed(options);
-        ASSERT_EQ(lit.scene.directional_lights.size(), 2U);
-        EXPECT_NE(lit.scene.ambient, glm::vec3(0.0F));
+        ASSERT_EQ(lit.scene().directional_lights.size(), 2U);
+        EXPECT_NE(lit.scene().ambient, glm::vec3(0.0F));
         const glm::vec3 to_viewer = towards(azimuth, 0.3F);
-        for (const DirectionalLight& light : lit.scene.directional_lights)
+        for (const DirectionalLight& light : lit.scene().directional_lights)
             EXPECT_LT(test::degrees_between(-light.direction_world, to_viewer), 80.0);
     }
 }
@@ -94,9 +94,9 @@ TEST(SceneOptions, LightsOnTheCommandLineReplaceAllOthers) {
     ViewOptions options = of(workplace / "square.obj");
     options.lights = {PointLight{}};
     const ComposedScene lit = composed(options);
-    EXPECT_THAT(lit.scene.directional_lights, IsEmpty());
-    ASSERT_EQ(lit.scene.point_lights.size(), 1U);
-    EXPECT_EQ(lit.scene.ambient, glm::vec3(0.0F));
+    EXPECT_THAT(lit.scene().directional_lights, IsEmpty());
+    ASSERT_EQ(lit.scene().point_lights.size(), 1U);
+    EXPECT_EQ(lit.scene().ambient, glm::vec3(0.0F));
     EXPECT_THAT(lit.notes, IsEmpty());
 }
 

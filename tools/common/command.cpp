@@ -139,14 +139,14 @@ double Stages::milliseconds(std::string_view name) const {
     return sum;
 }
 
-Stages::Running::Running(Stages& stages, const std::string& name)
+Stages::Running::Running(Stages& stages, const std::string& name, const std::string& shown)
     : stages_(stages), index_(0), start_(std::chrono::steady_clock::now()) {
     const auto known = std::find_if(stages.finished_.begin(), stages.finished_.end(),
                                     [&](const Stage& stage) { return stage.name == name; });
     index_ = static_cast<std::size_t>(known - stages.finished_.begin());
     if (known == stages.finished_.end()) stages.finished_.push_back({name, 0});
     if (stages.show_) {
-        fmt::print(stderr, "\r\033[K{} ...", name);
+        fmt::print(stderr, "\r\033[K{} ...", shown);
         std::fflush(stderr);
     }
 }

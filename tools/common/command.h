@@ -72,7 +72,14 @@ class Stages {
 
     template <typename Work>
     auto run(const std::string& name, Work&& work) {
-        const Running running(*this, name);
+        const Running running(*this, name, name);
+        return std::forward<Work>(work)();
+    }
+
+    /// The same, with other words on the terminal: "draw 3 of 24".
+    template <typename Work>
+    auto run(const std::string& name, const std::string& shown, Work&& work) {
+        const Running running(*this, name, shown);
         return std::forward<Work>(work)();
     }
 
@@ -83,7 +90,7 @@ class Stages {
     /// Books the time of one step when it goes out of scope, by an exception too.
     class Running {
       public:
-        Running(Stages& stages, const std::string& name);
+        Running(Stages& stages, const std::string& name, const std::string& shown);
         ~Running();
         Running(const Running&) = delete;
         Running& operator=(const Running&) = delete;

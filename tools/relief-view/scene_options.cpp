@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 
 #include "common/text.h"
 #include "environment_options.h"
@@ -91,7 +92,7 @@ void add_default_lights(Scene& scene, const Camera& camera) {
 }
 
 void set_lights(ComposedScene& composed, const ViewOptions& options) {
-    Scene& scene = composed.scene;
+    Scene& scene = composed.scene();
     if (!options.lights.empty()) {
         replace_lights(scene, options.lights, composed.notes);
     } else if (light_count(scene) == 0 && scene.environment && scene.environment->lights) {
@@ -111,23 +112,51 @@ SceneOptions scene_options(const ViewOptions& options) {
     return {reason_for_phong(options).empty() ? Model::as_authored : Model::phong};
 }
 
+/// Scene files say what is behind the model; model files cannot.
+bool has_own_background(const ViewOptions& options) {
+    return extension_of(options.model) == ".json";
+}
+
+/// Shows lamps that have a place, of a size that follows the scene's.
+void mark_lights(ComposedScene& composed, float share) {
+    const Bounds bounds = world_bounds(composed.scene());
+    const float size = bounds.empty() ? 1.0F : glm::length(bounds.max - bounds.min);
+    if (composed.scene().point_lights.empty() && composed.scene().spot_lights.empty()) {
+        throw UsageError("--light-markers: there is no point or spot light to show",
+                         "add one with --light, or leave it out");
+    }
+    add_light_markers(composed.graph, share * std::max(size, std::numeric_limits<float>::min()));
+}
+
 }  // namespace
 
 ComposedScene compose_scene(const ViewOptions& options, Stages& stages, Report& report) {
     ComposedScene composed;
-    composed.scene = stages.run("read", [&] {
-        return about(options.model,
-                     [&] { return load_scene(options.model, scene_options(options), report); });
+    composed.graph = stages.run("read", [&] {
+        return about(options.model, [&] {
+            return load_scene_graph(options.model, scene_options(options), report);
+        });
     });
-    if (composed.scene.instances.empty())
+    if (options.time) pose(composed.graph, *options.time);
+    Scene& scene = composed.scene();
+    if (scene.instances.empty())
         throw FileError(options.model, "holds no triangles, so there is nothing to draw");
-    override_materials(composed.scene, options, stages, report, composed.notes);
-    set_environment(composed.scene, options);
-    composed.scene.background = options.background.value_or(default_background);
-    composed.scene.exposure = options.exposure.value_or(composed.scene.exposure);
-    composed.scene.tone_mapping = options.tone_mapping.value_or(composed.scene.tone_mapping);
-    composed.camera = camera_for(composed.scene, options);
+    if (options.frames && duration(composed.graph) == 0.0 && !options.seconds)
+        throw UsageError("--frames: nothing moves in this scene", "use --turntable");
+    override_materials(scene, options, stages, report, composed.notes);
+    set_environment(scene, options);
+    scene.background = options.background.value_or(
+        has_own_background(options) ? scene.background : default_background);
+    scene.exposure = options.exposure.value_or(scene.exposure);
+    scene.tone_mapping = options.tone_mapping.value_or(scene.tone_mapping);
+    composed.camera_follows_scene = scene.camera && !options.camera;
+    composed.camera = camera_for(scene, options);
     set_lights(composed, options);
+    const Bounds bounds = world_bounds(scene);
+    if (!bounds.empty()) composed.middle = 0.5F * (bounds.min + bounds.max);
+    for (const Instance& instance : scene.instances)
+        composed.at_rest.push_back(instance.world_from_object);
+    if (options.light_markers) mark_lights(composed, *options.light_markers);
     return composed;
 }
 

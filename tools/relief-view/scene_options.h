@@ -11,15 +11,23 @@
 
 #include "common/command.h"
 #include "relief/mesh/report.h"
-#include "relief/shade/scene.h"
+#include "relief/shade/scene_graph.h"
 #include "view_options.h"
 
 namespace relief::tools {
 
 struct ComposedScene {
-    Scene scene;
+    SceneGraph graph;
     Camera camera;
-    std::vector<std::string> notes;  ///< What was added or could not be done, for the summary.
+    bool camera_follows_scene = false;  ///< The scene's own camera, which may move.
+    std::vector<std::string> notes;     ///< What was added or could not be done, for the summary.
+
+    // For turntables: what turns, where it stands, and about what.
+    std::vector<glm::mat4> at_rest;
+    glm::vec3 middle{0.0F};
+
+    Scene& scene() { return graph.scene; }
+    [[nodiscard]] const Scene& scene() const { return graph.scene; }
 };
 
 /// \param options  settled (view_options.h)

@@ -11,6 +11,7 @@
 #include "map_options.h"
 #include "material_options.h"
 #include "picture_reference.h"
+#include "sequence_options.h"
 
 namespace relief::tools {
 namespace {
@@ -18,7 +19,7 @@ namespace {
 void add_output_options(CLI::App& app, ViewOptions& options) {
     const std::string group = "Output";
     add_path(app, "--output", options.output,
-             "Picture to write: .png (8 bit, sRGB) or .exr (linear float).")
+             "Picture to write: .png (8 bit, sRGB), .exr (linear float) or .apng (animated).")
         ->group(group);
     add_value(app, "--size", "WxH", "Width and height in pixels. Default: 1024x1024.",
               [&](const std::string& subject, const std::string& text) {
@@ -107,8 +108,9 @@ void check_output(const ViewOptions& options) {
            "write a .png, or leave it out");
     if (!options.output) return;
     const std::string extension = extension_of(*options.output);
-    refuse(extension != ".png" && extension != ".exr", "--output " + options.output->string(),
-           "no format to write a picture in", "use .png or .exr");
+    refuse(extension != ".png" && extension != ".exr" && extension != ".apng",
+           "--output " + options.output->string(), "no format to write a picture in",
+           "use .png, .exr or .apng");
     refuse(*options.output == options.model, "--output", "would overwrite the model", "");
     require_folder_of(*options.output);
 }
@@ -151,12 +153,14 @@ CameraOption parse_camera(const std::string& subject, const std::string& text) {
 
 void add_view_options(CLI::App& app, ViewOptions& options) {
     // Not required in CLI11's eyes: settle() looks for it behind --environment.
-    add_path(app, "MODEL", options.model, "Model to show: .glb .gltf .obj .ply .stl .off");
+    add_path(app, "MODEL", options.model,
+             "Model to show: .glb .gltf .obj .ply .stl .off, or a scene: .json");
     add_output_options(app, options);
     add_map_options(app, options);
     add_material_options(app, options);
     add_environment_options(app, options);
     add_light_options(app, options);
+    add_sequence_options(app, options);
     add_reference_options(app, options);
     const Choices<Backend> backends = {
         {"auto", Backend::automatic}, {"osmesa", Backend::osmesa}, {"egl", Backend::egl}};
@@ -170,6 +174,7 @@ void settle(ViewOptions& options) {
     give_back_model(options);
     if (options.model.empty()) throw UsageError("MODEL is missing");
     check_output(options);
+    check_sequence(options);
     check_reference(options);
     check_maps(options);
     check_materials(options);

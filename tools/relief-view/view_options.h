@@ -97,6 +97,12 @@ struct ViewOptions {
     std::optional<float> vertical_fov;
     std::optional<glm::vec4> background;  ///< Linear RGB and coverage.
 
+    std::optional<int> turntable;  ///< Pictures of one turn.
+    std::optional<int> frames;     ///< Pictures of the scene's animation.
+    std::optional<double> seconds;
+    std::optional<double> frames_per_second;
+    std::optional<double> time;
+
     Backend backend = Backend::automatic;
     bool explain_effects = false;
     bool json = false;
