@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: Apache-2.0
+// Sequences of pictures: names of numbered files, turntables, animations, and what is refused.
+#include "sequence.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <array>
+#include <fstream>
+
+#include "relief/mesh/image_file.h"
+#include "sequence_options.h"
+#include "tools/refusal.h"
+#include "tools/workplace.h"
+
+namespace relief::tools {
+namespace {
+
+using test::ProgramResult;
+using test::Refused;
+using test::Workplace;
+using testing::HasSubstr;
+
+TEST(NumberedFile, HasItsNumberBehindTheNameOrInPlaceOfTheHashes) {
+    EXPECT_EQ(numbered_file("out/spin.png", 7), "out/spin-0007.png");
+    EXPECT_EQ(numbered_file("spin.exr", 12345), "spin-12345.exr");
+    EXPECT_EQ(numbered_file("out/a##b.png", 3), "out/a03b.png");
+    EXPECT_EQ(numbered_file("out/#.png", 12), "out/12.png");
+}
+
+Image picture(const std::filesystem::path& file) {
+    return read_image(file, ImageUse::color);
+}
+
+TEST(Turntable, ComesRoundToWhereItBegan) {
+    const Workplace workplace;
+    workplace.write_square("square.obj");
+    const ProgramResult turned = workplace.run(
+        "relief-view square.obj --turntable 4 --size 64x64 --output out/t.png --camera 0,0");
+    ASSERT_EQ(turned.exit_code, 0) << turned.error;
+    EXPECT_EQ(workplace.outputs(), "t-0001.png t-0002.png t-0003.png t-0004.png");
+    ASSERT_EQ(workplace.run("relief-view square.obj --size 64x64 --output out/p.png --camera 0,0")
+                  .exit_code,
+              0);
+    const Image still = picture(workplace / "out/p.png");
+    EXPECT_EQ(picture(workplace / "out/t-0001.png").samples, still.samples);
+    // A quarter turned, a square is seen edge-on; half turned it fills the same pixels.
+    EXPECT_NE(picture(workplace / "out/t-0002.png").samples, still.samples);
+    EXPECT_THAT(turned.out, HasSubstr("t-0001.png to out/t-0004.png"));
+}
+
+TEST(Turntable, AsAnAnimationIsOneFile) {
+    const Workplace workplace;
+    workplace.write_square("square.obj");
+    const ProgramResult result = workplace.run(
+        "relief-view square.obj --turntable 3 --size 32x32 --output out/t.apng --fps 10");
+    ASSERT_EQ(result.exit_code, 0) << result.error;
+    EXPECT_EQ(workplace.outputs(), "t.apng");
+    EXPECT_THAT(workplace.read("out/t.apng"), HasSubstr("acTL"));
+    EXPECT_THAT(result.out, HasSubstr("frames"));
+}
+
+/// A triangle that moves one unit to the right in two seconds.
+constexpr const char* moving_triangle = R"({
+  "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}],
+  "nodes": [{"mesh": 0}], "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+  "buffers": [{"byteLength": 68, "uri": "moving.bin"}],
+  "bufferViews": [{"buffer": 0, "byteLength": 36}, {"buffer": 0, "byteOffset": 36, "byteLength": 32}],
+  "accessors": [
+    {"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [0,0,0], "max": [1,1,0]},
+    {"bufferView": 1, "componentType": 5126, "count": 2, "type": "SCALAR", "min": [0], "max": [2]},
+    {"bufferView": 1, "byteOffset": 8, "componentType": 5126, "count": 2, "type": "VEC3"}],
+  "animations": [{"samplers": [{"input": 1, "output": 2}],
+                  "channels": [{"sampler": 0, "target": {"node": 0, "path": "translation"}}]}]
+})";
+
+void write_moving_triangle(const Workplace& workplace) {
+    workplace.write("moving.gltf", moving_triangle);
+    const std::array<float, 17> numbers{0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 2, 0, 0, 0, 1, 0, 0};
+    std::ofstream(workplace / "moving.bin", std::ios::binary)
+        .write(reinterpret_cast<const char*>(numbers.data()), sizeof numbers);
+}
+
+TEST(Frames, ShowTheAnimationEvenlySpacedInTime) {
+    const Workplace workplace;
+    write_moving_triangle(workplace);
+    const std::string look = " --size 48x48 --camera 0,0,2 --output out/";
+    ASSERT_EQ(workplace.run("relief-view moving.gltf --frames 4" + look + "f#.png").exit_code, 0);
+    EXPECT_EQ(workplace.outputs(), "f1.png f2.png f3.png f4.png");
+    // The camera stays where the first picture has it, so single pictures at other times differ in
+    // framing; the first is the same.
+    ASSERT_EQ(workplace.run("relief-view moving.gltf" + look + "p.png").exit_code, 0);
+    EXPECT_EQ(picture(workplace / "out/f1.png").samples, picture(workplace / "out/p.png").samples);
+    EXPECT_NE(picture(workplace / "out/f2.png").samples, picture(workplace / "out/f1.png").samples);
+    EXPECT_NE(picture(workplace / "out/f3.png").samples, picture(workplace / "out/f2.png").samples);
+}
+
+class SequenceRefusal : public testing::TestWithParam<Refused> {};
+
+TEST_P(SequenceRefusal, SaysWhyAndLeavesNothingBehind) {
+    const Workplace workplace;
+    workplace.write_square("square.obj");
+    const std::string line = std::string("relief-view ") + GetParam().line;
+    expect_refusal(workplace, "relief-view", {line.c_str(), GetParam().exit_code, GetParam().error},
+                   "old.png");
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Usage, SequenceRefusal,
+    testing::Values(
+        Refused{"square.obj --output out/old.png --turntable 0", 2, "--turntable 0: not between"},
+        Refused{"square.obj --output out/old.png --turntable 4 --frames 4", 2,
+                "--turntable: contradicts --frames"},
+        Refused{"square.obj --output out/old.png --seconds 4", 2,
+                "--seconds: says how much --frames shows"},
+        Refused{"square.obj --output out/old.png --turntable 4 --fps 10", 2,
+                "--fps: is said of an animation"},
+        Refused{"square.obj --output out/a.apng", 2, "--output out/a.apng: an animation of one"},
+        Refused{"square.obj --output out/old.png --frames 4", 2,
+                "--frames: nothing moves in this scene (use --turntable)"},
+        Refused{"square.obj --explain-effects --turntable 4", 2,
+                "--turntable: there is no --output"},
+        Refused{"square.obj --output out/old.png --light-markers 0.1", 2,
+                "--light-markers: there is no point or spot light to show"}));
+
+INSTANTIATE_TEST_SUITE_P(
+    Materials, SequenceRefusal,
+    testing::Values(
+        Refused{"square.obj --output out/old.png --material golt", 2,
+                "--material golt: there is no such material; did you mean 'gold'?"},
+        Refused{"square.obj --output out/old.png --metallic-roughness 1", 2,
+                "--metallic-roughness 1: not metallic,roughness"},
+        Refused{"square.obj --output out/old.png --metallic-roughness 1,2", 2,
+                "--metallic-roughness 1,2: both must be within 0 and 1"},
+        Refused{"square.obj --output out/old.png --metallic-roughness 1,0 --shininess 4", 2,
+                "--metallic-roughness: is glTF's model, and --shininess asks for Phong's"},
+        Refused{"square.obj --output out/old.png --shading as_authored --interpolation gouraud", 2,
+                "--interpolation gouraud: asks for Phong's model"},
+        Refused{"square.obj --output out/old.png --height-as bump_map", 2,
+                "--height-as: says what a --height-map becomes"},
+        Refused{"square.obj --output out/old.png --normal-space object", 2,
+                "--normal-space: says how to read a --normal-map"},
+        Refused{"square.obj --output out/old.png --fresnel conductor", 2,
+                "--fresnel: there is no --environment to reflect"},
+        Refused{"square.obj --output out/old.png --environment-light on", 2,
+                "--environment-light: there is no --environment"},
+        Refused{"square.obj --output out/old.exr --exposure 1", 2,
+                "--exposure: belongs to display colours"}));
+
+}  // namespace
+}  // namespace relief::tools
