@@ -136,5 +136,55 @@ TEST_F(NormalMapping, WithNothingInATexelUsesTheSurface) {
     EXPECT_NEAR(pixel(radiance(scene, 8, 8), 4, 4).r, 1.0, 1e-6);
 }
 
+/// Normals that lean by an angle to the left and to the right, texel by texel, as floats.
+Image rippled(float angle) {
+    Image map = make_image(64, 64, 3, 32, ColorSpace::data);
+    auto& samples = std::get<std::vector<float>>(map.samples);
+    for (std::size_t i = 0; i < samples.size(); i += 3) {
+        const float lean = i / 3 % 2 == 0 ? angle : -angle;
+        samples[i] = 0.5F + 0.5F * std::sin(lean);
+        samples[i + 1] = 0.5F;
+        samples[i + 2] = 0.5F + 0.5F * std::cos(lean);
+    }
+    return map;
+}
+
+TEST_F(NormalMapping, WidensTheHighlightsOfRipplesFinerThanAPixel) {
+    Scene scene = mapped(test::facing_square(), rippled(0.3F), Green::up, FlatCode::half);
+    for (glm::vec2& texcoord : scene.meshes[0].texcoords)
+        texcoord *= 64.0F;  // 240 texels a pixel: only the smallest mip level is seen.
+    Material& material = scene.materials[0];
+    material.diffuse = glm::vec3(0.0F);
+    material.specular = glm::vec3(1.0F);
+    material.shininess = 100.0F;
+    scene.directional_lights = {{{0, 0, -1}, glm::vec3(1.0F)}};
+    const auto middle = [&] { return pixel(radiance(scene, 17, 17), 8, 8).r; };
+    EXPECT_NEAR(middle(), 1.0, 1e-4);  // As if it were smooth.
+    material.specular_antialiasing = true;
+    const double variance = 1.0 / std::cos(0.3) - 1.0;
+    const double widened = 100.0 / (1.0 + 100.0 * variance);
+    EXPECT_NEAR(middle(), (1.0 + widened) / 101.0, 1e-3);
+    scene.materials[0].normal_map->scale = 0.5F;  // Says nothing about what the map holds.
+    EXPECT_NEAR(middle(), (1.0 + widened) / 101.0, 1e-3);
+
+    material.metallic_roughness = MetallicRoughness{};
+    material.metallic_roughness->roughness = 0.2F;
+    const double sharp = 2.0 / std::pow(0.2, 4.0) - 2.0;
+    const double alpha_squared = 2.0 / (sharp / (1.0 + sharp * variance) + 2.0);
+    // pi D V at n = h = l = v: 1 / (4 alpha^2).
+    EXPECT_NEAR(middle(), 0.25 / alpha_squared, 0.01);
+}
+
+TEST_F(NormalMapping, LeavesHighlightsAsTheyAreWhereTheMapIsNotMinified) {
+    Scene scene = mapped(test::facing_square(), leaning(0, 0, 127), Green::up, FlatCode::middle);
+    scene.materials[0].specular = glm::vec3(0.5F);
+    scene.materials[0].shininess = 1000.0F;
+    scene.directional_lights = {{{0.1F, 0, -1}, glm::vec3(1.0F)}};
+    const Image sharp = radiance(scene, 32, 32);
+    scene.materials[0].specular_antialiasing = true;
+    // The rounding of 8-bit codes is no variance: not a bit differs.
+    EXPECT_TRUE(test::same_bits(radiance(scene, 32, 32), sharp));
+}
+
 }  // namespace
 }  // namespace relief
