@@ -1,21 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// The surroundings as a cube map, from six images or from a panorama.
+/// The surroundings as a cube map, from six images, a panorama or a light probe.
 ///
 /// World space, right-handed, y up. Looked up by a world direction, outwards: texture(cube, d).
-/// Faces +x -x +y -y +z -z, each with OpenGL's orientation: the direction of face point (s, t),
-/// both from -1 to 1 and t = -1 in the image's top row, is
-///
-///     +x (1, -t, -s)   -x (-1, -t, s)   +y (s, 1, t)   -y (s, -1, -t)   +z (s, -t, 1)   -z (-s,
-///     -t, -1)
+/// Faces +x -x +y -y +z -z, each with OpenGL's orientation (environment/cube_faces.h).
 ///
 /// In a panorama, direction d stands at u = 0.5 + atan2(d.x, -d.z) / 2 pi from the left and
-/// v = acos(d.y) / pi from the top: its centre is -z, its top row +y, +x right of the centre.
+/// v = acos(d.y) / pi from the top: its centre is -z, its top row +y, +x right of the centre. Light
+/// probes are as in environment/angular_map.h.
 /// Tests: tests/shade/gl/cube_map_test.cpp.
 #pragma once
 
 #include <span>
 #include <string_view>
+#include <vector>
 
 #include "gl/handle.h"
 #include "relief/mesh/image.h"
@@ -54,5 +52,26 @@ CubeMap make_cube_map(const Api& api, std::span<const Image> faces, std::string_
 /// Restores the framebuffer binding and the viewport; leaves no program or vertex array bound.
 CubeMap make_cube_map_from_panorama(const Api& api, const Image& panorama, std::string_view name,
                                     Report& report, int size = 0);
+
+/// A cube map of a light probe, in the same way. There is no seam at the rim: the outermost two
+/// texels, which the rim may cut, give way to those within.
+///
+/// \param size  of a face; 0 takes half the map's width, rounded up, which keeps its resolution
+///              everywhere up to a right angle from its middle
+/// \throws InvalidInput also if the map is not square
+CubeMap make_cube_map_from_angular_map(const Api& api, const Image& map, std::string_view name,
+                                       Report& report, int size = 0);
+
+/// One level of the six faces in linear light: three float channels.
+std::vector<Image> read_faces(const Api& api, const CubeMap& cube, int level);
+
+/// GL_TEXTURE_CUBE_MAP_POSITIVE_X and the five after it.
+GLenum cube_face_target(std::size_t face);
+
+/// How many levels it takes from this size down to 1x1.
+int level_count(int size);
+
+/// \throws GpuError if faces of this size are larger than the context's limit
+void check_cube_size(const Api& api, int size, std::string_view name);
 
 }  // namespace relief::gl

@@ -9,6 +9,7 @@
 
 #include "effects/shader_source.h"
 #include "effects/surface_program.h"
+#include "environment/cube_faces.h"
 #include "parallel.h"
 #include "render/program_cache.h"
 #include "scene/image_source.h"
@@ -44,9 +45,15 @@ gl::CubeMap black_cube_map(const gl::Api& api) {
 gl::CubeMap cube_map_of(const gl::Api& api, const Environment& environment,
                         std::span<const Image> images, Report& report) {
     const std::string& name = sources_of(environment).front().name;
-    if (std::holds_alternative<CubeFaces>(environment.source)) {
-        return gl::make_cube_map(api, images, name, report);
+    if (const auto* faces = std::get_if<CubeFaces>(&environment.source)) {
+        if (!faces->left_handed) return gl::make_cube_map(api, images, name, report);
+        check_faces(images, name);
+        return gl::make_cube_map(api, other_handed(images), name, report);
     }
+    if (std::holds_alternative<CubeCross>(environment.source))
+        return gl::make_cube_map(api, faces_of_cross(images.front(), name), name, report);
+    if (std::holds_alternative<AngularMap>(environment.source))
+        return gl::make_cube_map_from_angular_map(api, images.front(), name, report);
     return gl::make_cube_map_from_panorama(api, images.front(), name, report);
 }
 

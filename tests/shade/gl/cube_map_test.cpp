@@ -436,6 +436,109 @@ TEST_P(CubeMaps, ARealPanoramaBecomesTheFacesThatOthersMadeOfIt) {
     EXPECT_GT(errors_of_faces(api(), cube, faces).relative_rms, 0.5);
 }
 
+/// A light probe whose texels hold what `radiance` says of their direction; black outside the rim.
+Image probe_of(int width, const std::function<glm::vec3(glm::vec3)>& radiance) {
+    Image image = make_image(width, width, 3, 32, ColorSpace::linear);
+    std::size_t i = 0;
+    for (int y = 0; y < width; ++y) {
+        for (int x = 0; x < width; ++x, i += 3) {
+            const glm::dvec2 place(2.0 * (x + 0.5) / width - 1.0, 1.0 - 2.0 * (y + 0.5) / width);
+            const double radius = glm::length(place);
+            if (radius > 1.0) continue;
+            const double angle = std::numbers::pi * radius;
+            const glm::dvec2 side = radius > 0.0 ? place / radius : glm::dvec2(0.0);
+            const glm::vec3 value = radiance(glm::dvec3(std::sin(angle) * side, -std::cos(angle)));
+            for (int c = 0; c < 3; ++c)
+                image.as<float>()[i + static_cast<std::size_t>(c)] = value[c];
+        }
+    }
+    return image;
+}
+
+TEST_P(CubeMaps, ALightProbeIsFoundInEveryDirection) {
+    Report report;
+    const CubeMap cube =
+        make_cube_map_from_angular_map(api(), probe_of(512, direction_itself), "ball", report);
+    EXPECT_EQ(cube.size, 256);
+    EXPECT_EQ(cube.levels, 9);
+    EXPECT_TRUE(report.empty());
+    std::vector<glm::vec3> inside;
+    std::vector<glm::vec3> behind;
+    for (const glm::vec3& direction : inside_faces(spread_directions(5000), 256)) {
+        // At the rim a texel turns by half a circle; what the two outermost texels would hold is
+        // 1.5 degrees there.
+        (direction.z > 0.98F ? behind : inside).push_back(direction);
+    }
+    ASSERT_GT(behind.size(), 20U);
+    EXPECT_LT(worst_degrees(look_up(api(), cube, inside), inside), 0.03);
+    EXPECT_LT(worst_degrees(look_up(api(), cube, behind), behind), 1.5);
+}
+
+TEST_P(CubeMaps, ALightProbesRimIsNoDarkSpot) {
+    Report report;
+    const auto even = [](glm::vec3) { return glm::vec3(0.5F, 2, 8); };
+    for (const int width : {1, 6, 33, 128}) {
+        const CubeMap cube =
+            make_cube_map_from_angular_map(api(), probe_of(width, even), "even", report);
+        for (const glm::vec3& seen : look_up(api(), cube, spread_directions(500)))
+            EXPECT_LT(glm::length(seen - glm::vec3(0.5F, 2, 8)), 1e-5F) << width;
+        EXPECT_LT(glm::length(look_up(api(), cube, {{0, 0, 1}})[0] - glm::vec3(0.5F, 2, 8)), 1e-5F);
+    }
+}
+
+TEST_P(CubeMaps, ARealLightProbeShowsTheRoomOfItsPanorama) {
+    RELIEF_NEEDS_SHARED(probe_file, "data/env/angular/venice_sunset_angular_512.hdr");
+    RELIEF_NEEDS_SHARED(panorama_file, "data/env/equirect/venice_sunset_1k.hdr");
+    Report report;
+    const CubeMap probe = make_cube_map_from_angular_map(
+        api(), read_image(probe_file, ImageUse::color), "probe", report, 256);
+    const CubeMap panorama = make_cube_map_from_panorama(
+        api(), read_image(panorama_file, ImageUse::color), "panorama", report, 256);
+    // Both were blurred differently on their way; at the 16 x 16 texels of level 4 that is gone.
+    const auto directions = spread_directions(2000);
+    const auto a = look_up(api(), probe, directions, 4.0F);
+    const auto b = look_up(api(), panorama, directions, 4.0F);
+    double apart = 0.0;
+    double all = 0.0;
+    for (std::size_t i = 0; i < a.size(); ++i) {
+        apart += static_cast<double>(glm::distance(a[i], b[i]));
+        all += static_cast<double>(glm::length(b[i]));
+    }
+    RecordProperty("relative_difference", std::to_string(apart / all));
+    EXPECT_LT(apart / all, 0.03);
+    EXPECT_TRUE(report.empty());
+}
+
+TEST_P(CubeMaps, ALightProbeThatIsNotSquareIsRefused) {
+    Report report;
+    EXPECT_THROW(make_cube_map_from_angular_map(api(), make_image(4, 2, 3, 32, ColorSpace::linear),
+                                                "oval", report),
+                 InvalidInput);
+    EXPECT_THROW(make_cube_map_from_angular_map(api(), make_image(4, 4, 3, 32, ColorSpace::linear),
+                                                "negative", report, -1),
+                 InvalidInput);
+}
+
+TEST_P(CubeMaps, FacesReadBackAreLinearLightAtEveryLevel) {
+    Report report;
+    std::vector<Image> faces;
+    for (int face = 0; face < 6; ++face) {
+        faces.push_back(make_image(4, 4, 3, 8, ColorSpace::srgb));
+        for (auto& sample : faces.back().as<std::uint8_t>())
+            sample = static_cast<std::uint8_t>(40 * face);
+    }
+    const CubeMap coded = make_cube_map(api(), faces, "coded", report);
+    const CubeMap linear = make_cube_map(api(), faces_of(4, direction_itself), "linear", report);
+    for (int level = 0; level < 3; ++level) {
+        const std::vector<Image> read = read_faces(api(), coded, level);
+        ASSERT_EQ(read.size(), 6U);
+        EXPECT_EQ(read[5].width, 4 >> level);
+        EXPECT_EQ(read[5].color_space, ColorSpace::linear);
+        EXPECT_NEAR(read[5].as<float>()[0], linear_from_srgb(200.0F / 255.0F), 1e-6F);
+    }
+    EXPECT_EQ(compare(read_faces(api(), linear, 0)[3], faces_of(4, direction_itself)[3]).max, 0.0);
+}
+
 TEST_P(CubeMaps, ConvertingDisturbsNoDrawingState) {
     const RenderTarget target(api(), 7, 5, ColorFormat::rgba8, 1);
     GLint framebuffer = 0;

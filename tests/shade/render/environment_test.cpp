@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "draw_test.h"
+#include "environment/cube_faces.h"
 #include "relief/mesh/error.h"
 #include "relief/shade/image_compare.h"
 #include "support/shapes.h"
@@ -49,6 +50,64 @@ TEST_F(Environments, LookAlikeAsSixFacesAndAsAPanorama) {
     std::get<Equirectangular>(turned.source).image.source =
         test::constant_image({0.2F, 0.2F, 0.2F, 1}, 3, 32, ColorSpace::linear);
     EXPECT_GT(compare(faces, render(mirror_ball(turned), settings).image).mean, 20.0);
+}
+
+/// Six faces, each of its own colour in its left half and another in its right.
+std::vector<Image> two_colored_faces() {
+    std::vector<Image> faces;
+    for (std::size_t face = 0; face < 6; ++face) {
+        Image image = make_image(4, 4, 3, 8, ColorSpace::srgb);
+        for (std::size_t i = 0; i < image.sample_count(); ++i) {
+            const bool right = i / 3 % 4 >= 2;
+            image.as<std::uint8_t>()[i] =
+                static_cast<std::uint8_t>(30 * face + 50 * (i % 3) + (right ? 25 : 0));
+        }
+        faces.push_back(std::move(image));
+    }
+    return faces;
+}
+
+TEST_F(Environments, LookAlikeAsSixFacesAndAsACross) {
+    const std::vector<Image> images = two_colored_faces();
+    CubeFaces faces;
+    Image cross = make_image(16, 12, 3, 8, ColorSpace::srgb);
+    const std::array<glm::ivec2, 6> corners{{{8, 4}, {0, 4}, {4, 0}, {4, 8}, {4, 4}, {12, 4}}};
+    for (std::size_t face = 0; face < 6; ++face) {
+        faces.faces.at(face) = {"face", images[face]};
+        for (std::size_t i = 0; i < 48; ++i) {
+            const auto x = static_cast<std::size_t>(corners.at(face).x) + i / 3 % 4;
+            const auto y = static_cast<std::size_t>(corners.at(face).y) + i / 12;
+            cross.as<std::uint8_t>()[3 * (16 * y + x) + i % 3] = images[face].as<std::uint8_t>()[i];
+        }
+    }
+    const FrameSettings settings{64, 64, 1, OutputCoding::srgb};
+    const Image as_faces = render(mirror_ball({faces, 1.0F, true}), settings).image;
+    const Image as_cross =
+        render(mirror_ball({CubeCross{{"cross", cross}}, 1.0F, true}), settings).image;
+    EXPECT_EQ(compare(as_faces, as_cross).max, 0.0);
+
+    // The other hand: the picture of a set that was turned by hand.
+    faces.left_handed = true;
+    const Image left = render(mirror_ball({faces, 1.0F, true}), settings).image;
+    CubeFaces turned;
+    const std::vector<Image> mirrored = other_handed(images);
+    for (std::size_t face = 0; face < 6; ++face)
+        turned.faces.at(face) = {"face", mirrored[face]};
+    EXPECT_EQ(compare(left, render(mirror_ball({turned, 1.0F, true}), settings).image).max, 0.0);
+    EXPECT_GT(compare(left, as_faces).mean, 5.0);
+}
+
+TEST_F(Environments, LookAlikeAsAPanoramaAndAsALightProbe) {
+    RELIEF_NEEDS_SHARED(panorama, "data/env/equirect/venice_sunset_1k.hdr");
+    RELIEF_NEEDS_SHARED(probe, "data/env/angular/venice_sunset_angular_512.hdr");
+    const FrameSettings settings{128, 128, 1, OutputCoding::srgb};
+    const Image round =
+        render(mirror_ball({Equirectangular{{"panorama", panorama}}, 1.0F, true}), settings).image;
+    const Image ball =
+        render(mirror_ball({AngularMap{{"probe", probe}}, 1.0F, true}), settings).image;
+    // The probe has half the panorama's texels at its middle; the eye sees a slight blur.
+    EXPECT_LT(flip_difference(round, ball).mean, 0.06);
+    EXPECT_LE(compare(round, ball).mean, 4.0);
 }
 
 TEST_F(Environments, NameTheFaceThatDoesNotFit) {

@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: Apache-2.0
+// Directions of cube faces, and cutting and turning of their images; see cube_faces.h. Sets that do
+// not fit together throw InvalidInput. Tests: tests/shade/environment/cube_faces_test.cpp.
+#include "environment/cube_faces.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "relief/mesh/error.h"
+
+namespace relief {
+
+namespace {
+
+/// An image of this size whose texel (x, y) is the other's texel source(x, y).
+template <typename Source>
+Image rearranged(const Image& from, int width, int height, Source source) {
+    Image to = make_image(width, height, from.channels, from.bits(), from.color_space);
+    const auto channels = static_cast<std::size_t>(from.channels);
+    std::visit(
+        [&](const auto& samples) {
+            auto& moved = std::get<std::decay_t<decltype(samples)>>(to.samples);
+            std::size_t i = 0;
+            for (int y = 0; y < height; ++y) {
+                for (int x = 0; x < width; ++x) {
+                    const glm::ivec2 place = source(x, y);
+                    const auto texel =
+                        static_cast<std::size_t>(place.y) * static_cast<std::size_t>(from.width) +
+                        static_cast<std::size_t>(place.x);
+                    for (std::size_t c = 0; c < channels; ++c)
+                        moved[i++] = samples[texel * channels + c];
+                }
+            }
+        },
+        from.samples);
+    return to;
+}
+
+/// Columns and rows of the faces in a cross.
+using Cells = std::array<glm::ivec2, 6>;
+constexpr Cells horizontal_cells{{{2, 1}, {0, 1}, {1, 0}, {1, 2}, {1, 1}, {3, 1}}};
+constexpr Cells vertical_cells{{{2, 1}, {0, 1}, {1, 0}, {1, 2}, {1, 1}, {1, 3}}};
+
+/// The integral of 1 / (1 + s^2 + t^2)^(3/2) from (0, 0).
+double corner_solid_angle(double s, double t) {
+    return std::atan2(s * t, std::sqrt(1.0 + s * s + t * t));
+}
+
+}  // namespace
+
+const std::array<glm::mat3, 6>& world_from_face() {
+    static const std::array<glm::mat3, 6> matrices{
+        glm::mat3{{0, 0, -1}, {0, -1, 0}, {1, 0, 0}}, glm::mat3{{0, 0, 1}, {0, -1, 0}, {-1, 0, 0}},
+        glm::mat3{{1, 0, 0}, {0, 0, 1}, {0, 1, 0}},   glm::mat3{{1, 0, 0}, {0, 0, -1}, {0, -1, 0}},
+        glm::mat3{{1, 0, 0}, {0, -1, 0}, {0, 0, 1}},  glm::mat3{{-1, 0, 0}, {0, -1, 0}, {0, 0, -1}},
+    };
+    return matrices;
+}
+
+glm::dvec3 face_direction(std::size_t face, double s, double t) {
+    return glm::dmat3(world_from_face().at(face)) * glm::dvec3(s, t, 1.0);
+}
+
+FacePoint face_point(const glm::dvec3& direction) {
+    const glm::dvec3 size = glm::abs(direction);
+    const int axis = size.x >= size.y && size.x >= size.z ? 0 : (size.y >= size.z ? 1 : 2);
+    const std::size_t face = 2 * static_cast<std::size_t>(axis) + (direction[axis] < 0.0 ? 1 : 0);
+    const glm::dvec3 point =
+        glm::transpose(glm::dmat3(world_from_face().at(face))) * (direction / size[axis]);
+    return {face, point.x, point.y};
+}
+
+double solid_angle(const glm::dvec2& from, const glm::dvec2& to) {
+    return corner_solid_angle(to.x, to.y) - corner_solid_angle(from.x, to.y) -
+           corner_solid_angle(to.x, from.y) + corner_solid_angle(from.x, from.y);
+}
+
+void check_faces(std::span<const Image> faces, std::string_view name) {
+    if (faces.size() != 6) {
+        throw InvalidInput(
+            fmt::format("cube map '{}' has {} faces, but needs 6", name, faces.size()));
+    }
+    const Image& first = faces.front();
+    for (std::size_t i = 0; i < faces.size(); ++i) {
+        const Image& face = faces[i];
+        const auto refuse = [&](const std::string& reason) {
+            throw InvalidInput(
+                fmt::format("cube map '{}': face {} {}", name, cube_face_names.at(i), reason));
+        };
+        if (face.empty()) refuse("has no texels");
+        if (face.width != face.height) {
+            refuse(fmt::format("has {} x {} texels, but must be square", face.width, face.height));
+        }
+        if (face.width != first.width) {
+            refuse(fmt::format("has {0} x {0} texels, but face +x has {1} x {1}", face.width,
+                               first.width));
+        }
+        if (face.bits() != first.bits() || face.channels != first.channels ||
+            face.color_space != first.color_space) {
+            refuse("differs from face +x in channels, bits or colour space");
+        }
+    }
+}
+
+std::vector<Image> faces_of_cross(const Image& cross, std::string_view name) {
+    const bool is_horizontal = cross.width / 4 * 3 == cross.height && cross.width % 4 == 0;
+    const bool is_vertical = cross.height / 4 * 3 == cross.width && cross.height % 4 == 0;
+    if (cross.empty() || (!is_horizontal && !is_vertical)) {
+        throw InvalidInput(fmt::format(
+            "cross '{}' has {} x {} texels, but the faces of a cube lie in 4 x 3 (horizontal) or "
+            "3 x 4 (vertical) squares",
+            name, cross.width, cross.height));
+    }
+    const int size = is_horizontal ? cross.width / 4 : cross.width / 3;
+    std::vector<Image> faces;
+    for (std::size_t face = 0; face < 6; ++face) {
+        const glm::ivec2 corner =
+            (is_horizontal ? horizontal_cells : vertical_cells).at(face) * size;
+        const bool is_turned = is_vertical && face == 5;
+        faces.push_back(rearranged(cross, size, size, [&](int x, int y) {
+            const glm::ivec2 place(x, y);
+            return corner + (is_turned ? glm::ivec2(size - 1) - place : place);
+        }));
+    }
+    return faces;
+}
+
+std::vector<Image> other_handed(std::span<const Image> faces) {
+    std::vector<Image> mirrored;
+    for (const std::size_t face : {1U, 0U, 2U, 3U, 4U, 5U}) {
+        const Image& from = faces[face];
+        mirrored.push_back(rearranged(from, from.width, from.height, [&](int x, int y) {
+            return glm::ivec2(from.width - 1 - x, y);
+        }));
+    }
+    return mirrored;
+}
+
+}  // namespace relief
