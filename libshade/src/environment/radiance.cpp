@@ -8,8 +8,6 @@ namespace relief {
 
 namespace {
 
-constexpr float largest_half = 65504.0F;
-
 /// What a half float can hold of a sample, counting what it cannot.
 float storable(float value, std::size_t texel, Report& report) {
     if (std::isfinite(value) && std::abs(value) <= largest_half) return value;

@@ -9,6 +9,8 @@
 
 namespace relief {
 
+inline constexpr float largest_half = 65504.0F;
+
 /// Linear float of any image, with nothing that would become infinite as half float. Alpha, where
 /// there is one, is treated alike: nothing looks it up.
 ///

@@ -94,6 +94,7 @@ CubeMap make_empty_cube_map(const Api& api, int size, int levels, std::string_vi
                             GL_FLOAT, nullptr);
         }
     }
+    api->TexParameteri(GL_TEXTURE_CUBE_MAP, GL_TEXTURE_MAX_LEVEL, levels - 1);
     api->BindTexture(GL_TEXTURE_CUBE_MAP, 0);
     api.check(fmt::format("making cube map '{}', six faces of {} x {}", name, size, size));
     return cube;

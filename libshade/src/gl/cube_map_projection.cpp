@@ -64,9 +64,7 @@ CubeMap projected(const Api& api, const Image& image, const Projection& projecti
     const Texture source = make_texture(api, radiance, name, false);
     const CubePainter painter(api, fmt::format("{} to cube map", projection.name), declarations,
                               projection.radiance);
-    // Until its smaller levels are made, level 0 is all there is.
-    CubeMap cube = make_empty_cube_map(api, size, 1, name);
-    cube.levels = level_count(size);
+    CubeMap cube = make_empty_cube_map(api, size, level_count(size), name);
     api->ActiveTexture(GL_TEXTURE0);
     api->BindTexture(GL_TEXTURE_2D, source.name());
     api->BindSampler(0, 0);

@@ -10,6 +10,10 @@
 #include "effects/shader_source.h"
 #include "effects/surface_program.h"
 #include "environment/cube_faces.h"
+#include "environment/environment_brdf.h"
+#include "environment/irradiance_sh.h"
+#include "gl/prefilter.h"
+#include "gl/texture.h"
 #include "parallel.h"
 #include "render/program_cache.h"
 #include "scene/image_source.h"
@@ -57,6 +61,35 @@ gl::CubeMap cube_map_of(const gl::Api& api, const Environment& environment,
     return gl::make_cube_map_from_panorama(api, images.front(), name, report);
 }
 
+/// What the surroundings shed, times their intensity, padded as the shader wants it.
+std::array<glm::vec4, 9> irradiance_of(const gl::Api& api, const gl::CubeMap& environment,
+                                       float intensity) {
+    // The harmonics are as wide as the sphere: details of a degree and a half do not matter.
+    constexpr int enough_texels = 64;
+    int level = 0;
+    while (environment.size >> level > enough_texels)
+        ++level;
+    const IrradianceSh sh = irradiance_sh(read_faces(api, environment, level));
+    std::array<glm::vec4, 9> padded{};
+    for (std::size_t i = 0; i < sh.size(); ++i)
+        padded.at(i) = glm::vec4(intensity * sh.at(i), 0.0F);
+    return padded;
+}
+
+/// Column for n.v, row for roughness; red is A, green B (environment/environment_brdf.h).
+gl::Texture brdf_texture(const gl::Api& api) {
+    constexpr int size = 32;
+    gl::Texture texture =
+        gl::make_texture(api, environment_brdf_table(size), "albedo of GGX", false);
+    api->BindTexture(GL_TEXTURE_2D, texture.name());
+    gl::set_sampling(api, GL_TEXTURE_2D,
+                     {GL_CLAMP_TO_EDGE, GL_CLAMP_TO_EDGE, GL_LINEAR, GL_LINEAR, 1.0F});
+    // Two channels stand for grey and alpha elsewhere.
+    api->TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_SWIZZLE_G, GL_GREEN);
+    api->BindTexture(GL_TEXTURE_2D, 0);
+    return texture;
+}
+
 template <typename Condition>
 bool any_draw(const FramePlan& plan, Condition condition) {
     return std::any_of(plan.draws.begin(), plan.draws.end(),
@@ -88,7 +121,14 @@ EnvironmentMaps::EnvironmentMaps(const gl::Api& api, const Scene& scene, const F
     } else if (mirrors || blurs || sheds || plan.skybox) {
         sharp_ = black_cube_map(api);
     }
-    if (blurs) blurred_ = black_cube_map(api);
+    const bool splits = any_draw(plan, [](const Features& f) {
+        return f.metallic_roughness &&
+               (f.reflection == ReflectionTerm::glossy || f.environment_diffuse);
+    });
+    if (splits) brdf_ = brdf_texture(api);
+    if (blurs) blurred_ = images.empty() ? black_cube_map(api) : make_prefiltered(api, *sharp_);
+    if (sheds && !images.empty())
+        irradiance_sh_ = irradiance_of(api, *sharp_, scene.environment->intensity);
 }
 
 void EnvironmentMaps::bind(const gl::Api& api) const {
