@@ -14,10 +14,6 @@ namespace relief {
 
 namespace {
 
-std::uint32_t lamp_count(const Features& f) {
-    return f.directional_lights + f.point_lights + f.spot_lights;
-}
-
 /// What an opaque surface has no use for.
 void drop_alpha(Features& f) {
     if (f.alpha == AlphaMode::opaque) f.opacity_texture = false;

@@ -73,6 +73,10 @@ bool any(const glm::vec3& color) {
 
 }  // namespace
 
+std::uint32_t lamp_count(const Features& f) {
+    return f.directional_lights + f.point_lights + f.spot_lights;
+}
+
 LightRowLayout light_row_layout(const Features& features) {
     const std::uint32_t more = features.highlight_colors ? 1 : 0;
     LightRowLayout layout;

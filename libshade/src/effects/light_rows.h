@@ -22,6 +22,9 @@
 
 namespace relief {
 
+/// How many lamps of all kinds a set of effects has.
+std::uint32_t lamp_count(const Features& features);
+
 /// Rows that every OpenGL 3.3 holds in a uniform block (16 KiB); beyond, a buffer texture.
 inline constexpr std::uint32_t max_block_rows = 1024;
 

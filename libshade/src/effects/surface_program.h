@@ -2,7 +2,7 @@
 /// \file
 /// Which shader files a set of effects chooses, and the program's source put together from them.
 ///
-/// The one table of parts (surface_program.cpp) says for every file when it is chosen, which step
+/// The one table of parts (shader_parts.h) says for every file when it is chosen, which step
 /// it stands for, and what it takes from outside; planned_interface() (effects.h) is read from it.
 /// Tests: tests/shade/effects/surface_program_test.cpp, tests/shade/render/programs_test.cpp.
 #pragma once
