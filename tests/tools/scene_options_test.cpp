@@ -100,25 +100,5 @@ TEST(SceneOptions, LightsOnTheCommandLineReplaceAllOthers) {
     EXPECT_THAT(lit.notes, IsEmpty());
 }
 
-TEST(SceneOptions, SixFacesAreFoundInAFolderByTheEndsOfTheirNames) {
-    const Workplace workplace;
-    const std::vector<std::string> ends = {"posx", "negx", "posy", "negy", "posz", "negz"};
-    for (const std::string& end : ends)
-        workplace.write("out/xmas_" + end + ".png", "");
-    workplace.write("out/readme.txt", "");
-    const CubeFaces faces = cube_faces_in(workplace / "out");
-    for (std::size_t i = 0; i < 6; ++i) {
-        EXPECT_EQ(std::get<std::filesystem::path>(faces.faces[i].source),
-                  workplace / ("out/xmas_" + ends[i] + ".png"));
-    }
-    workplace.write("out/other_negy.jpg", "");
-    try {
-        cube_faces_in(workplace / "out");
-        FAIL() << "did not throw";
-    } catch (const FileError& error) {
-        EXPECT_THAT(error.what(), HasSubstr("both other_negy.jpg and xmas_negy.png end in negy"));
-    }
-}
-
 }  // namespace
 }  // namespace relief::tools

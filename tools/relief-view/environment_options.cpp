@@ -4,12 +4,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <set>
 
 #include "common/command.h"
 #include "relief/mesh/image_file.h"
+#include "relief/shade/environment_files.h"
 
 namespace relief::tools {
 namespace {
@@ -162,34 +161,6 @@ Environment environment_of(const ViewOptions& options) {
     environment.intensity = options.environment_intensity.value_or(1.0F);
     environment.skybox = !options.no_skybox;
     return environment;
-}
-
-CubeFaces cube_faces_in(const std::filesystem::path& folder) {
-    constexpr std::array<const char*, 6> ends = {"posx", "negx", "posy", "negy", "posz", "negz"};
-    // In order of name, so that the message does not depend on the file system.
-    std::set<std::filesystem::path> files;
-    for (const auto& entry : std::filesystem::directory_iterator(folder))
-        files.insert(entry.path());
-    CubeFaces faces;
-    for (std::size_t i = 0; i < ends.size(); ++i) {
-        std::optional<std::filesystem::path> found;
-        for (const std::filesystem::path& file : files) {
-            if (!file.stem().string().ends_with(ends[i])) continue;
-            if (found) {
-                throw failure(folder,
-                              fmt::format("both {} and {} end in {}", found->filename().string(),
-                                          file.filename().string(), ends[i]),
-                              "name the six files instead");
-            }
-            found = file;
-        }
-        if (!found) {
-            throw failure(folder, fmt::format("no file whose name ends in {}", ends[i]),
-                          "name the six files in the order +x -x +y -y +z -z");
-        }
-        faces.faces[i] = image_file(*found);
-    }
-    return faces;
 }
 
 void set_reflection(Material& material, const ViewOptions& options) {

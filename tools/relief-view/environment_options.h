@@ -17,10 +17,6 @@ void check_environment(const ViewOptions& options);
 /// one image's shape is of no layout and none is named
 Environment environment_of(const ViewOptions& options);
 
-/// Six images in a folder, by the ends of their names: posx, negx, posy, negy, posz, negz.
-/// \throws FileError naming the first that is missing, or two that claim one place
-CubeFaces cube_faces_in(const std::filesystem::path& folder);
-
 /// What materials do with the environment beside what their files say.
 void set_reflection(Material& material, const ViewOptions& options);
 

@@ -13,6 +13,7 @@
 #include "relief/mesh/error.h"
 #include "relief/mesh/frames.h"
 #include "scene/gltf_scene.h"
+#include "scene/scene_json.h"
 
 namespace relief {
 
@@ -126,7 +127,9 @@ SceneGraph load_scene_graph(const std::filesystem::path& file, const SceneOption
     const std::string extension = lower_extension(file);
     SceneGraph graph;
     try {
-        if (extension == ".gltf" || extension == ".glb") {
+        if (extension == ".json") {
+            graph = read_scene_json(file, options, report);
+        } else if (extension == ".gltf" || extension == ".glb") {
             graph = graph_from(GltfDocument::read(file, report), options, report);
         } else {
             graph.scene = scene_from(read_mesh(file, report), report);

@@ -23,7 +23,8 @@ struct SceneOptions {
     MaterialModel model = MaterialModel::as_authored;
 };
 
-/// Reads .gltf, .glb, .obj, .ply, .stl or .off as a scene graph, posed at time 0.
+/// Reads .gltf, .glb, .obj, .ply, .stl, .off or a scene file (.json, docs/scene-files.md) as a
+/// scene graph, posed at time 0.
 ///
 /// Meshes without normals get flat ones from glTF (its rule) and angle-weighted ones otherwise.
 /// Tangents are left to the effect plan. Lights and the first camera come from glTF; nothing is

@@ -99,6 +99,8 @@ struct SceneGraph {
     std::vector<Carried> point_lights;
     std::vector<Carried> spot_lights;
     Carried camera;
+    /// Width and height of the picture that a scene file asks for.
+    std::optional<glm::ivec2> picture_size;
     /// The camera's far plane keeps behind every mesh as things move: the file named none.
     bool camera_sees_all = false;
     /// All play at once; where two move the same node, the later one has its way.

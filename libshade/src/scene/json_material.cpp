@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: Apache-2.0
+// A material of a scene file, member by member. Colours as three linear numbers, one number, or an
+// sRGB code. Unknown members and values are refused with what is allowed.
+// Tests: tests/shade/scene/scene_json_test.cpp.
+#include "scene/json_material.h"
+
+#include <fmt/format.h>
+
+#include <functional>
+
+namespace relief {
+
+namespace {
+
+constexpr Named<Interpolation> interpolations[] = {{"per_pixel", Interpolation::per_pixel},
+                                                   {"gouraud", Interpolation::gouraud},
+                                                   {"flat", Interpolation::flat}};
+constexpr Named<SpecularModel> specular_models[] = {
+    {"phong", SpecularModel::phong},
+    {"blinn_phong", SpecularModel::blinn_phong},
+    {"blinn_phong_normalized", SpecularModel::blinn_phong_normalized}};
+constexpr Named<FresnelModel> fresnel_models[] = {{"schlick", FresnelModel::schlick},
+                                                  {"dielectric", FresnelModel::dielectric},
+                                                  {"conductor", FresnelModel::conductor}};
+constexpr Named<AlphaMode> alpha_modes[] = {
+    {"opaque", AlphaMode::opaque}, {"mask", AlphaMode::mask}, {"blend", AlphaMode::blend}};
+constexpr Named<TangentFrame> tangent_frames[] = {{"stored", TangentFrame::stored},
+                                                  {"derivatives", TangentFrame::derivatives}};
+constexpr Named<NormalSpace> normal_spaces[] = {{"tangent", NormalSpace::tangent},
+                                                {"object", NormalSpace::object}};
+constexpr Named<Green> greens[] = {{"up", Green::up}, {"down", Green::down}};
+constexpr Named<FlatCode> flat_codes[] = {{"middle", FlatCode::middle}, {"half", FlatCode::half}};
+constexpr Named<TextureWrap> wraps[] = {{"repeat", TextureWrap::repeat},
+                                        {"clamp", TextureWrap::clamp},
+                                        {"mirror", TextureWrap::mirror}};
+constexpr Named<TextureFilter> filters[] = {{"linear", TextureFilter::linear},
+                                            {"nearest", TextureFilter::nearest}};
+
+using Setter = std::function<void(const JsonCursor&)>;
+/// What each member of an object does, by its key.
+using Members = std::map<std::string, Setter>;
+
+void read_members(const JsonCursor& object, const Members& members) {
+    std::vector<std::string> known;
+    for (const auto& [key, setter] : members)
+        known.push_back(key);
+    object.allow(known);
+    for (const std::string& key : object.keys())
+        members.at(key)(object.at(key));
+}
+
+Setter number(float& value, float least, float most) {
+    return [&value, least, most](const JsonCursor& c) { value = c.number(least, most); };
+}
+Setter color(glm::vec3& value) {
+    return [&value](const JsonCursor& c) { value = c.color(); };
+}
+Setter flag(bool& value) {
+    return [&value](const JsonCursor& c) { value = c.boolean(); };
+}
+template <typename Value, std::size_t count>
+Setter choice(Value& value, const Named<Value> (&names)[count]) {
+    return [&value, &names](const JsonCursor& c) { value = one_of(c, names); };
+}
+Setter texture(std::optional<Texture>& value, JsonImages& images) {
+    return [&value, &images](const JsonCursor& c) { value = images.texture(c); };
+}
+
+NormalMap normal_map_from(const JsonCursor& object, JsonImages& images) {
+    NormalMap map;
+    if (object.is_text()) {
+        map.texture = images.texture(object);
+        return map;
+    }
+    read_members(object,
+                 {{"texture", [&](const JsonCursor& c) { map.texture = images.texture(c); }},
+                  {"scale", number(map.scale, -1e6F, 1e6F)},
+                  {"green", choice(map.green, greens)},
+                  {"flat", [&](const JsonCursor& c) { map.flat = one_of(c, flat_codes); }},
+                  {"space", choice(map.space, normal_spaces)}});
+    (void)object.at("texture");
+    return map;
+}
+
+BumpMap bump_map_from(const JsonCursor& object, JsonImages& images) {
+    BumpMap map;
+    if (object.is_text()) {
+        map.texture = images.texture(object);
+        return map;
+    }
+    read_members(object,
+                 {{"texture", [&](const JsonCursor& c) { map.texture = images.texture(c); }},
+                  {"strength", number(map.strength, -1e6F, 1e6F)}});
+    (void)object.at("texture");
+    return map;
+}
+
+MetallicRoughness metallic_roughness_from(const JsonCursor& object, JsonImages& images) {
+    MetallicRoughness model;
+    read_members(object, {{"base_color", color(model.base_color)},
+                          {"metallic", number(model.metallic, 0.0F, 1.0F)},
+                          {"roughness", number(model.roughness, 0.0F, 1.0F)},
+                          {"texture", texture(model.texture, images)}});
+    return model;
+}
+
+Material classic_material(const JsonCursor& cursor) {
+    const auto found = material_by_name(cursor.text());
+    if (!found) cursor.fail_unknown(cursor.text(), material_names());
+    return *found;
+}
+
+/// Every member by the name that it has in Material. "like" has been done before.
+Members members_of(Material& m, JsonImages& images) {
+    return {
+        {"like", [](const JsonCursor&) {}},
+        {"name", [&](const JsonCursor& c) { m.name = c.text(); }},
+        {"interpolation", choice(m.interpolation, interpolations)},
+        {"ambient", color(m.ambient)},
+        {"diffuse", color(m.diffuse)},
+        {"specular", color(m.specular)},
+        {"emission", color(m.emission)},
+        {"shininess", number(m.shininess, 0.0F, 1e6F)},
+        {"specular_model", choice(m.specular_model, specular_models)},
+        {"metallic_roughness",
+         [&](const JsonCursor& c) { m.metallic_roughness = metallic_roughness_from(c, images); }},
+        {"reflectivity", color(m.reflectivity)},
+        {"grazing_reflectivity", color(m.grazing_reflectivity)},
+        {"fresnel", choice(m.fresnel, fresnel_models)},
+        {"refractive_index", number(m.refractive_index, 1.0F, 1e3F)},
+        {"conductor_index", color(m.conductor_index)},
+        {"conductor_absorption", color(m.conductor_absorption)},
+        {"reflection_roughness", number(m.reflection_roughness, 0.0F, 1.0F)},
+        {"transmission", number(m.transmission, 0.0F, 1.0F)},
+        {"diffuse_texture", texture(m.diffuse_texture, images)},
+        {"specular_texture", texture(m.specular_texture, images)},
+        {"emission_texture", texture(m.emission_texture, images)},
+        {"occlusion_texture", texture(m.occlusion_texture, images)},
+        {"occlusion_strength", number(m.occlusion_strength, 0.0F, 1.0F)},
+        {"opacity_texture", texture(m.opacity_texture, images)},
+        {"normal_map", [&](const JsonCursor& c) { m.normal_map = normal_map_from(c, images); }},
+        {"bump_map", [&](const JsonCursor& c) { m.bump_map = bump_map_from(c, images); }},
+        {"tangent_frame", choice(m.tangent_frame, tangent_frames)},
+        {"specular_antialiasing", flag(m.specular_antialiasing)},
+        {"alpha_mode", choice(m.alpha_mode, alpha_modes)},
+        {"opacity", number(m.opacity, 0.0F, 1.0F)},
+        {"alpha_cutoff", number(m.alpha_cutoff, 0.0F, max_reflectance)},
+        {"double_sided", flag(m.double_sided)},
+        {"unlit", flag(m.unlit)},
+    };
+}
+
+}  // namespace
+
+std::filesystem::path JsonImages::file(const JsonCursor& cursor) const {
+    const std::filesystem::path path = (folder_ / cursor.text()).lexically_normal();
+    std::error_code ignored;
+    if (!std::filesystem::is_regular_file(path, ignored))
+        cursor.fail(fmt::format("there is no file {}", path.string()));
+    return path;
+}
+
+std::filesystem::path JsonImages::folder(const JsonCursor& cursor) const {
+    return (folder_ / cursor.text()).lexically_normal();
+}
+
+ImageSource JsonImages::source(const JsonCursor& cursor) const {
+    const std::filesystem::path path = file(cursor);
+    return {path.string(), path};
+}
+
+Texture JsonImages::texture(const JsonCursor& cursor) {
+    const JsonCursor image = cursor.is_object() ? cursor.at("image") : cursor;
+    const ImageSource found = source(image);
+    const auto [entry, is_new] =
+        index_of_.try_emplace(std::get<std::filesystem::path>(found.source), images_.size());
+    if (is_new) images_.push_back(found);
+    Texture result{entry->second};
+    if (cursor.is_object()) {
+        read_members(cursor, {{"image", [](const JsonCursor&) {}},
+                              {"wrap_u", choice(result.wrap_u, wraps)},
+                              {"wrap_v", choice(result.wrap_v, wraps)},
+                              {"filter", choice(result.filter, filters)}});
+    }
+    return result;
+}
+
+void read_material(const JsonCursor& object, JsonImages& images, Material& material) {
+    if (const auto like = object.find("like")) material = classic_material(*like);
+    read_members(object, members_of(material, images));
+    if (material.normal_map && material.bump_map)
+        object.fail("has a normal map and a bump map, but a surface has one normal");
+}
+
+}  // namespace relief

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// Materials and textures of scene files. Tests: tests/shade/scene/scene_json_test.cpp.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "relief/shade/scene.h"
+#include "scene/json_cursor.h"
+
+namespace relief {
+
+/// One of an enumeration's values by its name in files.
+template <typename Value>
+struct Named {
+    const char* name;
+    Value value;
+};
+
+/// \throws InvalidInput at the cursor's place, with all names
+template <typename Value, std::size_t count>
+Value one_of(const JsonCursor& cursor, const Named<Value> (&names)[count]) {
+    std::vector<std::string> known;
+    for (const Named<Value>& entry : names) {
+        if (cursor.text() == entry.name) return entry.value;
+        known.emplace_back(entry.name);
+    }
+    cursor.fail_unknown(cursor.text(), known);
+}
+
+/// The images of a scene by their files, each once.
+class JsonImages {
+  public:
+    /// \param folder  where relative paths begin
+    JsonImages(std::filesystem::path folder, std::vector<ImageSource>& images)
+        : folder_(std::move(folder)), images_(images) {}
+
+    /// The file that a string names. \throws InvalidInput if it is not there
+    [[nodiscard]] std::filesystem::path file(const JsonCursor& cursor) const;
+    /// The folder that a string names, there or not.
+    [[nodiscard]] std::filesystem::path folder(const JsonCursor& cursor) const;
+    [[nodiscard]] ImageSource source(const JsonCursor& cursor) const;
+    Texture texture(const JsonCursor& cursor);
+
+  private:
+    std::filesystem::path folder_;
+    std::vector<ImageSource>& images_;
+    std::map<std::filesystem::path, std::size_t> index_of_;
+};
+
+/// Sets what an object says of a material, every member by its name in Material; "like" starts
+/// from the classic table instead. \throws InvalidInput at the first offence
+void read_material(const JsonCursor& object, JsonImages& images, Material& material);
+
+}  // namespace relief
