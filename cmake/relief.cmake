@@ -19,36 +19,27 @@ if(RELIEF_SANITIZE)
 endif()
 
 # What every test runs under, for set_tests_properties too. Mesa's cache of compiled shaders would
-# carry results from one run to the next; and its own leaks are not ours. Two kinds of environment,
-# because gtest_discover_tests takes lists apart.
+# carry results from one run to the next; and its own leaks are not ours. With OpenImageIO's 261
+# libraries in the process, LeakSanitizer's own tracer can crash ("Tracer caught signal 11") in the
+# hook by which it follows thread-local storage: that is off. Two kinds of environment, because
+# gtest_discover_tests takes lists apart.
 set(leak_options suppressions=${PROJECT_SOURCE_DIR}/tests/support/lsan.supp:print_suppressions=0)
-set(common_properties TIMEOUT 300 ENVIRONMENT MESA_SHADER_CACHE_DISABLE=true)
-set(RELIEF_TEST_PROPERTIES ${common_properties} ENVIRONMENT_MODIFICATION
-                           LSAN_OPTIONS=set:${leak_options})
+set(RELIEF_TEST_PROPERTIES
+    TIMEOUT 300 ENVIRONMENT MESA_SHADER_CACHE_DISABLE=true ENVIRONMENT_MODIFICATION
+    LSAN_OPTIONS=set:intercept_tls_get_addr=0:${leak_options})
 
-# The same for programs that load OpenImageIO: with its 261 libraries in the process, LeakSanitizer's
-# own tracer crashes in one run out of some fifty ("Tracer caught signal 11"). So leaks are looked for
-# in the other programs only; everything else that the sanitizers see, they see here too.
-set(RELIEF_IMAGE_TEST_PROPERTIES ${common_properties} ENVIRONMENT_MODIFICATION
-                                 LSAN_OPTIONS=set:detect_leaks=0:${leak_options})
-
-# relief_add_tests(NAME sources... [LOADS_IMAGES] [LIBRARIES ...]): one GoogleTest program; each test
+# relief_add_tests(NAME sources... [LIBRARIES ...]): one GoogleTest program; each test
 # is a ctest entry called NAME/Suite.Test. A test that calls GTEST_SKIP shows as "Skipped" there.
-# LOADS_IMAGES: the program, or one that it runs, loads OpenImageIO.
 function(relief_add_tests name)
-    cmake_parse_arguments(ARG "LOADS_IMAGES" "" "LIBRARIES" ${ARGN})
+    cmake_parse_arguments(ARG "" "" "LIBRARIES" ${ARGN})
     add_executable(${name} ${ARG_UNPARSED_ARGUMENTS})
     set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${RELIEF_TEST_DIRECTORY})
     target_link_libraries(${name} PRIVATE relief_flags relief_test_support ${ARG_LIBRARIES}
                                           GTest::gmock GTest::gtest_main)
-    set(properties ${RELIEF_TEST_PROPERTIES})
-    if(ARG_LOADS_IMAGES)
-        set(properties ${RELIEF_IMAGE_TEST_PROPERTIES})
-    endif()
     gtest_discover_tests(
         ${name}
         TEST_PREFIX ${name}/
         NO_PRETTY_VALUES
         DISCOVERY_MODE PRE_TEST
-        PROPERTIES ${properties})
+        PROPERTIES ${RELIEF_TEST_PROPERTIES})
 endfunction()
