@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The surroundings in a direction of world space, blurred as GGX facets of this roughness do: each
-// level of the map is prefiltered for one roughness, evenly spaced. Source: [Karis 2013].
+// level of the map is prefiltered for one roughness, evenly spaced. Source: [Karis, SIGGRAPH 2013].
 
 #include "common/environment_intensity.glsl"
 

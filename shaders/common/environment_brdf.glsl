@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // How much of light from everywhere GGX facets mirror, by n.v and roughness: f0 times the table's
-// first number, plus its second. Source: [Karis 2013].
+// first number, plus its second. Source: [Karis, SIGGRAPH 2013].
 
 uniform sampler2D environment_brdf;
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // glTF's surfaces in an environment: the blurred surroundings, by the share of light from
-// everywhere that GGX facets mirror. Source: [Karis 2013].
+// everywhere that GGX facets mirror. Source: [Karis, SIGGRAPH 2013].
 
 #include "common/environment_brdf.glsl"
 #include "common/blurred_environment.glsl"

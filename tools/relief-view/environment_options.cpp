@@ -64,7 +64,7 @@ void add_reflection_options(CLI::App& app, ViewOptions& options) {
         ->group(group);
     add_value(app, "--fresnel", "none|schlick|dielectric|conductor",
               "How reflections grow towards grazing angles: not at all, by Schlick's formula, or "
-              "exactly, for glass or for a metal (gold). Default: schlick.",
+              "exactly, for glass or for a metal (gold, which scatters nothing). Default: schlick.",
               [&](const std::string& subject, const std::string& text) {
                   const Choices<int> names = {
                       {"none", -1}, {"schlick", 0}, {"dielectric", 1}, {"conductor", 2}};
@@ -174,6 +174,9 @@ void set_reflection(Material& material, const ViewOptions& options) {
         // Gold at 611, 549 and 466 nm [Johnson and Christy 1972].
         material.conductor_index = {0.21F, 0.42F, 1.35F};
         material.conductor_absorption = {3.27F, 2.35F, 1.77F};
+        // Metals scatter nothing.
+        if (*options.fresnel == FresnelModel::conductor)
+            material.diffuse = material.ambient = glm::vec3(0.0F);
         const bool exact = *options.fresnel != FresnelModel::schlick;
         if (exact && !options.reflectivity) material.reflectivity = glm::vec3(1.0F);
     }

@@ -4,10 +4,10 @@
 /// hemisphere around it with the weight D(h) n.l, where normal and eye are d itself and D is GGX's
 /// distribution of the half vector h. World space, linear light.
 ///
-/// Far from d the weight changes slowly, so that many texels count as one there [Barnes and Hut
-/// 1986]: one texel of the result takes some hundred terms instead of a hundred thousand.
-/// Source: the first half of the split sum [Karis, SIGGRAPH 2013].
-/// Tests: tests/shade/environment/blur_test.cpp.
+/// Far from d the weight changes slowly, so that many texels count as one there
+/// [Barnes and Hut 1986]: one texel of the result takes some hundred terms instead of a hundred
+/// thousand. Source: the first half of the split sum [Karis, SIGGRAPH 2013]. Tests:
+/// tests/shade/environment/blur_test.cpp.
 #pragma once
 
 #include <glm/glm.hpp>

@@ -134,7 +134,7 @@ struct MetallicRoughness {
 /// shows diffuse (or base_color) * tint and nothing else.
 ///
 /// Sources: [Phong 1975], [Blinn 1977], [Blinn 1978], [Schlick 1994], [Walter et al. 2007],
-/// [Hoffman 2013], [Karis 2013], glTF 2.0, appendix B. The CPU twin is reference.h.
+/// [Hoffman 2013], [Karis, SIGGRAPH 2013], glTF 2.0, appendix B. The CPU twin is reference.h.
 struct Material {
     std::string name;
     Interpolation interpolation = Interpolation::per_pixel;
