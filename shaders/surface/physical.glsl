@@ -3,6 +3,7 @@
 // what is scattered, what is mirrored head on, and how far the facets spread. Roughness is kept
 // where its fourth power is worth a float. Source: glTF 2.0, appendix B.
 
+#include "common/eye.glsl"
 #include "common/normalized_or.glsl"
 #include <position>
 #include <normal>
@@ -11,7 +12,6 @@
 #include <vertex_color>
 #include <metallic_roughness>
 
-uniform vec3 eye_world;
 uniform vec3 base_color;
 
 const float dielectric_f0 = 0.04;

@@ -2,11 +2,10 @@
 // The surface for highlights and reflections: normal, point, and the unit vector to the eye. Where
 // the eye touches the surface, that vector is the normal.
 
+#include "common/eye.glsl"
 #include "common/normalized_or.glsl"
 #include <position>
 #include <normal>
-
-uniform vec3 eye_world;
 
 struct Surface {
     vec3 normal_world;

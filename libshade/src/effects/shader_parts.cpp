@@ -140,7 +140,7 @@ Parts normal_parts(F f) {
                       .samplers = {"normal_texture"}};
     return {
         {"position", "common/position.glsl", true},
-        {"normal", "normal/flat.glsl", normal && is_flat(f)},
+        {"normal", "normal/flat.glsl", normal && is_flat(f), {.uniforms = {"eye_world"}}},
         {"normal", "normal/interpolated.glsl",
          normal && !is_flat(f) && f.detail == NormalDetail::none},
         {"normal", "normal/bent.glsl", bent},

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The environment by direction, in double. World space, linear light. See environment_lookup.h.
-// Bilinear within a face or a panorama; across the edges of faces the border texel goes on.
+// Bilinear, across the edges of faces as well (OpenGL's seamless cube maps).
 // Tests: tests/shade/reference/environment_lookup_test.cpp.
 #include "reference/environment_lookup.h"
 
@@ -126,12 +126,41 @@ EnvironmentLookup::EnvironmentLookup(const Environment& environment)
     if (environment.lights) project();
 }
 
+/// A texel of a face, or beyond its border the one across the edge that the faces share. Beyond a
+/// corner, where three faces meet, their mean.
+glm::dvec3 EnvironmentLookup::face_texel(std::size_t face, int x, int y) const {
+    const int size = images_[face].width();
+    if (x >= 0 && x < size && y >= 0 && y < size) return images_[face].at(x, y);
+    const int inside_x = std::clamp(x, 0, size - 1);
+    const int inside_y = std::clamp(y, 0, size - 1);
+    if (x != inside_x && y != inside_y) {
+        return (face_texel(face, inside_x, inside_y) + face_texel(face, x, inside_y) +
+                face_texel(face, inside_x, y)) /
+               3.0;
+    }
+    const FacePoint across = on_face(
+        direction_on_face(face, (2.0 * x + 1.0) / size - 1.0, (2.0 * y + 1.0) / size - 1.0));
+    const glm::dvec2 place =
+        glm::clamp(glm::floor((across.st * 0.5 + 0.5) * static_cast<double>(size)), glm::dvec2(0.0),
+                   glm::dvec2(size - 1.0));
+    return images_[across.face].at(static_cast<int>(place.x), static_cast<int>(place.y));
+}
+
 glm::dvec3 EnvironmentLookup::face_radiance(const glm::dvec3& direction) const {
     const glm::dvec3 d =
         left_handed_ ? glm::dvec3(-direction.x, direction.y, direction.z) : direction;
     const FacePoint point = on_face(d);
-    return images_[point.face].bilinear(point.st * 0.5 + 0.5, TextureWrap::clamp,
-                                        TextureWrap::clamp);
+    const glm::dvec2 place =
+        (point.st * 0.5 + 0.5) * static_cast<double>(images_[point.face].width()) - 0.5;
+    const glm::dvec2 corner = glm::floor(place);
+    const glm::dvec2 share = place - corner;
+    const int x = static_cast<int>(corner.x);
+    const int y = static_cast<int>(corner.y);
+    const auto texel = [&](int right, int down) {
+        return face_texel(point.face, x + right, y + down);
+    };
+    return glm::mix(glm::mix(texel(0, 0), texel(1, 0), share.x),
+                    glm::mix(texel(0, 1), texel(1, 1), share.x), share.y);
 }
 
 glm::dvec3 EnvironmentLookup::radiance(const glm::dvec3& direction_world) const {
@@ -155,8 +184,18 @@ glm::dvec3 EnvironmentLookup::radiance(const glm::dvec3& direction_world) const 
     return finite_or_zero(found) * intensity_;
 }
 
-glm::dvec3 EnvironmentLookup::blurred(const glm::dvec3& direction_world, double roughness) const {
-    if (roughness <= 0.0) return radiance(direction_world);
+glm::dvec3 EnvironmentLookup::looked_up(const glm::dvec3& direction_world, Trace& trace) const {
+    // Texels that pass by in a radian where they are finest, at the corner of a face; a panorama
+    // becomes a cube map of a quarter of its width.
+    const int width = images_.front().width();
+    const double size = layout_ == Layout::faces ? width : width / 4.0;
+    trace.look_up(glm::normalize(direction_world) * size);
+    return radiance(direction_world);
+}
+
+glm::dvec3 EnvironmentLookup::blurred(const glm::dvec3& direction_world, double roughness,
+                                      Trace& trace) const {
+    if (roughness <= 0.0) return looked_up(direction_world, trace);
     const glm::dmat3 world_from_local = basis_about(glm::normalize(direction_world));
     glm::dvec3 sum(0.0);
     double weights = 0.0;

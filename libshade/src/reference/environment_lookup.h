@@ -23,11 +23,15 @@ class EnvironmentLookup {
     /// \param direction_world  of any length but 0
     [[nodiscard]] glm::dvec3 radiance(const glm::dvec3& direction_world) const;
 
+    /// The same, for a trace.
+    [[nodiscard]] glm::dvec3 looked_up(const glm::dvec3& direction_world, Trace& trace) const;
+
     /// What a surface mirrors of it whose microfacets have GGX's distribution, seen and facing
     /// along the direction: the mean over directions l, mirrored at normals h that are drawn from
     /// the distribution, weighted by n.l.
     /// \param roughness  0 is a mirror
-    [[nodiscard]] glm::dvec3 blurred(const glm::dvec3& direction_world, double roughness) const;
+    [[nodiscard]] glm::dvec3 blurred(const glm::dvec3& direction_world, double roughness,
+                                     Trace& trace) const;
 
     /// Irradiance over pi on a surface of this normal, by spherical harmonics of order 2
     /// [Ramamoorthi and Hanrahan 2001]; 0 where their sum is negative.
@@ -36,6 +40,7 @@ class EnvironmentLookup {
   private:
     enum class Layout { faces, equirectangular, angular };
 
+    [[nodiscard]] glm::dvec3 face_texel(std::size_t face, int x, int y) const;
     [[nodiscard]] glm::dvec3 face_radiance(const glm::dvec3& direction) const;
     void project();
 

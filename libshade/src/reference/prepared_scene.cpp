@@ -80,19 +80,9 @@ PreparedInstance prepared(const Instance& instance, const Mesh& mesh,
 }
 
 void want_textures(PreparedScene& prepared, const Scene& scene, const Material& material) {
-    const auto want = [&](const std::optional<Texture>& texture, ImageUse use) {
-        if (texture) prepared.texels.want(scene, texture->image, use);
-    };
-    want(material.diffuse_texture, ImageUse::color);
-    want(material.specular_texture, ImageUse::color);
-    want(material.emission_texture, ImageUse::color);
-    want(material.occlusion_texture, ImageUse::data);
-    want(material.opacity_texture, ImageUse::data);
-    if (material.metallic_roughness) want(material.metallic_roughness->texture, ImageUse::data);
-    if (material.bump_map) want(material.bump_map->texture, ImageUse::data);
+    prepared.texels.want(scene, material);
     if (!material.normal_map) return;
     const std::size_t image = material.normal_map->texture.image;
-    want(material.normal_map->texture, ImageUse::data);
     const Image decoded = decode(scene.images[image], ImageUse::data);
     prepared.normal_map_bits[image] = decoded.bits();
     NormalMap undecided = *material.normal_map;

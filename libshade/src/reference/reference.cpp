@@ -21,17 +21,31 @@ namespace relief {
 
 namespace {
 
-using reference::Decisions;
 using reference::Hit;
 using reference::PreparedScene;
+using reference::Trace;
 
 /// One ray's outcome.
 struct Sample {
     glm::dvec4 color{0.0};    ///< Alpha not multiplied in.
-    std::vector<Hit> layers;  ///< What shows, nearest first.
-    Decisions decisions;
+    std::vector<Hit> layers;  ///< What it met, nearest first; holes as well, but no hidden sides.
+    std::optional<Hit> first_shown;
+    Trace trace;
     bool ambiguous = false;  ///< Two surfaces at depths that OpenGL may not tell apart.
 };
+
+/// How much of what is behind it a surface hides; NaN hides nothing.
+double shown_alpha(const Material& material, double alpha) {
+    switch (material.alpha_mode) {
+        case AlphaMode::mask:
+            return alpha >= static_cast<double>(material.alpha_cutoff) ? 1.0 : 0.0;
+        case AlphaMode::blend:
+            return alpha > 0.0 ? std::min(alpha, 1.0) : 0.0;
+        case AlphaMode::opaque:
+            break;
+    }
+    return 1.0;
+}
 
 std::vector<reference::ViewMesh> view_meshes(const PreparedScene& prepared) {
     std::vector<reference::ViewMesh> meshes;
@@ -57,6 +71,10 @@ class Tracer {
     /// Whether going from one sample to the other nothing jumps.
     [[nodiscard]] bool is_continuous(const Sample& a, const Sample& b) const;
 
+    /// Whether the next pixel may lie beyond the horizon of a textured triangle's plane, where the
+    /// differences between pixels by which OpenGL chooses a mip level mean nothing.
+    [[nodiscard]] bool is_edge_on(const Sample& sample, double x, double y) const;
+
   private:
     [[nodiscard]] const Camera& camera() const { return *prepared_.scene.camera; }
     [[nodiscard]] glm::dvec2 on_view_plane(double x, double y) const;
@@ -67,7 +85,7 @@ class Tracer {
     [[nodiscard]] bool is_too_close(const Hit& front, const Hit& behind) const;
     /// Adds what a hit shows to the colour, alpha multiplied in. \return whether it hides the rest
     bool add(const Hit& hit, Sample& sample) const;
-    [[nodiscard]] glm::dvec4 behind(const glm::dvec2& view_plane) const;
+    [[nodiscard]] glm::dvec4 behind(const glm::dvec2& view_plane, Trace& trace) const;
 
     const PreparedScene& prepared_;
     const ReferenceSettings& settings_;
@@ -84,28 +102,25 @@ glm::dvec2 Tracer::on_view_plane(double x, double y) const {
 bool Tracer::add(const Hit& hit, Sample& sample) const {
     const Material& material = prepared_.material_of(hit.instance, hit.triangle);
     if (!is_drawn(hit, material)) return false;
-    const reference::Shaded shaded = reference::shade(prepared_, hit, material, sample.decisions);
-    double alpha = 1.0;
-    if (material.alpha_mode == AlphaMode::mask) {
-        if (!(shaded.alpha >= static_cast<double>(material.alpha_cutoff))) return false;
-    } else if (material.alpha_mode == AlphaMode::blend) {
-        alpha = shaded.alpha > 0.0 ? std::min(shaded.alpha, 1.0) : 0.0;
-        if (alpha == 0.0) return false;
-    }
+    sample.layers.push_back(hit);
+    const reference::Shaded shaded = reference::shade(prepared_, hit, material, sample.trace);
+    const double alpha = shown_alpha(material, shaded.alpha);
+    sample.trace.decide(alpha > 0.0 ? 1 : 0);
+    if (alpha == 0.0) return false;
+    if (!sample.first_shown) sample.first_shown = hit;
     const glm::dvec3 radiance = reference::limited(shaded.radiance, reference::largest_radiance);
     const double share = (1.0 - sample.color.a) * alpha;
     sample.color += glm::dvec4(radiance * share, share);
-    sample.layers.push_back(hit);
     return alpha == 1.0;
 }
 
-glm::dvec4 Tracer::behind(const glm::dvec2& view_plane) const {
+glm::dvec4 Tracer::behind(const glm::dvec2& view_plane, Trace& trace) const {
     const auto& described = prepared_.scene.environment;
     if (!described || !described->skybox) return glm::dvec4(0.0);
     const glm::dmat3 world_from_view(camera().world_from_view);
     const glm::dvec3 way = world_from_view * glm::dvec3(view_plane, -1.0);
-    return {reference::limited(prepared_.environment->radiance(way), reference::largest_radiance),
-            1.0};
+    const glm::dvec3 radiance = prepared_.environment->looked_up(way, trace);
+    return {reference::limited(radiance, reference::largest_radiance), 1.0};
 }
 
 /// Half a millionth of the depth range: what a depth buffer of 24 bits tells apart, twenty times.
@@ -132,7 +147,8 @@ Sample Tracer::trace(double x, double y) const {
         }
         if (hides_the_rest) break;
     }
-    if (sample.color.a < 1.0) sample.color += (1.0 - sample.color.a) * behind(view_plane);
+    if (sample.color.a < 1.0)
+        sample.color += (1.0 - sample.color.a) * behind(view_plane, sample.trace);
     if (sample.color.a > 0.0) {
         sample.color = {glm::dvec3(sample.color) / sample.color.a, sample.color.a};
     }
@@ -163,9 +179,57 @@ bool Tracer::is_same_surface(const Hit& a, const Hit& b) const {
 }
 
 bool Tracer::is_continuous(const Sample& a, const Sample& b) const {
-    return a.decisions == b.decisions && !a.ambiguous && !b.ambiguous &&
+    return a.trace.decided_like(b.trace) && !a.ambiguous && !b.ambiguous &&
            std::equal(a.layers.begin(), a.layers.end(), b.layers.begin(), b.layers.end(),
                       [&](const Hit& i, const Hit& j) { return is_same_surface(i, j); });
+}
+
+bool Tracer::is_edge_on(const Sample& sample, double x, double y) const {
+    if (sample.trace.places().empty()) return false;
+    const auto ray = [&](double right, double down) {
+        return glm::dvec3(on_view_plane(x + right, y + down), -1.0);
+    };
+    return std::any_of(sample.layers.begin(), sample.layers.end(), [&](const Hit& hit) {
+        const reference::PreparedInstance& instance = prepared_.instances[hit.instance];
+        const glm::uvec3& corners = instance.mesh->triangles[hit.triangle];
+        const glm::dvec3 a = instance.positions_view[corners.x];
+        const glm::dvec3 normal = glm::cross(instance.positions_view[corners.y] - a,
+                                             instance.positions_view[corners.z] - a);
+        const double here = glm::dot(normal, ray(0.0, 0.0));
+        const double beside = std::abs(glm::dot(normal, ray(1.0, 0.0)) - here) +
+                              std::abs(glm::dot(normal, ray(0.0, 1.0)) - here);
+        return std::abs(here) <= beside;
+    });
+}
+
+/// Whether textures pass by faster than most of a texel a pixel between two rays.
+/// \param apart  how many pixels they are apart
+bool passes_fast(const Sample& a, const Sample& b, double apart) {
+    constexpr double most = 0.7;
+    const auto& from = a.trace.places();
+    const auto& to = b.trace.places();
+    if (from.size() != to.size()) return true;
+    for (std::size_t i = 0; i < from.size(); ++i) {
+        if (!(glm::length(to[i] - from[i]) <= most * apart)) return true;
+    }
+    return false;
+}
+
+/// Whether OpenGL averages a texture: by how fast it passes here, and, since it takes differences
+/// within blocks of four pixels, on the way to all pixels around. Where another surface begins
+/// there, OpenGL goes on along this one, and nothing is known: that counts as averaged.
+bool is_minified(const Tracer& tracer, const Sample& center, double x, double y, double margin) {
+    if (center.trace.places().empty()) return false;
+    for (const double apart : {margin, 1.0}) {
+        for (const double down : {-apart, 0.0, apart}) {
+            for (const double right : {-apart, 0.0, apart}) {
+                if (right == 0.0 && down == 0.0) continue;
+                const Sample beside = tracer.trace(x + right, y + down);
+                if (passes_fast(center, beside, std::hypot(right, down))) return true;
+            }
+        }
+    }
+    return false;
 }
 
 bool is_near_edge(const Tracer& tracer, const Sample& center, double x, double y, double margin) {
@@ -174,12 +238,12 @@ bool is_near_edge(const Tracer& tracer, const Sample& center, double x, double y
         const Sample beside = tracer.trace(x + margin * way.x, y + margin * way.y);
         if (!tracer.is_continuous(center, beside)) return true;
     }
-    return false;
+    return tracer.is_edge_on(center, x, y) || is_minified(tracer, center, x, y, margin);
 }
 
 ReferenceHit first_shown(const PreparedScene& prepared, const Sample& sample) {
-    if (sample.layers.empty()) return {};
-    const Hit& hit = sample.layers.front();
+    if (!sample.first_shown) return {};
+    const Hit& hit = *sample.first_shown;
     return {hit.instance, hit.triangle, reference::is_back(prepared, hit)};
 }
 

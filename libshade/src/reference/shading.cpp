@@ -24,11 +24,11 @@ struct Context {
     const PreparedScene& prepared;
     const Material& material;
     const Surface& surface;
-    Decisions& decisions;
+    Trace& trace;
 
     [[nodiscard]] glm::dvec4 look_up(const std::optional<Texture>& texture, ImageUse use) const {
         if (!texture || !surface.has_texcoord) return glm::dvec4(1.0);
-        return prepared.texels.look_up(*texture, use, surface.texcoord, decisions);
+        return prepared.texels.look_up(*texture, use, surface.texcoord, trace);
     }
 };
 
@@ -64,7 +64,7 @@ LampSums lamp_sums(const Context& context, const Surface& at) {
     LampSums sums;
     for (const Incoming& lamp : incoming_light(context.prepared.scene, at.position_world)) {
         const double n_dot_l = glm::dot(at.normal_world, lamp.light_world);
-        context.decisions.add(n_dot_l > 0.0 ? 1 : 0);
+        context.trace.decide(n_dot_l > 0.0 ? 1 : 0);
         if (!(n_dot_l > 0.0)) continue;
         sums.scattered += lamp.irradiance * n_dot_l;
         sums.highlights +=
@@ -105,7 +105,7 @@ glm::dvec3 surroundings(const Context& context, double roughness) {
     const Surface& at = context.surface;
     const glm::dvec3 mirrored =
         2.0 * glm::dot(at.normal_world, at.view_world) * at.normal_world - at.view_world;
-    return context.prepared.environment->blurred(mirrored, roughness);
+    return context.prepared.environment->blurred(mirrored, roughness, context.trace);
 }
 
 /// The environment behind, by Snell's law at the first surface.
@@ -117,8 +117,8 @@ glm::dvec3 refracted(const Context& context) {
     const double n_dot_v = glm::dot(n, v);
     const double cosine_inside =
         std::sqrt(std::max(1.0 - ratio * ratio * (1.0 - n_dot_v * n_dot_v), 0.0));
-    return context.prepared.environment->radiance(-ratio * v +
-                                                  (ratio * n_dot_v - cosine_inside) * n);
+    return context.prepared.environment->looked_up(
+        -ratio * v + (ratio * n_dot_v - cosine_inside) * n, context.trace);
 }
 
 glm::dvec3 emitted(const Context& context) {
@@ -139,12 +139,14 @@ glm::dvec3 phong_radiance(const Context& context, const Hit& hit, const glm::dve
     const glm::dvec3 highlights =
         glm::dvec3(material.specular) *
         glm::dvec3(context.look_up(material.specular_texture, ImageUse::color)) * lamps.highlights;
+    // Without an environment nothing is mirrored, and nothing seen through the surface.
     glm::dvec3 mirrors(0.0);
+    double transmission = 0.0;
     if (context.prepared.environment) {
         mirrors = fresnel_factor(material, glm::dot(at.normal_world, at.view_world));
+        transmission = static_cast<double>(material.transmission);
     }
     glm::dvec3 radiance = highlights + emitted(context);
-    const double transmission = static_cast<double>(material.transmission);
     radiance += (1.0 - mirrors) * (1.0 - transmission) * scattered;
     if (mirrors != glm::dvec3(0.0)) {
         const double roughness = static_cast<double>(material.reflection_roughness);
@@ -217,7 +219,7 @@ glm::dvec3 metallic_roughness_radiance(const Context& context, const glm::dvec3&
         occlusion(context) * surrounding_light(context, facets) + emitted(context);
     for (const Incoming& lamp : incoming_light(context.prepared.scene, at.position_world)) {
         const double n_dot_l = glm::dot(at.normal_world, lamp.light_world);
-        context.decisions.add(n_dot_l > 0.0 ? 1 : 0);
+        context.trace.decide(n_dot_l > 0.0 ? 1 : 0);
         if (!(n_dot_l > 0.0)) continue;
         radiance += lamp.irradiance * n_dot_l * scattered_by(facets, at, lamp.light_world, n_dot_l);
     }
@@ -227,9 +229,9 @@ glm::dvec3 metallic_roughness_radiance(const Context& context, const glm::dvec3&
 }  // namespace
 
 Shaded shade(const PreparedScene& prepared, const Hit& hit, const Material& material,
-             Decisions& decisions) {
-    const Surface surface = surface_at(prepared, hit, material, decisions);
-    const Context context{prepared, material, surface, decisions};
+             Trace& trace) {
+    const Surface surface = surface_at(prepared, hit, material, trace);
+    const Context context{prepared, material, surface, trace};
     const glm::dvec4 texel = context.look_up(material.diffuse_texture, ImageUse::color);
     const glm::dvec3 tint = glm::dvec3(texel) * glm::dvec3(surface.color);
     const double alpha = static_cast<double>(material.opacity) * texel.a * surface.color.a *

@@ -17,7 +17,6 @@ struct Shaded {
     double alpha = 1.0;        ///< As Material says, whatever the alpha mode.
 };
 
-Shaded shade(const PreparedScene& prepared, const Hit& hit, const Material& material,
-             Decisions& decisions);
+Shaded shade(const PreparedScene& prepared, const Hit& hit, const Material& material, Trace& trace);
 
 }  // namespace relief::reference

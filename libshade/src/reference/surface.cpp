@@ -103,20 +103,19 @@ glm::dvec3 decoded(const glm::dvec3& sample, int bits, FlatCode flat, Green gree
 }
 
 glm::dvec3 mapped_vector(const PreparedScene& prepared, const NormalMap& map,
-                         const glm::dvec2& texcoord, Decisions& decisions) {
-    const glm::dvec3 sample(
-        prepared.texels.look_up(map.texture, ImageUse::data, texcoord, decisions));
+                         const glm::dvec2& texcoord, Trace& trace) {
+    const glm::dvec3 sample(prepared.texels.look_up(map.texture, ImageUse::data, texcoord, trace));
     return decoded(sample, prepared.normal_map_bits.at(map.texture.image), prepared.flat_code(map),
                    map.green);
 }
 
 /// The normal of heights: central differences over one texel to either side.
 glm::dvec3 bumped_vector(const PreparedScene& prepared, const BumpMap& map,
-                         const glm::dvec2& texcoord, Decisions& decisions) {
+                         const glm::dvec2& texcoord, Trace& trace) {
     const Texels& texels = prepared.texels.get(map.texture.image, ImageUse::data);
     const auto height = [&](double x, double y) {
         const glm::dvec2 place = texcoord + glm::dvec2(x / texels.width(), y / texels.height());
-        return prepared.texels.look_up(map.texture, ImageUse::data, place, decisions).x;
+        return prepared.texels.look_up(map.texture, ImageUse::data, place, trace).x;
     };
     const double strength = static_cast<double>(map.strength);
     const double along_u = 0.5 * strength * (height(1.0, 0.0) - height(-1.0, 0.0));
@@ -126,10 +125,10 @@ glm::dvec3 bumped_vector(const PreparedScene& prepared, const BumpMap& map,
 
 /// The vector of tangent space that a material's normal or bump map asks for at a point.
 glm::dvec3 vector_tangent(const PreparedScene& prepared, const Material& material,
-                          const glm::dvec2& texcoord, Decisions& decisions) {
-    if (material.bump_map) return bumped_vector(prepared, *material.bump_map, texcoord, decisions);
+                          const glm::dvec2& texcoord, Trace& trace) {
+    if (material.bump_map) return bumped_vector(prepared, *material.bump_map, texcoord, trace);
     const double scale = static_cast<double>(material.normal_map->scale);
-    return mapped_vector(prepared, *material.normal_map, texcoord, decisions) *
+    return mapped_vector(prepared, *material.normal_map, texcoord, trace) *
            glm::dvec3(scale, scale, 1.0);
 }
 
@@ -140,8 +139,8 @@ bool holds_nothing(const glm::dvec3& vector) {
 
 /// The normal that an object-space map stores, in world space; zero where it stores none.
 glm::dvec3 stored_normal(const PreparedScene& prepared, const Hit& hit, const NormalMap& map,
-                         const glm::dvec2& texcoord, Decisions& decisions) {
-    const glm::dvec3 normal_object = mapped_vector(prepared, map, texcoord, decisions);
+                         const glm::dvec2& texcoord, Trace& trace) {
+    const glm::dvec3 normal_object = mapped_vector(prepared, map, texcoord, trace);
     if (holds_nothing(normal_object)) return glm::dvec3(0.0);
     const glm::dmat3 m(prepared.scene.instances[hit.instance].world_from_object);
     const glm::dmat3 cofactors(glm::cross(m[1], m[2]), glm::cross(m[2], m[0]),
@@ -152,7 +151,7 @@ glm::dvec3 stored_normal(const PreparedScene& prepared, const Hit& hit, const No
 
 /// The normal on the front side.
 glm::dvec3 front_normal(const PreparedScene& prepared, const Hit& hit, const Material& material,
-                        const glm::dvec2& texcoord, Decisions& decisions) {
+                        const glm::dvec2& texcoord, Trace& trace) {
     const Triangle triangle = triangle_of(prepared, hit);
     const glm::dvec3 normal = material.interpolation == Interpolation::flat
                                   ? front_of_plane(triangle)
@@ -163,10 +162,10 @@ glm::dvec3 front_normal(const PreparedScene& prepared, const Hit& hit, const Mat
                          (material.normal_map || material.bump_map);
     if (!has_map || triangle.instance.mesh->texcoords.empty()) return fallback;
     if (material.normal_map && material.normal_map->space == NormalSpace::object) {
-        return unit_or(stored_normal(prepared, hit, *material.normal_map, texcoord, decisions),
+        return unit_or(stored_normal(prepared, hit, *material.normal_map, texcoord, trace),
                        fallback);
     }
-    const glm::dvec3 vector = vector_tangent(prepared, material, texcoord, decisions);
+    const glm::dvec3 vector = vector_tangent(prepared, material, texcoord, trace);
     if (holds_nothing(vector)) return fallback;
     const Basis basis = material.tangent_frame == TangentFrame::derivatives
                             ? derived_basis(triangle, normal)
@@ -201,9 +200,9 @@ bool is_back(const PreparedScene& prepared, const Hit& hit) {
 }
 
 Surface surface_at(const PreparedScene& prepared, const Hit& hit, const Material& material,
-                   Decisions& decisions) {
+                   Trace& trace) {
     Surface surface = attributes_at(prepared, hit);
-    surface.normal_world = front_normal(prepared, hit, material, surface.texcoord, decisions);
+    surface.normal_world = front_normal(prepared, hit, material, surface.texcoord, trace);
     face_viewer(prepared, hit, surface);
     return surface;
 }

@@ -26,7 +26,7 @@ struct Surface {
 bool is_back(const PreparedScene& prepared, const Hit& hit);
 
 Surface surface_at(const PreparedScene& prepared, const Hit& hit, const Material& material,
-                   Decisions& decisions);
+                   Trace& trace);
 
 /// The same at a corner of the triangle that was hit, for light computed at vertices: nothing bends
 /// its normal.

@@ -17,6 +17,19 @@ bool is_finite(const glm::dvec2& v) {
     return std::isfinite(v.x) && std::isfinite(v.y);
 }
 
+/// Calls each(texture, use) for every texture that a material may have.
+template <typename Each>
+void for_each_texture(const Material& material, Each each) {
+    each(material.diffuse_texture, ImageUse::color);
+    each(material.specular_texture, ImageUse::color);
+    each(material.emission_texture, ImageUse::color);
+    each(material.occlusion_texture, ImageUse::data);
+    each(material.opacity_texture, ImageUse::data);
+    if (material.metallic_roughness) each(material.metallic_roughness->texture, ImageUse::data);
+    if (material.normal_map) each(material.normal_map->texture, ImageUse::data);
+    if (material.bump_map) each(material.bump_map->texture, ImageUse::data);
+}
+
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
 }  // namespace
@@ -68,26 +81,30 @@ glm::dvec4 Texels::bilinear(const glm::dvec2& uv, TextureWrap u, TextureWrap v) 
     return upper * (1.0 - share.y) + lower * share.y;
 }
 
-glm::dvec4 Texels::nearest(const glm::dvec2& uv, TextureWrap u, TextureWrap v,
-                           Decisions& decisions) const {
+glm::dvec4 Texels::nearest(const glm::dvec2& uv, TextureWrap u, TextureWrap v, Trace& trace) const {
     if (!is_finite(uv)) return glm::dvec4(not_a_number);
     const int x = wrapped(std::floor(uv.x * image_.width), image_.width, u);
     const int y = wrapped(std::floor(uv.y * image_.height), image_.height, v);
-    decisions.add(x);
-    decisions.add(y);
+    trace.decide(x);
+    trace.decide(y);
     return at(x, y);
 }
 
-void SceneTexels::want(const Scene& scene, std::size_t image, ImageUse use) {
-    const auto key = std::pair(image, use);
-    if (!texels_.contains(key)) texels_.emplace(key, Texels(decode(scene.images[image], use)));
+void SceneTexels::want(const Scene& scene, const Material& material) {
+    for_each_texture(material, [&](const std::optional<Texture>& texture, ImageUse use) {
+        if (!texture) return;
+        const auto key = std::pair(texture->image, use);
+        if (texels_.contains(key)) return;
+        texels_.emplace(key, Texels(decode(scene.images[texture->image], use)));
+    });
 }
 
 glm::dvec4 SceneTexels::look_up(const Texture& texture, ImageUse use, const glm::dvec2& uv,
-                                Decisions& decisions) const {
+                                Trace& trace) const {
     const Texels& texels = get(texture.image, use);
+    trace.look_up({uv * glm::dvec2(texels.width(), texels.height()), 0.0});
     if (texture.filter == TextureFilter::nearest) {
-        return texels.nearest(uv, texture.wrap_u, texture.wrap_v, decisions);
+        return texels.nearest(uv, texture.wrap_u, texture.wrap_v, trace);
     }
     return texels.bilinear(uv, texture.wrap_u, texture.wrap_v);
 }

@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "reference/decisions.h"
+#include "reference/trace.h"
 #include "relief/mesh/image.h"
 #include "relief/mesh/image_file.h"
 #include "relief/shade/scene.h"
@@ -31,7 +31,7 @@ class Texels {
     [[nodiscard]] glm::dvec4 at(int x, int y) const;
     [[nodiscard]] glm::dvec4 bilinear(const glm::dvec2& uv, TextureWrap u, TextureWrap v) const;
     [[nodiscard]] glm::dvec4 nearest(const glm::dvec2& uv, TextureWrap u, TextureWrap v,
-                                     Decisions& decisions) const;
+                                     Trace& trace) const;
 
   private:
     Image image_;  ///< Linear float.
@@ -44,13 +44,13 @@ int wrapped(double index, int size, TextureWrap wrap);
 class SceneTexels {
   public:
     /// \throws FileError if one cannot be read
-    void want(const Scene& scene, std::size_t image, ImageUse use);
+    void want(const Scene& scene, const Material& material);
 
     [[nodiscard]] const Texels& get(std::size_t image, ImageUse use) const {
         return texels_.at({image, use});
     }
     [[nodiscard]] glm::dvec4 look_up(const Texture& texture, ImageUse use, const glm::dvec2& uv,
-                                     Decisions& decisions) const;
+                                     Trace& trace) const;
 
   private:
     std::map<std::pair<std::size_t, ImageUse>, Texels> texels_;

@@ -46,12 +46,20 @@ TEST(ReferenceEdges, AreWhereFlatTrianglesMeet) {
     EXPECT_EQ(edge_count(test::scene_of(test::facing_square(), material), 16), 16U);
 }
 
+/// The square twice as large as the picture, so that its border is nowhere near.
+Scene large_square(const Material& material) {
+    Scene scene = test::scene_of(test::facing_square(), material);
+    scene.instances[0].world_from_object = glm::mat4(2.0F);
+    scene.instances[0].world_from_object[3] = {0, 0, 0, 1};
+    return scene;
+}
+
 TEST(ReferenceEdges, AreWhereNearestTexelsMeet) {
     Material material;
     Texture texture;
     texture.filter = TextureFilter::nearest;
     material.diffuse_texture = texture;
-    Scene scene = test::scene_of(test::facing_square(), material);
+    Scene scene = large_square(material);
     scene.images = {{"texture", test::constant_image({1, 1, 1, 1}, 3, 8, ColorSpace::srgb)}};
     // Two texels a side: they meet between the pixels of 16, and at centres of the middle ones of
     // 17.
@@ -60,6 +68,16 @@ TEST(ReferenceEdges, AreWhereNearestTexelsMeet) {
     material.diffuse_texture->filter = TextureFilter::linear;
     scene.materials = {material};
     EXPECT_EQ(edge_count(scene, 17), 0U);
+}
+
+TEST(ReferenceEdges, AreWhereATextureIsMinified) {
+    Material material;
+    material.diffuse_texture = Texture{0};
+    Scene scene = large_square(material);
+    for (const int size : {8, 64}) {
+        scene.images = {{"texture", make_image(size, size, 3, 8, ColorSpace::srgb)}};
+        EXPECT_EQ(edge_count(scene, 16), size > 16 ? 256U : 0U);
+    }
 }
 
 TEST(ReferenceEdges, AreNotLookedForWithoutAMargin) {

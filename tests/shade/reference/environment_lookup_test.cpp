@@ -59,6 +59,19 @@ TEST(EnvironmentLookups, FindDirectionsOnTheirFaces) {
         expect_near(lookup.radiance(way), slope(glm::normalize(way)), 1.0 / 128);
 }
 
+TEST(EnvironmentLookups, GoOnAcrossTheEdgesOfFaces) {
+    // One texel a face: half-way between two faces' centres is the mean of both.
+    const glm::dvec3 ends[] = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
+    const EnvironmentLookup lookup(faces_of(1, slope));
+    for (const glm::dvec3& a : ends) {
+        for (const glm::dvec3& b : ends) {
+            if (glm::dot(a, b) != 0.0) continue;
+            expect_near(lookup.radiance(a + b), 0.5 * (slope(a) + slope(b)), 1e-7);
+            expect_near(lookup.radiance(1.0000001 * a + b), 0.5 * (slope(a) + slope(b)), 1e-6);
+        }
+    }
+}
+
 TEST(EnvironmentLookups, OfLeftHandedFacesTurnXRound) {
     Environment environment = faces_of(64, slope);
     std::get<CubeFaces>(environment.source).left_handed = true;
@@ -108,13 +121,14 @@ TEST(EnvironmentLookups, FindDirectionsInProbes) {
 }
 
 TEST(EnvironmentLookups, HaveTheEnvironmentsIntensity) {
+    Trace trace;
     Environment environment = test::constant_environment({0.25F, 0.5F, 1.0F}, false);
     environment.intensity = 3.0F;
     environment.lights = true;
     const EnvironmentLookup lookup(environment);
     const glm::dvec3 expected(0.75, 1.5, 3.0);
     expect_near(lookup.radiance({1, 2, 3}), expected, 1e-12);
-    expect_near(lookup.blurred({1, 2, 3}, 0.6), expected, 1e-12);
+    expect_near(lookup.blurred({1, 2, 3}, 0.6, trace), expected, 1e-12);
     expect_near(lookup.diffuse({0, 1, 0}), expected, 1e-9);
 }
 
@@ -128,14 +142,15 @@ TEST(EnvironmentLookups, ShedLightOnSurfacesByTheConvolvedCosine) {
 }
 
 TEST(EnvironmentLookups, BlurMoreTheRougherTheSurface) {
+    Trace trace;
     const EnvironmentLookup lookup(faces_of(64, slope));
     const glm::dvec3 way = glm::normalize(glm::dvec3(0.3, 0.2, 1.0));
-    expect_near(lookup.blurred(way, 0.0), lookup.radiance(way), 0.0);
-    expect_near(lookup.blurred(way, 0.05), slope(way), 0.01);
+    expect_near(lookup.blurred(way, 0.0, trace), lookup.radiance(way), 0.0);
+    expect_near(lookup.blurred(way, 0.05, trace), slope(way), 0.01);
     // Blurred about an axis, a slope keeps its direction: 1/2 + share way/2, share falling.
     double last = 1.0;
     for (const double roughness : {0.2, 0.5, 0.8, 1.0}) {
-        const double share = (lookup.blurred(way, roughness).z - 0.5) / (0.5 * way.z);
+        const double share = (lookup.blurred(way, roughness, trace).z - 0.5) / (0.5 * way.z);
         EXPECT_LT(share, last);
         last = share;
     }

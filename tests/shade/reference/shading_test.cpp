@@ -181,8 +181,12 @@ TEST(ReferenceShading, OfAReflectionTakesFromWhatIsScattered) {
 /// Six faces of one colour each: +x 1, -x 2, +y 3, -y 4, +z 5, -z 6.
 Environment numbered_faces() {
     CubeFaces faces;
-    for (std::size_t i = 0; i < 6; ++i)
-        faces.faces[i] = {"face", texel(glm::vec4(static_cast<float>(i + 1)))};
+    for (std::size_t i = 0; i < 6; ++i) {
+        // Finer than the tests' directions are to edges, across which faces mix.
+        Image face = make_image(32, 32, 1, 32, ColorSpace::linear);
+        face.samples = std::vector<float>(32UL * 32UL, static_cast<float>(i + 1));
+        faces.faces[i] = {"face", face};
+    }
     Environment environment{faces};
     environment.skybox = false;
     return environment;
@@ -205,6 +209,7 @@ TEST(ReferenceShading, OfATransparentSurfaceBendsTheViewByItsIndex) {
     material.transmission = 0.75F;
     Scene scene = square(material);
     scene.ambient = glm::vec3(1.0F);
+    expect_near(in_the_middle(scene), glm::dvec3(1.0));  // Without an environment nothing is there.
     scene.environment = numbered_faces();
     expect_near(in_the_middle(scene), glm::dvec3(0.25 + 0.75 * 6));
     // Leaning left by 60 degrees: straight through, -z; bent by 2, asin(sin(60)/2) = 25.66 degrees

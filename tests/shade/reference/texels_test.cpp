@@ -60,9 +60,9 @@ TEST(Texels, AreExactAtTheirCentresAndLinearBetween) {
 
 TEST(Texels, TheNearestIsThatWhichHoldsThePlace) {
     const Texels texels = ramp();
-    Decisions decisions;
+    Trace trace;
     const auto at = [&](double u) {
-        return texels.nearest({u, 0.5}, TextureWrap::repeat, TextureWrap::repeat, decisions).r;
+        return texels.nearest({u, 0.5}, TextureWrap::repeat, TextureWrap::repeat, trace).r;
     };
     EXPECT_EQ(at(0.24), 0.0);
     EXPECT_EQ(at(0.26), 1.0);
@@ -100,11 +100,11 @@ TEST(Texels, AreRgbaWhateverTheImageHolds) {
 }
 
 TEST(Texels, AtNoPlaceAreNotANumber) {
-    Decisions decisions;
+    Trace trace;
     const glm::dvec2 nowhere(std::numeric_limits<double>::quiet_NaN(), 0.5);
     for (const TextureWrap wrap : all_wraps) {
         EXPECT_TRUE(std::isnan(ramp().bilinear(nowhere, wrap, wrap).r));
-        EXPECT_TRUE(std::isnan(ramp().nearest(nowhere, wrap, wrap, decisions).r));
+        EXPECT_TRUE(std::isnan(ramp().nearest(nowhere, wrap, wrap, trace).r));
     }
 }
 

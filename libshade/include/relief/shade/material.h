@@ -111,7 +111,7 @@ struct MetallicRoughness {
 ///     E(n) = what the environment sheds on a surface, over pi; 0 unless Environment::lights
 ///     F    = Fresnel's factor at n.v, kept within [0,1]: by Schlick reflectivity +
 ///            (grazing_reflectivity - reflectivity) (1 - n.v)^5. 0 where reflectivity is zero or
-///            the scene has no environment
+///            the scene has no environment, and transmission counts as 0 there too
 ///     surroundings(d) = the environment in direction d, blurred by reflection_roughness
 ///     refracted = v bent into the surface by refractive_index, once, at the first surface
 ///     occlusion = 1 + occlusion_strength (occlusion_texture - 1)

@@ -43,7 +43,8 @@ struct Reference {
     Image radiance;
     /// One channel of 8 bits: 255 where something discrete changes within edge_margin of the
     /// pixel's centre (which surface, which texel of a nearest-filtered texture, which side of a
-    /// lamp), so that rounding may decide what is seen; else 0.
+    /// lamp), so that rounding may decide what is seen, and where a texture is so fine that OpenGL
+    /// averages it; else 0.
     Image edges;
     std::vector<ReferenceHit> hits;  ///< By pixel, row 0 on top.
 };

@@ -1,0 +1,353 @@
+// SPDX-License-Identifier: Apache-2.0
+// OpenGL's picture against the CPU reference: every effect on its own, and random combinations of
+// scene features, to within one code of 255 away from edges.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <functional>
+#include <string>
+
+#include "draw_test.h"
+#include "random_scene.h"
+#include "relief/shade/effects.h"
+#include "relief/shade/reference.h"
+#include "support/shapes.h"
+
+namespace relief {
+namespace {
+
+using test::pixel;
+
+constexpr int size = 96;
+/// Codes: half of one by rounding, the rest for float arithmetic and vertices rounded to 1/256
+/// pixel.
+constexpr double code_tolerance = 1.0;
+/// Codes, where 8-bit textures are sampled: llvmpipe decodes sRGB by a polynomial that is up to
+/// half a percent off, which is half a code, and filters data by weights of 8 bits.
+constexpr double coarse_tolerance = 2.0;
+
+/// Where two pictures are furthest apart.
+struct Worst {
+    double codes = 0.0;
+    int x = 0;
+    int y = 0;
+    int compared = 0;
+};
+
+Worst furthest(const Image& drawn, const Image& expected, const Image& edges) {
+    Worst worst;
+    for (int y = 0; y < drawn.height; ++y) {
+        for (int x = 0; x < drawn.width; ++x) {
+            if (pixel(edges, x, y)[0] > 0.0) continue;
+            ++worst.compared;
+            for (int i = 0; i < 4; ++i) {
+                const double apart =
+                    std::abs(pixel(drawn, x, y)[i] - 255.0 * pixel(expected, x, y)[i]);
+                if (apart > worst.codes) worst = {apart, x, y, worst.compared};
+            }
+        }
+    }
+    return worst;
+}
+
+std::string effects_of(const Scene& scene) {
+    std::string text;
+    for (const DrawPlan& draw : plan_effects(scene, {size, size, 1}).draws)
+        text += "\n    " + describe(draw.features);
+    return text;
+}
+
+class Reference : public test::DrawTest {
+  protected:
+    void expect_agreement(const Scene& scene, double tolerance = code_tolerance) const {
+        Report report;
+        const relief::Reference reference = render_reference(scene, {size, size}, report);
+        const Image expected = reference_picture(reference.radiance, scene, OutputCoding::srgb);
+        const Image drawn = render(scene, {size, size, 1, OutputCoding::srgb}).image;
+        const Worst worst = furthest(drawn, expected, reference.edges);
+        EXPECT_LE(worst.codes, tolerance)
+            << "at " << worst.x << ", " << worst.y << effects_of(scene);
+        EXPECT_GT(worst.compared, size * size / 4) << "edges nearly everywhere";
+    }
+};
+
+/// A sphere under three lamps, turned so that neither poles nor seam are in front.
+Scene lit_sphere() {
+    Scene scene = test::scene_of(test::sphere(32, 24), Material{});
+    scene.ambient = {0.1F, 0.15F, 0.2F};
+    scene.directional_lights = {{{-1, -2, -3}, {0.6F, 0.5F, 0.4F}}};
+    scene.point_lights = {{{-2, 1, 2}, {0.9F, 1.2F, 1.5F}}};
+    return scene;
+}
+
+/// One thing that a scene may have.
+struct Effect {
+    const char* name;
+    std::function<void(Scene&, test::Dice&)> add;
+};
+
+Texture image(Scene& scene, Image texels) {
+    scene.images.push_back({"image", std::move(texels)});
+    return Texture{scene.images.size() - 1};
+}
+
+std::vector<Effect> light_effects() {
+    return {
+        {"spot light",
+         [](Scene& scene, test::Dice&) {
+             scene.spot_lights = {{{{0, 1, 3}, {4, 3, 2}}, {0, -1, -3}, 0.1F, 0.35F}};
+         }},
+        {"range", [](Scene& scene, test::Dice&) { scene.point_lights[0].range = 2.5F; }},
+        {"no falloff",
+         [](Scene& scene, test::Dice&) {
+             scene.point_lights[0].falloff = Falloff::none;
+             scene.point_lights[0].intensity *= 0.3F;
+         }},
+        {"mixed falloff",
+         [](Scene& scene, test::Dice&) {
+             scene.point_lights.push_back({{2, 2, 2}, glm::vec3(0.2F), 4.0F, Falloff::none});
+         }},
+        {"highlight colours",
+         [](Scene& scene, test::Dice&) {
+             scene.materials[0].specular = glm::vec3(0.5F);
+             scene.point_lights[0].highlight_intensity = glm::vec3(2, 0, 1);
+             scene.directional_lights[0].highlight_irradiance = glm::vec3(0, 1, 1);
+         }},
+        {"exposure", [](Scene& scene, test::Dice&) { scene.exposure = 1.7F; }},
+        {"Reinhard", [](Scene& scene, test::Dice&) { scene.tone_mapping = ToneMapping::reinhard; }},
+        {"ACES", [](Scene& scene, test::Dice&) { scene.tone_mapping = ToneMapping::aces; }},
+    };
+}
+
+std::vector<Effect> material_effects() {
+    std::vector<Effect> effects = {
+        {"nothing else", [](Scene&, test::Dice&) {}},
+        {"flat", [](Scene& s, test::Dice&) { s.materials[0].interpolation = Interpolation::flat; }},
+        {"unlit", [](Scene& s, test::Dice&) { s.materials[0].unlit = true; }},
+        {"emission",
+         [](Scene& s, test::Dice&) {
+             s.materials[0].emission = {0.2F, 0.1F, 0.0F};
+         }},
+        {"metallic-roughness",
+         [](Scene& s, test::Dice&) {
+             s.materials[0].metallic_roughness =
+                 MetallicRoughness{{0.8F, 0.5F, 0.3F}, 0.4F, 0.35F, std::nullopt};
+         }},
+        {"vertex colours",
+         [](Scene& s, test::Dice&) {
+             for (const glm::vec3& position : s.meshes[0].positions)
+                 s.meshes[0].colors.emplace_back(position * 0.5F + 0.5F, 1.0F);
+         }},
+        {"back faces",
+         [](Scene& s, test::Dice&) {
+             s.materials[0].double_sided = true;
+             for (glm::uvec3& triangle : s.meshes[0].triangles)
+                 std::swap(triangle.y, triangle.z);
+         }},
+        {"blending",
+         [](Scene& s, test::Dice&) {
+             s.materials[0].alpha_mode = AlphaMode::blend;
+             s.materials[0].opacity = 0.6F;
+             s.materials[0].double_sided = true;
+             s.background = {0.2F, 0.4F, 0.6F, 0.8F};
+         }},
+    };
+    for (const SpecularModel model : {SpecularModel::phong, SpecularModel::blinn_phong,
+                                      SpecularModel::blinn_phong_normalized}) {
+        for (const Interpolation where : {Interpolation::per_pixel, Interpolation::gouraud}) {
+            effects.push_back({"highlights", [=](Scene& s, test::Dice&) {
+                                   s.materials[0].specular = {0.5F, 0.4F, 0.3F};
+                                   s.materials[0].specular_model = model;
+                                   s.materials[0].interpolation = where;
+                               }});
+        }
+    }
+    return effects;
+}
+
+std::vector<Effect> texture_effects() {
+    return {
+        {"diffuse texture",
+         [](Scene& s, test::Dice& d) {
+             s.materials[0].diffuse_texture =
+                 image(s, test::random_image(d, 3, ColorSpace::linear));
+         }},
+        {"nearest texture",
+         [](Scene& s, test::Dice& d) {
+             s.materials[0].diffuse_texture =
+                 image(s, test::random_image(d, 3, ColorSpace::linear));
+             s.materials[0].diffuse_texture->filter = TextureFilter::nearest;
+         }},
+        {"specular texture",
+         [](Scene& s, test::Dice& d) {
+             s.materials[0].specular = glm::vec3(0.6F);
+             s.materials[0].specular_texture =
+                 image(s, test::random_image(d, 3, ColorSpace::linear));
+         }},
+        {"emission texture",
+         [](Scene& s, test::Dice& d) {
+             s.materials[0].emission = glm::vec3(0.4F);
+             s.materials[0].emission_texture =
+                 image(s, test::random_image(d, 3, ColorSpace::linear));
+         }},
+        {"occlusion texture",
+         [](Scene& s, test::Dice& d) {
+             s.materials[0].occlusion_texture =
+                 image(s, test::random_image(d, 1, ColorSpace::data));
+             s.materials[0].occlusion_strength = 0.7F;
+             s.ambient = glm::vec3(0.6F);
+         }},
+        {"opacity texture",
+         [](Scene& s, test::Dice& d) {
+             s.materials[0].alpha_mode = AlphaMode::blend;
+             s.materials[0].opacity_texture = image(s, test::random_image(d, 1, ColorSpace::data));
+         }},
+        {"alpha mask",
+         [](Scene& s, test::Dice& d) {
+             s.materials[0].alpha_mode = AlphaMode::mask;
+             s.materials[0].double_sided = true;
+             s.materials[0].diffuse_texture =
+                 image(s, test::random_image(d, 4, ColorSpace::linear));
+         }},
+        {"metallic-roughness texture",
+         [](Scene& s, test::Dice& d) {
+             s.materials[0].metallic_roughness =
+                 MetallicRoughness{{0.8F, 0.5F, 0.3F},
+                                   1.0F,
+                                   1.0F,
+                                   image(s, test::random_image(d, 3, ColorSpace::data))};
+         }},
+    };
+}
+
+/// Everything that bends normals, by both kinds of frame, in place and mirrored.
+std::vector<Effect> detail_effects() {
+    std::vector<Effect> effects;
+    for (const bool mirrored : {false, true}) {
+        for (const TangentFrame frame : {TangentFrame::stored, TangentFrame::derivatives}) {
+            const auto prepare = [=](Scene& scene) {
+                scene.materials[0].tangent_frame = frame;
+                scene.materials[0].specular = glm::vec3(0.3F);
+                if (mirrored) scene.instances[0].world_from_object[0].x = -0.8F;
+            };
+            effects.push_back({"normal map", [=](Scene& s, test::Dice& d) {
+                                   prepare(s);
+                                   s.materials[0].normal_map =
+                                       NormalMap{image(s, test::random_normals(d))};
+                                   s.materials[0].normal_map->flat = FlatCode::middle;
+                               }});
+            effects.push_back(
+                {"bump map", [=](Scene& s, test::Dice& d) {
+                     prepare(s);
+                     s.materials[0].bump_map = BumpMap{image(s, test::random_heights(d)), 1.5F};
+                 }});
+        }
+        effects.push_back({"object-space normal map", [=](Scene& s, test::Dice& d) {
+                               NormalMap map{image(s, test::random_normals(d))};
+                               map.space = NormalSpace::object;
+                               s.materials[0].normal_map = map;
+                               if (mirrored) s.instances[0].world_from_object[0].x = -0.8F;
+                           }});
+    }
+    return effects;
+}
+
+std::vector<Effect> environment_effects() {
+    std::vector<Effect> effects = {{"skybox", [](Scene& s, test::Dice& d) {
+                                        s.environment = test::random_environment(d);
+                                        s.environment->skybox = true;
+                                    }}};
+    for (const FresnelModel model :
+         {FresnelModel::schlick, FresnelModel::dielectric, FresnelModel::conductor}) {
+        for (const float transmission : {0.0F, 0.7F}) {
+            effects.push_back({"reflection", [=](Scene& s, test::Dice& d) {
+                                   s.environment = test::random_environment(d);
+                                   s.materials[0].reflectivity = {0.9F, 0.5F, 0.2F};
+                                   s.materials[0].fresnel = model;
+                                   s.materials[0].transmission = transmission;
+                               }});
+        }
+    }
+    return effects;
+}
+
+class EffectOnItsOwn : public Reference {
+  protected:
+    void expect_agreement_of_each(const std::vector<Effect>& effects) const {
+        for (std::size_t i = 0; i < effects.size(); ++i) {
+            SCOPED_TRACE(testing::Message() << effects[i].name << ", number " << i);
+            for (const bool on_sphere : {true, false}) {
+                SCOPED_TRACE(on_sphere ? "on a sphere" : "on a cube");
+                test::Dice dice(i);
+                Scene scene = lit_sphere();
+                if (!on_sphere) {
+                    Mesh mesh = test::cube();
+                    mesh.material_ranges = {{0, 12, 0}};
+                    scene.meshes = {mesh};
+                    glm::mat4& place = scene.instances[0].world_from_object;
+                    place = {{0.5F, 0.1F, -0.4F, 0},
+                             {0, 0.6F, 0.1F, 0},
+                             {0.3F, -0.1F, 0.5F, 0},
+                             {0, 0, 0, 1}};
+                }
+                effects[i].add(scene, dice);
+                expect_agreement(scene);
+            }
+        }
+    }
+};
+
+TEST_F(EffectOnItsOwn, OfLightLooksAsTheReferenceSays) {
+    expect_agreement_of_each(light_effects());
+}
+
+TEST_F(EffectOnItsOwn, OfTheMaterialLooksAsTheReferenceSays) {
+    expect_agreement_of_each(material_effects());
+}
+
+TEST_F(EffectOnItsOwn, OfTexturesLooksAsTheReferenceSays) {
+    expect_agreement_of_each(texture_effects());
+}
+
+TEST_F(EffectOnItsOwn, OfSurfaceDetailLooksAsTheReferenceSays) {
+    expect_agreement_of_each(detail_effects());
+}
+
+TEST_F(EffectOnItsOwn, OfTheEnvironmentLooksAsTheReferenceSays) {
+    expect_agreement_of_each(environment_effects());
+}
+
+TEST_F(Reference, AgreesWithEightBitTexturesAlmostAsWell) {
+    test::Dice dice(1);
+    for (const ColorSpace space : {ColorSpace::srgb, ColorSpace::data}) {
+        Scene scene = lit_sphere();
+        Image coded = make_image(6, 5, 3, 8, space);
+        for (std::uint8_t& sample : coded.as<std::uint8_t>())
+            sample = static_cast<std::uint8_t>(dice.below(256));
+        const Texture texture = image(scene, coded);
+        if (space == ColorSpace::srgb) {
+            scene.materials[0].diffuse_texture = texture;
+        } else {
+            scene.materials[0].occlusion_texture = texture;
+        }
+        expect_agreement(scene, coarse_tolerance);
+    }
+}
+
+/// Scenes from seed 0 on; RELIEF_RANDOM_SCENES asks for more than the usual number of them.
+std::uint64_t random_scene_count() {
+    const char* asked = std::getenv("RELIEF_RANDOM_SCENES");
+    return asked == nullptr ? 30 : std::strtoull(asked, nullptr, 10);
+}
+
+TEST_F(Reference, AgreesInRandomScenes) {
+    for (std::uint64_t seed = 0; seed < random_scene_count(); ++seed) {
+        SCOPED_TRACE(testing::Message() << "seed " << seed);
+        expect_agreement(test::random_scene(seed));
+    }
+}
+
+}  // namespace
+}  // namespace relief
