@@ -17,7 +17,7 @@ using test::Workplace;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-ComposedScene composed(const ViewOptions& options) {
+ComposedScene composed(ViewOptions options) {
     Stages stages(true);
     Report report;
     return compose_scene(options, stages, report);

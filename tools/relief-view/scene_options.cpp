@@ -130,13 +130,14 @@ void mark_lights(ComposedScene& composed, float share) {
 
 }  // namespace
 
-ComposedScene compose_scene(const ViewOptions& options, Stages& stages, Report& report) {
+ComposedScene compose_scene(ViewOptions& options, Stages& stages, Report& report) {
     ComposedScene composed;
     composed.graph = stages.run("read", [&] {
         return about(options.model, [&] {
             return load_scene_graph(options.model, scene_options(options), report);
         });
     });
+    if (!options.size_given) options.size = composed.graph.picture_size.value_or(options.size);
     if (options.time) pose(composed.graph, *options.time);
     Scene& scene = composed.scene();
     if (scene.instances.empty())

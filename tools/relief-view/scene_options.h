@@ -30,9 +30,9 @@ struct ComposedScene {
     [[nodiscard]] const Scene& scene() const { return graph.scene; }
 };
 
-/// \param options  settled (view_options.h)
+/// \param options  settled (view_options.h); a size that was not given becomes the scene file's
 /// \throws FileError if a file cannot be read, holds no triangles, or lacks what an option needs;
 ///         UsageError if an option could show nowhere in this scene
-ComposedScene compose_scene(const ViewOptions& options, Stages& stages, Report& report);
+ComposedScene compose_scene(ViewOptions& options, Stages& stages, Report& report);
 
 }  // namespace relief::tools

@@ -21,9 +21,11 @@ void add_output_options(CLI::App& app, ViewOptions& options) {
     add_path(app, "--output", options.output,
              "Picture to write: .png (8 bit, sRGB), .exr (linear float) or .apng (animated).")
         ->group(group);
-    add_value(app, "--size", "WxH", "Width and height in pixels. Default: 1024x1024.",
+    add_value(app, "--size", "WxH",
+              "Width and height in pixels. Default: as the scene says, else 1024x1024.",
               [&](const std::string& subject, const std::string& text) {
                   options.size = parse_size(subject, text);
+                  options.size_given = true;
               })
         ->group(group);
     add_choice(app, "--samples", options.samples, Choices<int>{{"1", 1}, {"4", 4}},

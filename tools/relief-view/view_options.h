@@ -50,6 +50,7 @@ struct ViewOptions {
     std::filesystem::path model;
     std::optional<std::filesystem::path> output;
     glm::ivec2 size{1024, 1024};
+    bool size_given = false;  ///< Else a scene file may say it.
     int samples = 4;
     std::optional<float> exposure;  ///< The factor, not the stops.
     std::optional<ToneMapping> tone_mapping;
