@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -28,20 +29,59 @@ double masked(double cosine, double alpha) {
     return 0.5 * (std::sqrt(1.0 + alpha * alpha * tan_squared) - 1.0);
 }
 
-/// A facet normal that is seen from `view` (in the xz plane), for a point of a half disc: radius
-/// and turn from -pi/2 to pi/2; the other half is its mirror image.
-glm::dvec3 seen_facet(const glm::dvec3& view, double alpha, double radius, double turn) {
-    // The surface stretched so that it becomes a hemisphere; y is one of the axes across the view.
-    const glm::dvec3 stretched = glm::normalize(glm::dvec3(alpha * view.x, 0.0, view.z));
-    const glm::dvec3 up(-stretched.z, 0.0, stretched.x);
-    const double across = radius * std::cos(turn);
-    const double visible = 0.5 * (1.0 + stretched.z);
-    const double along =
-        (1.0 - visible) * std::sqrt(1.0 - across * across) + visible * radius * std::sin(turn);
-    const double towards = std::sqrt(std::max(0.0, 1.0 - across * across - along * along));
-    const glm::dvec3 facet = glm::dvec3(0.0, across, 0.0) + along * up + towards * stretched;
-    return glm::normalize(glm::dvec3(alpha * facet.x, alpha * facet.y, std::max(0.0, facet.z)));
+/// A point of the half disc of visible facets; the other half is its mirror image.
+struct DiscPoint {
+    double across;     ///< Along the axis that is perpendicular to the view and the normal.
+    double along;      ///< Along the other one.
+    double half_edge;  ///< Of the disc at `across`.
+    double weight;     ///< The share of the disc that it stands for.
+};
+
+const std::array<DiscPoint, radial_points * turn_points>& disc_points() {
+    static const auto points = [] {
+        std::array<DiscPoint, radial_points * turn_points> all{};
+        for (int i = 0; i < radial_points; ++i) {
+            // At the rim, facets change with the root of the distance to it: even steps of the
+            // root.
+            const double root = (i + 0.5) / radial_points;
+            const double radius = std::sqrt(1.0 - root * root);
+            for (int j = 0; j < turn_points; ++j) {
+                const double turn = std::numbers::pi * ((j + 0.5) / turn_points - 0.5);
+                const double across = radius * std::cos(turn);
+                all.at(static_cast<std::size_t>(i * turn_points + j)) = {
+                    across, radius * std::sin(turn), std::sqrt(1.0 - across * across),
+                    2.0 * root / (radial_points * turn_points)};
+            }
+        }
+        return all;
+    }();
+    return points;
 }
+
+/// Facet normals that are seen from a direction in the xz plane.
+class SeenFacets {
+  public:
+    SeenFacets(const glm::dvec3& view, double alpha)
+        : alpha_(alpha),
+          // The surface stretched so that its facets become a hemisphere.
+          stretched_(glm::normalize(glm::dvec3(alpha * view.x, 0.0, view.z))),
+          visible_(0.5 * (1.0 + stretched_.z)) {}
+
+    [[nodiscard]] glm::dvec3 at(const DiscPoint& point) const {
+        const double along = (1.0 - visible_) * point.half_edge + visible_ * point.along;
+        const double towards =
+            std::sqrt(std::max(0.0, point.half_edge * point.half_edge - along * along));
+        const glm::dvec3 facet(towards * stretched_.x - along * stretched_.z, point.across,
+                               towards * stretched_.z + along * stretched_.x);
+        return glm::normalize(
+            glm::dvec3(alpha_ * facet.x, alpha_ * facet.y, std::max(0.0, facet.z)));
+    }
+
+  private:
+    double alpha_;
+    glm::dvec3 stretched_;
+    double visible_;  ///< Share of the disc on this side of the horizon, at its middle.
+};
 
 double power_5(double x) {
     return x * x * x * x * x;
@@ -53,40 +93,37 @@ glm::dvec2 environment_brdf(double n_v, double roughness) {
     const glm::dvec3 view(std::sqrt(1.0 - n_v * n_v), 0.0, n_v);
     const double alpha = roughness * roughness;
     const double masked_view = masked(n_v, alpha);
+    const SeenFacets facets(view, alpha);
     glm::dvec2 sum(0.0);
-    for (int i = 0; i < radial_points; ++i) {
-        // At the rim, facets change with the root of the distance to it: even steps of the root.
-        const double root = (i + 0.5) / radial_points;
-        const double radius = std::sqrt(1.0 - root * root);
-        for (int j = 0; j < turn_points; ++j) {
-            const double turn = std::numbers::pi * ((j + 0.5) / turn_points - 0.5);
-            const glm::dvec3 half = seen_facet(view, alpha, radius, turn);
-            const double v_h = glm::dot(view, half);
-            const double n_l = 2.0 * v_h * half.z - view.z;
-            if (n_l <= 0.0) continue;
-            const double seen_of_lit =
-                (1.0 + masked_view) / (1.0 + masked_view + masked(std::min(n_l, 1.0), alpha));
-            const double fresnel = power_5(1.0 - std::min(v_h, 1.0));
-            sum += 2.0 * root * seen_of_lit * glm::dvec2(1.0 - fresnel, fresnel);
-        }
+    for (const DiscPoint& point : disc_points()) {
+        const glm::dvec3 half = facets.at(point);
+        const double v_h = glm::dot(view, half);
+        const double n_l = 2.0 * v_h * half.z - view.z;
+        if (n_l <= 0.0) continue;
+        const double lit_of_seen =
+            (1.0 + masked_view) / (1.0 + masked_view + masked(std::min(n_l, 1.0), alpha));
+        const double fresnel = power_5(1.0 - std::min(v_h, 1.0));
+        sum += point.weight * lit_of_seen * glm::dvec2(1.0 - fresnel, fresnel);
     }
-    return sum / static_cast<double>(radial_points * turn_points);
+    return sum;
 }
 
 Image environment_brdf_table(int size) {
-    if (size < 1) throw InvalidInput(fmt::format("a table of {} values a side is asked for", size));
+    if (size < 2) throw InvalidInput(fmt::format("a table of {} values a side is asked for", size));
+    // Seen from exactly aside, nothing is defined; from almost there, it is the limit.
+    constexpr double grazing = 1e-6;
+    const auto count = static_cast<std::size_t>(size);
     Image table = make_image(size, size, 2, 32, ColorSpace::data);
     const auto samples = table.as<float>();
-    parallel_for(static_cast<std::size_t>(size), 1, [&](std::size_t begin, std::size_t end) {
+    parallel_for(count, 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t y = begin; y < end; ++y) {
-            for (std::size_t x = 0; x < static_cast<std::size_t>(size); ++x) {
-                const glm::dvec2 share =
-                    (glm::dvec2(static_cast<double>(x), static_cast<double>(y)) + 0.5) /
-                    static_cast<double>(size);
-                const glm::dvec2 albedo = environment_brdf(share.x, share.y);
-                const std::size_t texel = y * static_cast<std::size_t>(size) + x;
-                samples[2 * texel] = static_cast<float>(albedo.x);
-                samples[2 * texel + 1] = static_cast<float>(albedo.y);
+            for (std::size_t x = 0; x < count; ++x) {
+                const double root = static_cast<double>(x) / (size - 1);
+                const double roughness = static_cast<double>(y) / (size - 1);
+                const glm::dvec2 albedo =
+                    environment_brdf(std::max(root * root, grazing), roughness);
+                samples[2 * (y * count + x)] = static_cast<float>(albedo.x);
+                samples[2 * (y * count + x) + 1] = static_cast<float>(albedo.y);
             }
         }
     });

@@ -20,10 +20,12 @@ namespace relief {
 /// \return (A, B), within 1e-3 of the integral for n.v and roughness of at least 1/64
 glm::dvec2 environment_brdf(double n_v, double roughness);
 
-/// A and B as a table: column x for n.v = (x + 1/2) / size, row y for roughness (y + 1/2) / size.
+/// A and B as a table: column x for sqrt(n.v) = x / (size - 1), since they change fastest at grazing
+/// angles, and row y for roughness y / (size - 1); both ends are there.
 ///
-/// \return two float channels, data; the same bits for any number of threads
-/// \throws InvalidInput if size is not positive
+/// \return two float channels, data; the same bits for any number of threads. Of a table of 64,
+///         bilinear lookups are within 3e-3 for roughness of at least 0.045.
+/// \throws InvalidInput if size is less than 2
 Image environment_brdf_table(int size);
 
 }  // namespace relief

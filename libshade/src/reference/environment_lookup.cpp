@@ -8,6 +8,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "environment/angular_map.h"
+#include "environment/cube_faces.h"
 #include "scene/image_source.h"
 
 namespace relief::reference {
@@ -116,6 +118,10 @@ EnvironmentLookup::EnvironmentLookup(const Environment& environment)
         left_handed_ = faces->left_handed;
         for (const ImageSource& face : faces->faces)
             add(face);
+    } else if (const auto* cross = std::get_if<CubeCross>(&environment.source)) {
+        const Image image = decode(cross->image, ImageUse::color);
+        for (const Image& face : faces_of_cross(image, cross->image.name))
+            images_.emplace_back(face);
     } else if (const auto* panorama = std::get_if<Equirectangular>(&environment.source)) {
         layout_ = Layout::equirectangular;
         add(panorama->image);
@@ -174,9 +180,11 @@ glm::dvec3 EnvironmentLookup::radiance(const glm::dvec3& direction_world) const 
                             0.5 - std::atan2(d.y, across) / pi);
         found = images_.front().bilinear(uv, TextureWrap::repeat, TextureWrap::clamp);
     } else {
-        // The distance from the centre is the angle to -z; the rim, at 1, is +z all around.
+        // The distance from the centre is the angle to -z; the rim, at 1, is +z all around, and its
+        // own texels are left out.
         const double across = std::hypot(d.x, d.y);
-        const double distance = std::atan2(across, -d.z) / pi;
+        const double distance =
+            std::min(std::atan2(across, -d.z) / pi, angular_map_reach(images_.front().width()));
         const glm::dvec2 way = across > 0.0 ? glm::dvec2(d.x, -d.y) / across : glm::dvec2(1, 0);
         const glm::dvec2 uv = 0.5 + 0.5 * distance * way;
         found = images_.front().bilinear(uv, TextureWrap::clamp, TextureWrap::clamp);

@@ -76,9 +76,10 @@ std::array<glm::vec4, 9> irradiance_of(const gl::Api& api, const gl::CubeMap& en
     return padded;
 }
 
-/// Column for n.v, row for roughness; red is A, green B (environment/environment_brdf.h).
+/// Column for the root of n.v, row for roughness; red is A, green B
+/// (environment/environment_brdf.h).
 gl::Texture brdf_texture(const gl::Api& api) {
-    constexpr int size = 32;
+    constexpr int size = 64;
     gl::Texture texture =
         gl::make_texture(api, environment_brdf_table(size), "albedo of GGX", false);
     api->BindTexture(GL_TEXTURE_2D, texture.name());

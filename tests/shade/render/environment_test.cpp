@@ -6,8 +6,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "../environment/test_environments.h"
 #include "draw_test.h"
+#include "environment/blur.h"
 #include "environment/cube_faces.h"
+#include "environment/environment_brdf.h"
 #include "relief/mesh/error.h"
 #include "relief/shade/image_compare.h"
 #include "support/shapes.h"
@@ -108,6 +111,67 @@ TEST_F(Environments, LookAlikeAsAPanoramaAndAsALightProbe) {
     // The probe has half the panorama's texels at its middle; the eye sees a slight blur.
     EXPECT_LT(flip_difference(round, ball).mean, 0.06);
     EXPECT_LE(compare(round, ball).mean, 4.0);
+}
+
+/// Six faces whose texels hold what `radiance` says of their direction.
+Environment computed(int size, const std::function<double(glm::dvec3)>& radiance) {
+    CubeFaces faces;
+    std::vector<Image> images =
+        test::faces_of(size, [&](glm::dvec3 d) { return glm::dvec3(radiance(d)); });
+    for (std::size_t face = 0; face < 6; ++face)
+        faces.faces.at(face) = {"face", std::move(images[face])};
+    return {.source = faces, .skybox = false, .lights = true};
+}
+
+TEST_F(Environments, ShedWhatTheHemisphereInFrontHolds) {
+    Material white = test::black_material();
+    white.diffuse = glm::vec3(1.0F);
+    Scene scene = test::scene_of(test::facing_square(), white);
+    const auto shown = [&](const Environment& environment) {
+        scene.environment = environment;
+        return test::pixel(radiance(scene, 8, 8), 4, 4).x;
+    };
+    // The square faces +z.
+    EXPECT_NEAR(shown(computed(16, [](glm::dvec3) { return 0.75; })), 0.75, 1e-3);
+    EXPECT_NEAR(shown(computed(64, [](glm::dvec3 d) { return d.z > 0 ? 1.0 : 0.0; })), 1.0, 2e-3);
+    EXPECT_NEAR(shown(computed(64, [](glm::dvec3 d) { return d.z > 0 ? 0.0 : 1.0; })), 0.0, 2e-3);
+    EXPECT_NEAR(shown(computed(64, [](glm::dvec3 d) { return d.y > 0 ? 1.0 : 0.0; })), 0.5, 2e-3);
+    Environment bright = computed(16, [](glm::dvec3) { return 0.75; });
+    bright.intensity = 4.0F;
+    EXPECT_NEAR(shown(bright), 3.0, 4e-3);
+}
+
+TEST_F(Environments, ShowInEvenLightWhatFacetsReflectAtAll) {
+    Material metal = test::black_material();
+    metal.metallic_roughness.emplace();
+    Scene scene = test::scene_of(test::facing_square(), metal);
+    scene.environment = computed(16, [](glm::dvec3) { return 1.0; });
+    for (const float roughness : {0.1F, 0.5F, 1.0F}) {
+        scene.materials[0].metallic_roughness->roughness = roughness;
+        // Seen head on; f0 is 1. Half floats and the table's bilinear lookups.
+        const glm::dvec2 albedo = environment_brdf(1.0, static_cast<double>(roughness));
+        EXPECT_NEAR(test::pixel(radiance(scene, 65, 65), 32, 32).x, albedo.x + albedo.y, 4e-3)
+            << roughness;
+    }
+}
+
+TEST_F(Environments, AreMirroredBlurredByRoughness) {
+    Material rough = test::black_material();
+    rough.reflectivity = rough.grazing_reflectivity = glm::vec3(1.0F);
+    Scene scene = test::scene_of(test::facing_square(), rough);
+    const auto lamp = [](glm::dvec3 d) { return d.z > 0.9 ? 5.0 : 0.25; };
+    scene.environment = computed(128, lamp);
+    const std::vector<Image> faces =
+        test::faces_of(128, [&](glm::dvec3 d) { return glm::dvec3(lamp(d)); });
+    // At the levels of the blurred map; between them, the picture is a blend. The last one has 8
+    // texels a face, whose lookups flatten a peak by a percent.
+    for (const float roughness : {0.25F, 0.5F, 1.0F}) {
+        scene.materials[0].reflection_roughness = roughness;
+        const double expected =
+            blurred_radiance(faces, {0, 0, 1}, static_cast<double>(roughness)).x;
+        EXPECT_NEAR(test::pixel(radiance(scene, 65, 65), 32, 32).x / expected, 1.0, 0.02)
+            << roughness;
+    }
 }
 
 TEST_F(Environments, NameTheFaceThatDoesNotFit) {
