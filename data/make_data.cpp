@@ -9,8 +9,13 @@
 #include <filesystem>
 
 #include "bricks.h"
+#include "ornaments.h"
+#include "relief/mesh/bump.h"
+#include "relief/mesh/frames.h"
+#include "relief/mesh/gltf_document.h"
 #include "relief/mesh/image_file.h"
 #include "relief/mesh/mesh_file.h"
+#include "relief/mesh/normal_map.h"
 #include "sky.h"
 #include "vase.h"
 
@@ -33,6 +38,27 @@ relief::MeshFile vase_with_material(const std::filesystem::path& folder) {
     return file;
 }
 
+/// A model with smooth normals; glTF would make it flat without.
+void write_glb(const std::filesystem::path& file, relief::Mesh mesh) {
+    relief::Report report;
+    const relief::FrameOptions smooth;
+    mesh = relief::with_frames(std::move(mesh), smooth, report).mesh;
+    relief::GltfDocument::from_mesh({std::move(mesh), {}}).write(file);
+}
+
+/// The bricks' heights as a normal map, a quarter as large: a quarter of their 24 texels' depth.
+void write_brick_normals(const std::filesystem::path& file) {
+    relief::Report report;
+    relief::BumpOptions options;
+    options.strength = 6.0;
+    const relief::Image heights = relief::height_field(sample::brick_heights(256));
+    const relief::NormalMapFormat format{
+        .bits = 8, .green = relief::Green::up, .flat = relief::FlatCode::middle};
+    relief::write_image(
+        file, relief::encode_normal_map(relief::normals_from_height(heights, options, report),
+                                        format, report));
+}
+
 void write_all(const std::filesystem::path& folder) {
     std::filesystem::create_directories(folder / "sky");
     relief::write_image(folder / "bricks-height.png", sample::brick_heights(1024),
@@ -43,6 +69,10 @@ void write_all(const std::filesystem::path& folder) {
                             sample::sky_face(static_cast<int>(face), 512));
     }
     relief::write_mesh(folder / "vase.obj", vase_with_material(folder));
+    std::filesystem::create_directories(folder / "scenes");
+    write_glb(folder / "scenes" / "pot.glb", sample::pot());
+    write_glb(folder / "scenes" / "knot.glb", sample::knot());
+    write_brick_normals(folder / "scenes" / "bricks-normal.png");
 }
 
 }  // namespace

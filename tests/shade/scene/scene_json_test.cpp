@@ -58,6 +58,23 @@ class SceneFile : public testing::Test {
     Report report_;
 };
 
+TEST(SampleScenes, AreReadWithoutAFindingAndMoveSoundly) {
+    std::size_t count = 0;
+    for (const auto& entry :
+         std::filesystem::directory_iterator(test::source_directory() / "data/scenes")) {
+        if (entry.path().extension() != ".json") continue;
+        SCOPED_TRACE(entry.path());
+        ++count;
+        Report report;
+        SceneGraph graph = load_scene_graph(entry.path(), {}, report);
+        EXPECT_TRUE(report.empty());
+        EXPECT_TRUE(graph.picture_size && graph.scene.camera);
+        pose(graph, 1.25);
+        EXPECT_NO_THROW(validate(graph));
+    }
+    EXPECT_EQ(count, 10U);
+}
+
 /// The first JSON block of the page that describes the format.
 std::string documented_example() {
     std::ifstream stream(test::source_directory() / "docs/scene-files.md");

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+// A pot of surfaces of revolution and tubes, and a torus knot. Object space, y up. Curves are cubic
+// Bezier curves, and the knot's are sines. Tests: tests/mesh/image/sample_data_test.cpp.
+#include "ornaments.h"
+
+#include <cmath>
+#include <numbers>
+
+#include "tube.h"
+
+namespace relief::sample {
+namespace {
+
+constexpr double full_turn = 2.0 * std::numbers::pi;
+
+/// One piece of a profile: radius and height.
+struct Profile {
+    glm::dvec2 points[4];
+    int steps;
+};
+
+/// Turns a profile about the y axis. It must run upwards on the outside; at radius 0 it ends in a
+/// pole of triangles without area on one side, which are left out.
+void add_lathed(Mesh& mesh, const std::vector<Profile>& pieces, int segments) {
+    std::vector<glm::dvec2> rings{pieces.front().points[0]};
+    for (const Profile& piece : pieces) {
+        for (int step = 1; step <= piece.steps; ++step)
+            rings.push_back(bezier(piece.points, static_cast<double>(step) / piece.steps));
+    }
+    const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+    for (std::size_t ring = 0; ring < rings.size(); ++ring) {
+        for (int segment = 0; segment <= segments; ++segment) {
+            const double angle = full_turn * (segment % segments) / segments;
+            const double radius = rings[ring].x;
+            mesh.positions.push_back(
+                rounded({radius * std::sin(angle), rings[ring].y, radius * std::cos(angle)}));
+            mesh.texcoords.emplace_back(
+                2.0 * segment / segments,
+                1.0 - static_cast<double>(ring) / static_cast<double>(rings.size() - 1));
+        }
+    }
+    const auto row = static_cast<std::uint32_t>(segments + 1);
+    for (std::uint32_t ring = 0; ring + 1 < rings.size(); ++ring) {
+        for (std::uint32_t segment = 0; segment + 1 < row; ++segment) {
+            const std::uint32_t lower = first + ring * row + segment;
+            const std::uint32_t upper = lower + row;
+            if (rings[ring].x > 0.0) mesh.triangles.emplace_back(lower, lower + 1, upper + 1);
+            if (rings[ring + 1].x > 0.0) mesh.triangles.emplace_back(lower, upper + 1, upper);
+        }
+    }
+}
+
+/// A tube in the xy plane along a Bezier curve, from one radius to another.
+void add_plane_tube(Mesh& mesh, const glm::dvec3 (&points)[4], double from, double to, int along,
+                    int around) {
+    const TubePath path{[&](double t) { return bezier(points, t); },
+                        [&](double t) { return from + (to - from) * t * t * (3.0 - 2.0 * t); },
+                        [](double) { return glm::dvec3(0.0, 0.0, 1.0); }, false};
+    add_tube(mesh, path, along, around, {1.0, 2.0});
+}
+
+}  // namespace
+
+Mesh pot() {
+    Mesh mesh;
+    mesh.name = "pot";
+    add_lathed(mesh,
+               {{{{0.00, 0.00}, {0.20, 0.00}, {0.34, 0.00}, {0.36, 0.02}}, 4},   // foot
+                {{{0.36, 0.02}, {0.38, 0.05}, {0.58, 0.12}, {0.60, 0.34}}, 12},  // belly
+                {{{0.60, 0.34}, {0.62, 0.56}, {0.46, 0.66}, {0.38, 0.70}}, 12},  // shoulder
+                {{{0.38, 0.70}, {0.39, 0.73}, {0.36, 0.74}, {0.35, 0.72}}, 4},   // rim
+                {{{0.35, 0.72}, {0.30, 0.80}, {0.08, 0.80}, {0.06, 0.84}}, 10},  // lid
+                {{{0.06, 0.84}, {0.04, 0.88}, {0.12, 0.90}, {0.11, 0.95}}, 6},   // neck of the knob
+                {{{0.11, 0.95}, {0.10, 1.00}, {0.05, 1.01}, {0.00, 1.01}}, 6}},  // knob
+               48);
+    add_plane_tube(mesh,
+                   {{0.45, 0.22, 0.0}, {0.85, 0.22, 0.0}, {0.68, 0.58, 0.0}, {0.98, 0.70, 0.0}},
+                   0.15, 0.055, 24, 20);
+    add_plane_tube(mesh,
+                   {{-0.40, 0.62, 0.0}, {-1.10, 0.86, 0.0}, {-1.00, 0.02, 0.0}, {-0.45, 0.16, 0.0}},
+                   0.05, 0.05, 32, 14);
+    return mesh;
+}
+
+Mesh knot() {
+    constexpr double tube = 0.2;
+    // On a torus: twice along it, three times round its tube.
+    const auto torus_angles = [](double t) { return glm::dvec2(2.0, 3.0) * full_turn * t; };
+    const auto outwards = [=](double t) {
+        const glm::dvec2 a = torus_angles(t);
+        return glm::dvec3(std::cos(a.y) * std::sin(a.x), std::sin(a.y),
+                          std::cos(a.y) * std::cos(a.x));
+    };
+    const auto center = [=](double t) {
+        const glm::dvec2 a = torus_angles(t);
+        return glm::dvec3(0.5 * std::sin(a.x), 0.45, 0.5 * std::cos(a.x)) + 0.24 * outwards(t);
+    };
+    Mesh mesh;
+    mesh.name = "knot";
+    add_tube(mesh,
+             {center, [](double t) { return tube * (0.5 + 0.03 * std::sin(30.0 * full_turn * t)); },
+              outwards, true},
+             400, 16, {2.0, 24.0});
+    return mesh;
+}
+
+}  // namespace relief::sample
