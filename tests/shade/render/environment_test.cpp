@@ -174,6 +174,78 @@ TEST_F(Environments, AreMirroredBlurredByRoughness) {
     }
 }
 
+/// An image with a NaN, an infinity and a number that half floats cannot hold, in one texel each.
+Image broken_image(int width, int height) {
+    Image image = make_image(width, height, 3, 32, ColorSpace::linear);
+    image.as<float>()[0] = std::numeric_limits<float>::quiet_NaN();
+    image.as<float>()[4] = std::numeric_limits<float>::infinity();
+    image.as<float>()[8] = 1e9F;
+    return image;
+}
+
+TEST_F(Environments, WithTexelsThatAreNotFiniteAreCountedAndTheirPictureIsFinite) {
+    const Image square = broken_image(12, 12);
+    CubeFaces faces;
+    for (ImageSource& face : faces.faces)
+        face = {"face", make_image(12, 12, 3, 32, ColorSpace::linear)};
+    faces.faces[3].source = square;
+    // What the cross leaves empty is nobody's: its broken texels must lie in a face.
+    Image cross = make_image(16, 12, 3, 32, ColorSpace::linear);
+    std::ranges::copy(std::span(square.as<float>()).first(9),
+                      cross.as<float>().subspan(3 * 4).begin());
+    const std::vector<Environment> environments{
+        {.source = faces, .lights = true},
+        {.source = CubeCross{{"cross", cross}}, .lights = true},
+        {.source = Equirectangular{{"panorama", broken_image(16, 8)}}, .lights = true},
+        {.source = AngularMap{{"probe", square}}, .lights = true}};
+    for (const Environment& environment : environments) {
+        Scene scene = mirror_ball(environment);
+        scene.materials[0].diffuse = glm::vec3(1.0F);
+        scene.materials[0].reflectivity = glm::vec3(0.5F);
+        for (const float roughness : {0.0F, 0.4F}) {
+            scene.materials[0].reflection_roughness = roughness;
+            Report report;
+            Renderer renderer(context(), scene, {16, 16, 1, OutputCoding::linear}, report);
+            EXPECT_EQ(report.count("radiance that is not finite"), 2U);
+            EXPECT_EQ(report.count("radiance beyond half floats"), 1U);
+            const Image image = renderer.draw(*scene.camera).image;
+            for (const float sample : image.as<float>())
+                ASSERT_TRUE(std::isfinite(sample));
+        }
+    }
+}
+
+TEST_F(Environments, OfOneTexelAFaceAreAsAnyOther) {
+    CubeFaces faces;
+    for (std::size_t face = 0; face < 6; ++face) {
+        Image texel = make_image(1, 1, 3, 32, ColorSpace::linear);
+        for (float& sample : texel.as<float>())
+            sample = face == 4 ? 1.0F : 0.25F;
+        faces.faces.at(face) = {"face", std::move(texel)};
+    }
+    Material white = test::black_material();
+    white.diffuse = glm::vec3(1.0F);
+    Scene scene = test::scene_of(test::facing_square(), white);
+    scene.environment = Environment{.source = faces, .skybox = false, .lights = true};
+    const double shed = test::pixel(radiance(scene, 8, 8), 4, 4).x;
+    // A quarter from everywhere and three quarters more from the face in front, whose light sheds
+    // 4 / (pi sqrt(2)) atan(1 / sqrt(2)) = 0.554 of all that a plane can get.
+    EXPECT_NEAR(shed, 0.25 + 0.75 * 0.554, 0.02) << "order 2 leaves a little out";
+}
+
+TEST_F(Environments, ThatAreNoCrossAreRefusedByName) {
+    const Environment environment{
+        CubeCross{{"room.png", make_image(10, 10, 3, 32, ColorSpace::linear)}}};
+    try {
+        (void)render(mirror_ball(environment), {8, 8, 1, OutputCoding::srgb});
+        FAIL() << "a square was accepted as a cross";
+    } catch (const InvalidInput& error) {
+        EXPECT_STREQ(error.what(),
+                     "cross 'room.png' has 10 x 10 texels, but the faces of a cube lie in 4 x 3 "
+                     "(horizontal) or 3 x 4 (vertical) squares");
+    }
+}
+
 TEST_F(Environments, NameTheFaceThatDoesNotFit) {
     Environment environment = test::constant_environment(glm::vec3(0.5F), true);
     auto& faces = std::get<CubeFaces>(environment.source).faces;
