@@ -9,6 +9,7 @@
 
 #include "effects/light_rows.h"
 #include "relief/shade/effects.h"
+#include "relief/shade/labels.h"
 
 namespace relief {
 
@@ -365,8 +366,10 @@ Wishes granted(Wishes wishes) {
     return wishes;
 }
 
-Wishes decide(const Scene& scene, const Material& material, const Mesh& mesh, OutputCoding output) {
-    const Subject subject{scene, material, mesh, fmt::format("material '{}'", material.name)};
+/// \param name  of the material, for the reasons
+Wishes decide(const Scene& scene, const Material& material, const std::string& name,
+              const Mesh& mesh, OutputCoding output) {
+    const Subject subject{scene, material, mesh, name};
     Wishes wishes;
     wishes.features.output = output;
     decide_model(wishes, subject);
@@ -386,7 +389,7 @@ DrawPlan plan_draw(const Scene& scene, std::size_t instance, const MaterialRange
     const Mesh& mesh = scene.meshes[scene.instances[instance].mesh];
     const Material& material =
         range.material ? scene.materials[*range.material] : default_material();
-    Wishes wishes = decide(scene, material, mesh, output);
+    Wishes wishes = decide(scene, material, material_label(scene, range.material), mesh, output);
     const Features& f = wishes.features;
     DrawPlan draw;
     draw.instance = instance;
@@ -396,10 +399,11 @@ DrawPlan plan_draw(const Scene& scene, std::size_t instance, const MaterialRange
         (f.detail == NormalDetail::normal_map || f.detail == NormalDetail::bump_map) &&
         f.frame == TangentFrame::stored;
     draw.needs_tangents = uses_tangents && mesh.tangents.empty();
+    const std::string mesh_name = mesh_label(scene, scene.instances[instance].mesh);
     wishes.decide("computed tangents", draw.needs_tangents,
                   !uses_tangents        ? "nothing uses tangents"
-                  : draw.needs_tangents ? fmt::format("mesh '{}' has none", mesh.name)
-                                        : fmt::format("mesh '{}' has its own", mesh.name));
+                  : draw.needs_tangents ? mesh_name + " has none"
+                                        : mesh_name + " has its own");
     draw.reasons = std::move(wishes.reasons);
     return draw;
 }
@@ -417,7 +421,7 @@ const Material& default_material() {
 
 Features features_of(const Scene& scene, const Material& material, const Mesh& mesh,
                      OutputCoding output) {
-    return decide(scene, material, mesh, output).features;
+    return decide(scene, material, "the material", mesh, output).features;
 }
 
 FramePlan plan_effects(const Scene& scene, const FrameSettings& settings) {

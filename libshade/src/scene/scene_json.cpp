@@ -19,6 +19,8 @@ namespace {
 
 constexpr int version = 1;
 constexpr int most_pixels = 16384;
+/// Nodes below nodes: more than any scene needs, and less than a stack holds.
+constexpr int most_levels = 200;
 
 constexpr Named<ToneMapping> tone_mappings[] = {
     {"none", ToneMapping::none}, {"reinhard", ToneMapping::reinhard}, {"aces", ToneMapping::aces}};
@@ -122,7 +124,7 @@ class SceneReader {
         read_surroundings(root);
         if (const auto nodes = root.find("nodes")) {
             for (const JsonCursor& node : nodes->elements())
-                read_node(node, std::nullopt);
+                read_node(node, std::nullopt, 1);
         }
         if (const auto lights = root.find("lights")) {
             for (const JsonCursor& light : lights->elements())
@@ -194,7 +196,9 @@ class SceneReader {
         }
     }
 
-    void read_node(const JsonCursor& object, std::optional<std::size_t> parent) {
+    void read_node(const JsonCursor& object, std::optional<std::size_t> parent, int level) {
+        if (level > most_levels)
+            object.fail(fmt::format("lies more than {} levels deep", most_levels));
         object.allow({"name", "translation", "rotation", "scale", "matrix", "model", "shape",
                       "material", "material_changes", "light", "camera", "orbit", "turntable",
                       "children"});
@@ -207,7 +211,7 @@ class SceneReader {
         read_motions(object, index);
         if (const auto children = object.find("children")) {
             for (const JsonCursor& child : children->elements())
-                read_node(child, index);
+                read_node(child, index, level + 1);
         }
     }
 

@@ -251,6 +251,19 @@ TEST_F(SceneFile, SettingsOfThePicture) {
     EXPECT_EQ(load(R"("background": "#ffffff")").scene.background, glm::vec4(1.0F));
 }
 
+TEST_F(SceneFile, NestsNodesTwoHundredDeepAndNoMore) {
+    const auto nested = [](int levels) {
+        std::string text = "\"nodes\": [{}]";
+        for (int i = 1; i < levels; ++i)
+            text =
+                "\"nodes\": [{\"translation\": [1, 0, 0], \"children\": " + text.substr(9) + "}]";
+        return text;
+    };
+    EXPECT_EQ(load(nested(200)).nodes.size(), 200U);
+    EXPECT_THAT(error_of(nested(201)), HasSubstr("lies more than 200 levels deep"));
+    EXPECT_THAT(error_of(nested(20000)), HasSubstr("lies more than 200 levels deep"));
+}
+
 TEST_F(SceneFile, RefusesWhatItDoesNotKnowAndSaysWhere) {
     const auto expect = [&](const std::string& members, const std::string& error) {
         EXPECT_THAT(error_of(members), HasSubstr(error)) << members;
