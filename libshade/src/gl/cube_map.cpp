@@ -57,6 +57,7 @@ CubeMap make_cube_map(const Api& api, std::span<const Image> faces, std::string_
     check_cube_size(api, size, name);
     CubeMap cube{Texture(api), size, level_count(size)};
     api->BindTexture(GL_TEXTURE_CUBE_MAP, cube.texture.name());
+    set_cube_sampling(api);  // Before any level, as in make_texture().
     for (std::size_t i = 0; i < faces.size(); ++i) {
         const Image& face = faces[i];
         const std::optional<Image> converted = is_coded_color(face)
@@ -65,10 +66,8 @@ CubeMap make_cube_map(const Api& api, std::span<const Image> faces, std::string_
         const Image& uploaded = converted ? *converted : face;
         TexelFormat format = texel_format(uploaded, FloatStorage::half);
         if (!is_coded_color(face)) format.internal = GL_RGBA16F;
-        upload_level(api, cube_face_target(i), 0, format, uploaded);
+        upload_levels(api, cube_face_target(i), format, uploaded);
     }
-    api->GenerateMipmap(GL_TEXTURE_CUBE_MAP);
-    set_cube_sampling(api);
     api->BindTexture(GL_TEXTURE_CUBE_MAP, 0);
     api.check(fmt::format("uploading cube map '{}', six faces of {} x {}", name, size, size));
     return cube;

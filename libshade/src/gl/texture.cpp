@@ -120,6 +120,13 @@ void upload_level(const Api& api, GLenum target, GLint level, const TexelFormat&
                     0, format.format, format.type, samples);
 }
 
+void upload_levels(const Api& api, GLenum target, const TexelFormat& format, const Image& image) {
+    upload_level(api, target, 0, format, image);
+    GLint level = 0;
+    for (const Image& smaller : mip_levels(image))
+        upload_level(api, target, ++level, format, smaller);
+}
+
 void set_sampling(const Api& api, GLenum target, const Sampling& sampling) {
     api->TexParameteri(target, GL_TEXTURE_WRAP_S, static_cast<GLint>(sampling.wrap_s));
     api->TexParameteri(target, GL_TEXTURE_WRAP_T, static_cast<GLint>(sampling.wrap_t));
@@ -163,12 +170,10 @@ Texture make_texture(const Api& api, const Image& image, std::string_view name, 
     set_sampling(api, GL_TEXTURE_2D, sampling);
     set_swizzle(api, uploaded.channels);
     const TexelFormat format = texel_format(uploaded, storage);
-    upload_level(api, GL_TEXTURE_2D, 0, format, uploaded);
     if (mipmaps) {
-        // Not glGenerateMipmap: on Mesa's rasteriser it compiles shaders for 70 ms per format.
-        GLint level = 0;
-        for (const Image& smaller : mip_levels(uploaded))
-            upload_level(api, GL_TEXTURE_2D, ++level, format, smaller);
+        upload_levels(api, GL_TEXTURE_2D, format, uploaded);
+    } else {
+        upload_level(api, GL_TEXTURE_2D, 0, format, uploaded);
     }
     api->BindTexture(GL_TEXTURE_2D, 0);
     api.check(fmt::format("uploading texture '{}', {} x {}", name, image.width, image.height));

@@ -75,6 +75,10 @@ std::optional<Image> converted_for_upload(const Image& image);
 void upload_level(const Api& api, GLenum target, GLint level, const TexelFormat& format,
                   const Image& image);
 
+/// The image and all its mip_levels(). Not glGenerateMipmap: on Mesa's rasteriser that compiles
+/// shaders in every process, for 70 ms per texel format.
+void upload_levels(const Api& api, GLenum target, const TexelFormat& format, const Image& image);
+
 /// Reads a level of a texture back, coded as it is stored.
 ///
 /// \param target  GL_TEXTURE_2D, or GL_TEXTURE_CUBE_MAP_POSITIVE_X and the five after it
