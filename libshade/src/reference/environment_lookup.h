@@ -2,23 +2,25 @@
 /// \file
 /// The environment in a direction, blurred, and as it is shed on a surface, straight from its
 /// images, in double. World space, linear light, times the environment's intensity. Images are laid
-/// out as scene.h says; faces as in gl/cube_map.h. Samples that are not finite count as 0.
+/// out as scene.h says; faces as in environment/cube_faces.h.
 /// Tests: tests/shade/reference/environment_lookup_test.cpp.
 #pragma once
 
-#include <array>
 #include <glm/glm.hpp>
 #include <vector>
 
+#include "environment/irradiance_sh.h"
 #include "reference/texels.h"
+#include "relief/mesh/report.h"
 #include "relief/shade/scene.h"
 
 namespace relief::reference {
 
 class EnvironmentLookup {
   public:
-    /// \throws FileError if an image cannot be read
-    explicit EnvironmentLookup(const Environment& environment);
+    /// \param report  as in environment/radiance.h
+    /// \throws FileError if an image cannot be read; InvalidInput if images do not fit together
+    EnvironmentLookup(const Environment& environment, Report& report);
 
     /// \param direction_world  of any length but 0
     [[nodiscard]] glm::dvec3 radiance(const glm::dvec3& direction_world) const;
@@ -42,16 +44,16 @@ class EnvironmentLookup {
 
     [[nodiscard]] glm::dvec3 face_texel(std::size_t face, int x, int y) const;
     [[nodiscard]] glm::dvec3 face_radiance(const glm::dvec3& direction) const;
-    void project();
+    [[nodiscard]] std::vector<Image> faces() const;
+    [[nodiscard]] glm::dvec3 texel_mean(std::size_t face, int x, int y, int size) const;
 
     Layout layout_ = Layout::faces;
-    bool left_handed_ = false;
     double intensity_ = 1.0;
     std::vector<Texels> images_;  ///< Six, or one.
-    std::array<glm::dvec3, 9> harmonics_{};
+    IrradianceSh irradiance_{};   ///< With the intensity.
 };
 
-/// GGX's directional albedo for f0 (x) and for 1 - f0 (y), by integration over the distribution.
+/// GGX's directional albedo: x multiplies f0, y is added (environment/environment_brdf.h).
 glm::dvec2 directional_albedo(double n_dot_v, double roughness);
 
 }  // namespace relief::reference

@@ -122,7 +122,7 @@ PreparedScene::PreparedScene(const Scene& described, Report& report) : scene(des
         instances.push_back(
             prepared(instance, meshes[instance.mesh], glm::inverse(world_from_view)));
     }
-    if (scene.environment) environment.emplace(*scene.environment);
+    if (scene.environment) environment.emplace(*scene.environment, report);
 }
 
 std::size_t PreparedScene::range_of(std::uint32_t instance, std::uint32_t triangle) const {

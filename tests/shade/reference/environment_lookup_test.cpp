@@ -53,7 +53,8 @@ void expect_near(const glm::dvec3& found, const glm::dvec3& expected, double tol
 }
 
 TEST(EnvironmentLookups, FindDirectionsOnTheirFaces) {
-    const EnvironmentLookup lookup(faces_of(64, slope));
+    Report report;
+    const EnvironmentLookup lookup(faces_of(64, slope), report);
     // Half a texel of a face: 1/64 in direction, and half of that in radiance.
     for (const glm::dvec3& way : ways)
         expect_near(lookup.radiance(way), slope(glm::normalize(way)), 1.0 / 128);
@@ -62,7 +63,8 @@ TEST(EnvironmentLookups, FindDirectionsOnTheirFaces) {
 TEST(EnvironmentLookups, GoOnAcrossTheEdgesOfFaces) {
     // One texel a face: half-way between two faces' centres is the mean of both.
     const glm::dvec3 ends[] = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
-    const EnvironmentLookup lookup(faces_of(1, slope));
+    Report report;
+    const EnvironmentLookup lookup(faces_of(1, slope), report);
     for (const glm::dvec3& a : ends) {
         for (const glm::dvec3& b : ends) {
             if (glm::dot(a, b) != 0.0) continue;
@@ -75,7 +77,8 @@ TEST(EnvironmentLookups, GoOnAcrossTheEdgesOfFaces) {
 TEST(EnvironmentLookups, OfLeftHandedFacesTurnXRound) {
     Environment environment = faces_of(64, slope);
     std::get<CubeFaces>(environment.source).left_handed = true;
-    const EnvironmentLookup lookup(environment);
+    Report report;
+    const EnvironmentLookup lookup(environment, report);
     for (const glm::dvec3& way : ways) {
         const glm::dvec3 turned(-way.x, way.y, way.z);
         expect_near(lookup.radiance(way), slope(glm::normalize(turned)), 1.0 / 128);
@@ -95,8 +98,9 @@ TEST(EnvironmentLookups, FindDirectionsInCrosses) {
                 image.as<float>()[static_cast<std::size_t>(i)];
         }
     }
-    const EnvironmentLookup by_face(six);
-    const EnvironmentLookup by_cross(Environment{CubeCross{{"cross", cross}}});
+    Report report;
+    const EnvironmentLookup by_face(six, report);
+    const EnvironmentLookup by_cross(Environment{CubeCross{{"cross", cross}}}, report);
     for (const glm::dvec3& way : ways)
         expect_near(by_cross.radiance(way), by_face.radiance(way), 0.0);
 }
@@ -122,7 +126,8 @@ TEST(EnvironmentLookups, FindDirectionsInPanoramas) {
         return glm::dvec3(std::sin(longitude) * std::cos(latitude), std::sin(latitude),
                           -std::cos(longitude) * std::cos(latitude));
     });
-    const EnvironmentLookup lookup(Environment{Equirectangular{{"panorama", image}}});
+    Report report;
+    const EnvironmentLookup lookup(Environment{Equirectangular{{"panorama", image}}}, report);
     for (const glm::dvec3& way : ways)
         expect_near(lookup.radiance(way), slope(glm::normalize(way)), 0.01);
 }
@@ -134,9 +139,10 @@ TEST(EnvironmentLookups, FindDirectionsInProbes) {
         const glm::dvec2 across = glm::normalize(place) * std::sin(angle);
         return glm::dvec3(across, -std::cos(angle));
     });
-    const EnvironmentLookup lookup(Environment{AngularMap{{"probe", image}}});
-    // At +z, what is left out at the rim is 3 degrees.
+    Report report;
+    const EnvironmentLookup lookup(Environment{AngularMap{{"probe", image}}}, report);
     for (const glm::dvec3& way : ways)
+        // Two texels are left out at the rim, which is +z: 0.05 radians.
         expect_near(lookup.radiance(way), slope(glm::normalize(way)), 0.03);
 }
 
@@ -145,7 +151,8 @@ TEST(EnvironmentLookups, HaveTheEnvironmentsIntensity) {
     Environment environment = test::constant_environment({0.25F, 0.5F, 1.0F}, false);
     environment.intensity = 3.0F;
     environment.lights = true;
-    const EnvironmentLookup lookup(environment);
+    Report report;
+    const EnvironmentLookup lookup(environment, report);
     const glm::dvec3 expected(0.75, 1.5, 3.0);
     expect_near(lookup.radiance({1, 2, 3}), expected, 1e-12);
     expect_near(lookup.blurred({1, 2, 3}, 0.6, trace), expected, 1e-12);
@@ -154,7 +161,8 @@ TEST(EnvironmentLookups, HaveTheEnvironmentsIntensity) {
 
 TEST(EnvironmentLookups, ShedLightOnSurfacesByTheConvolvedCosine) {
     // Over pi, a radiance of 1/2 + d/2 sheds 1/2 + (2/3) n/2.
-    const EnvironmentLookup lookup(faces_of(64, slope));
+    Report report;
+    const EnvironmentLookup lookup(faces_of(64, slope), report);
     for (const glm::dvec3& way : ways) {
         const glm::dvec3 n = glm::normalize(way);
         expect_near(lookup.diffuse(n), 0.5 + n / 3.0, 1e-3);
@@ -163,7 +171,8 @@ TEST(EnvironmentLookups, ShedLightOnSurfacesByTheConvolvedCosine) {
 
 TEST(EnvironmentLookups, BlurMoreTheRougherTheSurface) {
     Trace trace;
-    const EnvironmentLookup lookup(faces_of(64, slope));
+    Report report;
+    const EnvironmentLookup lookup(faces_of(64, slope), report);
     const glm::dvec3 way = glm::normalize(glm::dvec3(0.3, 0.2, 1.0));
     expect_near(lookup.blurred(way, 0.0, trace), lookup.radiance(way), 0.0);
     expect_near(lookup.blurred(way, 0.05, trace), slope(way), 0.01);

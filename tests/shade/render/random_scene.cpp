@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "draw_test.h"
+#include "environment/cube_faces.h"
 #include "relief/mesh/shapes.h"
 #include "support/shapes.h"
 
@@ -18,10 +19,6 @@ namespace {
 template <typename T, std::size_t count>
 T one_of(Dice& dice, const T (&choices)[count]) {
     return choices[dice.below(count)];
-}
-
-float wave(const glm::vec3& frequency, float u, float v) {
-    return std::sin(6.2831853F * (frequency.x * u + frequency.y * v) + 6.0F * frequency.z);
 }
 
 Texture random_texture(Dice& dice, std::size_t image) {
@@ -220,25 +217,28 @@ Image random_normals(Dice& dice) {
     return image;
 }
 
-Environment random_environment(Dice& dice) {
-    // So coarse that its mirror image in the spheres is magnified.
-    constexpr int size = 6;
-    CubeFaces faces;
+Environment random_environment(Dice& dice, int face_size) {
+    // One wave through space for each channel.
     std::array<glm::vec3, 3> waves{};
-    for (glm::vec3& frequency : waves)
-        frequency = dice.color(0.1F, 0.6F);
+    for (glm::vec3& wave : waves)
+        wave = dice.direction() * dice.between(1.0F, 3.0F);
+    CubeFaces faces;
     for (std::size_t face = 0; face < 6; ++face) {
-        Image image = make_image(size, size, 3, 32, ColorSpace::linear);
+        Image image = make_image(face_size, face_size, 3, 32, ColorSpace::linear);
         const auto samples = image.as<float>();
         for (std::size_t i = 0; i < samples.size(); ++i) {
             const auto texel = static_cast<int>(i / 3);
-            const float u = (static_cast<float>(texel % size) + 0.5F) / size;
-            const float v = (static_cast<float>(texel / size) + 0.5F) / size;
-            samples[i] = 0.4F + 0.35F * wave(waves[i % 3] + 0.1F * static_cast<float>(face), u, v);
+            const glm::dvec3 way =
+                face_direction(face, (2.0 * (texel % face_size) + 1.0) / face_size - 1.0,
+                               (2.0 * (texel / face_size) + 1.0) / face_size - 1.0);
+            samples[i] =
+                0.4F + 0.35F * std::sin(glm::dot(glm::vec3(glm::normalize(way)), waves[i % 3]));
         }
         faces.faces[face] = {"face", image};
     }
+    faces.left_handed = dice.chance(0.3);
     Environment environment{faces};
+    environment.lights = dice.chance(0.5);
     environment.intensity = dice.between(0.3F, 1.2F);
     environment.skybox = dice.chance(0.5);
     return environment;
@@ -250,6 +250,7 @@ Scene random_scene(std::uint64_t seed) {
     scene.camera = front_camera();
     add_lamps(scene, dice);
     if (dice.chance(0.4)) scene.environment = random_environment(dice);
+    // Surroundings are blurred for metallic-roughness, which OpenGL does less finely: not here.
     const bool physical = !scene.environment;
     const std::size_t count = 1 + dice.below(3);
     for (std::size_t i = 0; i < count; ++i) {

@@ -45,8 +45,9 @@ Image random_heights(Dice& dice);
 /// Normals that lean up to 40 degrees off (0, 0, 1), as 16-bit codes.
 Image random_normals(Dice& dice);
 
-/// Six faces of a smooth random environment.
-Environment random_environment(Dice& dice);
+/// Six faces of a smooth random environment; by default so coarse that their mirror image in a
+/// sphere is magnified.
+Environment random_environment(Dice& dice, int face_size = 6);
 
 Scene random_scene(std::uint64_t seed);
 

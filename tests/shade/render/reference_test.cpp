@@ -28,6 +28,10 @@ constexpr double code_tolerance = 1.0;
 /// half a percent off, which is half a code, and filters data by weights of 8 bits.
 constexpr double coarse_tolerance = 2.0;
 
+/// Codes, where surroundings are blurred: OpenGL mixes two maps whose roughness is nearest, each
+/// within two percent of its own.
+constexpr double blurred_tolerance = 3.5;
+
 /// Where two pictures are furthest apart.
 struct Worst {
     double codes = 0.0;
@@ -333,6 +337,36 @@ TEST_F(Reference, AgreesWithEightBitTexturesAlmostAsWell) {
             scene.materials[0].occlusion_texture = texture;
         }
         expect_agreement(scene, coarse_tolerance);
+    }
+}
+
+/// A ball that mirrors blurred surroundings, by Phong's model or, with a metallic share, by
+/// glTF's.
+Scene glossy_sphere(float roughness, std::optional<float> metallic) {
+    test::Dice dice(7);
+    Scene scene = lit_sphere();
+    scene.environment = test::random_environment(dice, 32);
+    scene.environment->lights = true;
+    scene.environment->skybox = false;
+    Material& material = scene.materials[0];
+    if (metallic) {
+        material.metallic_roughness =
+            MetallicRoughness{{0.9F, 0.6F, 0.3F}, *metallic, roughness, std::nullopt};
+    } else {
+        material.reflectivity = {0.9F, 0.6F, 0.3F};
+        material.reflection_roughness = roughness;
+    }
+    return scene;
+}
+
+TEST_F(Reference, AgreesInBlurredSurroundings) {
+    for (const float roughness : {0.1F, 0.15F, 0.3F, 0.5F, 0.7F, 1.0F}) {
+        for (const std::optional<float> metallic :
+             {std::optional<float>(), std::optional(0.0F), std::optional(1.0F)}) {
+            SCOPED_TRACE(testing::Message()
+                         << "roughness " << roughness << ", metallic " << metallic.value_or(-1.0F));
+            expect_agreement(glossy_sphere(roughness, metallic), blurred_tolerance);
+        }
     }
 }
 
