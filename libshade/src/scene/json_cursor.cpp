@@ -107,6 +107,9 @@ bool JsonCursor::is_text() const {
 bool JsonCursor::is_number() const {
     return value_->is_number();
 }
+bool JsonCursor::is_null() const {
+    return value_->is_null();
+}
 
 std::optional<JsonCursor> JsonCursor::find(std::string_view key) const {
     if (!value_->is_object()) fail("must be an object");

@@ -29,6 +29,7 @@ class JsonCursor {
     [[nodiscard]] bool is_array() const;
     [[nodiscard]] bool is_text() const;
     [[nodiscard]] bool is_number() const;
+    [[nodiscard]] bool is_null() const;
 
     /// Of an object: its member, or nothing.
     [[nodiscard]] std::optional<JsonCursor> find(std::string_view key) const;

@@ -62,8 +62,16 @@ template <typename Value, std::size_t count>
 Setter choice(Value& value, const Named<Value> (&names)[count]) {
     return [&value, &names](const JsonCursor& c) { value = one_of(c, names); };
 }
+/// What a material may have or not: null takes it away.
+template <typename Value, typename Read>
+Setter optional(std::optional<Value>& value, const Read& read) {
+    return [&value, read](const JsonCursor& c) {
+        value.reset();
+        if (!c.is_null()) value = read(c);
+    };
+}
 Setter texture(std::optional<Texture>& value, JsonImages& images) {
-    return [&value, &images](const JsonCursor& c) { value = images.texture(c); };
+    return optional(value, [&images](const JsonCursor& c) { return images.texture(c); });
 }
 
 NormalMap normal_map_from(const JsonCursor& object, JsonImages& images) {
@@ -123,7 +131,8 @@ Members members_of(Material& m, JsonImages& images) {
         {"shininess", number(m.shininess, 0.0F, 1e6F)},
         {"specular_model", choice(m.specular_model, specular_models)},
         {"metallic_roughness",
-         [&](const JsonCursor& c) { m.metallic_roughness = metallic_roughness_from(c, images); }},
+         optional(m.metallic_roughness,
+                  [&](const JsonCursor& c) { return metallic_roughness_from(c, images); })},
         {"reflectivity", color(m.reflectivity)},
         {"grazing_reflectivity", color(m.grazing_reflectivity)},
         {"fresnel", choice(m.fresnel, fresnel_models)},
@@ -138,8 +147,10 @@ Members members_of(Material& m, JsonImages& images) {
         {"occlusion_texture", texture(m.occlusion_texture, images)},
         {"occlusion_strength", number(m.occlusion_strength, 0.0F, 1.0F)},
         {"opacity_texture", texture(m.opacity_texture, images)},
-        {"normal_map", [&](const JsonCursor& c) { m.normal_map = normal_map_from(c, images); }},
-        {"bump_map", [&](const JsonCursor& c) { m.bump_map = bump_map_from(c, images); }},
+        {"normal_map",
+         optional(m.normal_map, [&](const JsonCursor& c) { return normal_map_from(c, images); })},
+        {"bump_map",
+         optional(m.bump_map, [&](const JsonCursor& c) { return bump_map_from(c, images); })},
         {"tangent_frame", choice(m.tangent_frame, tangent_frames)},
         {"specular_antialiasing", flag(m.specular_antialiasing)},
         {"alpha_mode", choice(m.alpha_mode, alpha_modes)},

@@ -182,12 +182,13 @@ TEST_F(SceneFile, NodesCarryModelsShapesLightsAndCameras) {
     const SceneGraph graph = load(R"("nodes": [{"translation": [10, 0, 0], "scale": 2, "children": [
         {"translation": [1, 0, 0], "model": "cube.ply", "material": "emerald"},
         {"model": "two.obj", "material_changes": {"reflectivity": 0.5}},
+        {"model": "two.obj", "material_changes": {"diffuse_texture": null, "metallic_roughness": null}},
         {"shape": "sphere", "material": {"diffuse": 0.3, "name": "own"}},
         {"rotation": {"axis": [0, 1, 0], "angle": 90}, "light": {"type": "directional"}},
         {"light": {"type": "point", "position": [0, 1, 0]}},
         {"rotation": [0, 0, 0, 1], "translation": [0, 0, 4], "camera": {"fov": 60, "near": 0.5}}]}])");
     const Scene& scene = graph.scene;
-    ASSERT_EQ(scene.instances.size(), 3U);
+    ASSERT_EQ(scene.instances.size(), 4U);
     EXPECT_EQ(scene.instances[0].world_from_object[3], glm::vec4(12, 0, 0, 1));
     EXPECT_EQ(scene.instances[0].world_from_object[0].x, 2.0F);
     const auto material = [&](std::size_t mesh) {
@@ -199,7 +200,9 @@ TEST_F(SceneFile, NodesCarryModelsShapesLightsAndCameras) {
     EXPECT_EQ(material(1).reflectivity, glm::vec3(0.5F));
     EXPECT_EQ(scene.images.at(material(1).diffuse_texture->image).name,
               (folder_ / "a.png").string());
-    EXPECT_EQ(material(2).name, "own");
+    EXPECT_EQ(material(2).name, "one");
+    EXPECT_FALSE(material(2).diffuse_texture);
+    EXPECT_EQ(material(3).name, "own");
     EXPECT_NEAR(scene.directional_lights[0].direction_world.x, -1.0F, rounding);
     EXPECT_EQ(scene.point_lights[0].position_world, glm::vec3(10, 2, 0));
     ASSERT_TRUE(scene.camera);
