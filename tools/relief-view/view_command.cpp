@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <memory>
 #include <span>
 
@@ -43,9 +44,10 @@ Image without_alpha(const Image& image) {
         [&](const auto& samples) {
             using Samples = std::decay_t<decltype(samples)>;
             auto& kept = std::get<Samples>(opaque.samples);
-            const auto channels = static_cast<std::size_t>(image.channels);
-            for (std::size_t i = 0; i < kept.size(); ++i)
-                kept[i] = samples[i / (channels - 1) * channels + i % (channels - 1)];
+            const auto channels = static_cast<std::ptrdiff_t>(image.channels);
+            auto to = kept.begin();
+            for (auto texel = samples.begin(); texel != samples.end(); texel += channels)
+                to = std::copy(texel, texel + channels - 1, to);
         },
         image.samples);
     return opaque;
