@@ -108,7 +108,7 @@ std::vector<Effect> picture_effects() {
         one_value<&F::fresnel, FresnelTerm::schlick>("Schlick's Fresnel", not_reflecting),
         one_value<&F::fresnel, FresnelTerm::dielectric>("dielectric Fresnel", not_reflecting),
         one_value<&F::fresnel, FresnelTerm::conductor>("conductor Fresnel", not_reflecting),
-        one_switch<&F::refraction>("refraction", not_reflecting),
+        one_switch<&F::refraction>("refraction", "glTF's model lets nothing through"),
         one_switch<&F::exposure>("exposure", not_srgb),
         one_value<&F::tone_mapping, ToneMapping::reinhard>("Reinhard tone mapping", not_srgb),
         one_value<&F::tone_mapping, ToneMapping::aces>("ACES tone mapping", not_srgb),

@@ -53,10 +53,7 @@ void settle_model(Features& f) {
     } else {
         f.metallic_roughness_texture = false;
     }
-    if (f.reflection == ReflectionTerm::none) {
-        f.fresnel = FresnelTerm::constant;
-        f.refraction = false;
-    }
+    if (f.reflection == ReflectionTerm::none) f.fresnel = FresnelTerm::constant;
 }
 
 void drop_lamps(Features& f) {
@@ -76,13 +73,14 @@ void drop_lamps(Features& f) {
     if (light_row_layout(f).count > max_block_rows) f.lights_in_buffer = true;
     if (lamp_count(f) == 0 && f.interpolation == Interpolation::gouraud) {
         f.interpolation = Interpolation::per_pixel;
+        f.detail = NormalDetail::none;  // As with lamps.
     }
 }
 
 void drop_normal(Features& f) {
     const bool per_pixel_lamps = lamp_count(f) > 0 && f.interpolation != Interpolation::gouraud;
-    const bool seen =
-        per_pixel_lamps || f.reflection != ReflectionTerm::none || f.environment_diffuse;
+    const bool seen = per_pixel_lamps || f.reflection != ReflectionTerm::none || f.refraction ||
+                      f.environment_diffuse;
     if (!seen) {
         f.detail = NormalDetail::none;
         if (f.interpolation == Interpolation::flat) f.interpolation = Interpolation::per_pixel;

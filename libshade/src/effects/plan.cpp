@@ -309,11 +309,12 @@ void decide_reflection(Wishes& wishes, const Subject& subject) {
                    : rough   ? ReflectionTerm::glossy
                              : ReflectionTerm::mirror;
     decide_fresnel(wishes, subject, reflects);
+    const bool transmits = material.transmission > 0.0F && !physical;
     f.refraction =
-        wishes.decide("refraction", material.transmission > 0.0F && reflects,
-                      !(material.transmission > 0.0F) ? subject.name + " lets nothing through"
-                      : reflects ? subject.name + " lets through what it does not mirror"
-                                 : reason);
+        wishes.decide("refraction", transmits && environment,
+                      !transmits     ? subject.name + " lets nothing through"
+                      : !environment ? "the scene has no environment"
+                                     : subject.name + " lets through what it does not mirror");
 }
 
 void decide_picture(Wishes& wishes, const Scene& scene) {

@@ -37,7 +37,7 @@ struct Needs {
 
 /// \param lamps  the stage computes them  \param rest  and everything else that shows the normal
 Needs needs_of(F f, bool lamps, bool rest) {
-    const bool reflects = rest && f.reflection != ReflectionTerm::none;
+    const bool reflects = rest && (f.reflection != ReflectionTerm::none || f.refraction);
     const bool lit_around = rest && f.environment_diffuse;
     Needs needs;
     needs.lamps = lamps && has_lamps(f);
@@ -299,7 +299,8 @@ Parts reflection_parts(F f) {
     const bool physical = !none && f.metallic_roughness;
     const bool phong = !none && !f.metallic_roughness;
     return {
-        {"reflection", "absent/reflection.glsl", none},
+        {"reflection", "absent/reflection.glsl", none && !f.refraction},
+        {"reflection", "reflection/transparent.glsl", none && f.refraction},
         {"reflection",
          "reflection/physical.glsl",
          physical,
@@ -334,7 +335,7 @@ Parts reflection_parts(F f) {
         {"refraction", "absent/refraction.glsl", phong && !f.refraction},
         {"refraction",
          "reflection/refraction.glsl",
-         phong && f.refraction,
+         f.refraction,
          {.uniforms = {"environment_intensity", "transmission", "refraction_ratio"},
           .samplers = {"environment"}}},
     };

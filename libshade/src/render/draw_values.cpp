@@ -97,15 +97,15 @@ void set_material(DrawValues& values, const Material& material, const Scene& sce
     values.exposure = scene.exposure;
     if (!scene.environment) return;
     values.environment_intensity = scene.environment->intensity;
+    values.transmission = material.transmission;
+    values.refraction_ratio = 1.0F / material.refractive_index;
     if (material.reflectivity == glm::vec3(0.0F)) return;
     values.reflectivity = material.reflectivity;
     values.grazing_reflectivity = material.grazing_reflectivity;
     values.refractive_index = material.refractive_index;
-    values.refraction_ratio = 1.0F / material.refractive_index;
     values.conductor_index = material.conductor_index;
     values.conductor_absorption = material.conductor_absorption;
     values.reflection_roughness = material.reflection_roughness;
-    values.transmission = material.transmission;
 }
 
 void set_place(DrawValues& values, const glm::mat4& world_from_object) {

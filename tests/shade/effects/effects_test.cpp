@@ -36,7 +36,7 @@ TEST(CanonicalFeatures, HoldNothingThatCannotShow) {
         const Features c = canonical(f);
         const bool uses_lamps = c.diffuse || c.specular != SpecularTerm::none;
         const bool reflects = c.reflection != ReflectionTerm::none;
-        const bool uses_normal = uses_lamps || reflects || c.environment_diffuse;
+        const bool uses_normal = uses_lamps || reflects || c.refraction || c.environment_diffuse;
         const bool all_around =
             c.ambient || c.environment_diffuse || (c.metallic_roughness && reflects);
         const bool scatters = c.unlit || all_around || c.diffuse;
@@ -50,7 +50,8 @@ TEST(CanonicalFeatures, HoldNothingThatCannotShow) {
              (!c.diffuse_texture && !c.vertex_colors)) &&
             (c.alpha != AlphaMode::opaque || !c.opacity_texture) &&
             (c.interpolation == Interpolation::per_pixel || c.detail == NormalDetail::none) &&
-            (reflects || (c.fresnel == FresnelTerm::constant && !c.refraction)) &&
+            (reflects || c.fresnel == FresnelTerm::constant) &&
+            !(c.metallic_roughness && c.refraction) &&
             (c.output == OutputCoding::srgb ||
              (c.tone_mapping == ToneMapping::none && !c.exposure)) &&
             !(c.unlit && (has_lamps(c) || uses_normal || c.ambient || c.emission)) &&

@@ -252,6 +252,9 @@ TEST(EffectPlan, HasNoFresnelWhereReflectivityIsTheSameAtEveryAngle) {
     EXPECT_EQ(features(scene).fresnel, FresnelTerm::conductor);
     scene.materials[0].transmission = 0.5F;
     EXPECT_TRUE(features(scene).refraction);
+    scene.materials[0].reflectivity = glm::vec3(0.0F);
+    EXPECT_TRUE(features(scene).refraction);  // What mirrors nothing may be clear all the same.
+    EXPECT_EQ(features(scene).reflection, ReflectionTerm::none);
     scene.environment.reset();
     EXPECT_FALSE(features(scene).refraction);
 }

@@ -274,6 +274,19 @@ std::vector<Effect> environment_effects() {
                                }});
         }
     }
+    effects.push_back({"transmission alone", [](Scene& s, test::Dice& d) {
+                           s.environment = test::random_environment(d);
+                           s.materials[0].transmission = 0.7F;
+                       }});
+    // Gouraud's normals are those of vertices, with lamps and without.
+    effects.push_back({"Gouraud mirror", [](Scene& s, test::Dice& d) {
+                           s.environment = test::random_environment(d);
+                           s.materials[0].interpolation = Interpolation::gouraud;
+                           s.materials[0].reflectivity = glm::vec3(0.5F);
+                           s.materials[0].normal_map = NormalMap{image(s, test::random_normals(d))};
+                           s.directional_lights.clear();
+                           s.point_lights.clear();
+                       }});
     return effects;
 }
 
