@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "common/command.h"
+#include "common/text.h"
 #include "relief/mesh/image_file.h"
 #include "relief/shade/environment_files.h"
 
@@ -116,21 +117,26 @@ void check_environment(const ViewOptions& options) {
     const char* const give = "give one, or leave it out";
     refuse(files != 0 && files != 1 && files != 6, "--environment",
            fmt::format("takes one file, six files or a folder, not {} files", files), "");
-    refuse(options.no_skybox && files == 0, "--no-skybox", "there is no --environment to hide", "");
+    // A scene file may bring its own; that is known once it is read.
+    const bool none = files == 0 && extension_of(options.model) != ".json";
+    refuse(options.no_skybox && none, "--no-skybox", "there is no --environment to hide", "");
     const auto need_environment = [&](bool given, const char* option) {
-        refuse(given && files == 0, option, "there is no --environment to reflect", give);
+        refuse(given && none, option, "there is no --environment to reflect", give);
     };
     need_environment(options.reflectivity.has_value(), "--reflectivity");
     need_environment(options.reflection_roughness.has_value(), "--reflection-roughness");
     need_environment(options.fresnel.has_value() || options.no_fresnel, "--fresnel");
     need_environment(options.transmission.has_value(), "--transmission");
     const auto describe_environment = [&](bool given, const char* option) {
-        refuse(given && files == 0, option, "there is no --environment", give);
+        refuse(given && none, option, "there is no --environment", give);
     };
-    describe_environment(options.environment_layout.has_value(), "--environment-layout");
     describe_environment(options.environment_light.has_value(), "--environment-light");
     describe_environment(options.environment_intensity.has_value(), "--environment-intensity");
-    describe_environment(options.left_handed_environment, "--left-handed");
+    const auto describe_images = [&](bool given, const char* option) {
+        refuse(given && files == 0, option, "there is no --environment", give);
+    };
+    describe_images(options.environment_layout.has_value(), "--environment-layout");
+    describe_images(options.left_handed_environment, "--left-handed");
     refuse(options.refractive_index && options.fresnel != FresnelModel::dielectric &&
                !options.transmission,
            "--refractive-index", "neither --fresnel dielectric nor --transmission uses it",

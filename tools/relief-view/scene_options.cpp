@@ -26,8 +26,28 @@ bool is_physical(const Material& material) {
     return material.metallic_roughness.has_value() && !material.unlit;
 }
 
+/// What the options say of the surroundings that a scene file brings.
+void change_own_environment(Scene& scene, const ViewOptions& options) {
+    if (!scene.environment) {
+        const bool asked = options.no_skybox || options.environment_light ||
+                           options.environment_intensity || options.reflectivity ||
+                           options.reflection_roughness || options.fresnel || options.no_fresnel ||
+                           options.transmission;
+        if (!asked) return;
+        throw UsageError("the scene has no environment, which one of the options is about",
+                         "give one with --environment, or leave the option out");
+    }
+    if (options.no_skybox) scene.environment->skybox = false;
+    scene.environment->lights = options.environment_light.value_or(scene.environment->lights);
+    scene.environment->intensity =
+        options.environment_intensity.value_or(scene.environment->intensity);
+}
+
 void set_environment(Scene& scene, const ViewOptions& options) {
-    if (options.environment.empty()) return;
+    if (options.environment.empty()) {
+        change_own_environment(scene, options);
+        return;
+    }
     scene.environment = environment_of(options);
     const bool physical = std::any_of(scene.materials.begin(), scene.materials.end(), is_physical);
     scene.environment->lights = options.environment_light.value_or(physical);

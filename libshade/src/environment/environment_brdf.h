@@ -20,8 +20,8 @@ namespace relief {
 /// \return (A, B), within 1e-3 of the integral for n.v and roughness of at least 1/64
 glm::dvec2 environment_brdf(double n_v, double roughness);
 
-/// A and B as a table: column x for sqrt(n.v) = x / (size - 1), since they change fastest at grazing
-/// angles, and row y for roughness y / (size - 1); both ends are there.
+/// A and B as a table: column x for sqrt(n.v) = x / (size - 1), since they change fastest at
+/// grazing angles, and row y for roughness y / (size - 1); both ends are there.
 ///
 /// \return two float channels, data; the same bits for any number of threads. Of a table of 64,
 ///         bilinear lookups are within 3e-3 for roughness of at least 0.045.

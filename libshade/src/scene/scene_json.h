@@ -11,8 +11,9 @@
 
 namespace relief {
 
-/// The file's scene, to be posed and validated by load_scene_graph. \throws FileError if it, or a file that it names, is not
-/// there or not as it must be; what is wrong in the scene file itself is named by its JSON pointer
+/// The file's scene, to be posed and validated by load_scene_graph. \throws FileError if it, or a
+/// file that it names, is not there or not as it must be; what is wrong in the scene file itself is
+/// named by its JSON pointer
 SceneGraph read_scene_json(const std::filesystem::path& file, const SceneOptions& options,
                            Report& report);
 
