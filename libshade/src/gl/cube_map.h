@@ -8,7 +8,7 @@
 /// In a panorama, direction d stands at u = 0.5 + atan2(d.x, -d.z) / 2 pi from the left and
 /// v = acos(d.y) / pi from the top: its centre is -z, its top row +y, +x right of the centre. Light
 /// probes are as in environment/angular_map.h.
-/// Tests: tests/shade/gl/cube_map_test.cpp.
+/// Tests: tests/shade/gl/cube_map_test.cpp, cube_map_projection_test.cpp.
 #pragma once
 
 #include <span>
