@@ -2,7 +2,7 @@
 // The radiance that a surface sends to the eye, as material.h's Material defines it. World space.
 // Every included <step> is chosen by the effect plan; one that cannot show is in absent/.
 
-out vec4 color;
+invariant out vec4 color;
 
 #include "light/lighting.glsl"
 #include <alpha>

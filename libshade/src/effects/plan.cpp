@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "effects/light_rows.h"
+#include "effects/why_hidden.h"
 #include "relief/shade/effects.h"
 #include "relief/shade/labels.h"
 
@@ -332,24 +333,6 @@ void decide_picture(Wishes& wishes, const Scene& scene) {
     };
     decide("Reinhard tone mapping", ToneMapping::reinhard);
     decide("ACES tone mapping", ToneMapping::aces);
-}
-
-/// Why something that the features hold no more is gone; what decides more than canonical() says.
-std::string why_hidden(const Effect& effect, const Features& wished, const Features& shown) {
-    if (shown.unlit) return "the material is unlit";
-    const bool detail =
-        std::string_view(effect.name).ends_with("map") && wished.detail != shown.detail;
-    if (detail && wished.interpolation == Interpolation::gouraud) {
-        return "Gouraud shading knows the normal at vertices only";
-    }
-    if (detail && wished.interpolation == Interpolation::flat) {
-        return "flat shading knows the triangle's plane only";
-    }
-    if (wished.interpolation == Interpolation::flat &&
-        std::string_view(effect.name) == "double-sided normals") {
-        return "a triangle's plane turns to the eye by itself";
-    }
-    return effect.hidden;
 }
 
 /// The wishes that can show, and the reasons put right for those that cannot.

@@ -1,48 +1,24 @@
 // SPDX-License-Identifier: Apache-2.0
 // Forcing an effect on that the plan left out changes no pixel: not one bit, in sRGB codes and in
-// linear float. So leaving it out was right. One exception, in linear float: white vertex colours
-// are interpolated, and a rasteriser's interpolation of 1 may be 1 - 6e-8.
+// linear float, one by one and all together. So leaving it out was right. Which effects are choices
+// of the scene instead, effect_forcing.h says.
 #include <gtest/gtest.h>
 
-#include <functional>
+#include <algorithm>
+#include <set>
 
+#include "../effects/all_features.h"
+#include "../effects/scene_calling_for.h"
 #include "draw_test.h"
-#include "relief/shade/image_compare.h"
+#include "relief/mesh/error.h"
+#include "relief/shade/effect_forcing.h"
+#include "relief/shade/framing.h"
+#include "relief/shade/scene_file.h"
 #include "support/shapes.h"
+#include "support/shared_data.h"
 
 namespace relief {
 namespace {
-
-struct Forced {
-    const char* name;
-    std::function<void(DrawPlan&)> on;
-};
-
-const std::vector<Forced>& forced_effects() {
-    static const std::vector<Forced> all = {
-        {"diffuse texture", [](DrawPlan& d) { d.features.diffuse_texture = true; }},
-        {"vertex colours", [](DrawPlan& d) { d.features.vertex_colors = true; }},
-        {"normal map", [](DrawPlan& d) { d.features.detail = NormalDetail::normal_map; }},
-        {"double-sided normals", [](DrawPlan& d) { d.features.double_sided = true; }},
-        {"ambient", [](DrawPlan& d) { d.features.ambient = true; }},
-        {"directional light", [](DrawPlan& d) { d.features.directional_lights += 1; }},
-        {"point lights", [](DrawPlan& d) { d.features.point_lights += 2; }},
-        {"spot light", [](DrawPlan& d) { d.features.spot_lights += 1; }},
-        {"diffuse", [](DrawPlan& d) { d.features.diffuse = true; }},
-        {"highlights",
-         [](DrawPlan& d) {
-             if (d.features.specular == SpecularTerm::none) {
-                 d.features.specular = SpecularTerm::blinn_phong;
-             }
-         }},
-        {"light ranges", [](DrawPlan& d) { d.features.light_ranges = true; }},
-        {"light buffer", [](DrawPlan& d) { d.features.lights_in_buffer = true; }},
-        {"emission", [](DrawPlan& d) { d.features.emission = true; }},
-        {"emission texture", [](DrawPlan& d) { d.features.emission_texture = true; }},
-        {"reflection", [](DrawPlan& d) { d.features.reflection = ReflectionTerm::mirror; }},
-    };
-    return all;
-}
 
 /// A sphere of a few facets, so that interpolation matters, and single-sided.
 Scene base_scene() {
@@ -93,53 +69,192 @@ std::vector<std::pair<const char*, Scene>> scenes() {
     return all;
 }
 
+/// What the neutral plan has and the other has not.
+std::vector<std::string> added_effects(const FramePlan& plan, const FramePlan& neutral) {
+    const std::vector<std::string> before = effects_in(plan);
+    std::vector<std::string> added;
+    for (const std::string& name : effects_in(neutral)) {
+        if (std::find(before.begin(), before.end(), name) == before.end()) added.push_back(name);
+    }
+    return added;
+}
+
 class ForcedEffects : public test::DrawTest {
   protected:
-    /// \param tolerance  relative to 1, in linear pictures that vertex colours are forced on
-    void expect_no_change(const Scene& scene, OutputCoding output, double tolerance) const {
-        const FrameSettings settings{48, 48, 1, output};
-        const FramePlan plan = plan_effects(scene, {.samples = 1, .output = output});
+    [[nodiscard]] Image forced(const Scene& scene, const FrameSettings& settings,
+                               const EffectWishes& wishes) const {
+        const FramePlan plan = plan_effects(scene, settings);
+        return render(scene, force_effects(scene, settings, plan, wishes), settings).image;
+    }
+
+    /// Everything neutral at once; if that shows, one by one, to say which.
+    /// \return how many effects were forced on
+    std::size_t expect_no_change(const Scene& scene, const FrameSettings& settings) const {
+        const FramePlan plan = plan_effects(scene, settings);
+        const EffectWishes all{EffectBase::all_neutral, {}};
+        const FramePlan neutral = force_effects(scene, settings, plan, all);
         const Image as_planned = render(scene, plan, settings).image;
-        FramePlan all_forced = plan;
-        for (const Forced& forced : forced_effects()) {
-            SCOPED_TRACE(forced.name);
-            FramePlan one_forced = plan;
-            forced.on(one_forced.draws[0]);
-            if (canonical(one_forced.draws[0].features) == plan.draws[0].features) continue;
-            const Image image = render(scene, one_forced, settings).image;
-            if (one_forced.draws[0].features.vertex_colors) {
-                EXPECT_LE(compare(image, as_planned).max, tolerance);
-            } else {
-                EXPECT_TRUE(test::same_bits(image, as_planned));
-                forced.on(all_forced.draws[0]);
+        const std::vector<std::string> added = added_effects(plan, neutral);
+        if (test::same_bits(render(scene, neutral, settings).image, as_planned)) {
+            return added.size();
+        }
+        ADD_FAILURE() << "all neutral effects at once show";
+        for (const std::string& effect : added) {
+            EffectWishes without = all;
+            without.forced = {{effect, false}};
+            if (test::same_bits(forced(scene, settings, without), as_planned)) {
+                ADD_FAILURE() << "not without '" << effect << "'";
             }
         }
-        const Image image = render(scene, all_forced, settings).image;
-        EXPECT_TRUE(test::same_bits(image, as_planned)) << "all effects at once";
+        return added.size();
+    }
+
+    /// Each effect by itself, as far as any draw can have it.
+    std::set<std::string> expect_no_change_one_by_one(const Scene& scene,
+                                                      const FrameSettings& settings) const {
+        const FramePlan plan = plan_effects(scene, settings);
+        const Image as_planned = render(scene, plan, settings).image;
+        std::set<std::string> shown;
+        for (const Effect& effect : effects()) {
+            if (effect.on(plan.draws.at(0).features)) continue;
+            const EffectWishes one{EffectBase::planned, {{effect.name, true}}};
+            try {
+                EXPECT_TRUE(test::same_bits(forced(scene, settings, one), as_planned))
+                    << effect.name;
+                shown.insert(effect.name);
+            } catch (const InvalidInput&) {  // A choice, or nothing here could show it.
+            }
+        }
+        return shown;
     }
 };
 
-TEST_F(ForcedEffects, ChangeNoBitOfAnSrgbPicture) {
+TEST_F(ForcedEffects, ChangeNoBitOneByOne) {
+    std::set<std::string> forced;
     for (const auto& [name, scene] : scenes()) {
         SCOPED_TRACE(name);
-        expect_no_change(scene, OutputCoding::srgb, 0.0);
+        forced.merge(expect_no_change_one_by_one(scene, {32, 32, 1, OutputCoding::linear}));
+    }
+    // Every effect that is no choice of the scene and needs no other forced beside it; exposure
+    // belongs to sRGB.
+    for (const char* effect : {"diffuse texture",   "vertex colours",
+                               "alpha mask",        "normal map",
+                               "bump map",          "double-sided normals",
+                               "ambient",           "point lights",
+                               "spot lights",       "mixed falloff",
+                               "light ranges",      "highlight colours",
+                               "light buffer",      "environment light",
+                               "Phong highlights",  "Blinn-Phong highlights",
+                               "specular texture",  "emission",
+                               "emission texture",  "mirror reflection",
+                               "glossy reflection", "refraction"}) {
+        EXPECT_TRUE(forced.contains(effect)) << effect;
     }
 }
 
-TEST_F(ForcedEffects, ChangeNoBitOfALinearPicture) {
-    for (const auto& [name, scene] : scenes()) {
+TEST_F(ForcedEffects, ThatNeedOthersChangeNoBitWithThem) {
+    const std::vector<std::vector<ForcedEffect>> sets = {
+        {{"mirror reflection"}, {"dielectric Fresnel"}},
+        {{"mirror reflection"}, {"conductor Fresnel"}},
+        {{"glossy reflection"}, {"Schlick's Fresnel"}, {"refraction"}},
+        {{"normal map"}, {"specular antialiasing"}, {"Phong highlights"}},
+        {{"spot lights"}, {"no falloff"}},
+        {{"mirror reflection"}, {"Schlick's Fresnel"}},
+        {{"alpha mask"}, {"opacity texture"}},
+    };
+    const Scene scene = base_scene();
+    const FrameSettings settings{48, 48, 1, OutputCoding::linear};
+    const Image as_planned = forced(scene, settings, {});
+    for (const std::vector<ForcedEffect>& set : sets) {
+        const EffectWishes wishes{EffectBase::planned, set};
+        EXPECT_TRUE(test::same_bits(forced(scene, settings, wishes), as_planned))
+            << set[0].name << ", " << set[1].name;
+    }
+}
+
+TEST_F(ForcedEffects, ChangeNoBitAllTogetherInScenesWhereEveryPairOfEffectsMeets) {
+    std::size_t scenes = 0;
+    std::size_t added = 0;
+    for (const Features& features : test::covering_features()) {
+        SCOPED_TRACE(describe(features));
+        const test::CallingScene calling = test::scene_calling_for(features);
+        added += expect_no_change(calling.scene, calling.settings);
+        ++scenes;
+    }
+    EXPECT_GT(added, 8 * scenes) << "effects forced on in each";
+}
+
+/// Every model in data/ under one light, alone and with every other map that
+/// data/ has.
+std::vector<std::pair<std::string, Scene>> scenes_in_data() {
+    const std::filesystem::path data = test::source_directory() / "data";
+    std::vector<std::pair<std::string, Scene>> all;
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(data)) {
+        const std::string extension = entry.path().extension().string();
+        if (extension != ".obj" && extension != ".gltf" && extension != ".glb") continue;
+        Report report;
+        Scene scene = load_scene(entry.path(), report);
+        scene.directional_lights = {{{-0.5F, -1.0F, -0.8F}, glm::vec3(0.8F)}};
+        scene.camera = framed(scene, 0.5F, 0.35F, 0.6F, 1.0F);
+        all.emplace_back(entry.path().filename().string(), scene);
+        CubeFaces faces;
+        for (std::size_t i = 0; i < 6; ++i) {
+            constexpr std::array names{"posx", "negx", "posy", "negy", "posz", "negz"};
+            faces.faces[i] = {names[i], data / "sky" / (std::string(names[i]) + ".jpg")};
+        }
+        scene.environment = Environment{faces, 1.0F, true, true};
+        scene.images.push_back({"bricks", data / "bricks-diffuse.png"});
+        scene.images.push_back({"heights", data / "bricks-height.png"});
+        for (Material& material : scene.materials) {
+            material.reflectivity = glm::vec3(0.3F);
+            material.diffuse_texture = Texture{scene.images.size() - 2};
+            if (!material.normal_map) material.bump_map = BumpMap{{scene.images.size() - 1}, 8.0F};
+        }
+        all.emplace_back(entry.path().filename().string() + " in the sky", scene);
+    }
+    return all;
+}
+
+TEST_F(ForcedEffects, ChangeNoBitOfTheScenesInData) {
+    const auto all = scenes_in_data();
+    EXPECT_GE(all.size(), 2U);
+    for (const auto& [name, scene] : all) {
         SCOPED_TRACE(name);
-        expect_no_change(scene, OutputCoding::linear, 2.4e-7);  // Two steps of a float below 1.
+        for (const int samples : {1, 4}) {
+            EXPECT_GT(expect_no_change(scene, {96, 96, samples, OutputCoding::srgb}), 5U);
+        }
     }
 }
 
 TEST_F(ForcedEffects, ThatAreTakenAwayDoChangeThePicture) {
     const Scene scene = base_scene();
-    FramePlan plan = plan_effects(scene, {.samples = 1});
     const FrameSettings settings{48, 48, 1, OutputCoding::srgb};
-    const Image whole = render(scene, plan, settings).image;
-    plan.draws[0].features.diffuse = false;
-    EXPECT_FALSE(test::same_bits(render(scene, plan, settings).image, whole));
+    const Image whole = forced(scene, settings, {});
+    EXPECT_FALSE(test::same_bits(
+        forced(scene, settings, {EffectBase::planned, {{"diffuse", false}}}), whole));
+    EXPECT_FALSE(test::same_bits(forced(scene, settings, {EffectBase::nothing, {}}), whole));
+    EXPECT_TRUE(test::same_bits(
+        forced(scene, settings,
+               {EffectBase::nothing, {{"diffuse", true}, {"directional lights", true}}}),
+        whole));
+}
+
+TEST_F(ForcedEffects, VertexColoursAreExactlyWhiteBetweenWhiteVertices) {
+    // A mask that only full coverage passes, over a mesh with one transparent corner on the far
+    // side.
+    Scene scene = test::scene_of(test::sphere(24, 12), test::black_material());
+    scene.materials[0].emission = glm::vec3(1.0F);
+    scene.materials[0].alpha_mode = AlphaMode::mask;
+    scene.materials[0].alpha_cutoff = 1.0F;
+    const Image whole = render(scene, {48, 48, 1, OutputCoding::srgb}).image;
+    Mesh& mesh = scene.meshes[0];
+    mesh.colors.assign(mesh.positions.size(), glm::vec4(1.0F));
+    const auto hidden =
+        std::min_element(mesh.positions.begin(), mesh.positions.end(),
+                         [](const glm::vec3& a, const glm::vec3& b) { return a.z < b.z; });
+    mesh.colors[static_cast<std::size_t>(hidden - mesh.positions.begin())].a = 0.0F;
+    EXPECT_TRUE(plan_effects(scene, {}).draws[0].features.vertex_colors);
+    EXPECT_TRUE(test::same_bits(render(scene, {48, 48, 1, OutputCoding::srgb}).image, whole));
 }
 
 }  // namespace

@@ -5,9 +5,8 @@
 /// Every draw (one material range of one instance) gets a Features value. It names everything its
 /// program, vertex streams and textures will hold; what is not in it has no code, no uniform, no
 /// memory and no time. Leaving an effect out never changes a pixel, because it is left out only
-/// where its contribution is exactly nothing (in linear float, to the rounding of an interpolated
-/// 1, for white vertex colours). Tests: tests/shade/effects/,
-/// tests/shade/render/forced_effects_test.cpp.
+/// where its contribution is exactly nothing (effect_forcing.h puts it in all the same). Tests:
+/// tests/shade/effects/, tests/shade/render/forced_effects_test.cpp.
 #pragma once
 
 #include <compare>
