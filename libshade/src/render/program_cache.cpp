@@ -5,7 +5,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
+#include <cassert>
 #include <utility>
 
 #include "effects/surface_program.h"
@@ -43,6 +45,13 @@ constexpr std::array<std::pair<const char*, TextureUnit>, 13> texture_units{{
 }};
 
 }  // namespace
+
+std::string_view sampler_name(TextureUnit unit) {
+    const auto* const entry = std::find_if(texture_units.begin(), texture_units.end(),
+                                           [&](const auto& row) { return row.second == unit; });
+    assert(entry != texture_units.end());
+    return entry->first;
+}
 
 gl::LinkedProgram link(const gl::Api& api, const std::string& name, const ShaderSource& vertex,
                        const ShaderSource& fragment) {

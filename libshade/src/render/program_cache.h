@@ -8,6 +8,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "effects/shader_source.h"
@@ -41,6 +42,9 @@ enum class TextureUnit : GLint {
     light_buffer,
     drawn,
 };
+
+/// The sampler that is bound to a unit.
+std::string_view sampler_name(TextureUnit unit);
 
 /// How many units materials have.
 inline constexpr std::size_t material_unit_count = 8;

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// What a frame takes, measured: renderers draw in turns, the first frames are dropped, and the
+/// wall clock is read around finished work (software drivers' timer queries are wrong).
+/// Tests: tests/shade/render/effect_costs_test.cpp.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "relief/mesh/timing.h"
+#include "relief/shade/renderer.h"
+
+namespace relief {
+
+/// Milliseconds of each counted frame of one renderer, in the order in which they were drawn.
+struct FrameSeries {
+    std::vector<double> draw;
+    std::vector<double> read_back;
+    std::vector<double> frame;  ///< Their sum.
+};
+
+/// One series for each renderer, drawn in turns; frames while warming up are not in it.
+/// \throws what Renderer::draw does
+std::vector<FrameSeries> time_frames(std::span<Renderer* const> renderers, const Camera& camera,
+                                     const Repeats& repeats);
+
+}  // namespace relief

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+// Attributes, textures and passes in words, read from the same tables that drawing reads. Pure.
+// Tests: tests/shade/render/planned_inputs_test.cpp.
+#include "relief/shade/planned_inputs.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <string_view>
+
+#include "render/material_textures.h"
+
+namespace relief {
+
+namespace {
+
+struct AttributeRow {
+    const char* name;
+    bool (*stored)(const Mesh& mesh);
+    const char* reason;
+};
+
+const std::vector<AttributeRow>& attribute_rows() {
+    static const std::vector<AttributeRow> all = {
+        {"position_object", [](const Mesh& m) { return !m.positions.empty(); },
+         "every vertex has a place"},
+        {"normal_object", [](const Mesh& m) { return !m.normals.empty(); },
+         "light or a reflection shows the normal"},
+        {"tangent_object", [](const Mesh& m) { return !m.tangents.empty(); },
+         "a map lies in the mesh's tangent frame"},
+        {"texcoord", [](const Mesh& m) { return !m.texcoords.empty(); }, "textures are sampled"},
+        {"color_linear", [](const Mesh& m) { return !m.colors.empty(); },
+         "vertex colours tint the surface"},
+    };
+    return all;
+}
+
+/// Why the samplers that are not a material's own are there, and whether they have mip levels.
+struct SharedSampler {
+    bool mip_chain;
+    const char* reason;
+};
+
+const std::map<std::string_view, SharedSampler>& shared_samplers() {
+    static const std::map<std::string_view, SharedSampler> all = {
+        {"environment", {true, "the surface mirrors it or lets it through"}},
+        {"blurred_environment", {true, "the surface mirrors it blurred; a level for a roughness"}},
+        {"environment_brdf", {false, "how much a rough surface mirrors, by angle and roughness"}},
+        {"light_buffer", {false, "the lights are in a buffer"}},
+    };
+    return all;
+}
+
+PlannedTexture texture_of(const Scene& scene, const DrawPlan& draw, const std::string& sampler) {
+    const auto shared = shared_samplers().find(sampler);
+    if (shared != shared_samplers().end()) {
+        return {sampler, "", shared->second.mip_chain, shared->second.reason};
+    }
+    const Material& material =
+        draw.range.material ? scene.materials[*draw.range.material] : default_material();
+    const Mesh& mesh = scene.meshes[scene.instances[draw.instance].mesh];
+    for (const UsedTexture& used : used_textures(draw.features, material, mesh)) {
+        if (sampler_name(used.unit) != sampler) continue;
+        if (used.texture == nullptr) return {sampler, "", false, "neutral: forced on"};
+        return {sampler, scene.images[used.texture->image].name, true,
+                fmt::format("material '{}' has it", material.name)};
+    }
+    return {sampler, "", false, ""};
+}
+
+}  // namespace
+
+DrawInputs planned_inputs(const Scene& scene, const DrawPlan& draw) {
+    const PlannedInterface planned = planned_interface(draw.features);
+    const Mesh& mesh = scene.meshes[scene.instances[draw.instance].mesh];
+    DrawInputs inputs;
+    for (const AttributeRow& row : attribute_rows()) {
+        if (!std::binary_search(planned.attributes.begin(), planned.attributes.end(), row.name)) {
+            continue;
+        }
+        inputs.attributes.push_back({row.name, row.stored(mesh), row.reason});
+    }
+    for (const std::string& sampler : planned.samplers)
+        inputs.textures.push_back(texture_of(scene, draw, sampler));
+    return inputs;
+}
+
+std::vector<PlannedPass> planned_passes(const FramePlan& plan) {
+    const auto any = [&](bool blended) {
+        return std::any_of(plan.draws.begin(), plan.draws.end(), [&](const DrawPlan& draw) {
+            return (draw.features.alpha == AlphaMode::blend) == blended;
+        });
+    };
+    std::vector<PlannedPass> passes;
+    if (any(false)) passes.push_back({"surfaces", "nearest first by the depth buffer"});
+    if (plan.skybox)
+        passes.push_back({"skybox", "the environment is seen where nothing is nearer"});
+    if (any(true)) passes.push_back({"blended surfaces", "sorted, farthest first"});
+    for (const EffectReason& reason : plan.reasons) {
+        if (reason.effect == "finishing pass" && reason.on) {
+            passes.push_back({"finishing", reason.reason});
+        }
+    }
+    return passes;
+}
+
+}  // namespace relief

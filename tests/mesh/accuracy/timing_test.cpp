@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+// Medians and spreads by hand, and the order of repeated work.
+#include "relief/mesh/timing.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "relief/mesh/error.h"
+#include "support/message_of.h"
+
+namespace relief {
+namespace {
+
+using testing::ElementsAre;
+using testing::Pair;
+
+TEST(Spread, IsTakenBetweenMeasurements) {
+    const Spread odd = spread_of({5, 1, 3, 2, 4, 11, 8, 7, 6, 10, 9});  // 1 to 11.
+    EXPECT_EQ(odd.median, 6.0);
+    EXPECT_EQ(odd.p10, 2.0);
+    EXPECT_EQ(odd.p90, 10.0);
+    EXPECT_EQ(odd.count, 11U);
+    const Spread even = spread_of({4, 1});
+    EXPECT_EQ(even.median, 2.5);
+    EXPECT_NEAR(even.p10, 1.3, 1e-12);
+    EXPECT_NEAR(even.p90, 3.7, 1e-12);
+}
+
+TEST(Spread, OfOneIsThatOneAndOfNoneNothing) {
+    EXPECT_EQ(spread_of({7}).median, 7.0);
+    EXPECT_EQ(spread_of({7}).p10, 7.0);
+    EXPECT_EQ(spread_of({7}).p90, 7.0);
+    EXPECT_EQ(spread_of({}).count, 0U);
+    EXPECT_EQ(spread_of({}).median, 0.0);
+}
+
+TEST(Interleave, TakesTurnsAndWarmsUpFirst) {
+    std::vector<std::pair<std::size_t, bool>> calls;
+    interleave(2, {.counted = 2, .warm_up = 1},
+               [&](std::size_t thing, bool counted) { calls.emplace_back(thing, counted); });
+    EXPECT_THAT(calls, ElementsAre(Pair(0, false), Pair(1, false), Pair(0, true), Pair(1, true),
+                                   Pair(0, true), Pair(1, true)));
+}
+
+TEST(MedianDifference, IsFreeOfWhatBothShare) {
+    EXPECT_EQ(median_difference({12, 110, 52}, {10, 109, 49}), 2.0);
+    EXPECT_EQ(test::message_of<InvalidInput>([] {
+                  median_difference({1, 2}, {1});
+              }),
+              "2 measurements cannot be compared with 1 round by round");
+}
+
+}  // namespace
+}  // namespace relief
