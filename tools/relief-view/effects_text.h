@@ -11,11 +11,15 @@
 
 namespace relief::tools {
 
+/// "'vase', material 'clay', 4096 triangles"
+std::string draw_heading(const Scene& scene, const DrawPlan& draw);
+
 /// Prints the plan on stdout; draws with the same reasons share one table.
 void print_effects(const Scene& scene, const FramePlan& plan);
 
-/// {"frame": [{"effect", "on", "reason"}], "draws": [{"instance", "material", "triangles",
-/// "tangents_computed", "effects": [...]}]}
+/// {"frame": [{"effect", "on", "reason"}], "passes": [{"pass", "reason"}], "draws": [{"instance",
+/// "material", "triangles", "tangents_computed", "effects": [...], "attributes": [{"name",
+/// "stored", "reason"}], "textures": [{"sampler", "image", "mip_chain", "reason"}]}]}
 nlohmann::ordered_json effects_json(const Scene& scene, const FramePlan& plan);
 
 }  // namespace relief::tools

@@ -12,6 +12,7 @@
 
 #include "common/findings.h"
 #include "common/text.h"
+#include "effect_options.h"
 #include "effects_text.h"
 #include "picture_reference.h"
 #include "relief/mesh/image_file.h"
@@ -59,15 +60,20 @@ Image picture_of(const Frame& frame, const Scene& scene) {
 }
 
 /// Draws every picture that is asked for, writes them where they are to go, and compares.
-Drawn draw(const ViewOptions& options, ComposedScene& composed, Stages& stages, Report& report) {
+Drawn draw(const ViewOptions& options, ComposedScene& composed, FramePlan plan, Stages& stages,
+           Report& report) {
     const Image reference = options.reference ? read_reference(options) : Image{};
     const std::unique_ptr<Context> context =
         stages.run("context", [&] { return std::make_unique<Context>(options.backend); });
+    const FrameSettings settings = settings_of(options);
+    FrameMeasures measures = measure_frame(
+        options, {*context, composed.scene(), settings, composed.camera}, plan, stages);
     const std::unique_ptr<Renderer> renderer = stages.run("prepare", [&] {
-        return std::make_unique<Renderer>(*context, composed.scene(), settings_of(options), report);
+        return std::make_unique<Renderer>(*context, composed.scene(), plan, settings, report);
     });
     const std::unique_ptr<PictureSink> sink = options.output ? make_sink(options) : nullptr;
     Drawn drawn;
+    drawn.measures = std::move(measures);
     drawn.backend = context->backend_name();
     drawn.renderer = context->renderer_name();
     const auto take = [&](const Frame& frame) {
@@ -87,25 +93,31 @@ ExitCode run(ViewOptions& options) {
     Stages stages(options.general.quiet);
     Report report;
     ComposedScene composed = compose_scene(options, stages, report);
-    const FramePlan plan = plan_effects(composed.scene(), settings_of(options));
+    const FramePlan plan = chosen_plan(options, composed.scene(), settings_of(options));
     if (options.explain_effects && !options.json) print_effects(composed.scene(), plan);
+    if (options.effects.print_shaders && !options.json) print_shaders(composed.scene(), plan);
 
     std::optional<Drawn> drawn;
-    if (options.output || options.reference) drawn = draw(options, composed, stages, report);
+    if (options.output || options.reference || options.effects.measures()) {
+        drawn = draw(options, composed, plan, stages, report);
+    }
 
     Findings findings;
     findings.add("", report);
     if (options.json) {
         nlohmann::ordered_json json = summary_json(options, composed, findings, stages);
         if (drawn) json["picture"] = picture_json(options, *drawn);
+        if (drawn) json.update(measures_json(drawn->measures, options, drawn->frame));
         if (drawn && drawn->comparison) {
             json["comparison"] = comparison_json(options, *drawn->comparison);
         }
         if (options.explain_effects) json["effects"] = effects_json(composed.scene(), plan);
+        if (options.effects.print_shaders) json["shaders"] = shaders_json(plan);
         print_json(json);
     } else if (drawn && !options.general.quiet) {
-        if (options.explain_effects) fmt::print("\n");
+        if (options.explain_effects || options.effects.print_shaders) fmt::print("\n");
         print_summary(options, composed, *drawn, findings, stages);
+        print_measures(drawn->measures, options, drawn->frame);
     }
     if (drawn && drawn->comparison) require_match(options, *drawn->comparison);
     return ExitCode::done;

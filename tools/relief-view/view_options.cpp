@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "common/text.h"
+#include "effect_options.h"
 #include "environment_options.h"
 #include "map_options.h"
 #include "material_options.h"
@@ -55,9 +56,11 @@ void add_output_options(CLI::App& app, ViewOptions& options) {
                "How light brighter than white is shown: as white, or brought down by a curve. "
                "Default: as the scene says, else none.")
         ->group(group);
-    add_switch(app, "--explain-effects", options.explain_effects,
-               "Print which effects the scene calls for and which not, with the reason. Needs no "
-               "--output, and then no OpenGL.")
+    add_switch(
+        app, "--explain-effects", options.explain_effects,
+        "Print which effects the scene calls for and which not, with the reason, and with an "
+        "--output or --benchmark also what each costs and what the picture would lose. "
+        "Alone, it needs no OpenGL.")
         ->group(group);
     add_switch(app, "--json", options.json, "Print the summary as one JSON object.")->group(group);
 }
@@ -101,7 +104,8 @@ void add_light_options(CLI::App& app, ViewOptions& options) {
 }
 
 void check_output(const ViewOptions& options) {
-    if (!options.output && !options.explain_effects && !options.reference)
+    const bool explains = options.explain_effects || options.effects.print_shaders;
+    if (!options.output && !explains && !options.reference && !options.effects.measures())
         throw UsageError("--output is missing",
                          "name a picture to write, or ask for --explain-effects");
     refuse(is_linear_output(options) && (options.exposure || options.tone_mapping),
@@ -164,6 +168,7 @@ void add_view_options(CLI::App& app, ViewOptions& options) {
     add_light_options(app, options);
     add_sequence_options(app, options);
     add_reference_options(app, options);
+    add_effect_options(app, options);
     const Choices<Backend> backends = {
         {"auto", Backend::automatic}, {"osmesa", Backend::osmesa}, {"egl", Backend::egl}};
     add_choice(app, "--backend", options.backend, backends,

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "common/options.h"
+#include "effect_choices.h"
 #include "light_option.h"
 #include "relief/mesh/bump.h"
 #include "relief/mesh/normal_map.h"
@@ -106,6 +107,7 @@ struct ViewOptions {
 
     Backend backend = Backend::automatic;
     bool explain_effects = false;
+    EffectChoices effects;
     bool json = false;
     GeneralOptions general;
 };

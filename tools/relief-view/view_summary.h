@@ -8,6 +8,7 @@
 #include <string>
 
 #include "common/findings.h"
+#include "effect_options.h"
 #include "picture_reference.h"
 #include "scene_options.h"
 #include "sequence.h"
@@ -22,6 +23,7 @@ struct Drawn {
     std::string backend;
     std::string renderer;
     std::optional<ReferenceComparison> comparison;
+    FrameMeasures measures;
 };
 
 void print_summary(const ViewOptions& options, const ComposedScene& composed, const Drawn& drawn,
