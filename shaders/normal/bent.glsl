@@ -10,9 +10,8 @@
 
 vec3 shading_normal() {
     vec3 bend = normal_tangent();
-    bool holds_nothing = !(dot(bend, bend) > 1e-12);
     mat3 frame = world_from_tangent();
     vec3 bent_world = bend.x * frame[0] + bend.y * frame[1] + bend.z * frame[2];
-    vec3 fallback = normalized_or(frame[2], vec3(0.0, 0.0, 1.0));
-    return facing() * (holds_nothing ? fallback : normalized_or(bent_world, fallback));
+    bool bends = dot(bend, bend) > 1e-12 && has_direction(bent_world);
+    return facing() * normalized_or(bends ? bent_world : frame[2], vec3(0.0, 0.0, 1.0));
 }

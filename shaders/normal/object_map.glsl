@@ -11,8 +11,7 @@ uniform mat3 world_from_object_normal;
 
 vec3 shading_normal() {
     vec3 normal_object = normal_texel();
-    vec3 fallback = normalized_or(normal_world, vec3(0.0, 0.0, 1.0));
-    bool holds_nothing = !(dot(normal_object, normal_object) > 1e-12);
-    vec3 mapped_world = normalized_or(world_from_object_normal * normal_object, fallback);
-    return facing() * (holds_nothing ? fallback : mapped_world);
+    vec3 mapped_world = world_from_object_normal * normal_object;
+    bool maps = dot(normal_object, normal_object) > 1e-12 && has_direction(mapped_world);
+    return facing() * normalized_or(maps ? mapped_world : normal_world, vec3(0.0, 0.0, 1.0));
 }

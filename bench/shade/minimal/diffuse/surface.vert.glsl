@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+// By hand, for one directional light: what this scene takes and nothing else.
+
+in vec3 position_object;
+in vec3 normal_object;
+
+out vec3 normal_world;
+
+uniform mat4 clip_from_object;
+uniform mat3 world_from_object_normal;
+
+void main() {
+    gl_Position = clip_from_object * vec4(position_object, 1.0);
+    normal_world = normalize(world_from_object_normal * normal_object);
+}
