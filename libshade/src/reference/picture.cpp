@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // From radiance to a picture: exposure, tone mapping, sRGB codes, the background behind. Linear
 // light in, in double inside; NaN and negative radiance is black, infinite the largest value.
-// Sources: [IEC 61966-2-1], [Narkowicz 2016] (the fit to the film curve, by channel).
+// Source: [Narkowicz 2016] (the fit to the film curve, by channel).
 // Tests: tests/shade/reference/picture_test.cpp.
 #include <algorithm>
-#include <cmath>
 
 #include "reference/limited.h"
 #include "relief/mesh/error.h"
@@ -26,10 +25,6 @@ double tone_mapped(double x, ToneMapping mapping) {
             break;
     }
     return x;
-}
-
-double coded(double light) {
-    return light <= 0.0031308 ? 12.92 * light : 1.055 * std::pow(light, 1.0 / 2.4) - 0.055;
 }
 
 /// Radiance as it shows in a picture, not coded yet.
@@ -67,9 +62,9 @@ Image reference_picture(const Image& radiance, const Scene& scene, OutputCoding 
         const glm::dvec4 pixel =
             over({shown(color, scene, output), static_cast<double>(from[i + 3])}, background);
         for (int channel = 0; channel < 4; ++channel) {
-            const double value = pixel[channel];
+            const auto value = static_cast<float>(pixel[channel]);
             to[i + static_cast<std::size_t>(channel)] =
-                static_cast<float>(codes && channel < 3 ? coded(value) : value);
+                codes && channel < 3 ? srgb_from_linear(value) : value;
         }
     }
     return picture;

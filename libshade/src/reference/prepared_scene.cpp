@@ -63,6 +63,7 @@ PreparedInstance prepared(const Instance& instance, const Mesh& mesh,
     PreparedInstance result;
     result.mesh = &mesh;
     result.mirrors = mirrors;
+    result.world_from_object_normal = matrix;
     for (const glm::vec3& position : mesh.positions) {
         const glm::dvec4 world = world_from_object * glm::dvec4(glm::dvec3(position), 1.0);
         result.positions_world.emplace_back(world);

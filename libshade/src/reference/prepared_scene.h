@@ -24,8 +24,9 @@ struct PreparedInstance {
     std::vector<glm::dvec3> positions_world;
     std::vector<glm::dvec3> positions_view;
     std::vector<glm::dvec3> normals_world;
-    std::vector<glm::dvec4> tangents_world;  ///< Empty where the mesh has none.
-    bool mirrors = false;                    ///< The matrix turns triangles' windings round.
+    std::vector<glm::dvec4> tangents_world;    ///< Empty where the mesh has none.
+    glm::dmat3 world_from_object_normal{1.0};  ///< Up to a positive factor.
+    bool mirrors = false;                      ///< The matrix turns triangles' windings round.
 };
 
 struct PreparedScene {

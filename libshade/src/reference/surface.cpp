@@ -142,11 +142,8 @@ glm::dvec3 stored_normal(const PreparedScene& prepared, const Hit& hit, const No
                          const glm::dvec2& texcoord, Trace& trace) {
     const glm::dvec3 normal_object = mapped_vector(prepared, map, texcoord, trace);
     if (holds_nothing(normal_object)) return glm::dvec3(0.0);
-    const glm::dmat3 m(prepared.scene.instances[hit.instance].world_from_object);
-    const glm::dmat3 cofactors(glm::cross(m[1], m[2]), glm::cross(m[2], m[0]),
-                               glm::cross(m[0], m[1]));
-    return direction_or_zero(cofactors * normal_object) *
-           (prepared.instances[hit.instance].mirrors ? -1.0 : 1.0);
+    return direction_or_zero(prepared.instances[hit.instance].world_from_object_normal *
+                             normal_object);
 }
 
 /// The normal on the front side.
