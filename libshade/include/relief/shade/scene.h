@@ -72,7 +72,7 @@ struct Environment {
     bool lights = false;  ///< Surfaces scatter its light, by spherical harmonics of order 2.
 };
 
-/// How radiance, times the exposure, becomes a picture; by channel, but for aces.
+/// How radiance, times the exposure, becomes a picture; by channel.
 enum class ToneMapping {
     none,      ///< What is above 1 is 1.
     reinhard,  ///< x / (1 + x)
