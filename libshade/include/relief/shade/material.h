@@ -114,7 +114,6 @@ struct MetallicRoughness {
 ///            the scene has no environment, and transmission counts as 0 there too
 ///     surroundings(d) = the environment in direction d, blurred by reflection_roughness
 ///     refracted = v bent into the surface by refractive_index, once, at the first surface
-///     transmission counts as 0 where the scene has no environment
 ///     occlusion = 1 + occlusion_strength (occlusion_texture - 1)
 ///
 /// A highlight is the mirror image of its lamp, so F does not dim it.
