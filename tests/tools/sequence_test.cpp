@@ -49,6 +49,28 @@ TEST(Turntable, ComesRoundToWhereItBegan) {
     EXPECT_THAT(turned.out, HasSubstr("t-0001.png to out/t-0004.png"));
 }
 
+TEST(Turntable, TurnsTheModelAndLeavesWhatShowsLampsWhereItIs) {
+    const Workplace workplace;
+    workplace.write_square("square.obj");
+    ViewOptions options;
+    options.model = workplace / "square.obj";
+    options.turntable = 4;
+    options.light_markers = 0.1F;
+    options.lights = {PointLight{{3, 0, 0}, glm::vec3(1.0F)}};
+    Stages stages(true);
+    Report report;
+    ComposedScene composed = compose_scene(options, stages, report);
+    ASSERT_EQ(composed.scene().instances.size(), 2U);
+    const glm::mat4 marker = composed.scene().instances[1].world_from_object;
+    for (int i = 1; i < 4; ++i) {
+        pose_for(composed, options, i);
+        EXPECT_EQ(composed.scene().instances[1].world_from_object, marker) << i;
+    }
+    // Three quarters of a turn: what pointed right points to the eye.
+    const glm::vec3 right(composed.scene().instances[0].world_from_object[0]);
+    EXPECT_NEAR(right.z, 1.0F, 1e-6F);
+}
+
 TEST(Turntable, AsAnAnimationIsOneFile) {
     const Workplace workplace;
     workplace.write_square("square.obj");

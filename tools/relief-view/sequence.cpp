@@ -54,14 +54,15 @@ double time_of(const ComposedScene& composed, const ViewOptions& options, int in
     return all * index / *options.frames;
 }
 
-/// The model turned about the vertical axis through its middle; lamps and surroundings stay.
+/// The model turned about the vertical axis through its middle; lamps and surroundings stay, and so
+/// do the spheres that show lamps, which are no part of what is at rest.
 void turn(ComposedScene& composed, double angle) {
     const glm::vec3 middle = composed.middle;
     glm::mat4 turned = glm::translate(glm::mat4(1.0F), middle);
     turned = glm::rotate(turned, static_cast<float>(angle), glm::vec3(0, 1, 0));
     turned = glm::translate(turned, -middle);
-    for (Instance& instance : composed.scene().instances)
-        instance.world_from_object = turned * instance.world_from_object;
+    for (std::size_t i = 0; i < composed.at_rest.size(); ++i)
+        composed.scene().instances[i].world_from_object = turned * composed.at_rest[i];
 }
 
 }  // namespace
@@ -79,10 +80,7 @@ std::unique_ptr<PictureSink> make_sink(const ViewOptions& options) {
 
 void pose_for(ComposedScene& composed, const ViewOptions& options, int index) {
     pose(composed.graph, time_of(composed, options, index));
-    if (!options.turntable) return;
-    for (std::size_t i = 0; i < composed.at_rest.size(); ++i)
-        composed.scene().instances[i].world_from_object = composed.at_rest[i];
-    turn(composed, 2.0 * std::numbers::pi * index / *options.turntable);
+    if (options.turntable) turn(composed, 2.0 * std::numbers::pi * index / *options.turntable);
 }
 
 Frame draw_sequence(Renderer& renderer, ComposedScene& composed, const ViewOptions& options,
@@ -92,8 +90,10 @@ Frame draw_sequence(Renderer& renderer, ComposedScene& composed, const ViewOptio
     Frame frame;
     for (int i = 0; i < count; ++i) {
         stages.run("draw", fmt::format("draw {} of {}", i + 1, count), [&] {
-            pose_for(composed, options, i);
-            renderer.move(composed.scene());
+            if (i > 0) {  // The first is how the scene was composed.
+                pose_for(composed, options, i);
+                renderer.move(composed.scene());
+            }
             const bool own_camera = composed.camera_follows_scene && composed.scene().camera;
             frame = renderer.draw(own_camera ? *composed.scene().camera : composed.camera);
         });

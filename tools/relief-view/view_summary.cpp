@@ -3,9 +3,8 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "common/text.h"
+#include "relief/mesh/timing.h"
 #include "sequence_options.h"
 
 namespace relief::tools {
@@ -31,15 +30,11 @@ std::size_t triangle_count(const Scene& scene) {
     return count;
 }
 
-double median(std::vector<double> values) {
-    std::sort(values.begin(), values.end());
-    return values.empty() ? 0.0 : values[values.size() / 2];
-}
-
 /// "24, each 12.3 ms to draw and 0.9 ms to read back (median)"
 std::string frames_in_words(const SequenceTimes& times) {
     return fmt::format("{}, each {:.3g} ms to draw and {:.3g} ms to read back (median)",
-                       times.draw.size(), median(times.draw), median(times.read_back));
+                       times.draw.size(), spread_of(times.draw).median,
+                       spread_of(times.read_back).median);
 }
 
 /// "out/spin-0001.png to out/spin-0024.png", or the one file and its size.
@@ -105,8 +100,8 @@ nlohmann::ordered_json picture_json(const ViewOptions& options, const Drawn& dra
               {"read_back", times.read_back}}},
             {"frames",
              {{"count", drawn.times.draw.size()},
-              {"median_draw_milliseconds", median(drawn.times.draw)},
-              {"median_read_back_milliseconds", median(drawn.times.read_back)}}}};
+              {"median_draw_milliseconds", spread_of(drawn.times.draw).median},
+              {"median_read_back_milliseconds", spread_of(drawn.times.read_back).median}}}};
 }
 
 }  // namespace relief::tools

@@ -5,17 +5,11 @@
 
 #include <algorithm>
 
-#include "relief/shade/effects.h"
+#include "effects/environment_needs.h"
 
 namespace relief {
 
 namespace {
-
-template <typename Condition>
-bool any_draw(const FramePlan& plan, Condition condition) {
-    return std::any_of(plan.draws.begin(), plan.draws.end(),
-                       [&](const DrawPlan& draw) { return condition(draw.features); });
-}
 
 void plan_environment(const Scene& scene, FramePlan& plan) {
     const auto decide = [&](const char* effect, bool on, const char* why, const char* why_not) {
@@ -28,40 +22,42 @@ void plan_environment(const Scene& scene, FramePlan& plan) {
     plan.skybox = decide("skybox", scene.environment && scene.environment->skybox,
                          "the environment is to be seen behind the model",
                          "the environment is not to be seen itself");
-    const bool mirrored = any_draw(plan, [](const Features& f) {
-        return f.reflection == ReflectionTerm::mirror || f.refraction;
-    });
-    plan.prefiltered_map = decide(
-        "prefiltered environment",
-        any_draw(plan, [](const Features& f) { return f.reflection == ReflectionTerm::glossy; }),
-        "a rough material reflects it", "no rough material reflects it");
-    plan.environment_brdf = decide(
-        "environment BRDF table",
-        any_draw(plan,
-                 [](const Features& f) {
-                     return f.metallic_roughness &&
-                            (f.reflection == ReflectionTerm::glossy || f.environment_diffuse);
-                 }),
-        "a metallic-roughness material reflects the environment",
-        "no metallic-roughness material reflects it");
+    const EnvironmentNeeds needs = environment_needs(plan);
+    plan.prefiltered_map = decide("prefiltered environment", needs.blurred,
+                                  "a rough material reflects it", "no rough material reflects it");
+    plan.environment_brdf = decide("environment BRDF table", needs.brdf,
+                                   "a metallic-roughness material reflects the environment",
+                                   "no metallic-roughness material reflects it");
     plan.environment_irradiance =
-        decide("environment irradiance",
-               any_draw(plan, [](const Features& f) { return f.environment_diffuse; }),
-               "a material scatters its light", "no material scatters its light");
+        decide("environment irradiance", needs.irradiance, "a material scatters its light",
+               "no material scatters its light");
     plan.environment_map =
-        decide("environment map",
-               plan.skybox || mirrored || plan.prefiltered_map || plan.environment_irradiance,
-               mirrored ? "a material mirrors it" : "the effects above are made from it",
+        decide("environment map", plan.skybox || needs.any(),
+               needs.sharp ? "a material mirrors it" : "the effects above are made from it",
                "nothing shows it");
 }
 
 }  // namespace
 
+EnvironmentNeeds environment_needs(const FramePlan& plan) {
+    EnvironmentNeeds needs;
+    for (const DrawPlan& draw : plan.draws) {
+        const Features& f = draw.features;
+        const bool blurs = f.reflection == ReflectionTerm::glossy;
+        needs.sharp |= f.reflection == ReflectionTerm::mirror || f.refraction;
+        needs.blurred |= blurs;
+        needs.irradiance |= f.environment_diffuse;
+        needs.brdf |= f.metallic_roughness && (blurs || f.environment_diffuse);
+    }
+    return needs;
+}
+
 void plan_frame(const Scene& scene, const FrameSettings& settings, FramePlan& plan) {
     plan.reasons.clear();
     plan_environment(scene, plan);
     plan.sorted_blending =
-        any_draw(plan, [](const Features& f) { return f.alpha == AlphaMode::blend; });
+        std::any_of(plan.draws.begin(), plan.draws.end(),
+                    [](const DrawPlan& draw) { return draw.features.alpha == AlphaMode::blend; });
     plan.reasons.push_back({"sorted blending", plan.sorted_blending,
                             plan.sorted_blending ? "a material lets through what is behind it"
                                                  : "every material is opaque or has holes only"});

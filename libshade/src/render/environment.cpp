@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "effects/environment_needs.h"
 #include "effects/shader_source.h"
 #include "effects/surface_program.h"
 #include "environment/cube_faces.h"
@@ -91,12 +92,6 @@ gl::Texture brdf_texture(const gl::Api& api) {
     return texture;
 }
 
-template <typename Condition>
-bool any_draw(const FramePlan& plan, Condition condition) {
-    return std::any_of(plan.draws.begin(), plan.draws.end(),
-                       [&](const DrawPlan& draw) { return condition(draw.features); });
-}
-
 }  // namespace
 
 std::vector<Image> decode_environment(const Environment& environment) {
@@ -111,24 +106,17 @@ std::vector<Image> decode_environment(const Environment& environment) {
 
 EnvironmentMaps::EnvironmentMaps(const gl::Api& api, const Scene& scene, const FramePlan& plan,
                                  std::span<const Image> images, Report& report) {
-    const bool blurs =
-        any_draw(plan, [](const Features& f) { return f.reflection == ReflectionTerm::glossy; });
-    const bool mirrors = any_draw(plan, [](const Features& f) {
-        return f.reflection == ReflectionTerm::mirror || f.refraction;
-    });
-    const bool sheds = any_draw(plan, [](const Features& f) { return f.environment_diffuse; });
+    const EnvironmentNeeds needs = environment_needs(plan);
     if (!images.empty()) {
         sharp_ = cube_map_of(api, *scene.environment, images, report);
-    } else if (mirrors || blurs || sheds || plan.skybox) {
+    } else if (needs.any() || plan.skybox) {
         sharp_ = black_cube_map(api);
     }
-    const bool splits = any_draw(plan, [](const Features& f) {
-        return f.metallic_roughness &&
-               (f.reflection == ReflectionTerm::glossy || f.environment_diffuse);
-    });
-    if (splits) brdf_ = brdf_texture(api);
-    if (blurs) blurred_ = images.empty() ? black_cube_map(api) : make_prefiltered(api, *sharp_);
-    if (sheds && !images.empty())
+    if (needs.brdf) brdf_ = brdf_texture(api);
+    if (needs.blurred) {
+        blurred_ = images.empty() ? black_cube_map(api) : make_prefiltered(api, *sharp_);
+    }
+    if (needs.irradiance && !images.empty())
         irradiance_sh_ = irradiance_of(api, *sharp_, scene.environment->intensity);
 }
 

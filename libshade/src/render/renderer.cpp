@@ -371,7 +371,7 @@ const FramePlan& Renderer::plan() const {
 }
 
 void Renderer::move(const Scene& scene) {
-    validate(scene);
+    validate_places(scene);
     if (population(scene) != implementation_->things) {
         throw InvalidInput(
             "a moved scene has the instances and lamps that it had, no fewer or more");

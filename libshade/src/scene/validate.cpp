@@ -208,6 +208,12 @@ void validate(const Camera& camera) {
     }
 }
 
+void validate_places(const Scene& scene) {
+    for (std::size_t i = 0; i < scene.instances.size(); ++i)
+        validate_instance(scene, i);
+    validate_lights(scene);
+}
+
 void validate(const Scene& scene) {
     for (std::size_t i = 0; i < scene.meshes.size(); ++i) {
         try {
@@ -218,9 +224,7 @@ void validate(const Scene& scene) {
     }
     for (std::size_t i = 0; i < scene.materials.size(); ++i)
         validate_material(scene, i);
-    for (std::size_t i = 0; i < scene.instances.size(); ++i)
-        validate_instance(scene, i);
-    validate_lights(scene);
+    validate_places(scene);
     if (scene.environment) {
         check_range("environment intensity", scene.environment->intensity, 0.0F, max_reflectance);
     }

@@ -61,10 +61,9 @@ class Renderer {
 
     [[nodiscard]] const FramePlan& plan() const;
 
-    /// Takes over where things stand and how lamps shine from the same scene at another time
-    /// (scene_graph.h): matrices of instances, lights, exposure and background stay within the plan
-    /// made for the first. \throws InvalidInput if instances or lamps are not as many as they were,
-    /// or the scene is not valid
+    /// Takes over where instances stand and how lamps shine from the same scene at another time
+    /// (scene_graph.h); all else stays as it was made. \throws InvalidInput if instances or lamps
+    /// are not as many as they were, or not valid
     void move(const Scene& scene);
 
     /// Draws the scene as the camera sees it. \throws InvalidInput if the camera is not valid

@@ -124,6 +124,10 @@ Camera framed(const Bounds& world, float azimuth, float elevation, float vertica
 /// anything (NaN included); matrices may be singular. \throws InvalidInput naming the first offence
 void validate(const Scene& scene);
 
+/// The same for what moves: where instances stand, and the lamps. Meshes are not looked at, so that
+/// it costs nothing beside a frame.
+void validate_places(const Scene& scene);
+
 /// The same for a camera alone.
 void validate(const Camera& camera);
 
