@@ -271,7 +271,7 @@ INSTANTIATE_TEST_SUITE_P(
         Refused{"relief-mesh process empty.obj out/old.glb", 1, "empty.obj: "},
         Refused{"relief-mesh process noise.glb out/old.glb", 1, "noise.glb: "},
         Refused{"relief-mesh process index.obj out/old.glb", 1, "index.obj: "},
-        Refused{"relief-mesh process . out/old.glb", 2, ".: no extension says what format this is"},
+        Refused{"relief-mesh process . out/old.glb", 2, ".: is a folder (name the files in it)"},
         Refused{"relief-mesh process square.txt out/old.glb", 2,
                 "square.txt: .txt is not a format that can be read (use one of .glb, .gltf, .obj, "
                 ".ply, .stl, .off)"},

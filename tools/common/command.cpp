@@ -77,9 +77,16 @@ UsageError usage_error(const CLI::App& root, const CLI::ParseError& error) {
     return UsageError(what);
 }
 
-void print_error(const CLI::App& root, const std::string& text) {
+/// "relief-mesh: error: TEXT", named after the tool whichever of its commands speaks.
+void print_message(const CLI::App& app, const std::string& severity, const std::string& text) {
+    const CLI::App* parent = app.get_parent();
     std::fflush(stdout);
-    fmt::print(stderr, "{}: error: {}\n", root.get_name(), text);
+    fmt::print(stderr, "{}: {}: {}\n", parent == nullptr ? app.get_name() : parent->get_name(),
+               severity, text);
+}
+
+void print_error(const CLI::App& root, const std::string& text) {
+    print_message(root, "error", text);
 }
 
 int report(const CLI::App& root, const UsageError& error) {
@@ -129,6 +136,12 @@ void require_folder_of(const std::filesystem::path& file) {
                   "create it first");
 }
 
+void make_folder(const std::filesystem::path& folder) {
+    std::error_code error;
+    std::filesystem::create_directories(folder, error);
+    if (error && !std::filesystem::is_directory(folder)) throw FileError(folder, error.message());
+}
+
 Stages::Stages(bool quiet) : show_(!quiet && isatty(STDERR_FILENO) == 1) {}
 
 double Stages::milliseconds(std::string_view name) const {
@@ -172,10 +185,11 @@ void set_examples(CLI::App& app, const std::vector<std::string>& commands) {
 }
 
 void warn(const CLI::App& app, const std::string& text) {
-    const CLI::App* parent = app.get_parent();
-    std::fflush(stdout);
-    fmt::print(stderr, "{}: warning: {}\n", parent == nullptr ? app.get_name() : parent->get_name(),
-               text);
+    print_message(app, "warning", text);
+}
+
+void complain(const CLI::App& app, const std::string& text) {
+    print_message(app, "error", text);
 }
 
 int run_tool(const Tool& tool, int argc, const char* const* argv) {

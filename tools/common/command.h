@@ -49,6 +49,10 @@ FileError failure(const std::filesystem::path& file, const std::string& problem,
 /// \throws FileError if it does not
 void require_folder_of(const std::filesystem::path& file);
 
+/// Makes a folder to write to, with those above it; one that exists is as good.
+/// \throws FileError if it cannot be made
+void make_folder(const std::filesystem::path& folder);
+
 /// Runs `work` and names `file` in whatever InvalidInput it throws.
 template <typename Work>
 auto about(const std::filesystem::path& file, Work&& work) {
@@ -127,6 +131,9 @@ void set_examples(CLI::App& app, const std::vector<std::string>& commands);
 
 /// Prints a warning in the form of the errors: "relief-mesh: warning: TEXT".
 void warn(const CLI::App& app, const std::string& text);
+
+/// Prints an error in the form of those that end a command, for one that goes on.
+void complain(const CLI::App& app, const std::string& text);
 
 /// All of main(): parses, runs the command, reports errors. \return the process's exit code
 int run_tool(const Tool& tool, int argc, const char* const* argv);

@@ -132,6 +132,18 @@ CLI::Option* add_file(CLI::App& app, const std::string& name, std::filesystem::p
     return option;
 }
 
+CLI::Option* add_files(CLI::App& app, const std::string& name,
+                       std::vector<std::filesystem::path>& target, const std::string& description) {
+    const auto callback = [&target](const CLI::results_t& values) {
+        target.assign(values.begin(), values.end());
+        return true;
+    };
+    CLI::Option* option = app.add_option(name, callback, description);
+    option->expected(-1);
+    option->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+    return option;
+}
+
 void add_general_options(CLI::App& app, GeneralOptions& options) {
     constexpr int max_threads = 1024;
     add_value(app, "--threads", "N",

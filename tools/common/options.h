@@ -94,6 +94,10 @@ CLI::Option* add_switch(CLI::App& app, const std::string& name, bool& target,
 CLI::Option* add_file(CLI::App& app, const std::string& name, std::filesystem::path& target,
                       const std::string& description);
 
+/// File arguments, any number of them; how many there must be is for the caller to say.
+CLI::Option* add_files(CLI::App& app, const std::string& name,
+                       std::vector<std::filesystem::path>& target, const std::string& description);
+
 /// An option that takes a file. Target: std::filesystem::path or an optional of it.
 template <typename Target>
 CLI::Option* add_path(CLI::App& app, const std::string& name, Target& target,

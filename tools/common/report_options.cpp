@@ -27,14 +27,19 @@ void check(const ReportOptions& options, const std::vector<std::filesystem::path
     require_folder_of(*options.file);
 }
 
+bool found_fault(const CLI::App& app, const ReportOptions& options,
+                 const std::filesystem::path& input, const Findings& findings) {
+    if (!options.strict || findings.empty()) return false;
+    warn(app, fmt::format("{}: {} (exit code 3, because of --strict)", input.string(),
+                          counted(findings.all().size(), "finding")));
+    return true;
+}
+
 ExitCode finish(const CLI::App& app, const ReportOptions& options,
                 const std::filesystem::path& input, const Findings& findings,
                 const nlohmann::ordered_json& report) {
     if (options.file) write_json(*options.file, report);
-    if (!options.strict || findings.empty()) return ExitCode::done;
-    warn(app, fmt::format("{}: {} (exit code 3, because of --strict)", input.string(),
-                          counted(findings.all().size(), "finding")));
-    return ExitCode::fell_back;
+    return found_fault(app, options, input, findings) ? ExitCode::fell_back : ExitCode::done;
 }
 
 }  // namespace relief::tools

@@ -25,6 +25,10 @@ void add_report_options(CLI::App& app, ReportOptions& options);
 ///         FileError if its folder does not exist, so that this is known before the work is done
 void check(const ReportOptions& options, const std::vector<std::filesystem::path>& files);
 
+/// Warns on stderr where --strict was given and `input` was not faultless. \return whether so
+bool found_fault(const CLI::App& app, const ReportOptions& options,
+                 const std::filesystem::path& input, const Findings& findings);
+
 /// Writes the report, if one is wanted, and judges the findings. \return done, or fell_back with a
 /// warning on stderr where --strict was given and `input` was not faultless
 ExitCode finish(const CLI::App& app, const ReportOptions& options,

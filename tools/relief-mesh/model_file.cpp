@@ -29,6 +29,10 @@ constexpr std::array formats = {
 };
 
 ModelFormat format_of(const std::filesystem::path& file, bool to_write) {
+    if (std::filesystem::is_directory(file)) {
+        throw UsageError(file.string() + ": is a folder",
+                         to_write ? "give it with -o" : "name the files in it");
+    }
     const std::string extension = extension_of(file);
     std::string known;
     for (const FormatRow& row : formats) {
@@ -41,6 +45,11 @@ ModelFormat format_of(const std::filesystem::path& file, bool to_write) {
                                     : fmt::format("{} is not a format that can be {}", extension,
                                                   to_write ? "written" : "read");
     throw UsageError(fmt::format("{}: {}", file.string(), problem), "use one of " + known);
+}
+
+const FormatRow& row_of(ModelFormat format) {
+    return *std::find_if(formats.begin(), formats.end(),
+                         [format](const FormatRow& row) { return row.format == format; });
 }
 
 }  // namespace
@@ -57,10 +66,21 @@ bool is_document(ModelFormat format) {
     return format == ModelFormat::gltf || format == ModelFormat::glb;
 }
 
+Choices<ModelFormat> writable_choices() {
+    Choices<ModelFormat> choices;
+    for (const FormatRow& row : formats) {
+        if (row.writable)
+            choices.emplace_back(std::string_view(row.extension).substr(1), row.format);
+    }
+    return choices;
+}
+
+std::string extension_for(ModelFormat format) {
+    return row_of(format).extension;
+}
+
 std::string format_name(ModelFormat format) {
-    return std::find_if(formats.begin(), formats.end(),
-                        [format](const FormatRow& row) { return row.format == format; })
-        ->name;
+    return row_of(format).name;
 }
 
 Model read_model(const std::filesystem::path& file, Report& report) {

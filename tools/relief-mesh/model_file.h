@@ -8,6 +8,7 @@
 #include <string>
 #include <variant>
 
+#include "common/options.h"
 #include "relief/mesh/gltf_document.h"
 #include "relief/mesh/mesh_file.h"
 #include "relief/mesh/report.h"
@@ -19,6 +20,12 @@ enum class ModelFormat { gltf, glb, obj, ply, stl, off };
 /// The format of a file to read or to write. \throws UsageError naming the extensions that serve
 ModelFormat readable_format(const std::filesystem::path& file);
 ModelFormat writable_format(const std::filesystem::path& file);
+
+/// The formats that can be written, by the words for them: "glb", ...
+Choices<ModelFormat> writable_choices();
+
+/// ".glb", ...
+std::string extension_for(ModelFormat format);
 
 /// A document with a scene, rather than one mesh.
 bool is_document(ModelFormat format);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// `relief-mesh process IN OUT`: options in, process() called, report out. A request that could have
-// no effect is refused before anything is read. Tests: tests/tools/relief_mesh_test.cpp.
+// `relief-mesh process IN OUT` and `IN... -o DIR/`: options in, process() called for each model,
+// report out. A request that could have no effect is refused before anything is read.
+// Tests: tests/tools/relief_mesh_test.cpp, process_jobs_test.cpp, process_batch_test.cpp.
 #include <fmt/format.h>
 
 #include <memory>
@@ -9,7 +10,9 @@
 #include "common/options.h"
 #include "common/report_options.h"
 #include "common/text.h"
+#include "process_batch.h"
 #include "process_choices.h"
+#include "process_jobs.h"
 #include "process_summary.h"
 #include "processing.h"
 #include "relief/mesh/threads.h"
@@ -18,39 +21,76 @@ namespace relief::tools {
 namespace {
 
 struct ProcessOptions {
-    ProcessRequest request;
+    FileWords words;
+    ProcessRequest request;  ///< What to do to each model; its files are filled in per model.
     ReportOptions report;
     GeneralOptions general;
 };
 
 /// Refuses what the command line alone shows to be useless.
-void check_request(const ProcessOptions& options) {
-    readable_format(options.request.input);
-    const ModelFormat output = writable_format(options.request.output);
-    if (options.request.tangents == TangentMode::mikktspace && !is_document(output)) {
+void check_request(const ProcessRequest& request) {
+    readable_format(request.input);
+    const ModelFormat output = writable_format(request.output);
+    if (request.tangents == TangentMode::mikktspace && !is_document(output)) {
         throw UsageError(fmt::format("--tangents mikktspace: {} cannot hold tangents",
-                                     extension_of(options.request.output)),
+                                     extension_of(request.output)),
                          "write .glb or .gltf");
     }
-    check(options.report, {options.request.input, options.request.output});
-    require_folder_of(options.request.output);
+}
+
+/// The same work for every model. \throws UsageError, FileError before anything is done
+std::vector<ProcessRequest> requests_of(const ProcessOptions& options, const JobList& list) {
+    std::vector<ProcessRequest> requests;
+    std::vector<std::filesystem::path> files;
+    for (const Job& job : list.jobs) {
+        ProcessRequest request = options.request;
+        request.input = job.input;
+        request.output = job.output;
+        check_request(request);
+        files.insert(files.end(), {job.input, job.output});
+        requests.push_back(std::move(request));
+    }
+    if (list.folder) make_folder(*list.folder);
+    check(options.report, files);
+    require_folder_of(requests.front().output);
+    return requests;
+}
+
+ExitCode process_one(const CLI::App& app, const ProcessRequest& request,
+                     const ProcessOptions& options) {
+    Stages stages(options.general.quiet);
+    const Processed done = process(request, stages);
+    if (!options.general.quiet) print_summary(request, done, stages);
+    return finish(app, options.report, request.input, done.findings,
+                  process_json(request, done, stages));
 }
 
 ExitCode run(const CLI::App& app, const ProcessOptions& options) {
-    check_request(options);
+    const JobList list = jobs_of(options.words);
+    const std::vector<ProcessRequest> requests = requests_of(options, list);
     set_thread_limit(options.general.threads);
-    Stages stages(options.general.quiet);
-    const Processed done = process(options.request, stages);
-    if (!options.general.quiet) print_summary(options.request, done, stages);
-    return finish(app, options.report, options.request.input, done.findings,
-                  process_json(options.request, done, stages));
+    if (list.folder) return process_all(app, requests, options.report, options.general);
+    return process_one(app, requests.front(), options);
+}
+
+void add_file_options(CLI::App& app, FileWords& words) {
+    add_files(app, "FILE...", words.files,
+              "IN OUT: the model to read (.glb .gltf .obj .ply .stl .off) and the file to write "
+              "(.glb .gltf .obj .ply), which may be IN itself: it is replaced only once the new "
+              "file is complete. With -o: the models to read, any number of them.");
+    add_value(app, "-o,--output", "PATH",
+              "Where to write: a folder, which ends in / or exists, or for one model a file. In a "
+              "folder each model keeps its name. One that fails does not stop the others.",
+              [&words](const std::string&, const std::string& text) { words.output = text; })
+        ->group("Output");
+    add_choice(app, "--format", words.format, writable_choices(),
+               "The format of what is written to a folder. Default: that of the input, or glb for "
+               ".stl and .off, which cannot be written.")
+        ->group("Output");
 }
 
 void add_options(CLI::App& app, ProcessOptions& options) {
-    add_file(app, "IN", options.request.input, "Model to read: .glb .gltf .obj .ply .stl .off");
-    add_file(app, "OUT", options.request.output,
-             "Model to write: .glb .gltf .obj .ply. May be IN itself: it is replaced only once the "
-             "new file is complete.");
+    add_file_options(app, options.words);
     add_choice(app, "--normals", options.request.normals, normal_choices(),
                "Where normals come from: the file (keep), one per triangle (flat), or averaged "
                "around each vertex by triangle area or corner angle. Default: keep; a mesh that "
@@ -67,7 +107,8 @@ void add_options(CLI::App& app, ProcessOptions& options) {
         app,
         {"relief-mesh process data/vase.obj out/vase.glb --tangents mikktspace",
          "relief-mesh process out/vase.glb out/vase-flat.glb --normals flat",
-         "relief-mesh process data/vase.obj out/vase.ply --normals area --report out/vase.json"});
+         "relief-mesh process data/vase.obj out/vase.ply --normals area --report out/vase.json",
+         "relief-mesh process data/*.obj -o out/models/ --format glb --normals angle"});
 }
 
 }  // namespace
@@ -75,7 +116,7 @@ void add_options(CLI::App& app, ProcessOptions& options) {
 Command add_process_command(CLI::App& tool) {
     CLI::App& app = add_subcommand(
         tool, "process",
-        "Gives a model normals and tangents; everything else in a glTF file stays as it is.");
+        "Gives models normals and tangents; everything else in a glTF file stays as it is.");
     const auto options = std::make_shared<ProcessOptions>();
     add_options(app, *options);
     return {&app, [&app, options] { return run(app, *options); }};

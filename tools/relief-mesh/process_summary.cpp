@@ -78,7 +78,7 @@ std::string splits_in_words(const Totals& totals) {
     return fmt::format("{} -> {} vertices", totals.vertices_read, totals.vertices_written);
 }
 
-std::string word_of(Fate fate) {
+std::string fate_word(Fate fate) {
     switch (fate) {
         case Fate::kept:
             return "kept";
@@ -90,6 +90,30 @@ std::string word_of(Fate fate) {
             break;
     }
     return "none";
+}
+
+nlohmann::ordered_json parts_json(const Processed& done) {
+    nlohmann::ordered_json parts = nlohmann::ordered_json::array();
+    for (const ProcessedPart& part : done.parts) {
+        nlohmann::ordered_json json = {{"name", part.name},
+                                       {"triangles", part.triangles},
+                                       {"vertices_read", part.vertices_read},
+                                       {"vertices_written", part.vertices_written},
+                                       {"normals", fate_word(part.normals)}};
+        if (part.normals == Fate::computed) json["normal_method"] = word_of(part.normal_mode);
+        json["tangents"] = fate_word(part.tangents);
+        if (part.tangents == Fate::computed)
+            json["tangent_method"] = word_of(TangentMode::mikktspace);
+        parts.push_back(std::move(json));
+    }
+    return parts;
+}
+
+void add_results(nlohmann::ordered_json& json, const Processed& done, const Stages& stages) {
+    json["primitives"] = parts_json(done);
+    json["findings"] = done.findings.json();
+    json["left_behind"] = done.left_behind;
+    json["milliseconds"] = durations_json(stages.finished());
 }
 
 }  // namespace
@@ -125,31 +149,48 @@ void print_summary(const ProcessRequest& request, const Processed& done, const S
                              (has_companions ? ", its buffer and images beside it" : ""));
 }
 
+void print_line(const ProcessRequest& request, const Processed& done, const Stages& stages) {
+    const Totals totals = totals_of(done);
+    double sum = 0;
+    for (const Stage& stage : stages.finished())
+        sum += stage.milliseconds;
+    fmt::print(
+        "{}: {}, {}, normals {}, tangents {}, {}{}, {}\n", request.output.string(),
+        counted(totals.triangles, "triangle"),
+        counted(totals.vertices_written, "vertex", "vertices"),
+        summed_up(done.parts, normals_in_words), summed_up(done.parts, tangents_in_words),
+        done.findings.empty() ? "no findings" : counted(done.findings.all().size(), "finding"),
+        done.left_behind.empty() ? ""
+                                 : fmt::format(", left out: {}", fmt::join(done.left_behind, ", ")),
+        duration(sum));
+}
+
+nlohmann::ordered_json options_json(const ProcessRequest& request) {
+    return {{"normals", word_of(request.normals)}, {"tangents", word_of(request.tangents)}};
+}
+
+nlohmann::ordered_json file_json(const ProcessRequest& request, const Processed& done,
+                                 const Stages& stages) {
+    nlohmann::ordered_json json = {{"input", request.input.string()},
+                                   {"output", request.output.string()}};
+    add_results(json, done, stages);
+    return json;
+}
+
+nlohmann::ordered_json failed_file_json(const ProcessRequest& request, const std::string& error) {
+    return {
+        {"input", request.input.string()}, {"output", request.output.string()}, {"error", error}};
+}
+
 nlohmann::ordered_json process_json(const ProcessRequest& request, const Processed& done,
                                     const Stages& stages) {
-    nlohmann::ordered_json parts = nlohmann::ordered_json::array();
-    for (const ProcessedPart& part : done.parts) {
-        nlohmann::ordered_json json = {{"name", part.name},
-                                       {"triangles", part.triangles},
-                                       {"vertices_read", part.vertices_read},
-                                       {"vertices_written", part.vertices_written},
-                                       {"normals", word_of(part.normals)}};
-        if (part.normals == Fate::computed) json["normal_method"] = word_of(part.normal_mode);
-        json["tangents"] = word_of(part.tangents);
-        if (part.tangents == Fate::computed)
-            json["tangent_method"] = word_of(TangentMode::mikktspace);
-        parts.push_back(std::move(json));
-    }
-    return {{"tool", "relief-mesh process"},
-            {"version", version()},
-            {"input", request.input.string()},
-            {"output", request.output.string()},
-            {"options",
-             {{"normals", word_of(request.normals)}, {"tangents", word_of(request.tangents)}}},
-            {"primitives", std::move(parts)},
-            {"findings", done.findings.json()},
-            {"left_behind", done.left_behind},
-            {"milliseconds", durations_json(stages.finished())}};
+    nlohmann::ordered_json json = {{"tool", "relief-mesh process"},
+                                   {"version", version()},
+                                   {"input", request.input.string()},
+                                   {"output", request.output.string()},
+                                   {"options", options_json(request)}};
+    add_results(json, done, stages);
+    return json;
 }
 
 }  // namespace relief::tools

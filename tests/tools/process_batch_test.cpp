@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: Apache-2.0
+// Many models in one call of process, as users run it.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <array>
+#include <nlohmann/json.hpp>
+
+#include "support/shared_data.h"
+#include "tools/workplace.h"
+
+namespace relief::tools {
+namespace {
+
+using nlohmann::json;
+using test::ProgramResult;
+using test::Workplace;
+using testing::HasSubstr;
+using testing::MatchesRegex;
+
+TEST(ProcessBatch, WritesEveryModelUnderItsNameInAFolderThatItMakes) {
+    const Workplace workplace;
+    workplace.write_square("a.obj");
+    workplace.write_square("b.obj");
+    const ProgramResult result =
+        workplace.run("relief-mesh process a.obj b.obj -o out/new/models/ --format glb");
+    ASSERT_EQ(result.exit_code, 0) << result.error;
+    EXPECT_EQ(result.error, "") << "progress is for terminals";
+    EXPECT_THAT(result.out,
+                MatchesRegex("out/new/models/a.glb: 2 triangles, 4 vertices, normals computed, "
+                             "averaged by angle, tangents none, no findings, [^\n]*\n"
+                             "out/new/models/b.glb: 2 triangles, [^\n]*\n"
+                             "in all    2 files\n"));
+    // The very bytes of a call for each.
+    ASSERT_EQ(workplace.run("relief-mesh process b.obj out/alone.glb").exit_code, 0);
+    EXPECT_EQ(workplace.read("out/new/models/b.glb"), workplace.read("out/alone.glb"));
+}
+
+TEST(ProcessBatch, OneThatFailsDoesNotStopTheOthers) {
+    const Workplace workplace;
+    workplace.write_square("a.obj");
+    workplace.write("bad.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n");
+    workplace.write_square("c.obj");
+    workplace.write("out/bad.obj", "old");
+    const ProgramResult result = workplace.run(
+        "relief-mesh process a.obj bad.obj missing.ply c.obj -o out/ --report out/r.json");
+    EXPECT_EQ(result.exit_code, 1);
+    EXPECT_THAT(result.error, MatchesRegex("relief-mesh: error: bad.obj: [^\n]*\n"
+                                           "relief-mesh: error: missing.ply: [^\n]*\n"));
+    EXPECT_THAT(result.out, HasSubstr("in all    4 files, 2 failed\n"));
+    EXPECT_EQ(workplace.outputs(), "a.obj bad.obj c.obj r.json");
+    EXPECT_EQ(workplace.read("out/bad.obj"), "old");
+
+    const json report = json::parse(workplace.read("out/r.json"));
+    EXPECT_EQ(report["tool"], "relief-mesh process");
+    EXPECT_EQ(report["failed"], 2);
+    EXPECT_EQ(report["options"]["normals"], "keep");
+    ASSERT_EQ(report["files"].size(), 4U);
+    EXPECT_EQ(report["files"][0]["input"], "a.obj");
+    EXPECT_EQ(report["files"][0]["output"], "out/a.obj");
+    EXPECT_EQ(report["files"][0]["primitives"][0]["triangles"], 2);
+    EXPECT_FALSE(report["files"][0].contains("error"));
+    EXPECT_THAT(report["files"][1]["error"].get<std::string>(), HasSubstr("bad.obj: "));
+    EXPECT_FALSE(report["files"][1].contains("primitives"));
+    EXPECT_EQ(report["files"][3]["findings"], json::array());
+}
+
+TEST(ProcessBatch, StrictNamesEveryModelWithFindings) {
+    const Workplace workplace;
+    const std::string bad = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 2 0 0\nf 1 2 3\nf 1 2 4\n";
+    workplace.write("a.obj", bad);
+    workplace.write_square("b.obj");
+    workplace.write("c.obj", bad);
+    const ProgramResult result = workplace.run(
+        "relief-mesh process a.obj b.obj c.obj -o out/ --normals area --strict --quiet");
+    EXPECT_EQ(result.exit_code, 3);
+    EXPECT_EQ(result.out, "");
+    EXPECT_THAT(result.error,
+                MatchesRegex("relief-mesh: warning: a.obj: [0-9]+ findings? [^\n]*\n"
+                             "relief-mesh: warning: c.obj: [0-9]+ findings? [^\n]*\n"));
+    EXPECT_EQ(workplace.outputs(), "a.obj b.obj c.obj");
+    // A failure outweighs a finding.
+    EXPECT_EQ(workplace.run("relief-mesh process a.obj gone.obj -o out/ --normals area --strict")
+                  .exit_code,
+              1);
+}
+
+TEST(ProcessBatch, RefusesBeforeAnythingIsDone) {
+    const Workplace workplace;
+    workplace.write_square("a.obj");
+    workplace.write_square("deep/a.obj");
+    for (const char* line : {"relief-mesh process a.obj deep/a.obj -o out/new/",
+                             "relief-mesh process a.obj a.txt -o out/new/",
+                             "relief-mesh process a.obj deep -o out/new/",
+                             "relief-mesh process a.obj -o out/new/ --tangents mikktspace",
+                             "relief-mesh process a.obj -o out/new/ --format stl"}) {
+        const ProgramResult result = workplace.run(line);
+        EXPECT_EQ(result.exit_code, 2) << line << "\n" << result.error;
+        EXPECT_EQ(workplace.outputs(), "") << line;
+    }
+}
+
+TEST(ProcessBatch, RealModelsComeOutTheSameForAnyNumberOfThreads) {
+    RELIEF_NEEDS_SHARED(models, "data/models/gltf");
+    constexpr std::array models_named = {"WaterBottle", "Corset", "BoomBox"};
+    const Workplace workplace;
+    std::string inputs;
+    for (const char* model : models_named)
+        inputs += (models / model / "glTF" / model).string() + ".gltf ";
+    for (const char* threads : {"1", "3"}) {
+        const ProgramResult result =
+            workplace.run("relief-mesh process " + inputs + "-o out/" + threads +
+                          "/ --format glb --normals angle --threads " + threads);
+        ASSERT_EQ(result.exit_code, 0) << result.error;
+    }
+    for (const char* model : models_named) {
+        const std::string name = std::string(model) + ".glb";
+        EXPECT_EQ(workplace.read("out/1/" + name), workplace.read("out/3/" + name)) << name;
+        EXPECT_GT(workplace.read("out/1/" + name).size(), 1000U);
+    }
+}
+
+}  // namespace
+}  // namespace relief::tools
