@@ -155,17 +155,31 @@ struct GltfView {
     std::vector<GltfImage> images;
 };
 
+/// One way in which parts of a file were compressed when it was read.
+struct GltfCompression {
+    std::string extension;    ///< "KHR_draco_mesh_compression", ...
+    std::string element;      ///< What it compresses: "primitive" or "buffer view".
+    std::size_t decoded = 0;  ///< How many were decoded, and are written plain.
+    std::size_t copies = 0;   ///< How many have their plain data beside it; written as they are.
+};
+
 class GltfDocument {
   public:
     /// Reads a .gltf or .glb file, told apart by content.
     ///
+    /// What is compressed (KHR_draco_mesh_compression; EXT_ and KHR_meshopt_compression in all
+    /// modes, filters and versions) is decoded here and written plain; accessors, nodes and all
+    /// else stay as they are, except that min and max of what Draco quantised are those of the
+    /// decoded values. Where the plain data is in the file as well, that is used, and both stay.
+    ///
     /// \param report  counts what is unusual but harmless: images that are missing or outside the
-    ///                folder (such are never opened), bytes behind a GLB
+    ///                folder (such are never opened), bytes behind a GLB, accessors whose count is
+    ///                not that of their compressed data
     /// \throws FileError if the file is unreadable; if a property that relief knows has the wrong
     ///         type, or an index, count, offset or length is out of range; if nodes form a cycle or
     ///         share a child; if it requires an extension that relief does not know how to keep or
-    ///         decode (KHR_draco_mesh_compression and EXT_meshopt_compression among them); or if it
-    ///         names a buffer that is missing or outside its folder
+    ///         decode; if compressed data is damaged; or if it names a buffer that is missing or
+    ///         outside its folder
     static GltfDocument read(const std::filesystem::path& file, Report& report);
 
     /// A new document with one mesh, a primitive for each material range over its own vertices, and
@@ -227,6 +241,9 @@ class GltfDocument {
     ///                whose times or values are not finite, not as many as they must be, or of the
     ///                wrong type
     [[nodiscard]] std::vector<GltfAnimation> animations(Report& report) const;
+
+    /// How parts of the file are compressed, one entry for each extension; empty where none is.
+    [[nodiscard]] std::vector<GltfCompression> compression() const;
 
     /// What other formats cannot hold: "2 animations", "1 skin", "3 morph targets", ...
     [[nodiscard]] std::vector<std::string> beyond_a_mesh() const;

@@ -108,18 +108,6 @@ std::vector<Value> copied(std::string_view bytes) {
     return values;
 }
 
-/// \throws InvalidInput if an accessor cannot hold indices
-ElementLayout index_layout(const GltfContents& contents, std::size_t accessor) {
-    const ElementLayout layout = element_layout(contents.root["accessors"][accessor]);
-    if (layout.components != 1 ||
-        (layout.component_type != gltf_code::uint8 && layout.component_type != gltf_code::uint16 &&
-         layout.component_type != gltf_code::uint32)) {
-        throw InvalidInput(
-            fmt::format("accessors[{}] holds no indices, which are unsigned scalars", accessor));
-    }
-    return layout;
-}
-
 }  // namespace
 
 std::size_t component_size(int component_type) {
@@ -159,6 +147,17 @@ ElementLayout element_layout(const Json& accessor) {
         // Every column begins at a multiple of four bytes.
         const std::size_t columns = type == "MAT2" ? 2 : type == "MAT3" ? 3 : 4;
         layout.size = columns * ((columns * bytes + 3) / 4 * 4);
+    }
+    return layout;
+}
+
+ElementLayout index_layout(const GltfContents& contents, std::size_t accessor) {
+    const ElementLayout layout = element_layout(contents.root["accessors"][accessor]);
+    if (layout.components != 1 ||
+        (layout.component_type != gltf_code::uint8 && layout.component_type != gltf_code::uint16 &&
+         layout.component_type != gltf_code::uint32)) {
+        throw InvalidInput(
+            fmt::format("accessors[{}] holds no indices, which are unsigned scalars", accessor));
     }
     return layout;
 }

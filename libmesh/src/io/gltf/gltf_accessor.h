@@ -44,6 +44,9 @@ struct ElementLayout {
 };
 ElementLayout element_layout(const Json& accessor);
 
+/// The same of an accessor that holds indices. \throws InvalidInput if it cannot
+ElementLayout index_layout(const GltfContents& contents, std::size_t accessor);
+
 /// All elements, tightly packed: in the buffer itself where they lie so, else in a copy.
 struct PackedElements {
     std::string copy;

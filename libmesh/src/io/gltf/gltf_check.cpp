@@ -46,17 +46,20 @@ void check_version(const Json& root) {
     }
 }
 
-/// Extensions that a document may require without its meshes reading differently. One that ends in
-/// '*' stands for all that begin so.
+/// Extensions that a document may require: those that leave its meshes as they are, and those that
+/// are decoded. One that ends in '*' stands for all that begin so.
 bool is_accepted(std::string_view extension) {
     static constexpr std::array accepted = {
         "KHR_materials_*",
         "KHR_texture_*",
         "KHR_lights_punctual",
         "KHR_mesh_quantization",
+        "KHR_draco_mesh_compression",
+        "KHR_meshopt_compression",
         "KHR_animation_pointer",
         "KHR_xmp*",
         "KHR_node_visibility",
+        "EXT_meshopt_compression",
         "EXT_mesh_gpu_instancing",
         "EXT_mesh_features",
         "EXT_instance_features",
@@ -82,10 +85,6 @@ void check_required_extensions(const Json& root) {
     for (const Json& name : array_in(root, "extensionsRequired")) {
         const auto& extension = name.get_ref<const std::string&>();
         if (is_accepted(extension)) continue;
-        if (extension == "KHR_draco_mesh_compression" ||
-            extension.ends_with("meshopt_compression")) {
-            fail("requires {}, which relief does not decode; unpack it first", extension);
-        }
         fail("requires the extension {}, which relief does not know", extension);
     }
 }

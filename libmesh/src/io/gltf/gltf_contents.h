@@ -11,6 +11,7 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <set>
 #include <string>
 #include <string_view>
@@ -26,10 +27,18 @@ struct GltfBuffer {
     std::string storage;
     std::size_t begin = 0;
     std::size_t size = 0;
+    bool is_placeholder = false;  ///< Its bytes are nowhere: all its views are compressed.
 
     [[nodiscard]] std::string_view bytes() const {
         return std::string_view(storage).substr(begin, size);
     }
+};
+
+/// Bytes [begin, end) of a buffer.
+struct GltfExtent {
+    std::size_t buffer = 0;
+    std::size_t begin = 0;
+    std::size_t end = 0;
 };
 
 struct GltfContents {
@@ -43,6 +52,9 @@ struct GltfContents {
     /// else refers to them.
     std::set<std::size_t> retired_accessors;
     std::set<std::size_t> retired_views;
+    std::vector<GltfExtent> retired_bytes;  ///< Compressed data that has been unpacked.
+    /// How many buffer views or primitives were unpacked, by extension.
+    std::map<std::string, std::size_t> unpacked;
     /// The buffer that holds what processing adds; past the end until there is something.
     std::size_t added_buffer = static_cast<std::size_t>(-1);
     /// How many primitives use an accessor as POSITION, as read: who shares vertices with others
@@ -54,7 +66,7 @@ struct GltfContents {
 inline constexpr std::array meshopt_extensions = {"EXT_meshopt_compression",
                                                   "KHR_meshopt_compression"};
 
-/// Appends bytes, 4-aligned, as a new buffer view. \return its index
-std::size_t add_view(GltfContents& contents, std::string_view bytes);
+/// Name of the extension that holds a compressed copy of a primitive.
+inline constexpr const char* draco_extension = "KHR_draco_mesh_compression";
 
 }  // namespace relief

@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "io/gltf/gltf_animation.h"
 #include "io/gltf/gltf_from_mesh.h"
 #include "io/gltf/gltf_primitive.h"
@@ -41,6 +43,24 @@ PrimitiveCounts count_primitives(const Json& root) {
         }
     }
     return counts;
+}
+
+/// How many buffer views have a compressed copy by an extension.
+std::size_t packed_views(const Json& root, const char* extension) {
+    const Json& views = array_in(root, "bufferViews");
+    return static_cast<std::size_t>(std::count_if(
+        views.begin(), views.end(),
+        [&](const Json& view) { return find(view, "extensions", extension) != nullptr; }));
+}
+
+/// How many primitives have a compressed copy.
+std::size_t packed_primitives(const Json& root) {
+    std::size_t count = 0;
+    for (const Json& mesh : array_in(root, "meshes")) {
+        for (const Json& primitive : mesh["primitives"])
+            count += find(primitive, "extensions", draco_extension) != nullptr ? 1 : 0;
+    }
+    return count;
 }
 
 }  // namespace
@@ -88,6 +108,20 @@ GltfView GltfDocument::view() const {
 
 std::vector<GltfAnimation> GltfDocument::animations(Report& report) const {
     return animations_of(contents_->data, report);
+}
+
+std::vector<GltfCompression> GltfDocument::compression() const {
+    const GltfContents& contents = contents_->data;
+    std::vector<GltfCompression> result;
+    const auto add = [&](const char* extension, const char* element, std::size_t copies) {
+        const auto decoded = contents.unpacked.find(extension);
+        const std::size_t count = decoded == contents.unpacked.end() ? 0 : decoded->second;
+        if (count + copies > 0) result.push_back({extension, element, count, copies});
+    };
+    add(draco_extension, "primitive", packed_primitives(contents.root));
+    for (const char* extension : meshopt_extensions)
+        add(extension, "buffer view", packed_views(contents.root, extension));
+    return result;
 }
 
 std::vector<std::string> GltfDocument::beyond_a_mesh() const {

@@ -13,93 +13,13 @@
 #include <map>
 
 #include "io/gltf/gltf_accessor.h"
+#include "io/gltf/gltf_edit.h"
 #include "io/gltf/gltf_primitive.h"
 #include "io/gltf/gltf_schema.h"
 #include "relief/mesh/error.h"
 
 namespace relief {
 namespace {
-
-/// Adds an accessor over its own buffer view; elements are packed and get aligned here.
-std::size_t add_accessor(GltfContents& contents, Json accessor, const std::string& elements,
-                         int target) {
-    const std::size_t size = element_layout(accessor).size;
-    const std::size_t count = elements.size() / size;
-    // Vertex attributes begin at multiples of four bytes.
-    const std::size_t stride = target == gltf_code::array_buffer ? (size + 3) / 4 * 4 : size;
-    std::size_t view = 0;
-    if (stride == size) {
-        view = add_view(contents, elements);
-    } else {
-        std::string padded(count * stride, '\0');
-        for (std::size_t i = 0; i < count; ++i) {
-            std::memcpy(padded.data() + i * stride, elements.data() + i * size, size);
-        }
-        view = add_view(contents, padded);
-        contents.root["bufferViews"][view]["byteStride"] = stride;
-    }
-    contents.root["bufferViews"][view]["target"] = target;
-    accessor["bufferView"] = view;
-    accessor["count"] = count;
-    accessor.erase("byteOffset");
-    accessor.erase("sparse");
-    Json& accessors = contents.root["accessors"];
-    accessors.push_back(std::move(accessor));
-    return accessors.size() - 1;
-}
-
-template <typename Component>
-void widen_bounds(const std::string& elements, std::size_t element_size, std::size_t component,
-                  double& least, double& most) {
-    for (std::size_t at = component * sizeof(Component); at < elements.size(); at += element_size) {
-        Component value;
-        std::memcpy(&value, elements.data() + at, sizeof(value));
-        least = std::min(least, static_cast<double>(value));
-        most = std::max(most, static_cast<double>(value));
-    }
-}
-
-/// min and max of an accessor that had them: true for the elements that it has now.
-void renew_bounds(Json& accessor, const std::string& elements) {
-    const ElementLayout layout = element_layout(accessor);
-    Json least = Json::array();
-    Json most = Json::array();
-    for (std::size_t k = 0; k < layout.components; ++k) {
-        double low = std::numeric_limits<double>::infinity();
-        double high = -low;
-        const auto widen = [&]<typename Component>(Component) {
-            widen_bounds<Component>(elements, layout.size, k, low, high);
-        };
-        switch (layout.component_type) {
-            case gltf_code::int8:
-                widen(std::int8_t{});
-                break;
-            case gltf_code::uint8:
-                widen(std::uint8_t{});
-                break;
-            case gltf_code::int16:
-                widen(std::int16_t{});
-                break;
-            case gltf_code::uint16:
-                widen(std::uint16_t{});
-                break;
-            case gltf_code::uint32:
-                widen(std::uint32_t{});
-                break;
-            default:
-                widen(float{});
-        }
-        if (!(std::abs(low) <= std::numeric_limits<float>::max()) ||
-            !(std::abs(high) <= std::numeric_limits<float>::max())) {
-            return;  // Non-finite elements: JSON has no bounds for them; the old ones stay.
-        }
-        const bool is_float = layout.component_type == gltf_code::float32;
-        least.push_back(is_float ? Json(low) : Json(static_cast<std::int64_t>(low)));
-        most.push_back(is_float ? Json(high) : Json(static_cast<std::int64_t>(high)));
-    }
-    if (accessor.contains("min")) accessor["min"] = least;
-    if (accessor.contains("max")) accessor["max"] = most;
-}
 
 /// Replaces the parts of one primitive.
 class FrameReplacement {
@@ -310,21 +230,11 @@ void FrameReplacement::replace_indices() {
 
 /// A compressed copy of the primitive would contradict it now.
 void FrameReplacement::drop_draco() {
-    const Json* draco = find(primitive(), "extensions", "KHR_draco_mesh_compression");
+    const Json* draco = find(primitive(), "extensions", draco_extension);
     if (draco == nullptr) return;
     contents_.retired_views.insert(size_in(*draco, "bufferView"));
-    primitive()["extensions"].erase("KHR_draco_mesh_compression");
-    if (primitive()["extensions"].empty()) primitive().erase("extensions");
-    for (const Json& mesh : contents_.root["meshes"]) {
-        for (const Json& other : mesh["primitives"]) {
-            if (find(other, "extensions", "KHR_draco_mesh_compression") != nullptr) return;
-        }
-    }
-    Json& used = contents_.root["extensionsUsed"];
-    for (std::size_t i = used.size(); i-- > 0;) {
-        if (used[i] == "KHR_draco_mesh_compression") used.erase(i);
-    }
-    if (used.empty()) contents_.root.erase("extensionsUsed");
+    erase_extension(primitive(), draco_extension);
+    forget_if_unused(contents_.root, draco_extension);
 }
 
 void FrameReplacement::run() {

@@ -6,6 +6,7 @@
 // phong_from_metallic_roughness is the inverse. A missing image is a FileError.
 // Tests: tests/mesh/io/gltf/gltf_from_mesh_test.cpp.
 #include "io/gltf/gltf_from_mesh.h"
+#include "io/gltf/gltf_edit.h"
 
 #include <fmt/format.h>
 

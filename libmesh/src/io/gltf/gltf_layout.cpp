@@ -85,7 +85,10 @@ class Clearance {
             sizes_.push_back(buffer.size);
         drop_accessors(contents);
         drop_views(contents);
-        if (!dropped_accessors_.empty() || !dropped_views_.empty()) collect_live();
+        for (const GltfExtent& extent : contents.retired_bytes)
+            dead_[extent.buffer].push_back({extent.begin, extent.end});
+        const auto is_empty = [](const std::vector<Extent>& extents) { return extents.empty(); };
+        if (!std::all_of(dead_.begin(), dead_.end(), is_empty)) collect_live();
     }
 
     /// Erases what can go. \return the dead bytes of each buffer, cut to multiples of `alignment`
@@ -343,7 +346,8 @@ GltfLayout layout_of(const GltfContents& contents) {
         find(layout.root, "extensions", "EXT_structural_metadata", "propertyTables") != nullptr;
     const std::size_t alignment = has_metadata ? 8 : 4;
     std::vector<std::vector<Extent>> cuts(contents.buffers.size());
-    const bool has_retired = !contents.retired_accessors.empty() || !contents.retired_views.empty();
+    const bool has_retired = !contents.retired_accessors.empty() ||
+                             !contents.retired_views.empty() || !contents.retired_bytes.empty();
     if (has_retired && !has_unknown_extension(layout.root)) {
         cuts = Clearance(layout.root, contents).clear(alignment);
     }

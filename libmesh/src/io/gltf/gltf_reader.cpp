@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reading .gltf and .glb: container, JSON, buffers, checks, in this order.
+// Reading .gltf and .glb: container, JSON, checks, buffers, what is compressed, in this order.
 //
 // By content, not by name: a file that begins with "glTF" is a GLB. Every length is checked before
 // it is used; what does not fit is a FileError. Source: glTF 2.0 (ISO/IEC 12113), chapters 3 and 4.
@@ -13,6 +13,8 @@
 
 #include "file_bytes.h"
 #include "io/gltf/gltf_check.h"
+#include "io/gltf/gltf_draco.h"
+#include "io/gltf/gltf_meshopt.h"
 #include "io/gltf/gltf_uri.h"
 #include "relief/mesh/error.h"
 
@@ -137,7 +139,8 @@ GltfBuffer read_buffer(const Json& buffer, std::size_t index, const GltfContents
     GltfBuffer result;
     const Json* uri = find(buffer, "uri");
     if (uri == nullptr) {
-        if (index != 0 || !container.has_binary) throw FileError(file, name() + " has no data");
+        const bool is_chunk = index == 0 && container.has_binary;
+        if (!is_chunk) throw FileError(file, name() + " has no data");
         result = {{}, container.binary_begin, container.binary_size};
         result.storage = std::move(container.bytes);
     } else if (is_data_uri(uri->get_ref<const std::string&>())) {
@@ -215,9 +218,16 @@ GltfContents read_gltf(const std::filesystem::path& file, Report& report) {
         check_gltf(contents.root);
         contents.extra_chunks = std::move(container.extra_chunks);
         const Json& buffers = array_in(contents.root, "buffers");
+        const auto placeholders = meshopt_placeholders(contents.root, container.has_binary);
         for (std::size_t i = 0; i < buffers.size(); ++i) {
-            contents.buffers.push_back(read_buffer(buffers[i], i, contents, container, file));
+            if (placeholders[i]) {
+                contents.buffers.emplace_back().is_placeholder = true;
+            } else {
+                contents.buffers.push_back(read_buffer(buffers[i], i, contents, container, file));
+            }
         }
+        unpack_meshopt(contents);
+        unpack_draco(contents, report);
         check_images(contents, report);
         count_position_uses(contents);
         return contents;
@@ -226,25 +236,6 @@ GltfContents read_gltf(const std::filesystem::path& file, Report& report) {
     } catch (const std::bad_alloc&) {
         throw FileError(file, "needs more memory than there is");
     }
-}
-
-std::size_t add_view(GltfContents& contents, std::string_view bytes) {
-    Json& buffers = contents.root["buffers"];
-    Json& views = contents.root["bufferViews"];
-    if (contents.added_buffer == static_cast<std::size_t>(-1)) {
-        contents.added_buffer = contents.buffers.size();
-        contents.buffers.emplace_back();
-        buffers.push_back(Json::object());
-    }
-    GltfBuffer& buffer = contents.buffers[contents.added_buffer];
-    buffer.storage.resize((buffer.storage.size() + 3) / 4 * 4, '\0');
-    const std::size_t offset = buffer.storage.size();
-    buffer.storage += bytes;
-    buffer.size = buffer.storage.size();
-    buffers[contents.added_buffer]["byteLength"] = buffer.size;
-    views.push_back(
-        {{"buffer", contents.added_buffer}, {"byteOffset", offset}, {"byteLength", bytes.size()}});
-    return views.size() - 1;
 }
 
 }  // namespace relief

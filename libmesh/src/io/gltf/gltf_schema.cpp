@@ -161,13 +161,22 @@ constexpr Rule rules[] = {
     {"texture", "source", Kind::index, "images"},
     // Extensions, by what they extend: "TYPE+NAME".
     {"primitive+KHR_draco_mesh_compression", "bufferView", Kind::index, "bufferViews", required},
+    {"primitive+KHR_draco_mesh_compression", "attributes", Kind::object, {}, required},
     {"primitive+CESIUM_primitive_outline", "indices", Kind::index, "accessors"},
     {"bufferView+EXT_meshopt_compression", "buffer", Kind::index, "buffers", required},
     {"bufferView+EXT_meshopt_compression", "byteOffset", Kind::integer},
     {"bufferView+EXT_meshopt_compression", "byteLength", Kind::integer, {}, required},
+    {"bufferView+EXT_meshopt_compression", "byteStride", Kind::integer, {}, required},
+    {"bufferView+EXT_meshopt_compression", "count", Kind::integer, {}, required},
+    {"bufferView+EXT_meshopt_compression", "mode", Kind::string, {}, required},
+    {"bufferView+EXT_meshopt_compression", "filter", Kind::string},
     {"bufferView+KHR_meshopt_compression", "buffer", Kind::index, "buffers", required},
     {"bufferView+KHR_meshopt_compression", "byteOffset", Kind::integer},
     {"bufferView+KHR_meshopt_compression", "byteLength", Kind::integer, {}, required},
+    {"bufferView+KHR_meshopt_compression", "byteStride", Kind::integer, {}, required},
+    {"bufferView+KHR_meshopt_compression", "count", Kind::integer, {}, required},
+    {"bufferView+KHR_meshopt_compression", "mode", Kind::string, {}, required},
+    {"bufferView+KHR_meshopt_compression", "filter", Kind::string},
     {"node+EXT_mesh_gpu_instancing", "attributes", Kind::index_map, "accessors"},
     {"glTF+EXT_structural_metadata", "propertyTables", Kind::objects, "propertyTable"},
     {"propertyTable", "properties", Kind::object_map, "propertyTable.property"},
@@ -453,6 +462,19 @@ void visit_references(Json& root,
     } visitor;
     visitor.visit = &visit;
     walk(root, "glTF", {}, visitor);
+}
+
+bool has_extension(const Json& root, std::string_view name) {
+    struct : Visitor {
+        std::string_view wanted;
+        bool found = false;
+        void extension(const Place&, std::string_view extension, Json&) override {
+            found = found || extension == wanted;
+        }
+    } visitor;
+    visitor.wanted = name;
+    walk(const_cast<Json&>(root), "glTF", {}, visitor);
+    return visitor.found;
 }
 
 bool has_unknown_extension(const Json& root) {

@@ -25,6 +25,9 @@ void check_schema(const Json& root);
 void visit_references(Json& root,
                       const std::function<void(std::string_view target, Json& index)>& visit);
 
+/// Whether an object carries an extension.
+bool has_extension(const Json& root, std::string_view name);
+
 /// Whether an object carries an extension that the table does not know: it may hold indices that
 /// visit_references does not see.
 bool has_unknown_extension(const Json& root);

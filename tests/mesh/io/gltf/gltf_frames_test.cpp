@@ -438,7 +438,7 @@ TEST_F(GltfFrames, ProcessingRealModelsKeepsAllElseAndLeavesNothingDead) {
         }
         ++processed;
     }
-    EXPECT_EQ(processed, 90);
+    EXPECT_EQ(processed, 102);
 }
 
 }  // namespace

@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: Apache-2.0
+// Bytes, buffer views and accessors added to a glTF document, and extensions taken out of it.
+//
+// What is added goes into one buffer of its own, every view at a multiple of four bytes; joining it
+// with the others is gltf_layout.h's. Tests: tests/mesh/io/gltf/gltf_frames_test.cpp.
+#include "io/gltf/gltf_edit.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include "io/gltf/gltf_accessor.h"
+#include "io/gltf/gltf_schema.h"
+
+namespace relief {
+namespace {
+
+/// The buffer that holds what is added.
+GltfBuffer& added_buffer(GltfContents& contents) {
+    if (contents.added_buffer == static_cast<std::size_t>(-1)) {
+        contents.added_buffer = contents.buffers.size();
+        contents.buffers.emplace_back();
+        contents.root["buffers"].push_back(Json::object());
+    }
+    return contents.buffers[contents.added_buffer];
+}
+
+template <typename Component>
+void widen_bounds(const std::string& elements, std::size_t element_size, std::size_t component,
+                  double& least, double& most) {
+    for (std::size_t at = component * sizeof(Component); at < elements.size(); at += element_size) {
+        Component value;
+        std::memcpy(&value, elements.data() + at, sizeof(value));
+        least = std::min(least, static_cast<double>(value));
+        most = std::max(most, static_cast<double>(value));
+    }
+}
+
+}  // namespace
+
+void reserve_bytes(GltfContents& contents, std::size_t count) {
+    GltfBuffer& buffer = added_buffer(contents);
+    buffer.storage.reserve(buffer.storage.size() + count);
+}
+
+std::size_t append_bytes(GltfContents& contents, std::string_view bytes) {
+    GltfBuffer& buffer = added_buffer(contents);
+    buffer.storage.resize((buffer.storage.size() + 3) / 4 * 4, '\0');
+    const std::size_t offset = buffer.storage.size();
+    buffer.storage += bytes;
+    buffer.size = buffer.storage.size();
+    contents.root["buffers"][contents.added_buffer]["byteLength"] = buffer.size;
+    return offset;
+}
+
+std::size_t add_view(GltfContents& contents, std::string_view bytes) {
+    const std::size_t offset = append_bytes(contents, bytes);
+    Json& views = contents.root["bufferViews"];
+    views.push_back(
+        {{"buffer", contents.added_buffer}, {"byteOffset", offset}, {"byteLength", bytes.size()}});
+    return views.size() - 1;
+}
+
+std::size_t add_elements(GltfContents& contents, std::size_t size, const std::string& elements,
+                         int target) {
+    const std::size_t count = elements.size() / size;
+    // Vertex attributes begin at multiples of four bytes.
+    const std::size_t stride = target == gltf_code::array_buffer ? (size + 3) / 4 * 4 : size;
+    std::size_t view = 0;
+    if (stride == size) {
+        view = add_view(contents, elements);
+    } else {
+        std::string padded(count * stride, '\0');
+        for (std::size_t i = 0; i < count; ++i) {
+            std::memcpy(padded.data() + i * stride, elements.data() + i * size, size);
+        }
+        view = add_view(contents, padded);
+        contents.root["bufferViews"][view]["byteStride"] = stride;
+    }
+    contents.root["bufferViews"][view]["target"] = target;
+    return view;
+}
+
+std::size_t add_accessor(GltfContents& contents, Json accessor, const std::string& elements,
+                         int target) {
+    const std::size_t size = element_layout(accessor).size;
+    accessor["bufferView"] = add_elements(contents, size, elements, target);
+    accessor["count"] = elements.size() / size;
+    accessor.erase("byteOffset");
+    accessor.erase("sparse");
+    Json& accessors = contents.root["accessors"];
+    accessors.push_back(std::move(accessor));
+    return accessors.size() - 1;
+}
+
+void renew_bounds(Json& accessor, const std::string& elements) {
+    const ElementLayout layout = element_layout(accessor);
+    Json least = Json::array();
+    Json most = Json::array();
+    for (std::size_t k = 0; k < layout.components; ++k) {
+        double low = std::numeric_limits<double>::infinity();
+        double high = -low;
+        const auto widen = [&]<typename Component>(Component) {
+            widen_bounds<Component>(elements, layout.size, k, low, high);
+        };
+        switch (layout.component_type) {
+            case gltf_code::int8:
+                widen(std::int8_t{});
+                break;
+            case gltf_code::uint8:
+                widen(std::uint8_t{});
+                break;
+            case gltf_code::int16:
+                widen(std::int16_t{});
+                break;
+            case gltf_code::uint16:
+                widen(std::uint16_t{});
+                break;
+            case gltf_code::uint32:
+                widen(std::uint32_t{});
+                break;
+            default:
+                widen(float{});
+        }
+        if (!(std::abs(low) <= std::numeric_limits<float>::max()) ||
+            !(std::abs(high) <= std::numeric_limits<float>::max())) {
+            return;  // Non-finite elements: JSON has no bounds for them; the old ones stay.
+        }
+        const bool is_float = layout.component_type == gltf_code::float32;
+        least.push_back(is_float ? Json(low) : Json(static_cast<std::int64_t>(low)));
+        most.push_back(is_float ? Json(high) : Json(static_cast<std::int64_t>(high)));
+    }
+    if (accessor.contains("min")) accessor["min"] = least;
+    if (accessor.contains("max")) accessor["max"] = most;
+}
+
+void erase_extension(Json& holder, const char* extension) {
+    if (find(holder, "extensions", extension) == nullptr) return;
+    holder["extensions"].erase(extension);
+    if (holder["extensions"].empty()) holder.erase("extensions");
+}
+
+void forget_if_unused(Json& root, std::string_view extension) {
+    if (has_extension(root, extension)) return;
+    for (const char* list : {"extensionsUsed", "extensionsRequired"}) {
+        if (!root.contains(list)) continue;
+        Json& names = root[list];
+        for (std::size_t i = names.size(); i-- > 0;) {
+            if (names[i] == extension) names.erase(i);
+        }
+        if (names.empty()) root.erase(list);
+    }
+}
+
+}  // namespace relief
