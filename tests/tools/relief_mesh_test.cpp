@@ -219,6 +219,9 @@ TEST(InfoCommand, CountsWhatIsThere) {
     const ProgramResult result = workplace.run("relief-mesh info square.obj");
     EXPECT_EQ(result.exit_code, 0) << result.error;
     EXPECT_THAT(result.out, HasSubstr("contents  2 triangles, 4 vertices, 1 primitive\n"
+                                      // 4 x (3 + 2) floats, 6 indices.
+                                      "memory    80 B of attributes, 24 B of indices, alike on the "
+                                      "GPU\n"
                                       "bounds    (-1, -1, 0) to (1, 1, 0), size 2 x 2 x 0\n"));
     EXPECT_THAT(result.out, HasSubstr("2 triangles, 4 vertices; texcoords\n"));
 }
@@ -233,6 +236,8 @@ TEST(InfoCommand, PrintsOneJsonObject) {
     EXPECT_EQ(info["triangles"], 2);
     EXPECT_EQ(info["vertices"], 6);
     EXPECT_EQ(info["instances"], 2);
+    EXPECT_EQ(info["memory"], json({{"attributes", 96}, {"indices", 24}}));
+    EXPECT_EQ(info["primitives"][1]["memory"], json({{"attributes", 36}, {"indices", 12}}));
     EXPECT_EQ(info["bounds"]["max"], json({1.0, 1.0, 0.0}));
     EXPECT_EQ(info["primitives"][0]["attributes"], json({"texcoords"}));
     EXPECT_EQ(info["primitives"][1]["attributes"], json::array());

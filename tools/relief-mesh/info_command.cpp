@@ -25,6 +25,15 @@ std::string in_words(const Bounds& bounds) {
         size.y, size.z);
 }
 
+std::string in_words(const MeshBytes& memory) {
+    return fmt::format("{} of attributes, {} of indices, alike on the GPU",
+                       byte_size(memory.attributes), byte_size(memory.indices));
+}
+
+nlohmann::ordered_json memory_json(const MeshBytes& memory) {
+    return {{"attributes", memory.attributes}, {"indices", memory.indices}};
+}
+
 nlohmann::ordered_json bounds_json(const Bounds& bounds) {
     if (bounds.empty()) return nullptr;
     return {{"min", {bounds.min.x, bounds.min.y, bounds.min.z}},
@@ -72,6 +81,7 @@ void print_text(const std::filesystem::path& file, const ModelInfo& info) {
                     (info.instances != info.parts.size()
                          ? fmt::format(", placed {} in the scene", counted(info.instances, "time"))
                          : ""));
+    print_entry("memory", in_words(info.memory));
     print_entry("bounds", in_words(info.bounds));
     print_entry("parts", list(info.parts));
     print_entry("materials", list(info.materials));
@@ -89,6 +99,7 @@ nlohmann::ordered_json json_of(const std::filesystem::path& file, const ModelInf
                          {"vertices", part.vertices},
                          {"attributes", part.attributes},
                          {"materials", part.materials},
+                         {"memory", memory_json(part.memory)},
                          {"bounds", bounds_json(part.bounds)}});
     }
     nlohmann::ordered_json materials = nlohmann::ordered_json::array();
@@ -100,6 +111,7 @@ nlohmann::ordered_json json_of(const std::filesystem::path& file, const ModelInf
             {"triangles", info.triangles},
             {"vertices", info.vertices},
             {"instances", info.instances},
+            {"memory", memory_json(info.memory)},
             {"bounds", bounds_json(info.bounds)},
             {"primitives", std::move(parts)},
             {"materials", std::move(materials)},
@@ -128,13 +140,15 @@ ExitCode run(const InfoOptions& options) {
 
 Command add_info_command(CLI::App& tool) {
     CLI::App& app = add_subcommand(
-        tool, "info", "Says what is in a model file: counts, bounds, attributes, materials.");
+        tool, "info",
+        "Says what is in a model file: counts, memory, bounds, attributes, materials.");
     const auto options = std::make_shared<InfoOptions>();
     add_file(app, "IN", options->input, "Model to read: .glb .gltf .obj .ply .stl .off");
     add_switch(app, "--json", options->json,
-               "Print one JSON object: file, format, bytes, triangles, vertices, instances, bounds "
-               "{min, max} in world space (null if empty), primitives [name, triangles, vertices, "
-               "attributes, materials, bounds], materials [name, textures], images, lights, "
+               "Print one JSON object: file, format, bytes, triangles, vertices, instances, memory "
+               "{attributes, indices} in bytes, bounds {min, max} in world space (null if empty), "
+               "primitives [name, triangles, vertices, attributes, materials, memory, bounds], "
+               "materials [name, textures], images, lights, "
                "cameras, beyond_a_mesh, findings [where, kind, element, count, first, outcome].");
     set_examples(app, {"relief-mesh info data/vase.obj", "relief-mesh info data/vase.obj --json"});
     return {&app, [options] { return run(*options); }};

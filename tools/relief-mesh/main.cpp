@@ -5,8 +5,10 @@
 
 int main(int argc, char** argv) {
     using namespace relief::tools;
-    return run_tool({"relief-mesh",
-                     "Computes normals and tangents of meshes, and says what is in mesh files.",
-                     {add_process_command, add_info_command}},
-                    argc, argv);
+    return run_tool(
+        {"relief-mesh",
+         "Computes normals and tangents of meshes, and says what is in mesh files and what is "
+         "wrong with them.",
+         {add_process_command, add_info_command, add_check_command}},
+        argc, argv);
 }

@@ -39,13 +39,27 @@ std::vector<std::string> materials_of(const Mesh& mesh,
     return names;
 }
 
+template <typename T>
+std::size_t bytes_of(const std::vector<T>& values) {
+    return values.size() * sizeof(T);
+}
+
+MeshBytes memory_of(const Mesh& mesh) {
+    return {bytes_of(mesh.positions) + bytes_of(mesh.normals) + bytes_of(mesh.texcoords) +
+                bytes_of(mesh.tangents) + bytes_of(mesh.colors),
+            bytes_of(mesh.triangles)};
+}
+
 void add_part(ModelInfo& info, std::string name, const Mesh& mesh) {
     info.parts.push_back({.name = std::move(name),
                           .vertices = mesh.positions.size(),
                           .triangles = mesh.triangles.size(),
                           .attributes = attributes_of(mesh),
                           .materials = materials_of(mesh, info.materials),
-                          .bounds = bounds_of(mesh)});
+                          .bounds = bounds_of(mesh),
+                          .memory = memory_of(mesh)});
+    info.memory.attributes += info.parts.back().memory.attributes;
+    info.memory.indices += info.parts.back().memory.indices;
     info.vertices += mesh.positions.size();
     info.triangles += mesh.triangles.size();
 }

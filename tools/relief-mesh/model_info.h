@@ -14,6 +14,12 @@
 
 namespace relief::tools {
 
+/// Bytes of a mesh's arrays, in memory as on the GPU: floats, and indices of 32 bits.
+struct MeshBytes {
+    std::size_t attributes = 0;
+    std::size_t indices = 0;
+};
+
 /// One triangle primitive, or the one mesh of a mesh file.
 struct PartInfo {
     std::string name;
@@ -22,6 +28,7 @@ struct PartInfo {
     std::vector<std::string> attributes;  ///< Besides positions: "normals", "texcoords", ...
     std::vector<std::string> materials;   ///< Names of those it uses.
     Bounds bounds;                        ///< Object space.
+    MeshBytes memory;
 };
 
 struct MaterialInfo {
@@ -36,7 +43,8 @@ struct ModelInfo {
     std::size_t instances = 0;  ///< Parts as placed in the scene; a part may stand in many places.
     std::size_t vertices = 0;   ///< Of all parts, each counted once.
     std::size_t triangles = 0;
-    Bounds bounds;  ///< Of all instances in world space.
+    MeshBytes memory;  ///< Of all parts, each counted once.
+    Bounds bounds;     ///< Of all instances in world space.
     std::vector<MaterialInfo> materials;
     std::size_t images = 0;
     std::size_t lights = 0;

@@ -36,13 +36,16 @@ void Report::add(std::string_view kind, std::string_view element, std::size_t in
     remember(found.first, index);
 }
 
+void Report::add(const Finding& theirs) {
+    Finding& ours = finding(theirs.kind, theirs.element, theirs.outcome);
+    ours.count += theirs.count;
+    for (const std::size_t index : theirs.first)
+        remember(ours.first, index);
+}
+
 void Report::merge(const Report& other) {
-    for (const Finding& theirs : other.findings_) {
-        Finding& ours = finding(theirs.kind, theirs.element, theirs.outcome);
-        ours.count += theirs.count;
-        for (const std::size_t index : theirs.first)
-            remember(ours.first, index);
-    }
+    for (const Finding& theirs : other.findings_)
+        add(theirs);
 }
 
 std::size_t Report::count(std::string_view kind) const {

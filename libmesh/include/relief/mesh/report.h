@@ -35,6 +35,9 @@ class Report {
     void add(std::string_view kind, std::string_view element, std::size_t index,
              std::string_view outcome);
 
+    /// Adds what was counted elsewhere.
+    void add(const Finding& theirs);
+
     /// Adds all findings of another report.
     void merge(const Report& other);
 

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// How far the length of a stored direction may be from 1.
+/// Tests: tests/mesh/geometry/frames_test.cpp, diagnose_test.cpp.
+#pragma once
+
+namespace relief {
+
+/// What 8-bit storage, the coarsest in use, leaves (half a step of 1/127 in each of three
+/// components), and no more.
+constexpr double unit_tolerance = 0.007;
+
+}  // namespace relief

@@ -1,0 +1,354 @@
+// SPDX-License-Identifier: Apache-2.0
+// What diagnose() finds in meshes where the answer is known by hand, and what cannot change it.
+#include "relief/mesh/diagnose.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numbers>
+#include <set>
+
+#include "hard_meshes.h"
+#include "relief/mesh/error.h"
+#include "relief/mesh/shapes.h"
+#include "relief/mesh/threads.h"
+
+namespace relief {
+namespace {
+
+using test::shuffled;
+using test::with_triangle_order;
+using testing::ElementsAre;
+using testing::IsEmpty;
+using testing::Pair;
+
+constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+
+Mesh mesh_of(std::vector<glm::vec3> positions, std::vector<glm::uvec3> triangles) {
+    Mesh mesh;
+    mesh.positions = std::move(positions);
+    mesh.triangles = std::move(triangles);
+    return mesh;
+}
+
+/// Condition and count, in the order of the enumeration.
+std::map<MeshCondition, std::size_t> counts_of(const Mesh& mesh,
+                                               const DiagnoseOptions& options = {}) {
+    std::map<MeshCondition, std::size_t> counts;
+    for (const FoundCondition& found : diagnose(mesh, options).found)
+        counts[found.condition] = found.count;
+    return counts;
+}
+
+std::vector<std::size_t> first_of(const Mesh& mesh, MeshCondition condition) {
+    for (const FoundCondition& found : diagnose(mesh).found) {
+        if (found.condition == condition) return found.first;
+    }
+    return {};
+}
+
+const glm::vec3 o(0, 0, 0);
+const glm::vec3 x(1, 0, 0);
+const glm::vec3 y(0, 1, 0);
+const glm::vec3 z(0, 0, 1);
+
+TEST(Diagnose, ClosedShapesHaveNothing) {
+    EXPECT_THAT(counts_of(make_cube()), ElementsAre(Pair(MeshCondition::texture_overlapping, 12)))
+        << "24 vertices at 8 places; the image on every face";
+    EXPECT_THAT(counts_of(make_torus(0.4F, 24, 12)), IsEmpty());
+    EXPECT_THAT(counts_of(Mesh{}), IsEmpty());
+}
+
+TEST(Diagnose, DegenerateTrianglesByKind) {
+    const Mesh mesh =
+        mesh_of({o, x, y, 2.0F * x, {0.5F, 5e-5F, 0}, {0.5F, 2e-4F, 0}, {nan, 0, 0}, o},
+                {{0, 1, 2},    // sound
+                 {0, 1, 1},    // an index twice
+                 {0, 1, 7},    // two vertices at one place
+                 {0, 1, 3},    // on a line
+                 {0, 1, 4},    // narrower than 1e-4 of its length
+                 {0, 1, 5},    // wider
+                 {0, 1, 6}});  // nowhere
+    EXPECT_THAT(
+        counts_of(mesh, {.edges = false, .near_duplicates = false}),
+        ElementsAre(
+            Pair(MeshCondition::triangle_not_finite, 1), Pair(MeshCondition::triangle_collapsed, 2),
+            Pair(MeshCondition::triangle_collinear, 1), Pair(MeshCondition::triangle_needle, 1),
+            Pair(MeshCondition::vertex_not_finite, 1), Pair(MeshCondition::vertex_voiceless, 1)));
+    EXPECT_THAT(first_of(mesh, MeshCondition::triangle_collapsed), ElementsAre(1, 2));
+    EXPECT_THAT(first_of(mesh, MeshCondition::vertex_voiceless), ElementsAre(3));
+}
+
+TEST(Diagnose, RepeatedTrianglesCountBeyondTheFirstWhicheverCornerTheyBeginWith) {
+    const Mesh mesh = mesh_of({o, x, y, o}, {{0, 1, 2}, {1, 2, 0}, {3, 1, 2}});
+    EXPECT_THAT(counts_of(mesh), ElementsAre(Pair(MeshCondition::triangle_repeated, 2),
+                                             Pair(MeshCondition::edge_boundary, 3)));
+    EXPECT_THAT(first_of(mesh, MeshCondition::triangle_repeated), ElementsAre(1, 2));
+}
+
+TEST(Diagnose, ASheetWithABackIsNeitherRepeatedNorNonManifold) {
+    const Mesh mesh = mesh_of({o, x, x + y, y}, {{0, 1, 2}, {0, 2, 3}, {2, 1, 0}, {3, 2, 0}});
+    EXPECT_THAT(counts_of(mesh), ElementsAre(Pair(MeshCondition::triangle_backed, 4)));
+}
+
+TEST(Diagnose, EdgesByTheTrianglesOnThem) {
+    // Three triangles on the edge from 0 to 1; the two beside it are on one edge each.
+    const Mesh fin = mesh_of({o, x, y, -y, z}, {{0, 1, 2}, {1, 0, 3}, {0, 1, 4}});
+    EXPECT_THAT(counts_of(fin), ElementsAre(Pair(MeshCondition::edge_non_manifold, 1),
+                                            Pair(MeshCondition::edge_boundary, 6)));
+    // Two triangles that both run from 0 to 1.
+    const Mesh flipped = mesh_of({o, x, y, -y}, {{0, 1, 2}, {0, 1, 3}});
+    EXPECT_THAT(counts_of(flipped), ElementsAre(Pair(MeshCondition::edge_flipped, 1),
+                                                Pair(MeshCondition::edge_boundary, 4)));
+    // The second is folded back over the first.
+    const Mesh folded = mesh_of({o, x, y, {0.2F, 0.7F, 0}}, {{0, 1, 2}, {1, 0, 3}});
+    EXPECT_THAT(counts_of(folded), ElementsAre(Pair(MeshCondition::edge_folded, 1),
+                                               Pair(MeshCondition::edge_boundary, 4)));
+    EXPECT_THAT(first_of(folded, MeshCondition::edge_boundary), ElementsAre(0, 1))
+        << "a triangle with two such edges is named once";
+}
+
+TEST(Diagnose, EdgesAreJoinedByPlaceNotByIndex) {
+    const Mesh seam = mesh_of({o, x, y, x, o, -y}, {{0, 1, 2}, {3, 4, 5}});
+    EXPECT_THAT(counts_of(seam), ElementsAre(Pair(MeshCondition::edge_boundary, 4)));
+}
+
+TEST(Diagnose, VerticesThatTrianglesMissOrMeetTwice) {
+    const Mesh bow_tie = mesh_of({o, x, y, -x, -y, z, o}, {{0, 1, 2}, {0, 3, 4}});
+    EXPECT_THAT(counts_of(bow_tie), ElementsAre(Pair(MeshCondition::edge_boundary, 6),
+                                                Pair(MeshCondition::vertex_isolated, 1),
+                                                Pair(MeshCondition::vertex_bow_tie, 1)));
+    EXPECT_THAT(first_of(bow_tie, MeshCondition::vertex_isolated), ElementsAre(5))
+        << "vertex 6 is where 0 is";
+}
+
+TEST(Diagnose, NearDuplicatesAreAFewUnitsInTheLastPlaceApart) {
+    constexpr float ulp = 0x1p-23F;  // Of numbers from 1 to 2.
+    const auto near = [](const glm::vec3& a, const glm::vec3& b) {
+        const auto counts =
+            counts_of(mesh_of({a, b, {9, 0, 0}, {9, 1, 0}}, {{0, 2, 3}, {1, 3, 2}}));
+        const auto found = counts.find(MeshCondition::vertex_near_duplicate);
+        return found == counts.end() ? 0 : found->second;
+    };
+    EXPECT_EQ(near({1, 0, 0}, {1 + ulp, 0, 0}), 2U);
+    EXPECT_EQ(near({1, 0, 0}, {1 + 4 * ulp, 0, 0}), 2U);
+    EXPECT_EQ(near({1, 0, 0}, {1 + 5 * ulp, 0, 0}), 0U);
+    EXPECT_EQ(near({1, 0, 0}, {1, 0, 0}), 0U) << "equal is not near";
+    EXPECT_EQ(near({1, 1e-9F, 0}, {1, -1e-9F, 0}), 2U) << "across the plane of a mirror";
+    EXPECT_EQ(near({1, 0, 0}, {std::nextafter(1.0F, 0.0F), 0, 0}), 2U) << "beside a power of two";
+    EXPECT_EQ(near({-2, 0, 0}, {-2 + ulp, 0, 0}), 2U);
+    EXPECT_EQ(near({1, 1, 1}, {1, 1, 1.001F}), 0U);
+    EXPECT_EQ(near({0, 0, 0}, {0, 4 * 0x1p-149F, 0}), 2U) << "subnormal";
+    EXPECT_EQ(near({0, 0, 0}, {0, 1e-20F, 0}), 0U);
+}
+
+TEST(Diagnose, NearDuplicatesMatchEveryPairLookedAt) {
+    Mesh mesh;
+    const auto noise = [](std::size_t i) {
+        return static_cast<float>((i * 2654435761U) % 1000U) / 1000.0F;
+    };
+    for (std::size_t i = 0; i < 600; ++i) {
+        // Every coordinate on one of a few units in the last place around 0.5, 1 and 2.
+        const glm::vec3 spread(noise(3 * i), noise(3 * i + 1), noise(3 * i + 2));
+        mesh.positions.push_back(glm::vec3(1) + glm::round(spread * 40.0F) * 0x1p-23F);
+        mesh.positions.push_back(glm::vec3(2, 0.5F, 0) + glm::round(spread * 40.0F) * 0x1p-23F);
+    }
+    const auto reach = [](const glm::vec3& p) {
+        return std::ldexp(4.0, std::ilogb(std::max({p.x, p.y, p.z})) - 23);
+    };
+    std::set<std::size_t> expected;
+    for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
+        for (std::size_t k = 0; k < mesh.positions.size(); ++k) {
+            const glm::vec3& a = mesh.positions[i];
+            const glm::vec3& b = mesh.positions[k];
+            const glm::dvec3 apart = glm::abs(glm::dvec3(a) - glm::dvec3(b));
+            const double most = std::max({apart.x, apart.y, apart.z});
+            if (most > 0.0 && most <= std::max(reach(a), reach(b))) expected.insert(i);
+        }
+    }
+    // Equal positions count once, by the first.
+    std::set<std::size_t> firsts;
+    for (const std::size_t i : expected) {
+        std::size_t first = 0;
+        while (mesh.positions[first] != mesh.positions[i])
+            ++first;
+        firsts.insert(first);
+    }
+    ASSERT_GT(firsts.size(), 100U);
+    ASSERT_LT(firsts.size(), mesh.positions.size());
+    EXPECT_EQ(diagnose(mesh).count(MeshCondition::vertex_near_duplicate), firsts.size());
+}
+
+/// A square of two triangles facing +z with the given normals.
+Mesh square_with_normals(const std::vector<glm::vec3>& normals) {
+    Mesh mesh = mesh_of({o, x, x + y, y}, {{0, 1, 2}, {0, 2, 3}});
+    mesh.normals = normals;
+    return mesh;
+}
+
+TEST(Diagnose, NormalsThatAreNone) {
+    const Mesh mesh =
+        square_with_normals({{0, 0, nan}, {0, 0, 0}, {0, 0, 1.0071F}, {0, 0, 1.0069F}});
+    EXPECT_THAT(counts_of(mesh), ElementsAre(Pair(MeshCondition::edge_boundary, 4),
+                                             Pair(MeshCondition::normal_not_finite, 1),
+                                             Pair(MeshCondition::normal_zero, 1),
+                                             Pair(MeshCondition::normal_not_unit, 1)));
+}
+
+TEST(Diagnose, NormalsAgainstTheirTriangles) {
+    Mesh mesh = square_with_normals({z, z, -z, x});
+    EXPECT_THAT(counts_of(mesh), ElementsAre(Pair(MeshCondition::edge_boundary, 4),
+                                             Pair(MeshCondition::normal_opposed, 1),
+                                             Pair(MeshCondition::normal_divided, 1)));
+    EXPECT_THAT(first_of(mesh, MeshCondition::normal_opposed), ElementsAre(2));
+    EXPECT_THAT(first_of(mesh, MeshCondition::normal_divided), ElementsAre(3)) << "sidewise";
+    mesh.triangles[1] = {0, 3, 2};  // Turned over: 0 and 2 see one front and one back.
+    EXPECT_THAT(first_of(mesh, MeshCondition::normal_divided), ElementsAre(0, 2, 3));
+}
+
+TEST(Diagnose, TangentsThatSpanNoFrame) {
+    Mesh mesh = square_with_normals({z, z, z, z});
+    mesh.positions.push_back(2.0F * x);
+    mesh.triangles.push_back({1, 4, 2});
+    mesh.normals.push_back(z);
+    mesh.tangents = {
+        {1, 0, 0, 1}, {nan, 0, 0, 1}, {2, 0, 0, 0.5F}, {0, 0, 1, -1}, {1, 0, 0.021F, 1}};
+    EXPECT_THAT(counts_of(mesh, {.edges = false}),
+                ElementsAre(Pair(MeshCondition::tangent_not_finite, 1),
+                            Pair(MeshCondition::tangent_not_unit, 1),
+                            Pair(MeshCondition::tangent_unhanded, 1),
+                            Pair(MeshCondition::tangent_along_normal, 1),
+                            Pair(MeshCondition::tangent_leaning, 1)));
+}
+
+TEST(Diagnose, TextureCoordinates) {
+    Mesh mesh = mesh_of({o, x, y, {2, 0, 0}, {3, 0, 0}, {2, 1, 0}}, {{0, 1, 2}, {3, 4, 5}});
+    // v is down: (0,1) is below (0,0), so the first triangle is upright and the second mirrored.
+    mesh.texcoords = {{0, 1}, {1, 1}, {0, 0}, {2, 0}, {3, 0}, {2, 1}};
+    EXPECT_THAT(counts_of(mesh), ElementsAre(Pair(MeshCondition::edge_boundary, 6),
+                                             Pair(MeshCondition::texture_mirrored, 1)));
+    EXPECT_THAT(first_of(mesh, MeshCondition::texture_mirrored), ElementsAre(1));
+    mesh.texcoords[5] = {4, 0};
+    mesh.texcoords[0] = {nan, 1};
+    EXPECT_THAT(counts_of(mesh), ElementsAre(Pair(MeshCondition::edge_boundary, 6),
+                                             Pair(MeshCondition::texture_not_finite, 1),
+                                             Pair(MeshCondition::texture_degenerate, 1)));
+}
+
+TEST(Diagnose, OverlapIsOfTrianglesWithAnAreaInSpace) {
+    Mesh mesh = mesh_of({o, x, y, o, x, y + z, o, x, x}, {{0, 1, 2}, {3, 4, 5}, {6, 7, 8}});
+    mesh.texcoords = {{0, 0}, {1, 0}, {0, 1}, {1, 0}, {0, 1}, {1, 1}, {0, 0}, {1, 0}, {1, 1}};
+    const Diagnosis diagnosis = diagnose(mesh);
+    EXPECT_EQ(diagnosis.count(MeshCondition::texture_overlapping), 0U);
+    EXPECT_EQ(diagnosis.overlap_raster, 512);
+    EXPECT_EQ(diagnose(mesh, {.texture_overlap = false}).overlap_raster, 0);
+    mesh.positions[8] = z;  // Now the third covers half of both others.
+    EXPECT_EQ(diagnose(mesh).count(MeshCondition::texture_overlapping), 3U);
+}
+
+TEST(Diagnose, FarAwayIsWhereFloatsAreCoarseForTheSizeOfTheMesh) {
+    Mesh mesh = make_cube();
+    EXPECT_EQ(diagnose(mesh).size, 2.0F);
+    EXPECT_EQ(diagnose(mesh).spacing, 0x1p-24F) << "below 1";
+    for (glm::vec3& position : mesh.positions)
+        position.x += 200.0F;
+    EXPECT_EQ(diagnose(mesh).count(MeshCondition::mesh_far_away), 0U);
+    for (glm::vec3& position : mesh.positions)
+        position.x += 800.0F;
+    EXPECT_EQ(diagnose(mesh).spacing, 0x1p-14F) << "from 512 to 1024";
+    EXPECT_EQ(diagnose(mesh).count(MeshCondition::mesh_far_away), 1U);
+}
+
+TEST(Diagnose, ScaleChangesNothing) {
+    for (const float scale : {1e-30F, 1e-20F, 1e20F, 1e30F}) {
+        Mesh mesh = make_torus(0.4F, 24, 12);
+        for (glm::vec3& position : mesh.positions)
+            position *= scale;
+        EXPECT_THAT(counts_of(mesh), IsEmpty()) << scale;
+    }
+}
+
+TEST(Diagnose, CountsDoNotDependOnTheOrderOfTrianglesOrOnThreads) {
+    for (const test::NamedMesh& named : test::hard_meshes()) {
+        const auto expected = counts_of(named.mesh);
+        const Mesh reordered =
+            with_triangle_order(named.mesh, shuffled(named.mesh.triangles.size()));
+        EXPECT_EQ(counts_of(reordered), expected) << named.name;
+    }
+    const Mesh sphere = make_sphere(300, 150);
+    const Mesh reordered = with_triangle_order(sphere, shuffled(sphere.triangles.size()));
+    set_thread_limit(1);
+    const Diagnosis alone = diagnose(sphere);
+    set_thread_limit(0);
+    EXPECT_EQ(diagnose(sphere), alone);
+    EXPECT_EQ(counts_of(reordered), counts_of(sphere));
+}
+
+TEST(Diagnose, AskingForLessFindsTheRestTheSame) {
+    const Mesh mesh = mesh_of({o, x, y, -y, z}, {{0, 1, 2}, {1, 0, 3}, {0, 1, 4}, {0, 1, 1}});
+    EXPECT_THAT(counts_of(mesh, {.edges = false}),
+                ElementsAre(Pair(MeshCondition::triangle_collapsed, 1)));
+}
+
+// A hundred thousand triangles in shapes for which looking at pairs would take hours.
+TEST(Diagnose, CrowdedShapesAreCountedToo) {
+    constexpr std::uint32_t count = 100'000;
+    Mesh fan = mesh_of({o}, {});
+    Mesh book = mesh_of({o, z}, {});
+    for (std::uint32_t i = 0; i <= count; ++i) {
+        const double angle = 2.0 * std::numbers::pi * i / (count + 1);
+        fan.positions.emplace_back(std::cos(angle), std::sin(angle), 0.0);
+        book.positions.emplace_back(std::cos(angle), std::sin(angle), 0.5);
+        if (i == count) break;
+        fan.triangles.emplace_back(0, i + 1, i + 2);
+        book.triangles.emplace_back(0, 1, i + 2);
+    }
+    const auto fan_counts = counts_of(fan);
+    EXPECT_EQ(fan_counts.at(MeshCondition::edge_boundary), count + 2);
+    EXPECT_EQ(fan_counts.at(MeshCondition::triangle_needle), count);
+    EXPECT_EQ(fan_counts.size(), 2U);
+    const auto book_counts = counts_of(book);
+    EXPECT_EQ(book_counts.at(MeshCondition::edge_non_manifold), 1U);
+    EXPECT_EQ(book_counts.at(MeshCondition::edge_boundary), 2 * count);
+    EXPECT_EQ(book_counts.at(MeshCondition::vertex_isolated), 1U);
+
+    const Mesh point = mesh_of(std::vector<glm::vec3>(count, x),
+                               std::vector<glm::uvec3>(count, glm::uvec3(0, 1, 2)));
+    EXPECT_THAT(counts_of(point), ElementsAre(Pair(MeshCondition::triangle_collapsed, count),
+                                              Pair(MeshCondition::vertex_voiceless, count)));
+    const Mesh same = mesh_of({o, x, y}, std::vector<glm::uvec3>(count, glm::uvec3(0, 1, 2)));
+    EXPECT_EQ(counts_of(same).at(MeshCondition::triangle_repeated), count - 1);
+}
+
+TEST(Diagnose, RefusesAnIndexThatIsNoVertex) {
+    EXPECT_THROW(diagnose(mesh_of({o, x, y}, {{0, 1, 3}})), InvalidInput);
+}
+
+TEST(DiagnoseWords, AreOneEach) {
+    std::set<std::string_view> words;
+    for (const MeshConditionInfo& info : mesh_conditions()) {
+        EXPECT_TRUE(words.insert(info.word).second) << info.word;
+        EXPECT_EQ(&condition_info(info.condition), &info);
+        EXPECT_FALSE(info.meaning.empty());
+    }
+}
+
+TEST(DiagnoseWords, FindingsCarryThemAndTheirSeverity) {
+    const Diagnosis diagnosis =
+        diagnose(mesh_of({o, x, y, -y, z}, {{0, 1, 2}, {1, 0, 3}, {0, 1, 4}, {0, 1, 1}}));
+    EXPECT_TRUE(diagnosis.has_trouble());
+    EXPECT_EQ(to_report(diagnosis).findings().size(), 3U);
+    const Report remarks = to_report(diagnosis, Severity::remark);
+    ASSERT_EQ(remarks.findings().size(), 1U);
+    EXPECT_EQ(to_string(remarks.findings()[0]),
+              "6 x boundary edge (edge of triangle 0, 1, 2, ...): has one triangle: the surface is "
+              "open there");
+    EXPECT_EQ(to_report(diagnosis, Severity::trouble).count("non-manifold edge"), 1U);
+    EXPECT_FALSE(diagnose(mesh_of({o, x, y}, {{0, 1, 2}})).has_trouble());
+}
+
+}  // namespace
+}  // namespace relief

@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: Apache-2.0
+// relief-mesh check as users run it: what it finds, how it says so, and with which exit code.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "support/shared_data.h"
+#include "tools/refusal.h"
+#include "tools/workplace.h"
+
+namespace relief::tools {
+namespace {
+
+using nlohmann::json;
+using test::ProgramResult;
+using test::Workplace;
+using testing::HasSubstr;
+using testing::Not;
+
+/// A square with a triangle whose corners are on a line.
+void write_bad(const Workplace& workplace, const std::string& name) {
+    workplace.write(name,
+                    "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nv 2 0 0\nf 1 2 3\nf 2 4 3\nf 1 5 2\n");
+}
+
+TEST(CheckCommand, SaysThatASoundModelIsSound) {
+    const Workplace workplace;
+    workplace.write_square("square.obj");
+    const ProgramResult result = workplace.run("relief-mesh check square.obj --strict");
+    EXPECT_EQ(result.exit_code, 0);
+    EXPECT_EQ(result.error, "");
+    EXPECT_EQ(result.out,
+              "file      square.obj: Wavefront OBJ, 1 primitive, 2 triangles: sound\n"
+              "remarks   4 x boundary edge\n"
+              "words     docs/hard-cases.md says what each comes to\n");
+}
+
+TEST(CheckCommand, NamesTroubleAndIsStrictAboutItWhenAsked) {
+    const Workplace workplace;
+    write_bad(workplace, "bad.obj");
+    workplace.write_square("square.obj");
+    const ProgramResult lenient = workplace.run("relief-mesh check square.obj bad.obj");
+    EXPECT_EQ(lenient.exit_code, 0);
+    EXPECT_EQ(lenient.error, "");
+    EXPECT_THAT(
+        lenient.out,
+        HasSubstr("file      bad.obj: Wavefront OBJ, 1 primitive, 3 triangles: trouble\n"
+                  "trouble   1 x collinear triangle (triangle 2): has its corners on a line, so no "
+                  "area and no normal\n"));
+    EXPECT_THAT(lenient.out,
+                HasSubstr("verdict   2 files: 1 sound, 1 with trouble, 0 unreadable\n"));
+
+    const ProgramResult strict =
+        workplace.run("relief-mesh check square.obj bad.obj --strict --quiet");
+    EXPECT_EQ(strict.exit_code, 3);
+    EXPECT_EQ(strict.out, "");
+    EXPECT_EQ(strict.error,
+              "relief-mesh: warning: 1 file with trouble (exit code 3, because of --strict)\n");
+}
+
+TEST(CheckCommand, GoesOnAfterAFileThatCannotBeRead) {
+    const Workplace workplace;
+    workplace.write("broken.obj", "v 0 0 zero\n");
+    workplace.write_square("square.obj");
+    const ProgramResult result =
+        workplace.run("relief-mesh check broken.obj missing.ply square.obj --strict");
+    EXPECT_EQ(result.exit_code, 1);
+    EXPECT_THAT(result.error, HasSubstr("relief-mesh: error: broken.obj: line 1: 'zero' is not a "
+                                        "number\nrelief-mesh: error: missing.ply: "));
+    EXPECT_THAT(result.out,
+                HasSubstr("square.obj: Wavefront OBJ, 1 primitive, 2 triangles: sound"));
+    EXPECT_THAT(result.out, HasSubstr("3 files: 1 sound, 0 with trouble, 2 unreadable\n"));
+
+    const json report = json::parse(
+        workplace.run("relief-mesh check broken.obj missing.ply square.obj --json").out);
+    EXPECT_EQ(report["unreadable"], 2);
+    EXPECT_EQ(report["sound"], 1);
+    EXPECT_EQ(report["files"][0]["error"], "broken.obj: line 1: 'zero' is not a number");
+    EXPECT_EQ(report["files"][2]["sound"], true);
+}
+
+TEST(CheckCommand, PrintsOneJsonObject) {
+    const Workplace workplace;
+    write_bad(workplace, "bad.obj");
+    const ProgramResult result = workplace.run("relief-mesh check bad.obj --json --strict");
+    EXPECT_EQ(result.exit_code, 3);
+    const json report = json::parse(result.out);
+    EXPECT_EQ(report["tool"], "relief-mesh check");
+    EXPECT_EQ(report["with_trouble"], 1);
+    const json part = report["files"][0]["primitives"][0];
+    EXPECT_EQ(part["sound"], false);
+    EXPECT_EQ(part["triangles"], 3);
+    EXPECT_EQ(part["size"], 2.0);
+    ASSERT_EQ(part["trouble"].size(), 2U);
+    EXPECT_EQ(part["trouble"][1]["kind"], "vertex with only degenerate triangles");
+    EXPECT_EQ(part["trouble"][0]["kind"], "collinear triangle");
+    EXPECT_EQ(part["trouble"][0]["element"], "triangle");
+    EXPECT_EQ(part["trouble"][0]["count"], 1);
+    EXPECT_EQ(part["trouble"][0]["first"], json({2}));
+    ASSERT_EQ(part["remarks"].size(), 1U);
+    EXPECT_EQ(part["remarks"][0]["kind"], "boundary edge");
+}
+
+TEST(CheckCommand, WhatAFormatHoldsBesideTheMeshIsNoTrouble) {
+    const Workplace workplace;
+    workplace.write("points.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\np 1\nl 1 2\n");
+    workplace.write("lost.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1/9 2/9 3/9\n");
+    const ProgramResult points = workplace.run("relief-mesh check points.obj --strict");
+    EXPECT_EQ(points.exit_code, 0);
+    EXPECT_THAT(points.out, HasSubstr("remarks   1 x point left out, 1 x line left out, 3 x "
+                                      "boundary edge\n"));
+    const ProgramResult lost = workplace.run("relief-mesh check lost.obj --strict");
+    EXPECT_EQ(lost.exit_code, 3);
+    EXPECT_THAT(lost.out, HasSubstr("trouble   3 x texture coordinate that does not exist (corner "
+                                    "0, 1, 2): taken as none\n"));
+}
+
+TEST(CheckCommand, TextureWithoutGradientIsTroubleWhereTangentsAreWanted) {
+    const Workplace workplace;
+    const std::string mesh =
+        "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nusemtl a\nf 1/1 2/1 3/1\n";
+    workplace.write("a.obj", mesh);
+    workplace.write("a.mtl", "newmtl a\nmap_Kd palette.png\n");
+    const ProgramResult palette = workplace.run("relief-mesh check a.obj --strict");
+    EXPECT_EQ(palette.exit_code, 0) << palette.out;
+    EXPECT_THAT(palette.out, HasSubstr("1 x triangle without texture gradient\n"));
+    workplace.write("a.mtl", "newmtl a\nmap_Kd palette.png\nnorm normal.png\n");
+    EXPECT_EQ(workplace.run("relief-mesh check a.obj --strict").exit_code, 3);
+}
+
+TEST(CheckCommand, OutputDoesNotDependOnThreads) {
+    const Workplace workplace;
+    const std::string line =
+        "relief-mesh check data/vase.obj data/scenes/pot.glb --json --threads ";
+    const ProgramResult one = workplace.run(line + "1");
+    EXPECT_EQ(one.exit_code, 0);
+    EXPECT_EQ(one.out, workplace.run(line + "3").out);
+}
+
+TEST(CheckCommand, RefusesWhatCannotBe) {
+    const Workplace workplace;
+    workplace.write_square("square.obj");
+    EXPECT_EQ(workplace.run("relief-mesh check").exit_code, 2);
+    const ProgramResult image = workplace.run("relief-mesh check square.obj picture.png");
+    EXPECT_EQ(image.exit_code, 2);
+    EXPECT_EQ(image.out, "") << "known before anything is read";
+    EXPECT_EQ(workplace.run("relief-mesh check square.obj --json --quiet").exit_code, 2);
+}
+
+// Khronos' own samples are what sound models look like; what they have is remarked, not trouble.
+TEST(CheckCommand, RealModelsThatAreFineAreSaidToBe) {
+    RELIEF_NEEDS_SHARED(models, "data/models/gltf");
+    const Workplace workplace;
+    const std::string folder = models.string();
+    const ProgramResult result = workplace.run(
+        "relief-mesh check --strict " + folder + "/Duck/glTF-Binary/Duck.glb " + folder +
+        "/BoomBox/glTF/BoomBox.gltf " + folder + "/Fox/glTF-Binary/Fox.glb " + folder +
+        "/CesiumMan/glTF-Binary/CesiumMan.glb " + folder +
+        "/TextureSettingsTest/glTF-Binary/TextureSettingsTest.glb");
+    EXPECT_EQ(result.exit_code, 0) << result.out << result.error;
+    EXPECT_THAT(result.out, HasSubstr("5 files: 5 sound, 0 with trouble, 0 unreadable\n"));
+}
+
+TEST(CheckCommand, RealModelsWithTroubleAreNamed) {
+    RELIEF_NEEDS_SHARED(models, "data/models");
+    const Workplace workplace;
+    const std::string folder = models.string();
+    EXPECT_THAT(
+        workplace
+            .run("relief-mesh check " + folder +
+                 "/gltf/MetalRoughSpheresNoTextures/glTF-Binary/MetalRoughSpheresNoTextures.glb")
+            .out,
+        HasSubstr("trouble   mesh 'Sphere' primitive 0: 2 x collapsed triangle (triangle 900, "
+                  "9579): has two corners at the same place, so no area and no normal (196 in 98 "
+                  "primitives)\n"));
+    EXPECT_THAT(workplace.run("relief-mesh check " + folder + "/obj/nonmanifold/fan3.obj").out,
+                HasSubstr("trouble   1 x non-manifold edge (edge of triangle 0)"));
+    EXPECT_THAT(workplace.run("relief-mesh check " + folder + "/obj/nonmanifold/moebius.obj").out,
+                HasSubstr("trouble   4 x flipped neighbours"));
+    EXPECT_THAT(
+        workplace.run("relief-mesh check " + folder + "/obj/nonmanifold/hourglass_ico.obj").out,
+        HasSubstr("sound\nremarks   1 x bow-tie vertex\n"));
+}
+
+}  // namespace
+}  // namespace relief::tools
