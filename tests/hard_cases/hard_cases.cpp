@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "hard_cases/hard_case.h"
+#include "hard_cases/mesh_cases.h"
+
+namespace relief::test {
+
+const std::vector<HardCase>& hard_cases() {
+    static const std::vector<HardCase> table = [] {
+        std::vector<HardCase> rows;
+        for (const auto& part : {triangle_cases(), surface_cases(), number_cases(), stored_cases()})
+            rows.insert(rows.end(), part.begin(), part.end());
+        return rows;
+    }();
+    return table;
+}
+
+}  // namespace relief::test

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// Rows of the catalogue whose input is a mesh, and what can be expected of them.
+#pragma once
+
+#include <functional>
+#include <glm/glm.hpp>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "hard_cases/hard_case.h"
+#include "relief/mesh/diagnose.h"
+#include "relief/mesh/mesh.h"
+#include "relief/mesh/normals.h"
+
+namespace relief::test {
+
+/// How often a finding is reported, by its kind.
+using Findings = std::vector<std::pair<std::string, std::size_t>>;
+
+/// The true normal at a vertex of the mesh, where there is one.
+using TrueNormal = std::function<std::optional<glm::dvec3>(const Mesh& mesh, std::size_t vertex)>;
+
+/// Builds a row: MeshCase(...).checked(...).normals(...).
+class MeshCase {
+  public:
+    MeshCase(std::string name, std::string what, std::string source, std::function<Mesh()> make);
+
+    /// diagnose() finds exactly this, whatever the order of triangles.
+    MeshCase& checked(const std::vector<std::pair<MeshCondition, std::size_t>>& found);
+
+    /// vertex_normals() with every weighting gives finite unit normals, the same bits for another
+    /// order of triangles, and reports exactly this.
+    MeshCase& normals(const Findings& findings = {});
+
+    /// Normals by these weightings are within so many degrees of the truth; 0: exactly there.
+    MeshCase& accurate(const std::vector<NormalWeight>& weights, double degrees,
+                       const std::string& truth_in_words, const TrueNormal& truth);
+
+    /// Anything else: the outcome in words, and a function of the mesh that says what is wrong.
+    MeshCase& expect(const std::string& step, const std::string& outcome,
+                     const std::function<std::string(const Mesh&)>& problem);
+
+    operator HardCase() const { return row_; }
+
+  private:
+    HardCase row_;
+    std::function<Mesh()> make_;
+};
+
+/// The weightings that every row of `normals` runs through.
+const std::vector<NormalWeight>& all_weights();
+
+}  // namespace relief::test

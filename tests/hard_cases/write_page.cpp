@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+// relief-hard-cases-page FILE: writes docs/hard-cases.md from the catalogue.
+#include <cstdio>
+#include <fstream>
+
+#include "hard_cases/page.h"
+
+int main(int argc, char** argv) {
+    if (argc != 2) {
+        std::fputs("usage: relief-hard-cases-page docs/hard-cases.md\n", stderr);
+        return 2;
+    }
+    std::ofstream file(argv[1], std::ios::binary);
+    file << relief::test::hard_cases_page();
+    return file.flush() ? 0 : 1;
+}
