@@ -31,7 +31,9 @@ std::string words() {
         "triangles, edges and fans. Edges are named by the "
         "first triangle on them.\nA triangle without texture gradient is but a remark in a model "
         "of which nothing asks for tangents: no "
-        "normal or bump map, none stored.\n\n"
+        "normal or bump map, none stored. With `--for-baking` it is trouble all the same, and so "
+        "is "
+        "overlapping texture.\n\n"
         "| word | | what it comes to |\n|---|---|---|\n";
     for (const MeshConditionInfo& condition : mesh_conditions()) {
         text += fmt::format("| {} | {} | {} |\n", condition.word,

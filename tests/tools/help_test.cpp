@@ -83,8 +83,9 @@ TEST_P(HelpPage, ShowsExamplesThatRun) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Tools, HelpPage,
-                         testing::Values("relief-mesh", "relief-mesh process", "relief-mesh info", "relief-mesh check",
-                                         "relief-bake", "relief-bake bump", "relief-view"));
+                         testing::Values("relief-mesh", "relief-mesh process", "relief-mesh info",
+                                         "relief-mesh check", "relief-bake", "relief-bake bump",
+                                         "relief-view"));
 
 }  // namespace
 }  // namespace relief::tools

@@ -129,6 +129,20 @@ TEST(CheckCommand, TextureWithoutGradientIsTroubleWhereTangentsAreWanted) {
     EXPECT_EQ(workplace.run("relief-mesh check a.obj --strict").exit_code, 3);
 }
 
+TEST(CheckCommand, OverlappingTextureIsTroubleForABake) {
+    const Workplace workplace;
+    workplace.write("mirror.obj",
+                    "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nvt 0 0\nvt 1 0\nvt 0 1\n"
+                    "f 1/1 2/2 3/3\nf 4/1 3/2 2/3\n");
+    const ProgramResult shown = workplace.run("relief-mesh check mirror.obj --strict");
+    EXPECT_EQ(shown.exit_code, 0);
+    EXPECT_THAT(shown.out, HasSubstr("remarks   4 x boundary edge, 2 x overlapping texture\n"));
+    const ProgramResult baked = workplace.run("relief-mesh check mirror.obj --strict --for-baking");
+    EXPECT_EQ(baked.exit_code, 3);
+    EXPECT_THAT(baked.out, HasSubstr("trouble   2 x overlapping texture (triangle 0, 1): shares "
+                                     "texels with another: nothing can be baked there\n"));
+}
+
 TEST(CheckCommand, OutputDoesNotDependOnThreads) {
     const Workplace workplace;
     const std::string line =

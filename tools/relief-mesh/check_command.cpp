@@ -22,6 +22,7 @@ struct CheckOptions {
     std::vector<std::filesystem::path> files;
     bool json = false;
     bool strict = false;
+    bool for_baking = false;
     GeneralOptions general;
 };
 
@@ -79,8 +80,8 @@ ExitCode run(const CLI::App& app, const CheckOptions& options) {
     Stages stages(options.general.quiet);
     std::vector<CheckedModel> models;
     for (const std::filesystem::path& file : options.files) {
-        models.push_back(
-            stages.run("check", "check " + file.string(), [&] { return check_model(file); }));
+        models.push_back(stages.run("check", "check " + file.string(),
+                                    [&] { return check_model(file, options.for_baking); }));
         if (!models.back().error.empty())
             complain(app, models.back().error);
         else if (to_print)
@@ -108,8 +109,12 @@ Command add_check_command(CLI::App& tool) {
         "trouble and remarks [kind, element, count, first, outcome]]].");
     add_switch(app, "--strict", options->strict,
                "Exit with 3 if a file has trouble. Remarks are no trouble.");
+    add_switch(app, "--for-baking", options->for_baking,
+               "Maps are to be baked onto the models: overlapping texture is trouble then, and so "
+               "is texture without gradient, whatever the materials say.");
     add_general_options(app, options->general);
-    set_examples(app, {"relief-mesh check data/vase.obj",
+    set_examples(app, {"relief-mesh check data/vase.obj data/scenes/pot.glb",
+                       "relief-mesh check data/scenes/knot.glb --for-baking --strict",
                        "relief-mesh check data/vase.obj --strict --json"});
     return {&app, [&app, options] { return run(app, *options); }};
 }

@@ -31,16 +31,24 @@ void add_reading(CheckedModel& model, const Report& reading) {
         (is_harmless(finding) ? model.reading_remarks : model.reading_trouble).add(finding);
 }
 
-Severity severity_of(MeshCondition condition, bool wants_tangents) {
-    if (condition == MeshCondition::texture_degenerate && !wants_tangents) return Severity::remark;
+/// What a part will be used for, which decides what is trouble.
+struct Use {
+    bool tangents = false;
+    bool baking = false;
+};
+
+Severity severity_of(MeshCondition condition, const Use& use) {
+    if (condition == MeshCondition::texture_degenerate && !use.tangents && !use.baking)
+        return Severity::remark;
+    if (condition == MeshCondition::texture_overlapping && use.baking) return Severity::trouble;
     return condition_info(condition).severity;
 }
 
-void add_part(CheckedModel& model, std::string name, const Mesh& mesh, bool wants_tangents) {
+void add_part(CheckedModel& model, std::string name, const Mesh& mesh, const Use& use) {
     CheckedPart part{
         std::move(name), mesh.triangles.size(), mesh.positions.size(), diagnose(mesh), {}, {}};
     for (const FoundCondition& found : part.diagnosis.found) {
-        const bool is_trouble = severity_of(found.condition, wants_tangents) == Severity::trouble;
+        const bool is_trouble = severity_of(found.condition, use) == Severity::trouble;
         (is_trouble ? part.trouble : part.remarks).add(to_finding(found));
     }
     model.parts.push_back(std::move(part));
@@ -65,16 +73,16 @@ bool wants_tangents(const std::vector<MtlMaterial>& materials) {
     return !has_textures;
 }
 
-void add_parts(CheckedModel& model, const GltfDocument& document) {
+void add_parts(CheckedModel& model, const GltfDocument& document, bool for_baking) {
     const std::vector<GltfMaterial> materials = document.view().materials;
     for (const GltfPrimitiveId id : document.triangle_primitives()) {
         const Mesh mesh = document.mesh(id);
-        add_part(model, document.describe(id), mesh, wants_tangents(mesh, materials));
+        add_part(model, document.describe(id), mesh, {wants_tangents(mesh, materials), for_baking});
     }
 }
 
-void add_parts(CheckedModel& model, const MeshFile& contents) {
-    add_part(model, "", contents.mesh, wants_tangents(contents.materials));
+void add_parts(CheckedModel& model, const MeshFile& contents, bool for_baking) {
+    add_part(model, "", contents.mesh, {wants_tangents(contents.materials), for_baking});
 }
 
 std::size_t triangles_of(const CheckedModel& model) {
@@ -173,7 +181,7 @@ bool CheckedModel::is_sound() const {
                        [](const CheckedPart& part) { return part.trouble.empty(); });
 }
 
-CheckedModel check_model(const std::filesystem::path& file) {
+CheckedModel check_model(const std::filesystem::path& file, bool for_baking) {
     CheckedModel model;
     model.file = file;
     model.format = format_name(readable_format(file));
@@ -182,7 +190,8 @@ CheckedModel check_model(const std::filesystem::path& file) {
         const Model contents = read_model(file, reading);
         add_reading(model, reading);
         about(file, [&] {
-            std::visit([&](const auto& document) { add_parts(model, document); }, contents);
+            std::visit([&](const auto& document) { add_parts(model, document, for_baking); },
+                       contents);
         });
     } catch (const FileError& error) {
         model.error = error.what();

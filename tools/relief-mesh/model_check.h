@@ -40,9 +40,12 @@ struct CheckedModel {
 
 /// Reads and diagnoses. A file that cannot be read, or is not valid, has an `error`.
 ///
-/// Severities are those of diagnose.h, but that triangles without texture gradient are a remark
-/// where nothing asks for tangents: no material has a normal or bump map, none are stored.
-CheckedModel check_model(const std::filesystem::path& file);
+/// \param for_baking  maps will be baked onto the model: then overlapping texture is trouble
+///
+/// Else, severities are those of diagnose.h, but that triangles without texture gradient are a
+/// remark where nothing asks for tangents: nothing is to be baked, no material has a normal or bump
+/// map, no tangents are stored.
+CheckedModel check_model(const std::filesystem::path& file, bool for_baking);
 
 void print_text(const CheckedModel& model);
 nlohmann::ordered_json json_of(const CheckedModel& model);

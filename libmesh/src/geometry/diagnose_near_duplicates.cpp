@@ -10,7 +10,6 @@
 #include <array>
 #include <bit>
 #include <cmath>
-#include <limits>
 
 #include "geometry/diagnose_parts.h"
 #include "geometry/direction.h"
@@ -29,15 +28,24 @@ constexpr std::size_t looked_at_most = 64;
 
 constexpr int smallest_exponent = -126;
 
-/// The binary exponent of the largest coordinate.
+/// 2 to the power of an exponent within the range of floats, and some beyond. The C library's
+/// functions for this and the following take most of the time where they are called.
+double power_of_two(int exponent) {
+    return std::bit_cast<double>(static_cast<std::uint64_t>(exponent + 1023) << 52);
+}
+
+float largest_coordinate(const glm::vec3& position) {
+    return std::max({std::abs(position.x), std::abs(position.y), std::abs(position.z)});
+}
+
+/// The binary exponent of the largest coordinate; that of subnormal numbers is the smallest.
 int exponent_of(const glm::vec3& position) {
-    const float largest =
-        std::max({std::abs(position.x), std::abs(position.y), std::abs(position.z)});
-    return std::max(largest > 0.0F ? std::ilogb(largest) : smallest_exponent, smallest_exponent);
+    const std::uint32_t biased = std::bit_cast<std::uint32_t>(largest_coordinate(position)) >> 23;
+    return std::max(static_cast<int>(biased) - 127, smallest_exponent);
 }
 
 double reach_at(int exponent) {
-    return std::ldexp(4.0, exponent - 23);
+    return power_of_two(exponent - 21);
 }
 
 struct Cell {
@@ -47,11 +55,14 @@ struct Cell {
 
 /// Cells per unit of length; a power of two, so that dividing space by it is exact.
 double cells_by_length(int exponent) {
-    return std::ldexp(1.0 / (4.0 * cell_in_reaches), 23 - exponent);
+    return power_of_two(21 - exponent) / cell_in_reaches;
 }
 
+/// The whole number below; coordinates are below 2^18 cells.
 std::int64_t place_of(double coordinate, double cells) {
-    return static_cast<std::int64_t>(std::floor(coordinate * cells));
+    const double place = coordinate * cells;
+    const auto towards_zero = static_cast<std::int64_t>(place);
+    return towards_zero - (place < static_cast<double>(towards_zero) ? 1 : 0);
 }
 
 Cell cell_of(const glm::vec3& position, int exponent) {
@@ -145,9 +156,8 @@ bool is_near_another(const Grid& grid, const glm::vec3& position, std::uint32_t 
     const int exponent = exponent_of(position);
     const double reach = reach_at(exponent);
     if (near_among(grid, position, vertex, exponent, reach)) return true;
-    const double largest =
-        std::max({std::abs(position.x), std::abs(position.y), std::abs(position.z)});
-    const double power = std::ldexp(1.0, exponent);
+    const double largest = largest_coordinate(position);
+    const double power = power_of_two(exponent);
     if (exponent > smallest_exponent && largest - reach < power &&
         near_among(grid, position, vertex, exponent - 1, reach))
         return true;
