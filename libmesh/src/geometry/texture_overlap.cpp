@@ -21,7 +21,7 @@
 namespace relief {
 namespace {
 
-constexpr int least_side = 512;
+constexpr int least_side = 1024;
 constexpr int largest_side = 4096;
 constexpr double texels_by_triangle = 4.0;
 

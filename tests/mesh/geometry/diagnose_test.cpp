@@ -243,7 +243,7 @@ TEST(Diagnose, OverlapIsOfTrianglesWithAnAreaInSpace) {
     mesh.texcoords = {{0, 0}, {1, 0}, {0, 1}, {1, 0}, {0, 1}, {1, 1}, {0, 0}, {1, 0}, {1, 1}};
     const Diagnosis diagnosis = diagnose(mesh);
     EXPECT_EQ(diagnosis.count(MeshCondition::texture_overlapping), 0U);
-    EXPECT_EQ(diagnosis.overlap_raster, 512);
+    EXPECT_EQ(diagnosis.overlap_raster, 1024);
     EXPECT_EQ(diagnose(mesh, {.texture_overlap = false}).overlap_raster, 0);
     mesh.positions[8] = z;  // Now the third covers half of both others.
     EXPECT_EQ(diagnose(mesh).count(MeshCondition::texture_overlapping), 3U);

@@ -46,10 +46,18 @@ TEST(TextureOverlap, EveryOneThatSharesATexelIsFoundAndNoOther) {
 }
 
 TEST(TextureOverlap, TexcoordsOffByRoundingAreNoOverlap) {
-    // Two squares side by side whose common edge differs by a thousandth of 1/512.
-    const std::vector<glm::vec2> texcoords = {{0, 0},         {0.5F, 0}, {0.5F, 1}, {0, 1},
-                                              {0.499999F, 0}, {1, 0},    {1, 1},    {0.499999F, 1}};
-    EXPECT_THAT(overlapping(texcoords, {{0, 1, 2}, {0, 2, 3}, {4, 5, 6}, {4, 6, 7}}), Each(0));
+    // Two squares side by side that meet where texels of 1/1024 have their centres. The second
+    // begins half a thousandth of a texel early, then twenty thousandths.
+    constexpr float seam = 512.5F / 1024.0F;
+    std::vector<glm::vec2> texcoords = {
+        {0, 0}, {seam, 0}, {seam, 1}, {0, 1}, {seam - 5e-7F, 0}, {1, 0}, {1, 1}, {seam - 5e-7F, 1}};
+    const std::vector<glm::uvec3> triangles = {{0, 1, 2}, {0, 2, 3}, {4, 5, 6}, {4, 6, 7}};
+    ASSERT_EQ(texture_overlap(texcoords, triangles).raster, 1024);
+    EXPECT_THAT(overlapping(texcoords, triangles), Each(0));
+    texcoords[1].x += 1e-5F;
+    texcoords[2].x += 1e-5F;
+    texcoords[4].x = texcoords[7].x = seam - 1e-5F;
+    EXPECT_THAT(overlapping(texcoords, triangles), ElementsAre(1, 0, 0, 1)) << "along the seam";
 }
 
 /// Whether the centre of any texel is inside both, by the definition.
@@ -95,11 +103,11 @@ TEST(TextureOverlap, MatchesASearchThroughAllPairs) {
         triangles.push_back(glm::uvec3(0, 1, 2) + 3 * i + 4U);
     }
     const TextureOverlap found = texture_overlap(texcoords, triangles);
-    ASSERT_EQ(found.raster, 512);
+    ASSERT_EQ(found.raster, 1024);
     std::vector<std::uint8_t> expected(triangles.size(), 0);
     for (std::size_t a = 0; a < triangles.size(); ++a) {
         for (std::size_t b = a + 1; b < triangles.size(); ++b) {
-            if (share_a_texel(texcoords, triangles[a], triangles[b], 512))
+            if (share_a_texel(texcoords, triangles[a], triangles[b], 1024))
                 expected[a] = expected[b] = 1;
         }
     }

@@ -114,14 +114,15 @@ struct DiagnoseOptions {
 ///
 /// \throws InvalidInput if the mesh is not valid (mesh.h)
 ///
-/// Time is linear but for sorting around each vertex and does not depend on the shape: a million
-/// triangles around one vertex or on one edge take as long as any others. Counts are the same for
-/// any order of triangles and any number of threads.
+/// Time is linear but for sorting around each vertex, whatever the shape: a million triangles take
+/// a third of a second on one core, and one to two where all stand around one vertex or edge, or
+/// cover the whole image each (bench/README.md). Counts are the same for any order of triangles and
+/// any number of threads.
 ///
 /// Texture coordinates are compared as they are: what tiling or UDIM tiles set apart, is apart.
 /// Overlap is what a texel would notice: two triangles overlap when the centre of a texel lies
 /// inside both, by a thousandth of a texel or more, on a raster laid over the box of all texture
-/// coordinates, of two texels by two for each triangle (512 to 4096 along each side; fewer where
+/// coordinates, of two texels by two for each triangle (1024 to 4096 along each side; fewer where
 /// long triangles would make it slow). Overlaps that hold no such centre are not seen.
 ///
 /// Near duplicates are looked for among the first 64 positions of a cell of 256 units in the last
