@@ -255,6 +255,30 @@ TEST(InfoCommand, SaysWhatARealSceneHolds) {
                 ElementsAre("base color", "metallic-roughness", "normal", "emission"));
 }
 
+TEST(InfoCommand, SaysHowAFileIsCompressed) {
+    RELIEF_NEEDS_SHARED(pirate, "data/models/gltf-ext/meshopt/pirate.glb");
+    const Workplace workplace;
+    EXPECT_THAT(workplace.run("relief-mesh info " + pirate.string()).out,
+                HasSubstr("packed    EXT_meshopt_compression of 3 buffer views\n"));
+    const json info = json::parse(workplace.run("relief-mesh info --json " + pirate.string()).out);
+    EXPECT_EQ(info["compression"], json({"EXT_meshopt_compression of 3 buffer views"}));
+}
+
+TEST(ProcessCommand, SaysThatACompressedFileIsWrittenUncompressed) {
+    RELIEF_NEEDS_SHARED(models, "data/models/gltf");
+    const Workplace workplace;
+    const auto file = models / "MorphPrimitivesTest/glTF-Draco/MorphPrimitivesTest.gltf";
+    const ProgramResult result = workplace.run("relief-mesh process " + file.string() +
+                                               " out/plain.glb --report out/plain.json --strict");
+    ASSERT_EQ(result.exit_code, 0) << result.error;
+    EXPECT_THAT(result.out, HasSubstr("unpacked  KHR_draco_mesh_compression of 2 primitives "
+                                      "(written uncompressed)\n"));
+    const json report = json::parse(workplace.read("out/plain.json"));
+    EXPECT_EQ(report["decompressed"], json({"KHR_draco_mesh_compression of 2 primitives"}));
+    const json info = json::parse(workplace.run("relief-mesh info --json out/plain.glb").out);
+    EXPECT_EQ(info["compression"], json::array());
+}
+
 class MeshRefusal : public testing::TestWithParam<Refused> {};
 
 TEST_P(MeshRefusal, SaysWhyAndLeavesNothingBehind) {

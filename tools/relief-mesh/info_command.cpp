@@ -88,6 +88,7 @@ void print_text(const std::filesystem::path& file, const ModelInfo& info) {
     std::vector<std::string> rest = info.beyond_a_mesh;
     if (info.images != 0) rest.push_back(counted(info.images, "image"));
     if (!rest.empty()) print_entry("also", fmt::format("{}", fmt::join(rest, ", ")));
+    print_entry("packed", info.compression);
     print_entry("findings", info.findings.lines());
 }
 
@@ -119,6 +120,7 @@ nlohmann::ordered_json json_of(const std::filesystem::path& file, const ModelInf
             {"lights", info.lights},
             {"cameras", info.cameras},
             {"beyond_a_mesh", info.beyond_a_mesh},
+            {"compression", info.compression},
             {"findings", info.findings.json()}};
 }
 
@@ -149,7 +151,8 @@ Command add_info_command(CLI::App& tool) {
                "{attributes, indices} in bytes, bounds {min, max} in world space (null if empty), "
                "primitives [name, triangles, vertices, attributes, materials, memory, bounds], "
                "materials [name, textures], images, lights, "
-               "cameras, beyond_a_mesh, findings [where, kind, element, count, first, outcome].");
+               "cameras, beyond_a_mesh, compression, findings [where, kind, element, count, first, "
+               "outcome].");
     set_examples(app, {"relief-mesh info data/vase.obj", "relief-mesh info data/vase.obj --json"});
     return {&app, [options] { return run(*options); }};
 }

@@ -90,4 +90,19 @@ Model read_model(const std::filesystem::path& file, Report& report) {
     });
 }
 
+std::vector<std::string> compression_in_words(const GltfDocument& document, bool only_decoded) {
+    std::vector<std::string> words;
+    for (const GltfCompression& entry : document.compression()) {
+        if (entry.decoded > 0) {
+            words.push_back(
+                fmt::format("{} of {}", entry.extension, counted(entry.decoded, entry.element)));
+        }
+        if (entry.copies > 0 && !only_decoded) {
+            words.push_back(fmt::format("{} beside the plain data of {}", entry.extension,
+                                        counted(entry.copies, entry.element)));
+        }
+    }
+    return words;
+}
+
 }  // namespace relief::tools

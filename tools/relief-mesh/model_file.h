@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <string>
 #include <variant>
+#include <vector>
 
 #include "common/options.h"
 #include "relief/mesh/gltf_document.h"
@@ -37,5 +38,9 @@ std::string format_name(ModelFormat format);
 using Model = std::variant<GltfDocument, MeshFile>;
 
 Model read_model(const std::filesystem::path& file, Report& report);
+
+/// How parts of a document were compressed, in words: "KHR_draco_mesh_compression of 2 primitives".
+/// \param only_decoded  leaves out those that are written as they were
+std::vector<std::string> compression_in_words(const GltfDocument& document, bool only_decoded);
 
 }  // namespace relief::tools

@@ -113,6 +113,7 @@ void describe(const GltfDocument& document, ModelInfo& info) {
     info.lights = view.lights.size();
     info.cameras = view.cameras.size();
     info.beyond_a_mesh = document.beyond_a_mesh();
+    info.compression = compression_in_words(document, false);
 }
 
 void describe(const MeshFile& contents, ModelInfo& info) {

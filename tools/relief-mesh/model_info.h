@@ -50,6 +50,7 @@ struct ModelInfo {
     std::size_t lights = 0;
     std::size_t cameras = 0;
     std::vector<std::string> beyond_a_mesh;  ///< "2 animations", "1 skin", ...
+    std::vector<std::string> compression;    ///< "EXT_meshopt_compression of 3 buffer views", ...
     Findings findings;
 };
 

@@ -112,6 +112,7 @@ nlohmann::ordered_json parts_json(const Processed& done) {
 void add_results(nlohmann::ordered_json& json, const Processed& done, const Stages& stages) {
     json["primitives"] = parts_json(done);
     json["findings"] = done.findings.json();
+    json["decompressed"] = done.decompressed;
     json["left_behind"] = done.left_behind;
     json["milliseconds"] = durations_json(stages.finished());
 }
@@ -138,6 +139,10 @@ void print_summary(const ProcessRequest& request, const Processed& done, const S
     print_entry("splits", splits_in_words(totals));
     print_entry("findings",
                 done.findings.empty() ? std::vector<std::string>{"none"} : done.findings.lines());
+    if (!done.decompressed.empty()) {
+        print_entry("unpacked",
+                    fmt::format("{} (written uncompressed)", fmt::join(done.decompressed, ", ")));
+    }
     if (!done.left_behind.empty()) {
         print_entry("left out",
                     fmt::format("{} (cannot be stored in {})", fmt::join(done.left_behind, ", "),

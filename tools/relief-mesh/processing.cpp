@@ -67,8 +67,9 @@ void process_document(const ProcessRequest& request, GltfDocument& document,
         try {
             Mesh mesh = document.mesh(id);
             any_texcoords = any_texcoords || !mesh.texcoords.empty();
-            document.set_frames(id,
-                                framed_part(std::move(mesh), id.primitive, options, part, report));
+            const FramedMesh framed =
+                framed_part(std::move(mesh), id.primitive, options, part, report);
+            part.vertices_written = document.set_frames(id, framed, options, report);
         } catch (const InvalidInput& error) {
             throw FileError(request.input, part.name + ": " + error.what());
         }
@@ -141,6 +142,7 @@ Processed process(const ProcessRequest& request, Stages& stages) {
     done.findings.add("", read_report);
 
     if (auto* document = std::get_if<GltfDocument>(&model)) {
+        done.decompressed = compression_in_words(*document, true);
         stages.run("frames", [&] { process_document(request, *document, options, done); });
         stages.run("write", [&] { write_document(request, *document, output, done); });
     } else {

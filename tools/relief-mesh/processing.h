@@ -40,7 +40,8 @@ struct ProcessedPart {
 
 struct Processed {
     std::vector<ProcessedPart> parts;
-    std::vector<std::string> left_behind;  ///< What the output format cannot hold.
+    std::vector<std::string> decompressed;  ///< What was compressed when read, and is not now.
+    std::vector<std::string> left_behind;   ///< What the output format cannot hold.
     Findings findings;
 };
 

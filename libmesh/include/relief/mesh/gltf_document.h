@@ -231,6 +231,22 @@ class GltfDocument {
     /// InvalidInput if `framed` does not belong to this primitive
     void set_frames(GltfPrimitiveId id, const FramedMesh& framed);
 
+    /// The same for a primitive that may have morph targets: their NORMAL and TANGENT go with the
+    /// new frames.
+    ///
+    /// They become the frames of the displaced shape by the same method, minus the primitive's;
+    /// where corners that share a vertex at rest differ when displaced, the vertex is split. A
+    /// target gets those that it had; and, where the primitive had no NORMAL (TANGENT) at all and
+    /// now has, also those that its displaced shape needs, since without them a renderer made
+    /// normals of that shape. What is kept in the primitive is kept in its targets.
+    /// \param framed   what with_frames() made of mesh(id) with these options
+    /// \param report   counts targets whose shape shows what the primitive does not (degenerate
+    ///                 triangles, say), and those that would turn the handedness of tangents
+    /// \return how many vertices the primitive has now
+    /// \throws InvalidInput as above, or if a target's displacements have the wrong type
+    std::size_t set_frames(GltfPrimitiveId id, const FramedMesh& framed,
+                           const FrameOptions& options, Report& report);
+
     /// The document as a scene. \throws InvalidInput if it cannot be read
     [[nodiscard]] GltfView view() const;
 

@@ -9,6 +9,7 @@
 
 #include "io/gltf/gltf_animation.h"
 #include "io/gltf/gltf_from_mesh.h"
+#include "io/gltf/gltf_morph.h"
 #include "io/gltf/gltf_primitive.h"
 #include "io/gltf/gltf_reader.h"
 #include "io/gltf/gltf_view.h"
@@ -100,6 +101,11 @@ Mesh GltfDocument::mesh(GltfPrimitiveId id, int texcoord_set) const {
 
 void GltfDocument::set_frames(GltfPrimitiveId id, const FramedMesh& framed) {
     replace_frames(contents_->data, id, framed);
+}
+
+std::size_t GltfDocument::set_frames(GltfPrimitiveId id, const FramedMesh& framed,
+                                     const FrameOptions& options, Report& report) {
+    return replace_all_frames(contents_->data, id, framed, options, report);
 }
 
 GltfView GltfDocument::view() const {
