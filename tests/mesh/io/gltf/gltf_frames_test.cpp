@@ -387,6 +387,27 @@ TEST_F(GltfFrames, FramesOfAnotherMeshAreRefused) {
     EXPECT_THROW(document.set_frames({0, 7}, framed), InvalidInput);
 }
 
+TEST_F(GltfFrames, NodesThatMirrorChangeNothingInObjectSpace) {
+    // glTF turns the winding of what a node of negative scale shows; the mesh itself, its winding
+    // and its frames stay those of its own space.
+    RELIEF_NEEDS_SHARED(folder, "data/models/gltf-ext/misc");
+    const auto processed = [&](const char* name) {
+        GltfDocument document = read(folder / name);
+        const FramedMesh framed =
+            with_frames(document.mesh({0, 0}), {.normals = NormalMode::angle}, report_);
+        document.set_frames({0, 0}, framed);
+        document.write(out_);
+        return read(out_).mesh({0, 0});
+    };
+    const Mesh plain = processed("one_face_123.gltf");
+    const Mesh mirrored = processed("one_face_123_mirror.gltf");
+    EXPECT_EQ(mirrored.triangles, plain.triangles);
+    EXPECT_EQ(mirrored.positions, plain.positions);
+    EXPECT_EQ(mirrored.normals, plain.normals);
+    EXPECT_EQ(contents(out_).root["nodes"],
+              contents(folder / "one_face_123_mirror.gltf").root["nodes"]);
+}
+
 /// Processes every primitive as relief-mesh does and compares all that is not frames.
 void process_and_compare(const std::filesystem::path& file, const std::filesystem::path& out,
                          NormalMode normals) {
