@@ -77,7 +77,8 @@ void add_file_options(CLI::App& app, FileWords& words) {
     add_files(app, "FILE...", words.files,
               "IN OUT: the model to read (.glb .gltf .obj .ply .stl .off) and the file to write "
               "(.glb .gltf .obj .ply), which may be IN itself: it is replaced only once the new "
-              "file is complete. With -o: the models to read, any number of them.");
+              "file is complete. With -o: the models to read, any number of them. glTF compressed "
+              "by Draco or meshopt is read, and written uncompressed.");
     add_value(app, "-o,--output", "PATH",
               "Where to write: a folder, which ends in / or exists, or for one model a file. In a "
               "folder each model keeps its name. One that fails does not stop the others.",
