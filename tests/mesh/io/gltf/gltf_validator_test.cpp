@@ -64,7 +64,7 @@ TEST_F(GltfValidator, ProcessedModelsHaveNoNewErrorsOrWarnings) {
                 options.normals = count % 2 == 0 ? NormalMode::angle : NormalMode::flat;
                 options.tangents =
                     mesh.texcoords.empty() ? TangentMode::none : TangentMode::mikktspace;
-                document.set_frames(id, with_frames(mesh, options, report_));
+                document.set_frames(id, with_frames(mesh, options, report_), options, report_);
             }
             const auto out = folder_ / fmt::format("{}.glb", count++);
             document.write(out);
