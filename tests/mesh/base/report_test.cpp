@@ -57,6 +57,16 @@ TEST(Report, MergesCountsAndIndices) {
     EXPECT_EQ(a.count("only in b"), 1U);
 }
 
+TEST(Report, TakesWhatWasCountedElsewhere) {
+    Report report;
+    report.add("kind", "vertex", 4, "outcome");
+    report.add(Finding{"kind", "vertex", "another outcome", 100, {0, 1, 9}});
+    report.add(Finding{"new", "mesh", "outcome", 1, {0}});
+    ASSERT_EQ(report.findings().size(), 2U);
+    EXPECT_EQ(report.findings()[0], (Finding{"kind", "vertex", "outcome", 101, {0, 1, 4, 9}}));
+    EXPECT_EQ(report.count("new"), 1U);
+}
+
 TEST(Report, SaysAFindingInOneLine) {
     Report report;
     report.add("degenerate triangle", "triangle", 17, "has no say");
