@@ -52,6 +52,30 @@ const FormatRow& row_of(ModelFormat format) {
                          [format](const FormatRow& row) { return row.format == format; });
 }
 
+std::vector<std::string> write_as_mesh(const std::filesystem::path& file, const MeshFile& contents,
+                                       bool has_tangents) {
+    std::vector<std::string> left_behind;
+    if (has_tangents) left_behind.emplace_back("tangents");
+    if (writable_format(file) == ModelFormat::ply && !contents.materials.empty())
+        left_behind.push_back(counted(contents.materials.size(), "material"));
+    write_mesh(file, contents);
+    return left_behind;
+}
+
+std::vector<std::string> write_document(const std::filesystem::path& file,
+                                        const GltfDocument& document,
+                                        const std::filesystem::path& input, bool has_tangents) {
+    if (is_document(writable_format(file))) {
+        document.write(file);
+        return {};
+    }
+    const MeshFile flat = about(input, [&] { return flattened(document); });
+    std::vector<std::string> left_behind = document.beyond_a_mesh();
+    for (std::string& more : write_as_mesh(file, flat, has_tangents))
+        left_behind.push_back(std::move(more));
+    return left_behind;
+}
+
 }  // namespace
 
 ModelFormat readable_format(const std::filesystem::path& file) {
@@ -103,6 +127,16 @@ std::vector<std::string> compression_in_words(const GltfDocument& document, bool
         }
     }
     return words;
+}
+
+std::vector<std::string> write_model(const std::filesystem::path& file, const Model& model,
+                                     const std::filesystem::path& input, bool has_tangents) {
+    if (const auto* document = std::get_if<GltfDocument>(&model))
+        return write_document(file, *document, input, has_tangents);
+    const auto& contents = std::get<MeshFile>(model);
+    if (!is_document(writable_format(file))) return write_as_mesh(file, contents, has_tangents);
+    GltfDocument::from_mesh(contents).write(file);
+    return {};
 }
 
 }  // namespace relief::tools

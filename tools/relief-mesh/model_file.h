@@ -43,4 +43,12 @@ Model read_model(const std::filesystem::path& file, Report& report);
 /// \param only_decoded  leaves out those that are written as they were
 std::vector<std::string> compression_in_words(const GltfDocument& document, bool only_decoded);
 
+/// Writes a model in the format of the file, whichever kind it is of.
+///
+/// \param input         what to name in errors about the model
+/// \param has_tangents  whether there are any, which mesh files cannot hold
+/// \return what the format leaves behind: "tangents", "2 animations", ...
+std::vector<std::string> write_model(const std::filesystem::path& file, const Model& model,
+                                     const std::filesystem::path& input, bool has_tangents);
+
 }  // namespace relief::tools

@@ -93,63 +93,33 @@ void process_mesh(const ProcessRequest& request, MeshFile& contents, const Frame
     done.parts.push_back(std::move(part));
 }
 
-/// What a mesh file cannot hold of what was processed.
-void note_what_stays_behind(const MeshFile& contents, ModelFormat output, Processed& done) {
-    const bool any_tangents =
-        std::any_of(done.parts.begin(), done.parts.end(), [](const ProcessedPart& part) {
-            return part.tangents == Fate::kept || part.tangents == Fate::computed;
-        });
-    if (any_tangents) done.left_behind.emplace_back("tangents");
-    if (output == ModelFormat::ply && !contents.materials.empty())
-        done.left_behind.push_back(counted(contents.materials.size(), "material"));
-}
-
-void write_as_mesh(const std::filesystem::path& file, const MeshFile& contents, ModelFormat output,
-                   Processed& done) {
-    note_what_stays_behind(contents, output, done);
-    write_mesh(file, contents);
-}
-
-void write_document(const ProcessRequest& request, const GltfDocument& document, ModelFormat output,
-                    Processed& done) {
-    if (is_document(output)) {
-        document.write(request.output);
-        return;
-    }
-    const MeshFile flat = about(request.input, [&] { return flattened(document); });
-    done.left_behind = document.beyond_a_mesh();
-    write_as_mesh(request.output, flat, output, done);
-}
-
-void write_contents(const ProcessRequest& request, const MeshFile& contents, ModelFormat output,
-                    Processed& done) {
-    if (is_document(output))
-        GltfDocument::from_mesh(contents).write(request.output);
-    else
-        write_as_mesh(request.output, contents, output, done);
+bool has_tangents(const Processed& done) {
+    return std::any_of(done.parts.begin(), done.parts.end(), [](const ProcessedPart& part) {
+        return part.tangents == Fate::kept || part.tangents == Fate::computed;
+    });
 }
 
 }  // namespace
 
 Processed process(const ProcessRequest& request, Stages& stages) {
-    const ModelFormat input = readable_format(request.input);
-    const ModelFormat output = writable_format(request.output);
-    const FrameOptions options = frame_options(request, input);
+    const FrameOptions options = frame_options(request, readable_format(request.input));
     Processed done;
 
     Report read_report;
     Model model = stages.run("read", [&] { return read_model(request.input, read_report); });
     done.findings.add("", read_report);
 
-    if (auto* document = std::get_if<GltfDocument>(&model)) {
+    if (const auto* document = std::get_if<GltfDocument>(&model))
         done.decompressed = compression_in_words(*document, true);
-        stages.run("frames", [&] { process_document(request, *document, options, done); });
-        stages.run("write", [&] { write_document(request, *document, output, done); });
-    } else {
-        auto& contents = std::get<MeshFile>(model);
-        stages.run("frames", [&] { process_mesh(request, contents, options, done); });
-        stages.run("write", [&] { write_contents(request, contents, output, done); });
-    }
+    stages.run("frames", [&] {
+        if (auto* document = std::get_if<GltfDocument>(&model))
+            process_document(request, *document, options, done);
+        else
+            process_mesh(request, std::get<MeshFile>(model), options, done);
+    });
+    stages.run("write", [&] {
+        done.left_behind = write_model(request.output, model, request.input, has_tangents(done));
+    });
     return done;
 }
 

@@ -223,12 +223,12 @@ class GltfDocument {
     ///         differ in number or have the wrong type, or if there is no such primitive
     [[nodiscard]] Mesh mesh(GltfPrimitiveId id, int texcoord_set = 0) const;
 
-    /// Replaces a primitive's NORMAL and TANGENT by those of `framed`, which with_frames() made
-    /// from mesh(id). Where vertices were split, indices are rewritten and every other attribute
-    /// and morph target is carried along, in its own type. Attributes that did not change keep
-    /// their bytes; primitives that shared what is replaced keep theirs. Without normals or
-    /// tangents in `framed` the primitive loses them, and so do its morph targets. \throws
-    /// InvalidInput if `framed` does not belong to this primitive
+    /// Replaces a primitive's NORMAL and TANGENT by those of `framed`, which with_frames() or
+    /// decimated() made from mesh(id). Where vertices were split or left out, indices are rewritten
+    /// and every other attribute and morph target is carried along, in its own type. Attributes
+    /// that did not change keep their bytes; primitives that shared what is replaced keep theirs.
+    /// Without normals or tangents in `framed` the primitive loses them, and so do its morph
+    /// targets. \throws InvalidInput if `framed` does not belong to this primitive
     void set_frames(GltfPrimitiveId id, const FramedMesh& framed);
 
     /// The same for a primitive that may have morph targets: their NORMAL and TANGENT go with the
@@ -246,6 +246,13 @@ class GltfDocument {
     /// \throws InvalidInput as above, or if a target's displacements have the wrong type
     std::size_t set_frames(GltfPrimitiveId id, const FramedMesh& framed,
                            const FrameOptions& options, Report& report);
+
+    /// Puts another mesh in the place of a primitive's, as floats: its positions, normals,
+    /// tangents, texture coordinates (set 0) and colours. The material stays. \throws InvalidInput
+    /// if the primitive has what such a mesh cannot take over: morph targets,
+    ///         joints and weights, further texture coordinates; or if the mesh is not valid or has
+    ///         no triangle
+    void set_geometry(GltfPrimitiveId id, const Mesh& mesh);
 
     /// The document as a scene. \throws InvalidInput if it cannot be read
     [[nodiscard]] GltfView view() const;

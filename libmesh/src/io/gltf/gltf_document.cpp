@@ -108,6 +108,10 @@ std::size_t GltfDocument::set_frames(GltfPrimitiveId id, const FramedMesh& frame
     return replace_all_frames(contents_->data, id, framed, options, report);
 }
 
+void GltfDocument::set_geometry(GltfPrimitiveId id, const Mesh& mesh) {
+    replace_geometry(contents_->data, id, mesh);
+}
+
 GltfView GltfDocument::view() const {
     return view_of(contents_->data);
 }

@@ -37,4 +37,7 @@ Mesh read_primitive(const GltfContents& contents, GltfPrimitiveId id, int texcoo
 /// See GltfDocument::set_frames.
 void replace_frames(GltfContents& contents, GltfPrimitiveId id, const FramedMesh& framed);
 
+/// See GltfDocument::set_geometry.
+void replace_geometry(GltfContents& contents, GltfPrimitiveId id, const Mesh& mesh);
+
 }  // namespace relief

@@ -1,0 +1,276 @@
+// SPDX-License-Identifier: Apache-2.0
+// Reading, changing mesh by mesh, writing. The primitives of a glTF mesh are joined, each a
+// material range, changed as one, and taken apart again. Tests: tests/tools/reshaping_test.cpp.
+#include "reshaping.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cassert>
+#include <numeric>
+
+#include "common/text.h"
+#include "model_file.h"
+#include "process_choices.h"
+#include "relief/mesh/threads.h"
+
+namespace relief::tools {
+namespace {
+
+/// The primitives of one glTF mesh as one mesh.
+class JoinedPrimitives {
+  public:
+    JoinedPrimitives(const GltfDocument& document, std::vector<GltfPrimitiveId> ids);
+
+    [[nodiscard]] const Mesh& mesh() const { return joined_; }
+    [[nodiscard]] const std::vector<GltfPrimitiveId>& ids() const { return ids_; }
+
+    /// What became of primitive `i`, over its own vertices.
+    [[nodiscard]] FramedMesh part(const FramedMesh& changed, std::size_t i, NormalMode normals,
+                                  Report& report) const;
+
+  private:
+    void add(Mesh primitive);
+
+    std::vector<GltfPrimitiveId> ids_;
+    std::vector<Mesh> primitives_;
+    std::vector<std::uint32_t> first_vertex_;
+    Mesh joined_;
+};
+
+/// Appends values; `filler` where the primitive has none but another has.
+template <typename T>
+void append(std::vector<T>& values, const std::vector<T>& more, std::size_t before,
+            std::size_t count, const T& filler) {
+    if (values.empty() && more.empty()) return;
+    values.resize(before, filler);
+    values.insert(values.end(), more.begin(), more.end());
+    values.resize(before + count, filler);
+}
+
+void JoinedPrimitives::add(Mesh primitive) {
+    const std::size_t before = joined_.positions.size();
+    const std::size_t count = primitive.positions.size();
+    append(joined_.normals, primitive.normals, before, count, glm::vec3(0.0F));
+    append(joined_.texcoords, primitive.texcoords, before, count, glm::vec2(0.0F));
+    append(joined_.colors, primitive.colors, before, count, glm::vec4(1.0F));
+    joined_.positions.insert(joined_.positions.end(), primitive.positions.begin(),
+                             primitive.positions.end());
+    const auto first = static_cast<std::uint32_t>(before);
+    joined_.material_ranges.push_back({static_cast<std::uint32_t>(joined_.triangles.size()),
+                                       static_cast<std::uint32_t>(primitive.triangles.size()),
+                                       std::nullopt});
+    for (const glm::uvec3& triangle : primitive.triangles)
+        joined_.triangles.push_back(triangle + first);
+    first_vertex_.push_back(first);
+    primitives_.push_back(std::move(primitive));
+}
+
+JoinedPrimitives::JoinedPrimitives(const GltfDocument& document, std::vector<GltfPrimitiveId> ids)
+    : ids_(std::move(ids)) {
+    for (const GltfPrimitiveId id : ids_)
+        add(document.mesh(id));
+    joined_.name = primitives_.front().name;
+}
+
+template <typename T>
+std::vector<T> picked(const std::vector<T>& values, const std::vector<std::uint32_t>& vertices) {
+    std::vector<T> result;
+    if (values.empty()) return result;
+    for (const std::uint32_t vertex : vertices)
+        result.push_back(values[vertex]);
+    return result;
+}
+
+/// The part of a mesh that a range of its triangles uses, and which vertices those were.
+FramedMesh range_of(const Mesh& mesh, const MaterialRange& range) {
+    FramedMesh part;
+    const auto begin = mesh.triangles.begin() + range.first_triangle;
+    part.mesh.triangles.assign(begin, begin + range.triangle_count);
+    std::vector<bool> is_used(mesh.positions.size(), false);
+    for (const glm::uvec3& triangle : part.mesh.triangles) {
+        for (int k = 0; k < 3; ++k)
+            is_used[triangle[k]] = true;
+    }
+    std::vector<std::uint32_t> place(mesh.positions.size(), 0);
+    for (std::uint32_t v = 0; v < is_used.size(); ++v) {
+        if (!is_used[v]) continue;
+        place[v] = static_cast<std::uint32_t>(part.source_vertex.size());
+        part.source_vertex.push_back(v);
+    }
+    for (glm::uvec3& triangle : part.mesh.triangles)
+        triangle = {place[triangle.x], place[triangle.y], place[triangle.z]};
+    part.mesh.positions = picked(mesh.positions, part.source_vertex);
+    part.mesh.normals = picked(mesh.normals, part.source_vertex);
+    part.mesh.texcoords = picked(mesh.texcoords, part.source_vertex);
+    part.mesh.colors = picked(mesh.colors, part.source_vertex);
+    return part;
+}
+
+FramedMesh JoinedPrimitives::part(const FramedMesh& changed, std::size_t i, NormalMode normals,
+                                  Report& report) const {
+    const Mesh& before = primitives_[i];
+    FramedMesh part = range_of(changed.mesh, changed.mesh.material_ranges[i]);
+    if (before.normals.empty() && normals == NormalMode::keep) part.mesh.normals.clear();
+    if (before.texcoords.empty()) part.mesh.texcoords.clear();
+    if (before.colors.empty()) part.mesh.colors.clear();
+    if (!before.tangents.empty()) {
+        const bool possible = !before.texcoords.empty();
+        report.add("tangents of other triangles", "primitive", ids_[i].primitive,
+                   possible ? "are computed anew" : "are removed");
+        if (possible) {
+            FramedMesh framed =
+                with_frames(std::move(part.mesh), {.tangents = TangentMode::mikktspace}, report);
+            for (std::uint32_t& source : framed.source_vertex)
+                source = part.source_vertex[source];
+            part = std::move(framed);
+        }
+    }
+    for (std::uint32_t& source : part.source_vertex) {
+        if (changed.source_vertex.empty()) break;
+        source = changed.source_vertex[source] - first_vertex_[i];
+        assert(source < before.positions.size());
+    }
+    return part;
+}
+
+/// The primitives of each mesh of a document.
+std::vector<std::vector<GltfPrimitiveId>> primitives_by_mesh(const GltfDocument& document) {
+    std::vector<std::vector<GltfPrimitiveId>> meshes;
+    for (const GltfPrimitiveId id : document.triangle_primitives()) {
+        if (meshes.empty() || meshes.back().front().mesh != id.mesh) meshes.emplace_back();
+        meshes.back().push_back(id);
+    }
+    return meshes;
+}
+
+void reshape_joined(GltfDocument& document, const JoinedPrimitives& joined,
+                    const MeshChange& change, NormalMode normals, std::size_t all_triangles,
+                    Reshaped& done) {
+    Report report;
+    const FramedMesh changed = change(joined.mesh(), all_triangles, report);
+    for (std::size_t i = 0; i < joined.ids().size(); ++i) {
+        const GltfPrimitiveId id = joined.ids()[i];
+        if (changed.mesh.material_ranges[i].triangle_count == 0) {
+            report.add("primitive without area", "primitive", id.primitive, "stays as it is");
+            continue;
+        }
+        const FramedMesh part = joined.part(changed, i, normals, report);
+        done.triangles_written += part.mesh.triangles.size();
+        done.vertices_written += part.mesh.positions.size();
+        done.has_tangents = done.has_tangents || !part.mesh.tangents.empty();
+        if (changed.source_vertex.empty())
+            document.set_geometry(id, part.mesh);
+        else
+            document.set_frames(id, part);
+    }
+    done.findings.add(document.describe(joined.ids().front()), report);
+}
+
+void reshape_document(const ReshapeRequest& request, GltfDocument& document,
+                      const MeshChange& change, Reshaped& done) {
+    std::vector<JoinedPrimitives> meshes;
+    for (auto& ids : primitives_by_mesh(document))
+        meshes.emplace_back(document, std::move(ids));
+    if (meshes.empty()) throw FileError(request.input, "holds no triangles");
+    for (const JoinedPrimitives& joined : meshes) {
+        done.triangles_read += joined.mesh().triangles.size();
+        done.vertices_read += joined.mesh().positions.size();
+    }
+    for (const JoinedPrimitives& joined : meshes)
+        reshape_joined(document, joined, change, request.normals, done.triangles_read, done);
+}
+
+void reshape_mesh(const ReshapeRequest& request, Mesh& mesh, const MeshChange& change,
+                  Reshaped& done) {
+    Report report;
+    done.triangles_read = mesh.triangles.size();
+    done.vertices_read = mesh.positions.size();
+    mesh = change(mesh, mesh.triangles.size(), report).mesh;
+    if (mesh.triangles.empty()) throw FileError(request.input, "none of its triangles has an area");
+    done.triangles_written = mesh.triangles.size();
+    done.vertices_written = mesh.positions.size();
+    done.has_tangents = !mesh.tangents.empty();
+    done.findings.add("", report);
+}
+
+Reshaped run(const ReshapeRequest& request, const std::string& verb, const MeshChange& change,
+             Stages& stages) {
+    Reshaped done;
+    Report read_report;
+    Model model = stages.run("read", [&] { return read_model(request.input, read_report); });
+    done.findings.add("", read_report);
+    stages.run(verb, [&] {
+        about(request.input, [&] {
+            if (auto* document = std::get_if<GltfDocument>(&model))
+                reshape_document(request, *document, change, done);
+            else
+                reshape_mesh(request, std::get<MeshFile>(model).mesh, change, done);
+        });
+    });
+    stages.run("write", [&] {
+        done.left_behind = write_model(request.output, model, request.input, done.has_tangents);
+    });
+    return done;
+}
+
+void print_summary(const ReshapeRequest& request, const Reshaped& done, const Stages& stages) {
+    print_entry("read", fmt::format("{}: {}, {}, {}", request.input.string(),
+                                    format_name(readable_format(request.input)),
+                                    counted(done.triangles_read, "triangle"),
+                                    counted(done.vertices_read, "vertex", "vertices")));
+    print_entry("made", fmt::format("{}, {}", counted(done.triangles_written, "triangle"),
+                                    counted(done.vertices_written, "vertex", "vertices")));
+    print_entry("findings",
+                done.findings.empty() ? std::vector<std::string>{"none"} : done.findings.lines());
+    if (!done.left_behind.empty()) {
+        print_entry("left out",
+                    fmt::format("{} (cannot be stored in {})", fmt::join(done.left_behind, ", "),
+                                extension_of(request.output)));
+    }
+    print_entry("time", durations(stages.finished()));
+    print_entry("wrote", file_and_size(request.output));
+}
+
+nlohmann::ordered_json report_json(const std::string& command, const ReshapeRequest& request,
+                                   const nlohmann::ordered_json& options, const Reshaped& done,
+                                   const Stages& stages) {
+    return {{"tool", "relief-mesh " + command},
+            {"version", version()},
+            {"input", request.input.string()},
+            {"output", request.output.string()},
+            {"options", options},
+            {"triangles_read", done.triangles_read},
+            {"triangles_written", done.triangles_written},
+            {"vertices_read", done.vertices_read},
+            {"vertices_written", done.vertices_written},
+            {"findings", done.findings.json()},
+            {"left_behind", done.left_behind},
+            {"milliseconds", durations_json(stages.finished())}};
+}
+
+}  // namespace
+
+void add_reshape_options(CLI::App& app, ReshapeRequest& request, const std::string& about_normals) {
+    add_file(app, "IN", request.input, "Model to read: .glb .gltf .obj .ply .stl .off");
+    add_file(app, "OUT", request.output, "Model to write: .glb .gltf .obj .ply. May be IN itself.");
+    add_choice(app, "--normals", request.normals, normal_choices(), about_normals)->group("Frames");
+    add_report_options(app, request.report);
+    add_general_options(app, request.general);
+}
+
+ExitCode reshape(const CLI::App& app, const ReshapeRequest& request, const MeshChange& change,
+                 const nlohmann::ordered_json& options) {
+    readable_format(request.input);
+    writable_format(request.output);
+    check(request.report, {request.input, request.output});
+    require_folder_of(request.output);
+    set_thread_limit(request.general.threads);
+    Stages stages(request.general.quiet);
+    const Reshaped done = run(request, app.get_name(), change, stages);
+    if (!request.general.quiet) print_summary(request, done, stages);
+    return finish(app, request.report, request.input, done.findings,
+                  report_json(app.get_name(), request, options, done, stages));
+}
+
+}  // namespace relief::tools
