@@ -226,9 +226,10 @@ class GltfDocument {
     /// Replaces a primitive's NORMAL and TANGENT by those of `framed`, which with_frames() or
     /// decimated() made from mesh(id). Where vertices were split or left out, indices are rewritten
     /// and every other attribute and morph target is carried along, in its own type. Attributes
-    /// that did not change keep their bytes; primitives that shared what is replaced keep theirs.
-    /// Without normals or tangents in `framed` the primitive loses them, and so do its morph
-    /// targets. \throws InvalidInput if `framed` does not belong to this primitive
+    /// that did not change keep their bytes; primitives that shared what is replaced keep theirs,
+    /// and share the new where they come to the same. Without normals or tangents in `framed` the
+    /// primitive loses them, and so do its morph targets. \throws InvalidInput if `framed` does not
+    /// belong to this primitive
     void set_frames(GltfPrimitiveId id, const FramedMesh& framed);
 
     /// The same for a primitive that may have morph targets: their NORMAL and TANGENT go with the

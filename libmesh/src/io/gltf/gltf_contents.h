@@ -57,6 +57,9 @@ struct GltfContents {
     std::map<std::string, std::size_t> unpacked;
     /// The buffer that holds what processing adds; past the end until there is something.
     std::size_t added_buffer = static_cast<std::size_t>(-1);
+    /// Accessors that processing has added for primitives that share theirs, by a hash of their
+    /// elements.
+    std::multimap<std::size_t, std::size_t> shared_accessors;
     /// How many primitives use an accessor as POSITION, as read: who shares vertices with others
     /// must not change while primitives are processed one by one.
     std::vector<std::uint32_t> position_uses;

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <functional>
 #include <limits>
 
 #include "io/gltf/gltf_accessor.h"
@@ -92,6 +93,26 @@ std::size_t add_accessor(GltfContents& contents, Json accessor, const std::strin
     Json& accessors = contents.root["accessors"];
     accessors.push_back(std::move(accessor));
     return accessors.size() - 1;
+}
+
+std::size_t add_shared_accessor(GltfContents& contents, Json accessor, const std::string& elements,
+                                int target) {
+    for (const char* key : {"bufferView", "byteOffset", "sparse"})
+        accessor.erase(key);
+    accessor["count"] = elements.size() / element_layout(accessor).size;
+    const std::size_t hash = std::hash<std::string>()(elements);
+    const auto [begin, end] = contents.shared_accessors.equal_range(hash);
+    for (auto it = begin; it != end; ++it) {
+        Json other = contents.root["accessors"][it->second];
+        const Json& view = contents.root["bufferViews"][size_in(other, "bufferView")];
+        const bool is_same_kind = size_in(view, "target") == static_cast<std::size_t>(target);
+        other.erase("bufferView");
+        if (is_same_kind && other == accessor && raw_elements(contents, it->second) == elements)
+            return it->second;
+    }
+    const std::size_t number = add_accessor(contents, std::move(accessor), elements, target);
+    contents.shared_accessors.emplace(hash, number);
+    return number;
 }
 
 void renew_bounds(Json& accessor, const std::string& elements) {

@@ -31,6 +31,11 @@ std::size_t add_elements(GltfContents& contents, std::size_t size, const std::st
 std::size_t add_accessor(GltfContents& contents, Json accessor, const std::string& elements,
                          int target);
 
+/// The same for one that others may need as well: an equal one that was added this way is taken
+/// again, so that those who shared an accessor share the one that replaces it.
+std::size_t add_shared_accessor(GltfContents& contents, Json accessor, const std::string& elements,
+                                int target);
+
 /// min and max of an accessor that had them: true for the elements that it has now. Where elements
 /// are not finite the old ones stay, since JSON has no bounds for them.
 void renew_bounds(Json& accessor, const std::string& elements);

@@ -37,6 +37,11 @@ class FrameReplacement {
     void carry_neighbours(std::size_t accessor);
     void replace_indices();
     void drop_draco();
+    std::size_t add(Json accessor, const std::string& elements, int target) {
+        return shares_vertices_
+                   ? add_shared_accessor(contents_, std::move(accessor), elements, target)
+                   : add_accessor(contents_, std::move(accessor), elements, target);
+    }
     void retire(std::size_t accessor) { contents_.retired_accessors.insert(accessor); }
 
     GltfContents& contents_;
@@ -44,6 +49,7 @@ class FrameReplacement {
     const FramedMesh& framed_;
     GltfTriangles before_;
     std::vector<std::uint32_t> sources_;  ///< Accessor element of every new vertex.
+    bool shares_vertices_ = false;        ///< Others may come to the same results.
     bool same_vertices_ = false;
     bool same_triangles_ = false;
     std::map<std::size_t, std::size_t> carried_;  ///< Old accessor to new.
@@ -53,6 +59,7 @@ FrameReplacement::FrameReplacement(GltfContents& contents, GltfPrimitiveId id,
                                    const FramedMesh& framed)
     : contents_(contents), id_(id), framed_(framed), before_(read_triangles(contents, id)) {
     check();
+    shares_vertices_ = shares_vertices(contents, primitive_json(contents, id));
     sources_.reserve(framed.source_vertex.size());
     for (const std::uint32_t source : framed.source_vertex) {
         sources_.push_back(before_.used ? (*before_.used)[source] : source);
@@ -104,8 +111,7 @@ std::size_t FrameReplacement::carried(std::size_t accessor) {
         std::memcpy(elements.data() + i * size, old_elements.data() + sources_[i] * size, size);
     }
     renew_bounds(json, elements);
-    const std::size_t number =
-        add_accessor(contents_, std::move(json), elements, gltf_code::array_buffer);
+    const std::size_t number = add(std::move(json), elements, gltf_code::array_buffer);
     carried_.emplace(accessor, number);
     return number;
 }
@@ -152,8 +158,7 @@ void FrameReplacement::replace(const char* name, const std::vector<Vector>& valu
     json["type"] = fmt::format("VEC{}", Vector::length());
     const std::string elements(reinterpret_cast<const char*>(values.data()),
                                values.size() * sizeof(Vector));
-    const std::size_t number =
-        add_accessor(contents_, std::move(json), elements, gltf_code::array_buffer);
+    const std::size_t number = add(std::move(json), elements, gltf_code::array_buffer);
     primitive()["attributes"][name] = number;
     carried_.emplace(number, number);  // It is in the new order already.
 }
@@ -222,8 +227,7 @@ void FrameReplacement::replace_indices() {
     }
     json["componentType"] = is_short ? gltf_code::uint16 : gltf_code::uint32;
     json["type"] = "SCALAR";
-    const std::size_t number =
-        add_accessor(contents_, std::move(json), elements, gltf_code::element_array_buffer);
+    const std::size_t number = add(std::move(json), elements, gltf_code::element_array_buffer);
     primitive()["indices"] = number;
     primitive().erase("mode");  // Triangles are the default.
 }

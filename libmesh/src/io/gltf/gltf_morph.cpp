@@ -112,7 +112,8 @@ class MorphReplacement {
     FramedMesh framed_;
     FrameOptions options_;
     Report& report_;
-    Report at_rest_;  ///< The findings of the primitive itself.
+    Report at_rest_;                ///< The findings of the primitive itself.
+    bool shares_vertices_ = false;  ///< As read: others may come to the same results.
     bool had_normals_ = false;
     bool had_tangents_ = false;
     bool has_new_normals_ = false;
@@ -124,6 +125,7 @@ MorphReplacement::MorphReplacement(GltfContents& contents, GltfPrimitiveId id,
                                    Report& report)
     : contents_(contents), id_(id), framed_(framed), options_(options), report_(report) {
     const Json& attributes = primitive_json(contents, id)["attributes"];
+    shares_vertices_ = shares_vertices(contents, primitive_json(contents, id));
     had_normals_ = attributes.contains("NORMAL");
     had_tangents_ = attributes.contains("TANGENT");
     if (options_.normals == NormalMode::keep && !had_normals_) {
@@ -200,8 +202,8 @@ void MorphReplacement::store_displacements(std::size_t target, const char* name,
     json["type"] = "VEC3";
     const std::string elements(reinterpret_cast<const char*>(values.data()),
                                values.size() * sizeof(glm::vec3));
-    const std::size_t number =
-        add_accessor(contents_, std::move(json), elements, gltf_code::array_buffer);
+    const auto add = shares_vertices_ ? add_shared_accessor : add_accessor;
+    const std::size_t number = add(contents_, std::move(json), elements, gltf_code::array_buffer);
     primitive()["targets"][target][name] = number;
 }
 

@@ -188,6 +188,12 @@ std::string describe_primitive(const GltfContents& contents, GltfPrimitiveId id)
                         : fmt::format("mesh '{}' primitive {}", name, id.primitive);
 }
 
+bool shares_vertices(const GltfContents& contents, const Json& primitive) {
+    const auto position = index_in(primitive["attributes"], "POSITION");
+    return position && *position < contents.position_uses.size() &&
+           contents.position_uses[*position] > 1;
+}
+
 GltfTriangles read_triangles(const GltfContents& contents, GltfPrimitiveId id) {
     const Json& primitive = primitive_json(contents, id);
     const auto position = index_in(primitive["attributes"], "POSITION");
@@ -200,8 +206,7 @@ GltfTriangles read_triangles(const GltfContents& contents, GltfPrimitiveId id) {
     const auto indices = index_in(primitive, "indices");
     result.triangles = indices ? indexed_triangles(contents, *indices, mode, result.vertex_count)
                                : plain_triangles(result.vertex_count, mode);
-    const bool is_shared =
-        *position < contents.position_uses.size() && contents.position_uses[*position] > 1;
+    const bool is_shared = shares_vertices(contents, primitive);
     // Outlines name vertices by number, so those must stay.
     const bool has_outline =
         find(primitive, "extensions", "CESIUM_primitive_outline", "indices") != nullptr;

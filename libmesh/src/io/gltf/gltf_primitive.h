@@ -17,6 +17,9 @@ const Json& primitive_json(const GltfContents& contents, GltfPrimitiveId id);
 /// See GltfDocument::describe.
 std::string describe_primitive(const GltfContents& contents, GltfPrimitiveId id);
 
+/// Whether other primitives have the same POSITION.
+bool shares_vertices(const GltfContents& contents, const Json& primitive);
+
 /// A primitive's triangles, over the vertices of its accessors, and which of those its mesh has.
 struct GltfTriangles {
     std::vector<glm::uvec3> triangles;  ///< Over all vertices of the accessors.

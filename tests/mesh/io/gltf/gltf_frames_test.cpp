@@ -291,6 +291,20 @@ TEST_F(GltfFrames, ThoseWhoShareAccessorsKeepTheirs) {
     EXPECT_EQ(after.triangles, other.triangles);
 }
 
+TEST_F(GltfFrames, ThoseWhoShareAccessorsShareTheNewOnesWhereTheyComeToTheSame) {
+    make_quad();
+    root_["meshes"].push_back(root_["meshes"][0]);
+    root_["nodes"] = {{{"mesh", 0}}, {{"mesh", 1}}};
+    finish();
+    GltfDocument document = read(in_);
+    for (std::size_t i = 0; i < 2; ++i)
+        document.set_frames({i, 0}, with_normals(document.mesh({i, 0}), {0, 1, 0}));
+    document.write(out_);
+    const json meshes = contents(out_).root["meshes"];
+    EXPECT_EQ(meshes[0], meshes[1]);
+    EXPECT_EQ(contents(out_).root["accessors"].size(), 7U);
+}
+
 TEST_F(GltfFrames, APrimitiveThatUsesAPartOfSharedVerticesTakesOnlyThose) {
     root_["bufferViews"] = {
         buffer_.view<float>({0, 0, 0, 1, 0, 0, 0, 1, 0, 5, 5, 5, 6, 5, 5, 5, 7, 5}),
@@ -308,7 +322,8 @@ TEST_F(GltfFrames, APrimitiveThatUsesAPartOfSharedVerticesTakesOnlyThose) {
                 ElementsAre(glm::vec3(5), glm::vec3(6, 5, 5), glm::vec3(5, 7, 5)));
     EXPECT_THAT(document.mesh({0, 1}).triangles, ElementsAre(glm::uvec3(2, 0, 1)));
     for (std::size_t i = 0; i < 2; ++i) {
-        document.set_frames({0, i}, with_normals(document.mesh({0, i}), {0, 0, 1}));
+        const glm::vec3 normal(0, static_cast<float>(i), 1);
+        document.set_frames({0, i}, with_normals(document.mesh({0, i}), normal));
     }
     document.write(out_);
     const GltfContents written = contents(out_);
