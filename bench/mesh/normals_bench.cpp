@@ -1,17 +1,26 @@
 // SPDX-License-Identifier: Apache-2.0
-// Vertex normals beside the plainest loop that gives any: what stability and determinism cost.
-#include "relief/mesh/normals.h"
+// Vertex normals in turns with the plainest loop that gives any, with other libraries, and with a
+// triad over the same memory: `relief-normals-bench [TRIANGLES [ROUNDS]]` prints a table in
+// Markdown.
+#include <fmt/format.h>
 
-#include <benchmark/benchmark.h>
+#include <chrono>
+#include <cstdlib>
+#include <functional>
+#include <string>
+#include <vector>
 
 #include "mesh/bumpy_sphere.h"
+#include "mesh/normal_peers.h"
+#include "relief/mesh/normals.h"
 #include "relief/mesh/threads.h"
+#include "relief/mesh/timing.h"
 
 namespace relief::bench {
 namespace {
 
-/// The naive best: area-weighted float scatter. Overflows, underflows, splits at seams, and returns
-/// NaN where triangles vanish.
+/// The naive best: area-weighted float scatter. Overflows, underflows, splits at seams, depends on
+/// the order of triangles, and returns NaN where triangles vanish.
 std::vector<glm::vec3> naive_area_normals(const Mesh& mesh) {
     std::vector<glm::vec3> normals(mesh.positions.size(), glm::vec3(0.0F));
     for (const glm::uvec3& triangle : mesh.triangles) {
@@ -26,39 +35,109 @@ std::vector<glm::vec3> naive_area_normals(const Mesh& mesh) {
     return normals;
 }
 
-void per_triangle(benchmark::State& state, const Mesh& mesh) {
-    state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(mesh.triangles.size()));
-}
-
-void normals_naive_area(benchmark::State& state) {
-    const Mesh mesh = bumpy_sphere(static_cast<std::size_t>(state.range(0)));
-    for (auto _ : state)
-        benchmark::DoNotOptimize(naive_area_normals(mesh));
-    per_triangle(state, mesh);
-}
-
-void normals_relief(benchmark::State& state, NormalWeight weight) {
-    const Mesh mesh = bumpy_sphere(static_cast<std::size_t>(state.range(0)));
-    set_thread_limit(static_cast<unsigned>(state.range(1)));
-    for (auto _ : state) {
-        Report report;
-        benchmark::DoNotOptimize(vertex_normals(mesh.positions, mesh.triangles, weight, report));
+/// a = b + s * c over three arrays that no cache holds.
+class Triad {
+  public:
+    void run() {
+        for (std::size_t i = 0; i < size; ++i)
+            a_[i] = b_[i] + 3.0F * c_[i];
+        keep_ = a_[size / 2];
     }
-    set_thread_limit(0);
-    per_triangle(state, mesh);
+    static constexpr std::size_t size = 16'000'000;
+    static constexpr double bytes = 3.0 * sizeof(float) * size;
+
+  private:
+    std::vector<float> a_ = std::vector<float>(size, 0.0F);
+    std::vector<float> b_ = std::vector<float>(size, 1.0F);
+    std::vector<float> c_ = std::vector<float>(size, 2.0F);
+    volatile float keep_ = 0.0F;
+};
+
+struct Contender {
+    std::string name;
+    std::function<void()> run;
+    std::vector<double> nanoseconds;
+};
+
+volatile float sink = 0.0F;
+
+void keep(const std::vector<glm::vec3>& normals) {
+    sink = normals[normals.size() / 2].x;
 }
 
-BENCHMARK(normals_naive_area)->Arg(1'000'000)->UseRealTime()->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(normals_relief, area, NormalWeight::area)
-    ->ArgNames({"triangles", "threads"})
-    ->ArgsProduct({{1'000'000}, {1, 2}})
-    ->UseRealTime()
-    ->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(normals_relief, angle, NormalWeight::angle)
-    ->ArgNames({"triangles", "threads"})
-    ->ArgsProduct({{1'000'000}, {1, 2}})
-    ->UseRealTime()
-    ->Unit(benchmark::kMillisecond);
+Contender ours(const Mesh& mesh, std::string name, NormalOptions options, unsigned threads) {
+    return {fmt::format("relief, {}{}", name, threads == 1 ? "" : ", 2 threads"),
+            [&mesh, options, threads] {
+                set_thread_limit(threads);
+                Report report;
+                keep(vertex_normals(mesh.positions, mesh.triangles, options, report));
+            },
+            {}};
+}
+
+std::vector<Contender> contenders(const Mesh& mesh, Triad& triad) {
+    std::vector<Contender> all;
+    all.push_back({"naive loop, area, float", [&] { keep(naive_area_normals(mesh)); }, {}});
+    for (const unsigned threads : {1U, 2U}) {
+        all.push_back(ours(mesh, "area, vertices as they are",
+                           {NormalWeight::area, Arithmetic::float64, std::nullopt}, threads));
+        all.push_back(ours(mesh, "area", {NormalWeight::area}, threads));
+        all.push_back(ours(mesh, "angle", {NormalWeight::angle}, threads));
+        all.push_back(ours(mesh, "max", {NormalWeight::max}, threads));
+    }
+    all.push_back(
+        ours(mesh, "area, float", {NormalWeight::area, Arithmetic::float32, std::nullopt}, 1));
+    all.push_back(ours(mesh, "angle, float", {NormalWeight::angle, Arithmetic::float32}, 1));
+    all.push_back({"relief, auto",
+                   [&mesh] {
+                       set_thread_limit(1);
+                       Report report;
+                       keep(chosen_normals(mesh.positions, mesh.triangles, {}, report).normals);
+                   },
+                   {}});
+    for (NormalPeer& peer : normal_peers(mesh))
+        all.push_back({std::move(peer.name), std::move(peer.run), {}});
+    all.push_back({"triad, 192 MB", [&] { triad.run(); }, {}});
+    return all;
+}
+
+int run(int argc, char** argv) {
+    const std::size_t triangles = argc > 1 ? std::strtoul(argv[1], nullptr, 10) : 1'000'000;
+    const std::size_t rounds = argc > 2 ? std::strtoul(argv[2], nullptr, 10) : 15;
+    const Mesh mesh = bumpy_sphere(triangles);
+    Triad triad;
+    std::vector<Contender> all = contenders(mesh, triad);
+    interleave(all.size(), {rounds, 2}, [&](std::size_t i, bool counted) {
+        const auto begin = std::chrono::steady_clock::now();
+        all[i].run();
+        const std::chrono::duration<double, std::nano> taken =
+            std::chrono::steady_clock::now() - begin;
+        if (counted) all[i].nanoseconds.push_back(taken.count());
+    });
+
+    fmt::print("{} triangles, {} vertices; median of {} rounds in turns\n\n", mesh.triangles.size(),
+               mesh.positions.size(), rounds);
+    fmt::print("| who | ns/triangle | p10 to p90 | times the naive loop |\n|---|---|---|---|\n");
+    const double naive = spread_of(all[0].nanoseconds).median;
+    const auto count = static_cast<double>(mesh.triangles.size());
+    for (std::size_t i = 0; i + 1 < all.size(); ++i) {
+        const Spread spread = spread_of(all[i].nanoseconds);
+        fmt::print("| {} | {:.1f} | {:.1f} to {:.1f} | {:.2f} |\n", all[i].name,
+                   spread.median / count, spread.p10 / count, spread.p90 / count,
+                   spread.median / naive);
+    }
+    const double bandwidth = Triad::bytes / spread_of(all.back().nanoseconds).median;
+    // Indices and positions once, sums written and read once, normals written.
+    const double least = 12.0 * count + 24.0 * static_cast<double>(mesh.positions.size());
+    fmt::print(
+        "\nTriad: {:.1f} GB/s. Indices, positions and normals moved once: {:.2f} ns/triangle.\n",
+        bandwidth, least / bandwidth / count);
+    return 0;
+}
 
 }  // namespace
 }  // namespace relief::bench
+
+int main(int argc, char** argv) {
+    return relief::bench::run(argc, argv);
+}

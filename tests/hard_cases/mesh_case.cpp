@@ -83,7 +83,10 @@ std::string inaccurate(const Mesh& mesh, NormalWeight weight, double degrees,
 }  // namespace
 
 const std::vector<NormalWeight>& all_weights() {
-    static const std::vector<NormalWeight> weights = {NormalWeight::area, NormalWeight::angle};
+    static const std::vector<NormalWeight> weights = {
+        NormalWeight::uniform,   NormalWeight::area, NormalWeight::angle,
+        NormalWeight::sine,      NormalWeight::max,  NormalWeight::angle_edges,
+        NormalWeight::area_angle};
     return weights;
 }
 
@@ -109,6 +112,11 @@ MeshCase& MeshCase::checked(const std::vector<std::pair<MeshCondition, std::size
 }
 
 MeshCase& MeshCase::normals(const Findings& findings) {
+    return normals_by("normals", all_weights(), findings);
+}
+
+MeshCase& MeshCase::normals_by(const std::string& step, const std::vector<NormalWeight>& weights,
+                               const Findings& findings) {
     const std::map<std::string, std::size_t> expected(findings.begin(), findings.end());
     std::string outcome = "unit";
     if (!findings.empty()) {
@@ -116,8 +124,8 @@ MeshCase& MeshCase::normals(const Findings& findings) {
         for (const auto& [kind, count] : findings)
             outcome += fmt::format("{} {} x {}", outcome.back() == ':' ? "" : ",", count, kind);
     }
-    return expect("normals", outcome, [expected](const Mesh& mesh) {
-        for (const NormalWeight weight : all_weights()) {
+    return expect(step, outcome, [weights, expected](const Mesh& mesh) {
+        for (const NormalWeight weight : weights) {
             if (std::string problem = wrong_normals(mesh, weight, expected); !problem.empty())
                 return fmt::format("weight {}: {}", static_cast<int>(weight), problem);
         }

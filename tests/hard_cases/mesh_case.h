@@ -35,6 +35,10 @@ class MeshCase {
     /// order of triangles, and reports exactly this.
     MeshCase& normals(const Findings& findings = {});
 
+    /// The same for some weightings; `step` says which: "normals, uniform".
+    MeshCase& normals_by(const std::string& step, const std::vector<NormalWeight>& weights,
+                         const Findings& findings);
+
     /// Normals by these weightings are within so many degrees of the truth; 0: exactly there.
     MeshCase& accurate(const std::vector<NormalWeight>& weights, double degrees,
                        const std::string& truth_in_words, const TrueNormal& truth);

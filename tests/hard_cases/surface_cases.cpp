@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "hard_cases/mesh_case.h"
 #include "hard_cases/mesh_cases.h"
@@ -67,6 +68,51 @@ std::optional<glm::dvec3> ramp_normal(const Mesh& mesh, std::size_t vertex) {
     return mesh.positions[vertex].x < 0.0F ? flat : flat + rising;
 }
 
+/// Whether normals with edges hard from this angle on are each triangle's own, or differ somewhere.
+bool all_flat(const Mesh& mesh, double degrees) {
+    Report report;
+    const std::vector<glm::vec3> flat = triangle_normals(mesh.positions, mesh.triangles, report);
+    HardEdges hard_edges;
+    hard_edges.crease_angle = degrees * std::numbers::pi / 180.0;
+    const std::vector<glm::vec3> corners =
+        corner_normals(mesh.positions, mesh.triangles, NormalWeight::angle, {}, hard_edges, report)
+            .normals;
+    for (std::size_t c = 0; c < corners.size(); ++c) {
+        // Flat normals are not rounded to the grid that averaged ones are on: 2e-9.
+        if (!(glm::distance(corners[c], flat[c / 3]) < 1e-7F)) return false;
+    }
+    return true;
+}
+
+/// Chosen normals are nowhere further off than those by area.
+std::string worse_than_area(const Mesh& mesh) {
+    Report report;
+    const ChosenNormals chosen = chosen_normals(mesh.positions, mesh.triangles, {}, report);
+    const std::vector<glm::vec3> area =
+        vertex_normals(mesh.positions, mesh.triangles, NormalWeight::area, report);
+    for (std::size_t v = 0; v < area.size(); ++v) {
+        if (chosen.normals[v].z < area[v].z) return "the choice is worse than area weights";
+    }
+    return chosen.by_area > 0 ? "" : "no vertex is weighted by area";
+}
+
+/// With a tolerance of a millionth the two edges of the ramp are one.
+std::string not_joined(const Mesh& mesh) {
+    NormalOptions options;
+    options.weld_tolerance = 1e-6;
+    Report report;
+    const std::vector<glm::vec3> normals =
+        vertex_normals(mesh.positions, mesh.triangles, options, report);
+    for (std::size_t a = 0; a < normals.size(); ++a) {
+        for (std::size_t b = 0; b < normals.size(); ++b) {
+            if (glm::distance(mesh.positions[a], mesh.positions[b]) < 1e-6F &&
+                normals[a] != normals[b])
+                return "two vertices that are near have normals of their own";
+        }
+    }
+    return normals[0] != normals.back() ? "" : "all normals are the same";
+}
+
 }  // namespace
 
 std::vector<HardCase> surface_cases() {
@@ -77,12 +123,17 @@ std::vector<HardCase> surface_cases() {
                  "right way round.",
                  "Max's weights fail on it, measured", fold_over)
             .checked({{edge_folded, 1}, {edge_boundary, 4}})
-            .normals()
+            .normals_by("normals, uniform", {NormalWeight::uniform}, {{"cancelling normals", 2}})
+            .normals_by("normals, other weights",
+                        {NormalWeight::area, NormalWeight::angle, NormalWeight::sine,
+                         NormalWeight::max, NormalWeight::angle_edges, NormalWeight::area_angle},
+                        {})
             .accurate({NormalWeight::area}, 0, "the larger triangle's on the common edge",
                       [](const Mesh& mesh, std::size_t vertex) -> std::optional<glm::dvec3> {
                           if (vertex > 1) return std::nullopt;
                           return up(mesh, vertex);
-                      }),
+                      })
+            .expect("normals, auto", "nowhere further off than by area", worse_than_area),
         MeshCase("flipped triangle",
                  "A flat grid with one triangle in its middle the wrong way round.",
                  "scans and hand-made meshes", flipped_triangle)
@@ -125,12 +176,20 @@ std::vector<HardCase> surface_cases() {
                       [](const Mesh&, std::size_t vertex) -> std::optional<glm::dvec3> {
                           if (vertex != 0) return std::nullopt;
                           return glm::dvec3(0, 1, 1);
-                      }),
+                      })
+            .expect("normals, crease 180", "each triangle's own: they share no edge",
+                    [](const Mesh& mesh) {
+                        return all_flat(mesh, 180.0) ? "" : "they are averaged all the same";
+                    }),
         MeshCase("crease", "A flat square and one that rises from it at 45 degrees.",
                  "angles exactly at a crease's limit", [] { return ramp(0.0F, 0.0F); })
             .checked({{edge_boundary, 6}})
             .normals()
-            .accurate({NormalWeight::angle}, 1e-5, "half way on the common edge", ramp_normal),
+            .accurate({NormalWeight::angle}, 1e-5, "half way on the common edge", ramp_normal)
+            .expect("normals, crease 45", "smooth: an edge at the limit is",
+                    [](const Mesh& mesh) { return all_flat(mesh, 45.0) ? "it is hard" : ""; })
+            .expect("normals, crease 44.99", "each square's own",
+                    [](const Mesh& mesh) { return all_flat(mesh, 44.99) ? "" : "it is smooth"; }),
         MeshCase("+0 and -0", "The crease with its edge stored twice, once at +0 and once at -0.",
                  "bitwise comparison of positions", [] { return ramp(0.0F, -0.0F); })
             .checked({{edge_boundary, 6}})
@@ -146,7 +205,8 @@ std::vector<HardCase> surface_cases() {
             .accurate({NormalWeight::angle}, 1e-5, "each square's own",
                       [](const Mesh&, std::size_t vertex) -> std::optional<glm::dvec3> {
                           return vertex < 4 ? glm::dvec3(0, 0, 1) : glm::dvec3(-1, 0, 1);
-                      }),
+                      })
+            .expect("normals, weld 1e-6", "shared on the common edge", not_joined),
     };
 }
 

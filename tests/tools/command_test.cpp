@@ -37,7 +37,8 @@ INSTANTIATE_TEST_SUITE_P(
     Usage, AllTools,
     testing::Values(
         WrongUsage{"relief-mesh",
-                   "relief-mesh: error: a command is missing: process or info (see "
+                   "relief-mesh: error: a command is missing: process or decimate or subdivide or "
+                   "info or check (see "
                    "relief-mesh --help)"},
         WrongUsage{"relief-mesh proces a b",
                    "relief-mesh: error: proces: unknown command (did you mean process?)"},
@@ -48,8 +49,8 @@ INSTANTIATE_TEST_SUITE_P(
         WrongUsage{"relief-mesh process a.obj",
                    "relief-mesh: error: OUT is missing (see relief-mesh process --help)"},
         WrongUsage{"relief-mesh process a.obj b.obj c.obj",
-                   "relief-mesh: error: c.obj: one argument too many (see relief-mesh process "
-                   "--help)"},
+                   "relief-mesh: error: 3 files: which are to be read, and which to be written? "
+                   "(read all and write to a folder: -o out/)"},
         WrongUsage{"relief-mesh process a.obj b.obj --normal flat",
                    "relief-mesh: error: --normal: unknown option (did you mean --normals?)"},
         WrongUsage{"relief-mesh process a.obj b.obj -x",
@@ -61,7 +62,8 @@ INSTANTIATE_TEST_SUITE_P(
                    "relief-mesh: error: --normals: needs a value (see relief-mesh process "
                    "--help)"},
         WrongUsage{"relief-mesh process a.obj b.obj --normals round",
-                   "relief-mesh: error: --normals round: not one of keep, flat, area, angle (see "
+                   "relief-mesh: error: --normals round: not one of keep, flat, auto, uniform, "
+                   "area, angle, sine, max, angle-edges, area-angle (see "
                    "relief-mesh process --help)"},
         WrongUsage{"relief-mesh process a.obj b.obj --threads 0",
                    "relief-mesh: error: --threads 0: not between 1 and 1024 (see relief-mesh "

@@ -104,6 +104,81 @@ TEST(ProcessCommand, FlatNormalsSplitTheCornersOfACube) {
     EXPECT_THAT(result.out, HasSubstr("splits    8 -> 24 vertices\n"));
 }
 
+/// A cube whose corners are shared, with or without smoothing groups.
+std::string cube_text(bool with_groups) {
+    std::string text = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n";
+    const char* faces[] = {"4 3 2 1", "5 6 7 8", "1 2 6 5", "2 3 7 6", "3 4 8 7", "4 1 5 8"};
+    for (int i = 0; i < 6; ++i) {
+        // Top and bottom apart, the sides one smooth ring.
+        if (with_groups) text += i < 2 ? "s off\n" : "s 1\n";
+        text += std::string("f ") + faces[i] + "\n";
+    }
+    return text;
+}
+
+TEST(ProcessCommand, ACreaseAngleMakesEdgesHard) {
+    const Workplace workplace;
+    workplace.write("cube.obj", cube_text(false));
+    const auto splits = [&](const std::string& options) {
+        const ProgramResult result = workplace.run(
+            "relief-mesh process cube.obj out/cube.ply --report out/r.json " + options);
+        EXPECT_EQ(result.exit_code, 0) << result.error;
+        return json::parse(workplace.read("out/r.json"))["primitives"][0]["vertices_written"]
+            .get<int>();
+    };
+    EXPECT_EQ(splits("--normals auto --crease 89"), 24);
+    EXPECT_EQ(splits("--normals auto --crease 90"), 8);
+    EXPECT_EQ(splits("--normals auto"), 8);
+    const json report = json::parse(workplace.read("out/r.json"));
+    EXPECT_EQ(report["primitives"][0]["normal_method"], "auto");
+    EXPECT_EQ(report["primitives"][0]["vertices_by_area"], 0);
+}
+
+TEST(ProcessCommand, SmoothingGroupsOfAnObjFileAreFollowed) {
+    const Workplace workplace;
+    workplace.write("cube.obj", cube_text(true));
+    const ProgramResult followed =
+        workplace.run("relief-mesh process cube.obj out/cube.ply --normals angle");
+    ASSERT_EQ(followed.exit_code, 0) << followed.error;
+    EXPECT_THAT(followed.out, HasSubstr("normals   computed, averaged by angle, within the file's "
+                                        "smoothing groups\n"
+                                        "tangents  none\n"
+                                        "splits    8 -> 16 vertices\n"));
+    const ProgramResult ignored = workplace.run(
+        "relief-mesh process cube.obj out/cube.ply --normals angle --ignore-smoothing-groups");
+    EXPECT_THAT(ignored.out, HasSubstr("splits    none needed\n"));
+}
+
+TEST(ProcessCommand, NearVerticesShareNormalsWithinTheTolerance) {
+    const Workplace workplace;
+    workplace.write("roof.obj",
+                    "v -1 0 0\nv 0 0 0\nv 0 1 0\nv 0.001 0 0\nv 0.001 0 -1\nv 0.001 1 0\n"
+                    "f 1 2 3\nf 4 5 6\n");
+    const auto normal_of_ridge = [&](const std::string& options) {
+        const ProgramResult result =
+            workplace.run("relief-mesh process roof.obj out/roof.glb --normals uniform " + options);
+        EXPECT_EQ(result.exit_code, 0) << result.error;
+        return read_document(workplace / "out/roof.glb").mesh({0, 0}).normals[1];
+    };
+    EXPECT_LT(degrees_between(normal_of_ridge(""), {0, 0, 1}), direction_tolerance);
+    EXPECT_LT(degrees_between(normal_of_ridge("--weld 0.01"), {1, 0, 1}), direction_tolerance);
+}
+
+TEST(ProcessCommand, BrokenNormalsAreRepairedOnRequestAlone) {
+    const Workplace workplace;
+    workplace.write("bad.obj",
+                    "v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 3\nvn 0 0 0\nvn nan 0 0\n"
+                    "f 1//1 2//2 3//3\n");
+    const ProgramResult kept = workplace.run("relief-mesh process bad.obj out/bad.ply --strict");
+    EXPECT_EQ(kept.exit_code, 3);
+    EXPECT_THAT(kept.out, HasSubstr("kept as it is"));
+    const ProgramResult repaired =
+        workplace.run("relief-mesh process bad.obj out/bad.glb --repair-normals --strict");
+    EXPECT_EQ(repaired.exit_code, 3) << "a repair is a finding";
+    for (const glm::vec3& normal : read_document(workplace / "out/bad.glb").mesh({0, 0}).normals)
+        EXPECT_EQ(normal, glm::vec3(0, 0, 1));
+}
+
 TEST(ProcessCommand, GltfWithoutNormalsGetsFlatOnes) {
     const Workplace workplace;
     write_two_primitives(workplace, "pair");
@@ -311,6 +386,16 @@ INSTANTIATE_TEST_SUITE_P(
                 "out/square: no extension says what format this is (use one of .glb, "},
         Refused{"relief-mesh process square.obj out/square.obj --tangents mikktspace", 2,
                 "--tangents mikktspace: .obj cannot hold tangents (write .glb or .gltf)"},
+        Refused{"relief-mesh process square.obj out/old.glb --crease 30", 2,
+                "--crease: is for averaged normals: --normals auto, angle, max, ..."},
+        Refused{"relief-mesh process square.obj out/old.glb --normals flat --weld 1", 2,
+                "--weld: is for averaged normals"},
+        Refused{"relief-mesh process square.obj out/old.glb --normals max --repair-normals", 2,
+                "--repair-normals: is for normals that are kept"},
+        Refused{"relief-mesh process square.obj out/old.glb --normals max --crease 181", 2,
+                "--crease 181: "},
+        Refused{"relief-mesh process square.obj out/old.glb --normals max --weld -1", 2,
+                "--weld -1: "},
         Refused{"relief-mesh process plain.obj out/old.glb --tangents mikktspace", 1,
                 "plain.obj: no texture coordinates, so there can be no tangents (unwrap the model "
                 "first, or leave --tangents out)"},

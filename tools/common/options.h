@@ -115,7 +115,7 @@ CLI::Option* add_number(CLI::App& app, const std::string& name, const std::strin
     return add_value(app, name, value_name, description,
                      [&target, range](const std::string& subject, const std::string& text) {
                          const double number = parse_number(subject, text, range);
-                         if constexpr (std::is_assignable_v<Target&, std::optional<float>> ||
+                         if constexpr (std::is_same_v<Target, std::optional<float>> ||
                                        std::is_same_v<Target, float>) {
                              target = static_cast<float>(number);
                          } else {
@@ -131,7 +131,15 @@ CLI::Option* add_choice(CLI::App& app, const std::string& name, Target& target,
     std::vector<std::string_view> names;
     for (const auto& choice : choices)
         names.push_back(choice.first);
-    return add_value(app, name, fmt::format("{}", fmt::join(names, "|")), description,
+    // Many words would run out of the screen: those are told in the description.
+    constexpr std::size_t longest_list = 48;
+    std::string value_name = fmt::format("{}", fmt::join(names, "|"));
+    std::string details = description;
+    if (value_name.size() > longest_list) {
+        details = fmt::format("One of {}. {}", fmt::join(names, ", "), description);
+        value_name = "WORD";
+    }
+    return add_value(app, name, value_name, details,
                      [&target, choices](const std::string& subject, const std::string& text) {
                          target = parse_choice(subject, text, choices);
                      });

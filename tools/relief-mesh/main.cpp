@@ -7,8 +7,7 @@ int main(int argc, char** argv) {
     using namespace relief::tools;
     return run_tool(
         {"relief-mesh",
-         "Computes normals and tangents of meshes, makes them coarser or finer, and says what is "
-         "in mesh files and what is wrong with them.",
+         "Gives meshes normals, tangents and other resolutions; says what is in them, and wrong.",
          {add_process_command, add_decimate_command, add_subdivide_command, add_info_command,
           add_check_command}},
         argc, argv);

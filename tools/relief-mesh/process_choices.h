@@ -11,8 +11,14 @@ namespace relief::tools {
 inline Choices<NormalMode> normal_choices() {
     return {{"keep", NormalMode::keep},
             {"flat", NormalMode::flat},
+            {"auto", NormalMode::automatic},
+            {"uniform", NormalMode::uniform},
             {"area", NormalMode::area},
-            {"angle", NormalMode::angle}};
+            {"angle", NormalMode::angle},
+            {"sine", NormalMode::sine},
+            {"max", NormalMode::max},
+            {"angle-edges", NormalMode::angle_edges},
+            {"area-angle", NormalMode::area_angle}};
 }
 
 inline Choices<TangentMode> tangent_choices() {

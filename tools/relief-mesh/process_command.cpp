@@ -4,6 +4,7 @@
 // Tests: tests/tools/relief_mesh_test.cpp, process_jobs_test.cpp, process_batch_test.cpp.
 #include <fmt/format.h>
 
+#include <limits>
 #include <memory>
 
 #include "commands.h"
@@ -38,8 +39,24 @@ void check_request(const ProcessRequest& request) {
     }
 }
 
+/// Refuses options that could not do anything.
+void check_normals(const ProcessRequest& request) {
+    const bool averages =
+        request.normals != NormalMode::keep && request.normals != NormalMode::flat;
+    const auto need = [](bool holds, const char* option, const char* what) {
+        if (!holds) throw UsageError(fmt::format("{}: {}", option, what));
+    };
+    const char* averaged = "is for averaged normals: --normals auto, angle, max, ...";
+    need(averages || !request.crease_degrees, "--crease", averaged);
+    need(averages || !request.ignore_smoothing_groups, "--ignore-smoothing-groups", averaged);
+    need(averages || request.repair_normals || request.weld_tolerance == 0.0, "--weld", averaged);
+    need(request.normals == NormalMode::keep || !request.repair_normals, "--repair-normals",
+         "is for normals that are kept: leave --normals out");
+}
+
 /// The same work for every model. \throws UsageError, FileError before anything is done
 std::vector<ProcessRequest> requests_of(const ProcessOptions& options, const JobList& list) {
+    check_normals(options.request);
     std::vector<ProcessRequest> requests;
     std::vector<std::filesystem::path> files;
     for (const Job& job : list.jobs) {
@@ -90,18 +107,42 @@ void add_file_options(CLI::App& app, FileWords& words) {
         ->group("Output");
 }
 
+void add_normal_options(CLI::App& app, ProcessRequest& request) {
+    const char* group = "Normals";
+    add_choice(app, "--normals", request.normals, normal_choices(),
+               "Where normals come from: the file (keep), one per triangle (flat), or averaged "
+               "around each vertex, with triangles weighted as named; auto takes max, the most "
+               "accurate on smooth meshes, but area where triangles fold over. docs/normals.md has "
+               "errors and times. Default: keep; a mesh that has none gets flat ones from glTF, as "
+               "its rules ask, and angle ones otherwise.")
+        ->group(group);
+    add_number(app, "--crease", "DEG", request.crease_degrees, {0.0, 180.0, "degrees"},
+               "Edges sharper than this many degrees are hard: vertices are split along them. "
+               "Triangles that only touch in a vertex are apart too. Default: no hard edges but "
+               "those between an OBJ file's smoothing groups.")
+        ->group(group);
+    add_switch(app, "--ignore-smoothing-groups", request.ignore_smoothing_groups,
+               "Smooth across the smoothing groups of an OBJ file, and where it says off.")
+        ->group(group);
+    add_number(app, "--weld", "TOLERANCE", request.weld_tolerance,
+               {0.0, std::numeric_limits<float>::max(), "units"},
+               "Vertices no further apart than this, in the model's unit, share their normal. "
+               "Default: 0, those at equal positions.")
+        ->group(group);
+    add_switch(app, "--repair-normals", request.repair_normals,
+               "Of the file's own normals, replace those that are zero or not finite by averaged "
+               "ones, and scale others to unit length. Default: they are kept and reported.")
+        ->group(group);
+}
+
 void add_options(CLI::App& app, ProcessOptions& options) {
     add_file_options(app, options.words);
-    add_choice(app, "--normals", options.request.normals, normal_choices(),
-               "Where normals come from: the file (keep), one per triangle (flat), or averaged "
-               "around each vertex by triangle area or corner angle. Default: keep; a mesh that "
-               "has none gets flat ones from glTF, as its rules ask, and angle ones otherwise.")
-        ->group("Frames");
+    add_normal_options(app, options.request);
     add_choice(app, "--tangents", options.request.tangents, tangent_choices(),
                "Tangents for normal maps: the file's own (keep; computed anew where normals are), "
                "none, or computed as MikkTSpace does, splitting vertices where needed. "
                "Default: keep.")
-        ->group("Frames");
+        ->group("Tangents");
     add_report_options(app, options.report);
     add_general_options(app, options.general);
     set_examples(
@@ -109,6 +150,7 @@ void add_options(CLI::App& app, ProcessOptions& options) {
         {"relief-mesh process data/vase.obj out/vase.glb --tangents mikktspace",
          "relief-mesh process out/vase.glb out/vase-flat.glb --normals flat",
          "relief-mesh process data/vase.obj out/vase.ply --normals area --report out/vase.json",
+         "relief-mesh process data/vase.obj out/vase-hard.glb --normals auto --crease 40",
          "relief-mesh process data/*.obj -o out/models/ --format glb --normals angle"});
 }
 

@@ -41,7 +41,15 @@ std::string normals_in_words(const ProcessedPart& part) {
             break;
     }
     if (part.normal_mode == NormalMode::flat) return "computed, one per triangle";
-    return fmt::format("computed, averaged by {}", word_of(part.normal_mode));
+    std::string text = fmt::format("computed, averaged by {}", word_of(part.normal_mode));
+    if (part.normal_mode == NormalMode::automatic) {
+        text = "computed, averaged by max";
+        if (part.normals_by_area != 0) {
+            text += fmt::format(", and by area at {} around which triangles fold over",
+                                counted(part.normals_by_area, "vertex", "vertices"));
+        }
+    }
+    return text + (part.smoothing_groups ? ", within the file's smoothing groups" : "");
 }
 
 std::string tangents_in_words(const ProcessedPart& part) {
@@ -100,7 +108,12 @@ nlohmann::ordered_json parts_json(const Processed& done) {
                                        {"vertices_read", part.vertices_read},
                                        {"vertices_written", part.vertices_written},
                                        {"normals", fate_word(part.normals)}};
-        if (part.normals == Fate::computed) json["normal_method"] = word_of(part.normal_mode);
+        if (part.normals == Fate::computed) {
+            json["normal_method"] = word_of(part.normal_mode);
+            if (part.normal_mode == NormalMode::automatic)
+                json["vertices_by_area"] = part.normals_by_area;
+            json["smoothing_groups"] = part.smoothing_groups;
+        }
         json["tangents"] = fate_word(part.tangents);
         if (part.tangents == Fate::computed)
             json["tangent_method"] = word_of(TangentMode::mikktspace);
@@ -171,7 +184,11 @@ void print_line(const ProcessRequest& request, const Processed& done, const Stag
 }
 
 nlohmann::ordered_json options_json(const ProcessRequest& request) {
-    return {{"normals", word_of(request.normals)}, {"tangents", word_of(request.tangents)}};
+    nlohmann::ordered_json json = {{"normals", word_of(request.normals)},
+                                   {"tangents", word_of(request.tangents)}};
+    if (request.crease_degrees) json["crease_degrees"] = *request.crease_degrees;
+    json["weld_tolerance"] = request.weld_tolerance;
+    return json;
 }
 
 nlohmann::ordered_json file_json(const ProcessRequest& request, const Processed& done,

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <numbers>
 
 #include "common/text.h"
 
@@ -17,7 +18,13 @@ namespace {
 FrameOptions frame_options(const ProcessRequest& request, ModelFormat input) {
     return {.normals = request.normals,
             .if_missing = is_document(input) ? NormalMode::flat : NormalMode::angle,
-            .tangents = request.tangents};
+            .tangents = request.tangents,
+            .weld_tolerance = request.weld_tolerance,
+            .crease_angle = request.crease_degrees
+                                ? std::optional(*request.crease_degrees * std::numbers::pi / 180.0)
+                                : std::nullopt,
+            .smoothing_groups = !request.ignore_smoothing_groups,
+            .repair = request.repair_normals};
 }
 
 Fate fate(bool before, bool after, bool computed) {
@@ -42,6 +49,8 @@ FramedMesh framed_part(Mesh mesh, std::size_t index, FrameOptions options, Proce
         part.normal_mode = options.normals;
 
     FramedMesh framed = with_frames(std::move(mesh), options, report);
+    part.normals_by_area = framed.normals_by_area;
+    part.smoothing_groups = framed.within_smoothing_groups;
     part.vertices_written = framed.mesh.positions.size();
     part.normals =
         fate(had_normals, !framed.mesh.normals.empty(), part.normal_mode != NormalMode::keep);

@@ -22,6 +22,11 @@ struct ProcessRequest {
     std::filesystem::path output;
     NormalMode normals = NormalMode::keep;
     TangentMode tangents = TangentMode::keep;
+    std::optional<double>
+        crease_degrees;  ///< As the following, for averaged normals; see frames.h.
+    double weld_tolerance = 0.0;
+    bool ignore_smoothing_groups = false;
+    bool repair_normals = false;  ///< Of the normals that are kept, those that are broken.
 };
 
 /// What became of an attribute of one primitive.
@@ -35,6 +40,8 @@ struct ProcessedPart {
     std::size_t vertices_written = 0;  ///< More where vertices were split.
     Fate normals = Fate::absent;
     NormalMode normal_mode = NormalMode::keep;  ///< How they were computed, where they were.
+    std::size_t normals_by_area = 0;            ///< Vertices, where the mode is automatic.
+    bool smoothing_groups = false;              ///< They followed the file's.
     Fate tangents = Fate::absent;
 };
 

@@ -48,12 +48,19 @@ std::vector<std::string> near_names(std::string_view wanted, std::span<const std
     constexpr std::size_t most_slips = 3;
     const std::string name = plain(wanted);
     std::vector<std::pair<std::size_t, std::string>> found;
+    std::size_t nearest = most_slips;
     for (const std::string& candidate : known) {
         const std::string other = plain(candidate);
         const std::size_t distance = edit_distance(name, other);
         const std::size_t allowed = std::min(most_slips, std::max(name.size(), other.size()) / 3);
-        if (distance <= allowed || has_word(other, name)) found.emplace_back(distance, candidate);
+        if (distance > allowed && !has_word(other, name)) continue;
+        found.emplace_back(distance, candidate);
+        nearest = std::min(nearest, distance);
     }
+    // Among slips only the smallest: what is further off is not what was meant.
+    std::erase_if(found, [&](const auto& entry) {
+        return entry.first > nearest && !has_word(plain(entry.second), name);
+    });
     std::sort(found.begin(), found.end());
     std::vector<std::string> names;
     for (std::size_t i = 0; i < std::min(most, found.size()); ++i)

@@ -3,8 +3,10 @@
 
 #include <tbb/blocked_range.h>
 #include <tbb/global_control.h>
+#include <tbb/info.h>
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
 #include <exception>
 #include <memory>
 
@@ -19,6 +21,14 @@ void parallel_for(std::size_t count, std::size_t grain,
     if (count <= grain) return body(0, count);
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, grain),
                       [&](const auto& piece) { body(piece.begin(), piece.end()); });
+}
+
+std::size_t thread_count() {
+    // The cap of set_thread_limit, or what the machine has. Asking starts no threads.
+    const auto capped =
+        tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
+    return std::min<std::size_t>(
+        capped, static_cast<std::size_t>(std::max(tbb::info::default_concurrency(), 1)));
 }
 
 void parallel_tasks(const std::vector<std::function<void()>>& tasks, bool are_small) {

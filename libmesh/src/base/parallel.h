@@ -18,6 +18,9 @@ namespace relief {
 void parallel_for(std::size_t count, std::size_t grain,
                   const std::function<void(std::size_t begin, std::size_t end)>& body);
 
+/// How many threads parallel_for() has at most: for those who must make as many of something.
+std::size_t thread_count();
+
 /// Runs tasks that do not touch what another writes: at once, or one by one where they are so small
 /// that starting threads would take longer.
 ///

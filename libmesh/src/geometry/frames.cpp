@@ -1,15 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 // Normals, then tangents, for a whole mesh; each step may split vertices, and everything else is
-// carried along. Object space. Bad values are counted, by the steps and here; nothing is repaired.
+// carried along. Object space. Bad values are counted, by the steps and here; nothing is repaired
+// unless asked for.
 // Tests: tests/mesh/geometry/frames_test.cpp.
 #include "relief/mesh/frames.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <utility>
 
 #include "geometry/corners.h"
 #include "geometry/direction.h"
+#include "geometry/unit_tolerance.h"
 #include "relief/mesh/error.h"
 #include "relief/mesh/normals.h"
 #include "relief/mesh/split.h"
@@ -17,10 +20,6 @@
 
 namespace relief {
 namespace {
-
-// How far the length of a kept normal may be from 1: what 8-bit storage, the coarsest in use,
-// leaves (half a step of 1/127 in each of three components), and no more.
-constexpr double unit_tolerance = 0.007;
 
 void check_options(const Mesh& mesh, const FrameOptions& options) {
     validate(mesh);
@@ -30,17 +29,6 @@ void check_options(const Mesh& mesh, const FrameOptions& options) {
     if (options.tangents == TangentMode::mikktspace && mesh.texcoords.empty() &&
         !mesh.positions.empty()) {
         throw InvalidInput("tangents need texture coordinates, but the mesh has none");
-    }
-}
-
-void report_kept(std::span<const glm::vec3> normals, Report& report) {
-    for (std::size_t v = 0; v < normals.size(); ++v) {
-        const double length = glm::length(glm::dvec3(normals[v]));
-        if (!std::isfinite(length)) {
-            report.add("non-finite normal", "vertex", v, "kept as it is");
-        } else if (std::abs(length - 1.0) > unit_tolerance) {
-            report.add("normal not of unit length", "vertex", v, "kept as it is");
-        }
     }
 }
 
@@ -65,6 +53,15 @@ void store_corners(FramedMesh& framed, const std::vector<T>& values,
     }
 }
 
+/// Normals of corners become normals of vertices, which are split for it.
+void store_corner_normals(FramedMesh& framed, const std::vector<glm::vec3>& at_corners,
+                          Report& report) {
+    store_corners(framed, at_corners, &Mesh::normals, [&](std::size_t vertex) {
+        report.add("isolated vertex", "vertex", vertex, "gets the normal (0,0,1)");
+        return glm::vec3(0.0F, 0.0F, 1.0F);
+    });
+}
+
 void make_flat(FramedMesh& framed, Report& report) {
     const std::vector<glm::vec3> flat =
         triangle_normals(framed.mesh.positions, framed.mesh.triangles, report);
@@ -72,28 +69,126 @@ void make_flat(FramedMesh& framed, Report& report) {
     at_corners.reserve(3 * flat.size());
     for (const glm::vec3& normal : flat)
         at_corners.insert(at_corners.end(), 3, normal);
-    store_corners(framed, at_corners, &Mesh::normals, [&](std::size_t vertex) {
-        report.add("isolated vertex", "vertex", vertex, "gets the normal (0,0,1)");
-        return glm::vec3(0.0F, 0.0F, 1.0F);
-    });
+    store_corner_normals(framed, at_corners, report);
 }
 
-void make_normals(FramedMesh& framed, NormalMode mode, Report& report) {
+/// The weighting of a mode that averages; absent where it is to be chosen.
+std::optional<NormalWeight> weight_of(NormalMode mode) {
+    switch (mode) {
+        case NormalMode::uniform:
+            return NormalWeight::uniform;
+        case NormalMode::area:
+            return NormalWeight::area;
+        case NormalMode::angle:
+            return NormalWeight::angle;
+        case NormalMode::sine:
+            return NormalWeight::sine;
+        case NormalMode::max:
+            return NormalWeight::max;
+        case NormalMode::angle_edges:
+            return NormalWeight::angle_edges;
+        case NormalMode::area_angle:
+            return NormalWeight::area_angle;
+        case NormalMode::automatic:
+        case NormalMode::keep:
+        case NormalMode::flat:
+            break;
+    }
+    return std::nullopt;
+}
+
+void make_averaged(FramedMesh& framed, NormalMode mode, const FrameOptions& options,
+                   Report& report) {
     Mesh& mesh = framed.mesh;
+    const std::optional<NormalWeight> weight = weight_of(mode);
+    NormalOptions how;
+    how.weld_tolerance = options.weld_tolerance;
+    const bool has_groups = options.smoothing_groups &&
+                            std::any_of(mesh.smoothing_groups.begin(), mesh.smoothing_groups.end(),
+                                        [](std::uint32_t group) { return group != 0; });
+    framed.within_smoothing_groups = has_groups;
+    if (options.crease_angle || has_groups) {
+        HardEdges hard_edges{options.crease_angle, {}};
+        if (has_groups) hard_edges.smoothing_groups = mesh.smoothing_groups;
+        const CornerNormals corners =
+            corner_normals(mesh.positions, mesh.triangles, weight, how, hard_edges, report);
+        framed.normals_by_area = corners.by_area;
+        store_corner_normals(framed, corners.normals, report);
+    } else if (weight) {
+        how.weight = *weight;
+        mesh.normals = vertex_normals(mesh.positions, mesh.triangles, how, report);
+    } else {
+        ChosenNormals chosen = chosen_normals(mesh.positions, mesh.triangles, how, report);
+        framed.normals_by_area = chosen.by_area;
+        mesh.normals = std::move(chosen.normals);
+    }
+}
+
+enum class KeptNormal { sound, not_unit, zero, non_finite };
+
+KeptNormal judge(const glm::vec3& normal) {
+    const double length = glm::length(glm::dvec3(normal));
+    if (!std::isfinite(length)) return KeptNormal::non_finite;
+    if (length == 0.0) return KeptNormal::zero;
+    return std::abs(length - 1.0) > unit_tolerance ? KeptNormal::not_unit : KeptNormal::sound;
+}
+
+void report_kept(std::span<const glm::vec3> normals, bool repaired, Report& report) {
+    for (std::size_t v = 0; v < normals.size(); ++v) {
+        switch (judge(normals[v])) {
+            case KeptNormal::sound:
+                break;
+            case KeptNormal::not_unit:
+                report.add("normal not of unit length", "vertex", v,
+                           repaired ? "scaled" : "kept as it is");
+                break;
+            case KeptNormal::zero:
+                report.add("zero normal", "vertex", v,
+                           repaired ? "averaged anew" : "kept as it is");
+                break;
+            case KeptNormal::non_finite:
+                report.add("non-finite normal", "vertex", v,
+                           repaired ? "averaged anew" : "kept as it is");
+                break;
+        }
+    }
+}
+
+/// Only what is broken changes; other vertices keep their bits.
+void repair_kept(Mesh& mesh, const FrameOptions& options, Report& report) {
+    std::vector<glm::vec3> averaged;
+    Report rest;
+    for (std::size_t v = 0; v < mesh.normals.size(); ++v) {
+        glm::vec3& normal = mesh.normals[v];
+        const KeptNormal kind = judge(normal);
+        if (kind == KeptNormal::sound) continue;
+        if (kind == KeptNormal::not_unit) {
+            normal = rounded(direction_or_zero(glm::dvec3(normal)));
+            continue;
+        }
+        if (averaged.empty()) {
+            NormalOptions how;
+            how.weight = weight_of(options.if_missing).value_or(NormalWeight::angle);
+            how.weld_tolerance = options.weld_tolerance;
+            averaged = vertex_normals(mesh.positions, mesh.triangles, how, rest);
+        }
+        normal = averaged[v];
+    }
+    report.merge(rest);
+}
+
+void make_normals(FramedMesh& framed, NormalMode mode, const FrameOptions& options,
+                  Report& report) {
     switch (mode) {
         case NormalMode::keep:
-            report_kept(mesh.normals, report);
+            report_kept(framed.mesh.normals, options.repair, report);
+            if (options.repair) repair_kept(framed.mesh, options, report);
             break;
         case NormalMode::flat:
             make_flat(framed, report);
             break;
-        case NormalMode::area:
-            mesh.normals =
-                vertex_normals(mesh.positions, mesh.triangles, NormalWeight::area, report);
-            break;
-        case NormalMode::angle:
-            mesh.normals =
-                vertex_normals(mesh.positions, mesh.triangles, NormalWeight::angle, report);
+        default:
+            make_averaged(framed, mode, options, report);
             break;
     }
 }
@@ -129,13 +224,14 @@ FramedMesh with_frames(Mesh mesh, const FrameOptions& options, Report& report) {
     const NormalMode mode =
         options.normals == NormalMode::keep && !has_normals ? options.if_missing : options.normals;
 
-    FramedMesh framed{std::move(mesh), {}};
+    FramedMesh framed;
+    framed.mesh = std::move(mesh);
     framed.source_vertex.resize(framed.mesh.positions.size());
     std::iota(framed.source_vertex.begin(), framed.source_vertex.end(), 0U);
 
     const TangentMode tangents = resolved_tangents(framed.mesh, options.tangents, mode, report);
     if (tangents != TangentMode::keep) framed.mesh.tangents.clear();
-    make_normals(framed, mode, report);
+    make_normals(framed, mode, options, report);
     if (tangents == TangentMode::mikktspace) make_tangents(framed, report);
     return framed;
 }

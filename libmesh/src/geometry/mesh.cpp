@@ -52,6 +52,10 @@ void validate(const Mesh& mesh) {
     check_length(mesh, mesh.colors.size(), "colours");
     check_triangles(mesh.triangles, mesh.positions.size());
     check_ranges(mesh);
+    if (!mesh.smoothing_groups.empty() && mesh.smoothing_groups.size() != mesh.triangles.size()) {
+        throw InvalidInput(fmt::format("there are {} smoothing groups, but {} triangles",
+                                       mesh.smoothing_groups.size(), mesh.triangles.size()));
+    }
 }
 
 }  // namespace relief

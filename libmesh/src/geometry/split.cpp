@@ -86,6 +86,7 @@ Mesh carried(const Mesh& mesh, const VertexSplit& split) {
     result.colors = carried<glm::vec4>(mesh.colors, split);
     result.triangles = split.triangles;
     result.material_ranges = mesh.material_ranges;
+    result.smoothing_groups = mesh.smoothing_groups;
     return result;
 }
 

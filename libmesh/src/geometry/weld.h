@@ -23,6 +23,19 @@ std::vector<std::uint32_t> weld_vertices(std::span<const glm::vec3> positions,
                                          std::span<const glm::vec3> normals,
                                          std::span<const glm::vec2> texcoords);
 
+/// Groups of two and more, by what the functions above say.
+struct Groups {
+    std::vector<std::uint32_t> first;  ///< Where each group begins; one more at the end.
+    std::vector<std::uint32_t>
+        members;  ///< Ascending within a group, as groups are by their first.
+
+    [[nodiscard]] std::size_t count() const { return first.empty() ? 0 : first.size() - 1; }
+    [[nodiscard]] std::span<const std::uint32_t> at(std::size_t group) const {
+        return std::span(members).subspan(first[group], first[group + 1] - first[group]);
+    }
+};
+Groups groups_of(std::span<const std::uint32_t> representatives);
+
 /// Triangles over class representatives instead of over vertices.
 std::vector<glm::uvec3> welded_triangles(std::span<const glm::uvec3> triangles,
                                          std::span<const std::uint32_t> representatives);

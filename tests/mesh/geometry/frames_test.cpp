@@ -105,6 +105,86 @@ TEST(Frames, FlatNormalsSplitOnlyWhereTrianglesBend) {
     EXPECT_EQ(report.count("isolated vertex"), 1U);
 }
 
+/// Two squares that share an edge, one turned up by 60 degrees.
+Mesh folded_sheet() {
+    Mesh mesh;
+    mesh.positions = {{-1, 0, 0},        {0, 0, 0}, {0.5F, 0, 0.8660254F},
+                      {-1, 1, 0},        {0, 1, 0}, {0.5F, 1, 0.8660254F},
+                      {7.0F, 7.0F, 7.0F}};
+    mesh.triangles = {{0, 1, 4}, {0, 4, 3}, {1, 2, 5}, {1, 5, 4}};
+    return mesh;
+}
+
+TEST(Frames, ACreaseSplitsVerticesAlongSharperEdgesAlone) {
+    Report report;
+    FrameOptions options{NormalMode::max};
+    options.crease_angle = 1.0;
+    const FramedMesh hard = with_frames(folded_sheet(), options, report);
+    expect_carried(folded_sheet(), hard);
+    EXPECT_EQ(hard.mesh.positions.size(), 9U);
+    EXPECT_EQ(report.count("isolated vertex"), 1U);
+    EXPECT_EQ(report.findings().size(), 1U);
+    options.crease_angle = 1.1;
+    EXPECT_EQ(framed(folded_sheet(), options).mesh.positions.size(), 7U);
+    EXPECT_EQ(framed(folded_sheet(), {NormalMode::max}).mesh.positions.size(), 7U);
+}
+
+TEST(Frames, SmoothingGroupsAreFollowedUnlessAllAreOffOrToldNotTo) {
+    Mesh mesh = folded_sheet();
+    mesh.smoothing_groups = {1, 1, 0, 0};
+    FrameOptions options{NormalMode::automatic};
+    const FramedMesh followed = framed(mesh, options);
+    EXPECT_EQ(followed.mesh.positions.size(), 9U);
+    EXPECT_TRUE(followed.within_smoothing_groups);
+    EXPECT_EQ(followed.mesh.smoothing_groups, mesh.smoothing_groups);
+    options.smoothing_groups = false;
+    EXPECT_EQ(framed(mesh, options).mesh.positions.size(), 7U);
+    EXPECT_FALSE(framed(mesh, options).within_smoothing_groups);
+    options.smoothing_groups = true;
+    mesh.smoothing_groups.assign(4, 0);
+    EXPECT_EQ(framed(mesh, options).mesh.positions.size(), 7U);
+    mesh.smoothing_groups.assign(3, 1);
+    EXPECT_THROW(framed(mesh, options), InvalidInput);
+}
+
+TEST(Frames, EveryWeightingHasItsMode) {
+    // Corners of 45 and 90 degrees with edges of 1, 1.41 and 2: each weighting has another mean.
+    Mesh mesh;
+    mesh.positions = {{0, 0, 0}, {0, 1, 0}, {-1, 1, 0}, {0, 0, -2}};
+    mesh.triangles = {{0, 1, 2}, {1, 0, 3}};
+    std::vector<double> slopes;
+    for (const NormalMode mode :
+         {NormalMode::uniform, NormalMode::area, NormalMode::angle, NormalMode::sine,
+          NormalMode::max, NormalMode::angle_edges, NormalMode::area_angle}) {
+        const glm::vec3 normal = framed(mesh, {mode}).mesh.normals[0];
+        slopes.push_back(normal.x / normal.z);
+    }
+    const double root = std::sqrt(2.0);
+    const std::vector<double> expected = {1.0, 2.0, 2.0, root, 1.0, 2.0 * 2.0 / root, 4.0};
+    for (std::size_t i = 0; i < expected.size(); ++i)
+        EXPECT_NEAR(slopes[i], expected[i], 1e-6) << i;
+}
+
+TEST(Frames, RepairTouchesOnlyBrokenNormals) {
+    Mesh mesh = test::grid(1);
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    mesh.normals = {{0, 0, 2}, {0.001F, 0, 1}, {nan, 0, 0}, {0, 0, 0}};
+    FrameOptions options;
+    options.repair = true;
+    Report report;
+    const FramedMesh repaired = with_frames(mesh, options, report);
+    EXPECT_EQ(repaired.mesh.normals[0], glm::vec3(0, 0, 1));
+    EXPECT_EQ(repaired.mesh.normals[1], mesh.normals[1]) << "within what 8 bits leave";
+    EXPECT_EQ(repaired.mesh.normals[2], glm::vec3(0, 0, 1));
+    EXPECT_EQ(repaired.mesh.normals[3], glm::vec3(0, 0, 1));
+    ASSERT_EQ(report.findings().size(), 3U);
+    EXPECT_EQ(report.findings()[0],
+              (Finding{"normal not of unit length", "vertex", "scaled", 1, {0}}));
+    EXPECT_EQ(report.findings()[1],
+              (Finding{"non-finite normal", "vertex", "averaged anew", 1, {2}}));
+    EXPECT_EQ(report.findings()[2], (Finding{"zero normal", "vertex", "averaged anew", 1, {3}}));
+}
+
 TEST(Frames, ComputedNormalsReplaceTheTangentsMadeForOthers) {
     Mesh mesh = test::grid(1);
     mesh.tangents.assign(4, {0, 1, 0, -1});  // Not what the texture says.

@@ -22,7 +22,9 @@ namespace {
 using test::degrees_between;
 
 constexpr glm::vec3 up(0.0F, 0.0F, 1.0F);
-constexpr NormalWeight both_weights[] = {NormalWeight::area, NormalWeight::angle};
+constexpr NormalWeight all_weights[] = {
+    NormalWeight::uniform, NormalWeight::area,        NormalWeight::angle,     NormalWeight::sine,
+    NormalWeight::max,     NormalWeight::angle_edges, NormalWeight::area_angle};
 
 // A unit vector in floats is off by at most half a unit in the last place in each component: 6e-8
 // in all, or 3.4e-6 degrees.
@@ -39,6 +41,82 @@ void expect_unit(const std::vector<glm::vec3>& normals) {
         ASSERT_TRUE(std::abs(glm::length(glm::dvec3(normals[i])) - 1.0) <= 2e-7) << "normal " << i;
     }
 }
+
+std::vector<glm::vec3> normals_of(const Mesh& mesh, const NormalOptions& options) {
+    Report report;
+    return vertex_normals(mesh.positions, mesh.triangles, options, report);
+}
+
+/// The weight of a corner with edges u and v, from the definition.
+long double weight_of(NormalWeight weight, const glm::dvec3& u, const glm::dvec3& v) {
+    using Vector = glm::vec<3, long double>;
+    const Vector a(u);
+    const Vector b(v);
+    const long double area = glm::length(glm::cross(a, b));
+    const long double lengths = glm::length(a) * glm::length(b);
+    const long double angle = std::atan2(area, glm::dot(a, b));
+    switch (weight) {
+        case NormalWeight::uniform:
+            return 1.0L;
+        case NormalWeight::area:
+            return area;
+        case NormalWeight::angle:
+            return angle;
+        case NormalWeight::sine:
+            return area / lengths;
+        case NormalWeight::max:
+            return area / lengths / lengths;
+        case NormalWeight::angle_edges:
+            return angle * lengths;
+        case NormalWeight::area_angle:
+            return angle * area;
+    }
+    return 0.0L;
+}
+
+/// Normals from the definition in long double, rounded as normals.h says. No sharing.
+std::vector<glm::vec3> normals_by_definition(const Mesh& mesh, NormalWeight weight) {
+    using Vector = glm::vec<3, long double>;
+    std::vector<Vector> sums(mesh.positions.size(), Vector(0.0L));
+    for (const glm::uvec3& triangle : mesh.triangles) {
+        for (int i = 0; i < 3; ++i) {
+            const glm::dvec3 here(mesh.positions[triangle[i]]);
+            const glm::dvec3 u = glm::dvec3(mesh.positions[triangle[(i + 1) % 3]]) - here;
+            const glm::dvec3 v = glm::dvec3(mesh.positions[triangle[(i + 2) % 3]]) - here;
+            sums[triangle[i]] +=
+                weight_of(weight, u, v) * glm::normalize(glm::cross(Vector(u), Vector(v)));
+        }
+    }
+    std::vector<glm::vec3> normals;
+    for (const Vector& sum : sums) {
+        const Vector steps = glm::round(glm::normalize(sum) * 268435456.0L);
+        normals.push_back(glm::vec3(steps) / 268435456.0F + 0.0F);
+    }
+    return normals;
+}
+
+/// A sphere with bumps of all sizes and no symmetry, so that no sum is round by chance.
+Mesh bumpy_ball() {
+    Mesh mesh = test::sphere(64, 32);
+    for (glm::vec3& p : mesh.positions) {
+        const double bump = 1.0 + 0.1 * std::sin(7.3 * p.x + 1.0) * std::cos(5.1 * p.y - 3.7 * p.z);
+        p = glm::vec3(glm::dvec3(p) * bump + glm::dvec3(0.1, 0.2, 0.3));
+    }
+    // Without the triangles at the poles that have no area.
+    std::erase_if(mesh.triangles, [&](const glm::uvec3& t) {
+        return mesh.positions[t.x] == mesh.positions[t.y] ||
+               mesh.positions[t.y] == mesh.positions[t.z] ||
+               mesh.positions[t.z] == mesh.positions[t.x];
+    });
+    return mesh;
+}
+
+/// Sets the vector instructions to use, until the end of the scope.
+class VectorBits {
+  public:
+    explicit VectorBits(const char* bits) { setenv("RELIEF_VECTOR_BITS", bits, 1); }
+    ~VectorBits() { unsetenv("RELIEF_VECTOR_BITS"); }
+};
 
 /// A cube of eight vertices; bit i of `splits` says how face i is cut in two.
 Mesh welded_cube(unsigned splits) {
@@ -62,7 +140,7 @@ Mesh welded_cube(unsigned splits) {
 }
 
 TEST(VertexNormals, AFlatGridPointsUpExactly) {
-    for (const NormalWeight weight : both_weights) {
+    for (const NormalWeight weight : all_weights) {
         for (const glm::vec3& normal : normals_of(test::grid(4), weight))
             EXPECT_EQ(normal, up);
     }
@@ -108,9 +186,146 @@ TEST(VertexNormals, AngleWeightsGiveACubeItsDiagonalsHoweverItsFacesAreSplit) {
     EXPECT_NEAR(worst_by_area, std::acos(4.0 / std::sqrt(18.0)) * 180.0 / std::numbers::pi, 1e-4);
 }
 
+TEST(VertexNormals, AreTheDefinitionsBitForBit) {
+    const Mesh mesh = bumpy_ball();
+    for (const NormalWeight weight : all_weights) {
+        const auto normals = normals_of(mesh, {weight, Arithmetic::float64, std::nullopt});
+        const auto expected = normals_by_definition(mesh, weight);
+        std::size_t different = 0;
+        for (std::size_t i = 0; i < normals.size(); ++i) {
+            if (std::isnan(expected[i].x)) continue;  // Of a pole's spare vertex.
+            different += normals[i] != expected[i] ? 1 : 0;
+        }
+        EXPECT_EQ(different, 0U) << "weight " << static_cast<int>(weight);
+    }
+}
+
+TEST(VertexNormals, NoInstructionSetChangesABit) {
+    const Mesh mesh = bumpy_ball();
+    for (const NormalWeight weight : all_weights) {
+        for (const Arithmetic arithmetic : {Arithmetic::float64, Arithmetic::float32}) {
+            const auto expected = normals_of(mesh, {weight, arithmetic});
+            for (const char* bits : {"128", "256"}) {
+                const VectorBits narrower(bits);
+                EXPECT_TRUE(test::same_bits(normals_of(mesh, {weight, arithmetic}), expected))
+                    << bits << " bits, weight " << static_cast<int>(weight);
+            }
+        }
+    }
+}
+
+TEST(VertexNormals, MaxIsExactOnEverySphereHoweverItIsCut) {
+    // Any closed polyhedron with its vertices on a sphere [Max 1999]; here with uneven triangles.
+    Mesh mesh = test::sphere(24, 12);
+    for (glm::vec3& p : mesh.positions) {
+        const glm::dvec3 moved =
+            glm::dvec3(p) + 0.06 * glm::dvec3(std::sin(9.0 * p.y), std::sin(8.0 * p.z), p.x * p.y);
+        p = glm::vec3(glm::normalize(moved));
+    }
+    double worst_by_angle = 0.0;
+    const auto by_max = normals_of(mesh, NormalWeight::max);
+    const auto by_angle = normals_of(mesh, NormalWeight::angle);
+    for (std::size_t i = 0; i < by_max.size(); ++i) {
+        // Positions rounded to float lie 6e-8 off the sphere, over edges of 0.05.
+        EXPECT_LE(degrees_between(by_max[i], glm::dvec3(mesh.positions[i])), 3e-4);
+        worst_by_angle =
+            std::max(worst_by_angle, degrees_between(by_angle[i], glm::dvec3(mesh.positions[i])));
+    }
+    EXPECT_GT(worst_by_angle, 0.5);
+}
+
+TEST(VertexNormals, ArithmeticInFloatIsOffByFloatsRounding) {
+    const Mesh mesh = bumpy_ball();
+    for (const NormalWeight weight : all_weights) {
+        const auto exact = normals_of(mesh, {weight, Arithmetic::float64});
+        const auto quick = normals_of(mesh, {weight, Arithmetic::float32});
+        double worst = 0.0;
+        for (std::size_t i = 0; i < exact.size(); ++i)
+            worst = std::max(worst, degrees_between(quick[i], exact[i]));
+        // Edges next to the poles are 0.01 long and at 1 from the origin: 1e-5 of them is rounding.
+        EXPECT_LE(worst, 1e-3) << "weight " << static_cast<int>(weight);
+        EXPECT_GT(worst, 0.0);
+    }
+}
+
+TEST(VertexNormals, ArithmeticInFloatKeepsItsBitsInAnyOrderAndAtAnyScale) {
+    const Mesh mesh = bumpy_ball();
+    const Mesh permuted = test::with_triangle_order(mesh, test::shuffled(mesh.triangles.size()));
+    Mesh scaled = mesh;
+    for (glm::vec3& position : scaled.positions)
+        position *= std::ldexp(1.0F, -90);
+    for (const NormalWeight weight : all_weights) {
+        const NormalOptions options{weight, Arithmetic::float32};
+        const auto expected = normals_of(mesh, options);
+        EXPECT_TRUE(test::same_bits(normals_of(permuted, options), expected));
+        EXPECT_TRUE(test::same_bits(normals_of(scaled, options), expected));
+    }
+}
+
+TEST(VertexNormals, VerticesWithinTheToleranceShareTheirNormal) {
+    // A square and one next to it at right angles, 1e-4 apart along the common edge.
+    const float gap = 1e-4F;
+    const std::vector<glm::vec3> positions = {{-1, 0, 0},  {0, 0, 0},    {0, 1, 0},
+                                              {gap, 0, 0}, {gap, 0, -1}, {gap, 1, 0}};
+    const std::vector<glm::uvec3> triangles = {{0, 1, 2}, {3, 4, 5}};
+    Report report;
+    const auto with = [&](std::optional<double> tolerance) {
+        NormalOptions options;
+        options.weight = NormalWeight::uniform;
+        options.weld_tolerance = tolerance;
+        return vertex_normals(positions, triangles, options, report);
+    };
+    EXPECT_EQ(with(0.0)[1], up);
+    EXPECT_EQ(with(0.9e-4)[1], up);
+    EXPECT_LE(degrees_between(with(1.1e-4)[1], glm::dvec3(1, 0, 1)), float_degrees);
+    EXPECT_EQ(with(1.1e-4)[1], with(1.1e-4)[3]);
+    EXPECT_EQ(with(1.1e-4)[0], up);
+    EXPECT_TRUE(report.empty());
+    EXPECT_THROW(with(-1.0), InvalidInput);
+    EXPECT_THROW(with(std::numeric_limits<double>::quiet_NaN()), InvalidInput);
+}
+
+TEST(VertexNormals, WithoutSharingEveryVertexIsAlone) {
+    const Mesh cube = test::cube();
+    Report report;
+    const auto normals =
+        vertex_normals(cube.positions, cube.triangles,
+                       {NormalWeight::angle, Arithmetic::float64, std::nullopt}, report);
+    EXPECT_EQ(normals, cube.normals);
+}
+
+TEST(ChosenNormals, AreMaxWhereNothingFoldsOver) {
+    const Mesh mesh = bumpy_ball();
+    Report report;
+    const ChosenNormals chosen = chosen_normals(mesh.positions, mesh.triangles, {}, report);
+    EXPECT_EQ(chosen.by_area, 0U);
+    EXPECT_TRUE(test::same_bits(chosen.normals, normals_of(mesh, NormalWeight::max)));
+}
+
+TEST(ChosenNormals, AreAreaAroundAFoldAndMaxElsewhere) {
+    // A flat grid with one vertex pulled over its neighbour: the triangles turned over are the
+    // small ones, which Max's weights listen to most.
+    Mesh mesh = test::grid(8);
+    const std::size_t pulled = 4 * 9 + 4;
+    mesh.positions[pulled] = {0.5F + 0.14F, 0.5F, 0.0F};
+    Report report;
+    const ChosenNormals chosen = chosen_normals(mesh.positions, mesh.triangles, {}, report);
+    const auto by_max = normals_of(mesh, NormalWeight::max);
+    const auto by_area = normals_of(mesh, NormalWeight::area);
+    double worst_by_max = 0.0;
+    for (std::size_t i = 0; i < by_max.size(); ++i) {
+        EXPECT_LE(degrees_between(chosen.normals[i], up), degrees_between(by_area[i], up)) << i;
+        worst_by_max = std::max(worst_by_max, degrees_between(by_max[i], up));
+    }
+    EXPECT_GT(worst_by_max, 90.0);
+    EXPECT_GT(chosen.by_area, 0U);
+    EXPECT_LT(chosen.by_area, 8U);
+    EXPECT_TRUE(report.empty());
+}
+
 TEST(VertexNormals, ATextureSeamDoesNotShow) {
     const Mesh sphere = test::sphere(24, 12);
-    for (const NormalWeight weight : both_weights) {
+    for (const NormalWeight weight : all_weights) {
         const auto normals = normals_of(sphere, weight);
         std::size_t shared = 0;
         for (std::size_t i = 0; i < normals.size(); ++i) {
@@ -176,7 +391,7 @@ TEST(VertexNormals, ASheetWithTwoFacesCancelsPointsUpAndIsCounted) {
     const std::vector<glm::vec3> positions = {
         {0.1F, 0.2F, 0.3F}, {1.3F, 0.1F, 0.7F}, {0.4F, 1.1F, 0.9F}};
     const std::vector<glm::uvec3> triangles = {{0, 1, 2}, {0, 2, 1}};
-    for (const NormalWeight weight : both_weights) {
+    for (const NormalWeight weight : all_weights) {
         Report report;
         const auto normals = vertex_normals(positions, triangles, weight, report);
         for (const glm::vec3& normal : normals)
@@ -217,7 +432,7 @@ TEST(VertexNormals, ANonFiniteVertexDisturbsOnlyItsOwnTriangles) {
 TEST(VertexNormals, ANeedleOfAMillionthHasAnExactNormal) {
     // A needle from the origin, a millionth wide, in the plane x = z; far from the axes in float.
     const std::vector<glm::vec3> positions = {{0, 0, 0}, {1, 0, 1}, {0.5F, 1e-6F, 0.5F}};
-    for (const NormalWeight weight : both_weights) {
+    for (const NormalWeight weight : all_weights) {
         Report report;
         const auto normals =
             vertex_normals(positions, std::vector<glm::uvec3>{{0, 1, 2}}, weight, report);
@@ -229,7 +444,7 @@ TEST(VertexNormals, ANeedleOfAMillionthHasAnExactNormal) {
 
 TEST(VertexNormals, ScaleDoesNotMatter) {
     const Mesh sphere = test::sphere(16, 8);
-    for (const NormalWeight weight : both_weights) {
+    for (const NormalWeight weight : all_weights) {
         const auto expected = normals_of(sphere, weight);
         for (const float scale : {1e-30F, 1e-12F, 1e18F, 1e30F}) {
             Mesh scaled = sphere;
@@ -247,7 +462,7 @@ TEST(VertexNormals, ScaleDoesNotMatter) {
 
 TEST(VertexNormals, ScalingByAPowerOfTwoChangesNoBit) {
     const Mesh sphere = test::sphere(16, 8);
-    for (const NormalWeight weight : both_weights) {
+    for (const NormalWeight weight : all_weights) {
         for (const int exponent : {-60, 60}) {
             Mesh scaled = sphere;
             for (glm::vec3& position : scaled.positions)
@@ -271,7 +486,7 @@ TEST(VertexNormals, AnOffsetCostsOnlyWhatItTakesFromThePositions) {
 TEST(VertexNormals, AreUnitOnEveryHardMesh) {
     for (const test::NamedMesh& hard : test::hard_meshes()) {
         SCOPED_TRACE(hard.name);
-        for (const NormalWeight weight : both_weights)
+        for (const NormalWeight weight : all_weights)
             expect_unit(normals_of(hard.mesh, weight));
         Report report;
         expect_unit(triangle_normals(hard.mesh.positions, hard.mesh.triangles, report));
@@ -289,7 +504,7 @@ TEST(VertexNormals, PermutingTrianglesAndRotatingTheirCornersChangesNoBit) {
             glm::uvec3& triangle = permuted.triangles[i];
             triangle = {triangle.y, triangle.z, triangle.x};
         }
-        for (const NormalWeight weight : both_weights) {
+        for (const NormalWeight weight : all_weights) {
             EXPECT_TRUE(
                 test::same_bits(normals_of(hard.mesh, weight), normals_of(permuted, weight)));
         }
@@ -303,7 +518,7 @@ TEST(VertexNormals, RotateWithTheMesh) {
     Mesh rotated = sphere;
     for (glm::vec3& position : rotated.positions)
         position = rotation * glm::dvec3(position);
-    for (const NormalWeight weight : both_weights) {
+    for (const NormalWeight weight : all_weights) {
         const auto before = normals_of(sphere, weight);
         const auto after = normals_of(rotated, weight);
         for (std::size_t i = 0; i < before.size(); ++i) {
@@ -315,14 +530,20 @@ TEST(VertexNormals, RotateWithTheMesh) {
 
 TEST(VertexNormals, TheNumberOfThreadsChangesNoBit) {
     const Mesh sphere = test::sphere(200, 100);
-    set_thread_limit(1);
-    const auto expected = normals_of(sphere, NormalWeight::angle);
+    for (const NormalWeight weight : all_weights) {
+        set_thread_limit(1);
+        const auto expected = normals_of(sphere, weight);
+        for (const unsigned threads : {2U, 3U, 0U}) {
+            set_thread_limit(threads);
+            EXPECT_TRUE(test::same_bits(normals_of(sphere, weight), expected)) << threads;
+        }
+    }
     set_thread_limit(0);
-    EXPECT_TRUE(test::same_bits(normals_of(sphere, NormalWeight::angle), expected));
 }
 
 TEST(VertexNormals, ApproachTheSphereAtSecondOrder) {
-    for (const NormalWeight weight : both_weights) {
+    for (const NormalWeight weight : all_weights) {
+        if (weight == NormalWeight::max) continue;  // Exact there: only float's rounding is left.
         std::vector<double> errors;
         for (const int stacks : {16, 32, 64, 128}) {
             const Mesh sphere = test::sphere(2 * stacks, stacks);

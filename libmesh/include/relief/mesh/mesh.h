@@ -41,6 +41,9 @@ struct Mesh {
     std::vector<glm::uvec3> triangles;  ///< Vertex indices.
     /// Disjoint, ascending, together all triangles; or empty: one range without a material.
     std::vector<MaterialRange> material_ranges;
+    /// OBJ's, one for each triangle, or empty: edges between triangles of different groups are
+    /// hard, and so are all edges of group 0. Says how normals are to be made, where they are.
+    std::vector<std::uint32_t> smoothing_groups;
 };
 
 /// An axis-aligned box; empty (min > max) until something is inside.

@@ -63,6 +63,7 @@ class ObjParser {
     ObjCorner corner();
     std::int32_t index(std::size_t count, const char* what);
     void use_material();
+    void smoothing_group();
     void check_indices();
 
     const char* at_;
@@ -72,6 +73,7 @@ class ObjParser {
     std::size_t line_ = 1;
     std::size_t object_count_ = 0;
     std::int32_t material_ = -1;
+    std::uint32_t smoothing_group_ = 0;
     std::unordered_map<std::string, std::int32_t> material_numbers_;
     ObjStatements result_;
 };
@@ -194,6 +196,7 @@ void ObjParser::face() {
     ObjFace face;
     face.first_corner = result_.corners.size();
     face.material = material_;
+    face.smoothing_group = smoothing_group_;
     while (!at_line_end())
         result_.corners.push_back(corner());
     face.corner_count = static_cast<std::uint32_t>(result_.corners.size() - face.first_corner);
@@ -245,9 +248,27 @@ void ObjParser::use_material() {
     material_ = entry->second;
 }
 
+/// s off, s 0, s 1, ... and "s on", which some write for 1.
+void ObjParser::smoothing_group() {
+    const std::string_view text = at_line_end() ? std::string_view() : word();
+    result_.has_smoothing_groups = true;
+    smoothing_group_ = 0;
+    if (text == "off") return;
+    if (text == "on") {
+        smoothing_group_ = 1;
+        return;
+    }
+    const auto [stop, error] =
+        std::from_chars(text.data(), text.data() + text.size(), smoothing_group_);
+    if (error != std::errc() || stop != text.data() + text.size() || text.empty()) {
+        report_.add("smoothing group that is no number", "line", line_, "taken as off");
+        smoothing_group_ = 0;
+    }
+}
+
 void ObjParser::statement(std::string_view keyword) {
     static constexpr std::array without_shape = {
-        "g", "s", "vp", "mg", "bevel", "c_interp", "d_interp", "lod", "shadow_obj", "trace_obj"};
+        "g", "vp", "mg", "bevel", "c_interp", "d_interp", "lod", "shadow_obj", "trace_obj"};
     static constexpr std::array free_form = {"cstype", "deg",  "bmat",  "step", "curv", "curv2",
                                              "surf",   "parm", "trim",  "hole", "scrv", "sp",
                                              "end",    "con",  "ctech", "stech"};
@@ -256,6 +277,8 @@ void ObjParser::statement(std::string_view keyword) {
     };
     if (keyword == "usemtl") {
         use_material();
+    } else if (keyword == "s") {
+        smoothing_group();
     } else if (keyword == "mtllib") {
         result_.material_libraries.emplace_back(rest_of_line());
     } else if (keyword == "o") {

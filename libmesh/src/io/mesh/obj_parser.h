@@ -31,6 +31,7 @@ struct ObjFace {
     std::size_t first_corner = 0;
     std::uint32_t corner_count = 0;
     std::int32_t material = -1;  ///< Index into ObjStatements::materials, -1 before any usemtl.
+    std::uint32_t smoothing_group = 0;  ///< 0: off, also before any s.
 };
 
 struct ObjStatements {
@@ -41,6 +42,7 @@ struct ObjStatements {
     std::vector<glm::vec3> normals;
     std::vector<ObjCorner> corners;
     std::vector<ObjFace> faces;
+    bool has_smoothing_groups = false;            ///< Some s says what they are.
     std::vector<std::string> materials;           ///< Names in order of first use.
     std::vector<std::string> material_libraries;  ///< As written after mtllib.
 };
@@ -49,7 +51,8 @@ struct ObjStatements {
 ///
 /// \param file    for messages
 /// \param report  counts points, lines, faces of fewer than three corners, free-form geometry and
-///                unknown statements, all left out; and texture coordinates and normals that are
+///                unknown statements, all left out; smoothing groups that are no number,
+///                taken as off; and texture coordinates and normals that are
 ///                named but do not exist, taken as none
 /// \throws FileError naming the line of a malformed statement or of an index that counts back too
 ///         far, and the face that names a vertex which does not exist

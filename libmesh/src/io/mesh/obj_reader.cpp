@@ -69,14 +69,25 @@ void complete_corners(ObjStatements& statements, Report& report) {
 /// Triangles grouped by material, groups in order of first use, order kept within each. A file that
 /// names no material gets no ranges.
 void group_by_material(const CutPolygons& cut, const ObjStatements& statements, Mesh& mesh) {
+    const auto face_of = [&](std::size_t triangle) -> const ObjFace& {
+        return statements.faces[cut.polygons[triangle]];
+    };
+    if (statements.has_smoothing_groups) mesh.smoothing_groups.resize(cut.triangles.size());
+    const auto place = [&](std::size_t triangle, std::size_t at) {
+        mesh.triangles[at] = cut.triangles[triangle];
+        if (statements.has_smoothing_groups)
+            mesh.smoothing_groups[at] = face_of(triangle).smoothing_group;
+    };
+    mesh.triangles.resize(cut.triangles.size());
     if (statements.materials.empty()) {
-        mesh.triangles = cut.triangles;
+        for (std::size_t i = 0; i < cut.triangles.size(); ++i)
+            place(i, i);
         return;
     }
     // Slot 0 is for triangles before any usemtl, which come first in the file, if at all.
     const std::size_t slot_count = statements.materials.size() + 1;
     const auto slot_of = [&](std::size_t triangle) {
-        return static_cast<std::size_t>(statements.faces[cut.polygons[triangle]].material + 1);
+        return static_cast<std::size_t>(face_of(triangle).material + 1);
     };
     std::vector<std::uint32_t> starts(slot_count + 1, 0);
     for (std::size_t i = 0; i < cut.triangles.size(); ++i)
@@ -89,10 +100,8 @@ void group_by_material(const CutPolygons& cut, const ObjStatements& statements, 
             slot == 0 ? std::nullopt : std::optional(static_cast<std::uint32_t>(slot - 1));
         mesh.material_ranges.push_back({starts[slot], count, material});
     }
-    mesh.triangles.resize(cut.triangles.size());
-    for (std::size_t i = 0; i < cut.triangles.size(); ++i) {
-        mesh.triangles[starts[slot_of(i)]++] = cut.triangles[i];
-    }
+    for (std::size_t i = 0; i < cut.triangles.size(); ++i)
+        place(i, starts[slot_of(i)]++);
 }
 
 }  // namespace

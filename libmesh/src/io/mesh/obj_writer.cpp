@@ -97,6 +97,11 @@ void add_faces(const Mesh& mesh, const MaterialRange& range, std::string& text) 
     const bool has_texcoords = !mesh.texcoords.empty();
     const bool has_normals = !mesh.normals.empty();
     for (std::uint32_t i = 0; i < range.triangle_count; ++i) {
+        if (!mesh.smoothing_groups.empty()) {
+            const std::uint32_t group = mesh.smoothing_groups[range.first_triangle + i];
+            if (i == 0 || group != mesh.smoothing_groups[range.first_triangle + i - 1])
+                fmt::format_to(out, "s {}\n", group);
+        }
         text += 'f';
         const glm::uvec3& triangle = mesh.triangles[range.first_triangle + i];
         for (int k = 0; k < 3; ++k) {

@@ -167,6 +167,28 @@ TEST_F(Obj, TrianglesAreGroupedByMaterialInOrderOfFirstUse) {
     EXPECT_EQ(report_.count("unknown material"), 1U);
 }
 
+TEST_F(Obj, SmoothingGroupsGoWithTheirTrianglesAndComeBack) {
+    const std::string text = three +
+                             "v 1 1 0\nf 1 2 3\ns 4\nusemtl B\nf 1 2 4 3\nusemtl A\ns off\n"
+                             "f 1 2 3\ns on\nf 2 3 4\nusemtl B\ns 4294967295\nf 1 2 3\n";
+    const MeshFile first = read(text);
+    // By material: none; B with its quad and its last; A.
+    EXPECT_THAT(first.mesh.smoothing_groups, ElementsAre(0U, 4U, 4U, 4294967295U, 0U, 1U));
+    write_mesh(folder_ / "b.obj", first);
+    EXPECT_EQ(read_mesh(folder_ / "b.obj", report_).mesh.smoothing_groups,
+              first.mesh.smoothing_groups);
+    EXPECT_THAT(read(three + "f 1 2 3\n").mesh.smoothing_groups, IsEmpty());
+}
+
+TEST_F(Obj, ASmoothingGroupThatIsNoNumberIsOffAndCounted) {
+    for (const char* group : {"seven", "-1", "1.5", "", "4294967296"}) {
+        const Mesh mesh = read(three + "s " + group + "\nf 1 2 3\n").mesh;
+        EXPECT_THAT(mesh.smoothing_groups, ElementsAre(0U)) << group;
+        EXPECT_EQ(report_.count("smoothing group that is no number"), 1U) << group;
+        report_ = {};
+    }
+}
+
 TEST_F(Obj, AMissingMtlFileIsCountedAndNamesSurvive) {
     const MeshFile file = read(three + "mtllib nowhere.mtl\nusemtl steel\nf 1 2 3\n");
     EXPECT_EQ(report_.count("unreadable MTL file"), 1U);

@@ -1,0 +1,222 @@
+// SPDX-License-Identifier: Apache-2.0
+// Parameters (s, t) in [0,1]^2 to a point and its normal; the random numbers are a generator of our
+// own, since those of the standard library's distributions differ between libraries.
+// Tests: tests/mesh/accuracy/analytic_surfaces_test.cpp.
+#include "relief/mesh/analytic_surfaces.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <numbers>
+
+#include "relief/mesh/error.h"
+
+namespace relief {
+namespace {
+
+constexpr double full_turn = 2.0 * std::numbers::pi;
+
+/// [Steele et al. 2014]: each call gives the next number.
+class Random {
+  public:
+    explicit Random(std::uint32_t seed) : state_(seed) {}
+
+    double between(double low, double high) {
+        state_ += 0x9e3779b97f4a7c15ULL;
+        std::uint64_t bits = state_;
+        bits = (bits ^ (bits >> 30)) * 0xbf58476d1ce4e5b9ULL;
+        bits = (bits ^ (bits >> 27)) * 0x94d049bb133111ebULL;
+        bits ^= bits >> 31;
+        return low + (high - low) * (static_cast<double>(bits >> 11) * 0x1p-53);
+    }
+
+  private:
+    std::uint64_t state_;
+};
+
+struct SurfacePoint {
+    glm::dvec3 position;
+    glm::dvec3 normal;
+};
+
+/// Where a surface runs back into itself when a parameter does.
+struct Parametrised {
+    std::function<SurfacePoint(double s, double t)> at;
+    bool s_closes;
+    bool t_closes;
+};
+
+SurfacePoint on_ellipsoid(const glm::dvec3& axes, double s, double t) {
+    // The poles, where triangles do not keep their shape when they shrink, are left out.
+    constexpr double from_pole = 0.15 * std::numbers::pi;
+    const double polar = from_pole + t * (std::numbers::pi - 2.0 * from_pole);
+    const double around = full_turn * s;
+    const glm::dvec3 direction(std::sin(polar) * std::cos(around),
+                               std::sin(polar) * std::sin(around), std::cos(polar));
+    return {axes * direction, glm::normalize(direction / axes)};
+}
+
+SurfacePoint on_torus(double s, double t) {
+    constexpr double minor = 0.4;
+    const double around = full_turn * s;
+    const double across = full_turn * t;
+    const glm::dvec3 out(std::cos(around), std::sin(around), 0.0);
+    const glm::dvec3 normal = std::cos(across) * out + std::sin(across) * glm::dvec3(0.0, 0.0, 1.0);
+    return {out + minor * normal, normal};
+}
+
+/// z = the sum of c[i][j] x^i y^j.
+struct Cubic {
+    std::array<std::array<double, 4>, 4> c{};
+
+    [[nodiscard]] SurfacePoint at(double x, double y) const {
+        double z = 0.0;
+        double along_x = 0.0;
+        double along_y = 0.0;
+        for (int i = 0; i < 4; ++i) {
+            for (int j = 0; i + j < 4; ++j) {
+                const double factor = c[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)];
+                z += factor * std::pow(x, i) * std::pow(y, j);
+                if (i > 0) along_x += factor * i * std::pow(x, i - 1) * std::pow(y, j);
+                if (j > 0) along_y += factor * j * std::pow(x, i) * std::pow(y, j - 1);
+            }
+        }
+        return {{x, y, z}, glm::normalize(glm::dvec3(-along_x, -along_y, 1.0))};
+    }
+};
+
+/// \param lowest  degree of the terms there are: 1 slopes, 2 is level at the origin
+Cubic random_cubic(Random& random, int lowest, double size) {
+    Cubic cubic;
+    for (int i = 0; i < 4; ++i) {
+        for (int j = 0; i + j < 4; ++j) {
+            if (i + j < lowest) continue;
+            cubic.c[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)] =
+                random.between(-size, size);
+        }
+    }
+    return cubic;
+}
+
+Parametrised parametrised(AnalyticSurface surface, Random& random) {
+    const auto over_square = [](auto at) {
+        return [at](double s, double t) { return at(2.0 * s - 1.0, 2.0 * t - 1.0); };
+    };
+    switch (surface) {
+        case AnalyticSurface::sphere:
+            return {[](double s, double t) { return on_ellipsoid(glm::dvec3(1.0), s, t); }, true,
+                    false};
+        case AnalyticSurface::torus:
+            return {on_torus, true, true};
+        case AnalyticSurface::ellipsoid:
+            return {[](double s, double t) {
+                        return on_ellipsoid({1.0, 0.7, 0.4}, s, t);
+                    },
+                    true, false};
+        case AnalyticSurface::saddle: {
+            Cubic saddle;
+            saddle.c[2][0] = 0.5;
+            saddle.c[0][2] = -0.5;
+            return {over_square([=](double x, double y) { return saddle.at(x, y); }), false, false};
+        }
+        case AnalyticSurface::cubic:
+            break;
+    }
+    const Cubic cubic = random_cubic(random, 1, 0.5);
+    return {over_square([=](double x, double y) { return cubic.at(x, y); }), false, false};
+}
+
+/// How far points move, in cells.
+double jitter_of(Triangulation triangulation) {
+    switch (triangulation) {
+        case Triangulation::regular:
+            return 0.0;
+        case Triangulation::jittered:
+        case Triangulation::anisotropic:
+            return 0.24;  // As far as no cell stops being convex.
+        case Triangulation::folded:
+            break;
+    }
+    return 0.6;
+}
+
+}  // namespace
+
+AnalyticMesh analytic_mesh(AnalyticSurface surface, Triangulation triangulation, int cells,
+                           std::uint32_t seed) {
+    if (cells < 4) throw InvalidInput(fmt::format("{} cells are too few: 4 or more", cells));
+    Random random(seed);
+    const Parametrised where = parametrised(surface, random);
+    const bool stretched = triangulation == Triangulation::anisotropic;
+    const int columns = stretched ? 4 * cells : cells;
+    const int rows = stretched ? std::max(cells / 4, 1) : cells;
+    const int across = where.s_closes ? columns : columns + 1;
+    const int down = where.t_closes ? rows : rows + 1;
+
+    AnalyticMesh result;
+    const double jitter = jitter_of(triangulation);
+    for (int r = 0; r < down; ++r) {
+        for (int c = 0; c < across; ++c) {
+            const bool inner = (where.s_closes || (c > 0 && c < columns)) &&
+                               (where.t_closes || (r > 0 && r < rows));
+            const double move_s = inner ? random.between(-jitter, jitter) : 0.0;
+            const double move_t = inner ? random.between(-jitter, jitter) : 0.0;
+            const SurfacePoint point = where.at((c + move_s) / columns, (r + move_t) / rows);
+            result.mesh.positions.emplace_back(point.position);
+            result.normals.push_back(point.normal);
+            result.inner.push_back(inner ? 1 : 0);
+        }
+    }
+    for (int r = 0; r < rows; ++r) {
+        for (int c = 0; c < columns; ++c) {
+            const auto vertex = [&](int column, int row) {
+                return static_cast<std::uint32_t>(row % down * across + column % across);
+            };
+            const std::uint32_t a = vertex(c, r), b = vertex(c + 1, r), d = vertex(c, r + 1),
+                                e = vertex(c + 1, r + 1);
+            const bool other = jitter > 0.0 && random.between(0.0, 1.0) < 0.5;
+            result.mesh.triangles.push_back(other ? glm::uvec3(a, b, d) : glm::uvec3(a, b, e));
+            result.mesh.triangles.push_back(other ? glm::uvec3(b, e, d) : glm::uvec3(a, e, d));
+        }
+    }
+    // Parameters of the sphere and the ellipsoid run clockwise seen from outside.
+    const bool mirrored =
+        surface == AnalyticSurface::sphere || surface == AnalyticSurface::ellipsoid;
+    if (mirrored) {
+        for (glm::uvec3& triangle : result.mesh.triangles)
+            std::swap(triangle.y, triangle.z);
+    }
+    return result;
+}
+
+Mesh cubic_fan(int valence, std::uint32_t seed) {
+    if (valence < 3)
+        throw InvalidInput(fmt::format("{} neighbours are too few: 3 or more", valence));
+    Random random(seed);
+    const Cubic cubic = random_cubic(random, 2, 1.0);
+    std::vector<double> angles;
+    // Drawn again until no gap is half a turn: the vertex must be inside of its neighbours.
+    for (bool closed = false; !closed;) {
+        angles.clear();
+        for (int i = 0; i < valence; ++i)
+            angles.push_back(random.between(0.0, full_turn));
+        std::sort(angles.begin(), angles.end());
+        closed = angles.front() + full_turn - angles.back() < 0.5 * full_turn;
+        for (std::size_t i = 1; i < angles.size(); ++i)
+            closed = closed && angles[i] - angles[i - 1] < 0.5 * full_turn;
+    }
+    Mesh mesh;
+    mesh.positions.emplace_back(0.0F);
+    for (std::uint32_t i = 0; i < angles.size(); ++i) {
+        const double distance = random.between(0.05, 0.2);
+        mesh.positions.emplace_back(
+            cubic.at(distance * std::cos(angles[i]), distance * std::sin(angles[i])).position);
+        mesh.triangles.emplace_back(0, i + 1, (i + 1) % angles.size() + 1);
+    }
+    return mesh;
+}
+
+}  // namespace relief

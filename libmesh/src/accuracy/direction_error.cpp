@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+// Tests: tests/mesh/accuracy/direction_error_test.cpp.
+#include "relief/mesh/direction_error.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "relief/mesh/error.h"
+
+namespace relief {
+
+double degrees_between(const glm::dvec3& a, const glm::dvec3& b) {
+    const double sine = glm::length(glm::cross(a, b));
+    const double cosine = glm::dot(a, b);
+    if (!std::isfinite(sine) || !std::isfinite(cosine) || (sine == 0.0 && cosine == 0.0))
+        return std::numeric_limits<double>::quiet_NaN();
+    return std::atan2(sine, cosine) * 180.0 / std::numbers::pi;
+}
+
+DirectionError direction_error(std::span<const glm::vec3> directions,
+                               std::span<const glm::dvec3> truth,
+                               std::span<const unsigned char> counts) {
+    if (directions.size() != truth.size() ||
+        (!counts.empty() && counts.size() != directions.size())) {
+        throw InvalidInput(fmt::format("{} directions cannot be compared with {}",
+                                       directions.size(), truth.size()));
+    }
+    DirectionError error;
+    double squares = 0.0;
+    for (std::size_t i = 0; i < directions.size(); ++i) {
+        if (!counts.empty() && counts[i] == 0) continue;
+        const double degrees = degrees_between(glm::dvec3(directions[i]), truth[i]);
+        squares += degrees * degrees;
+        error.mean += degrees;
+        // Written so that NaN stays.
+        if (!(degrees <= error.max)) error.max = degrees;
+        ++error.count;
+    }
+    if (error.count == 0) return error;
+    const auto count = static_cast<double>(error.count);
+    error.rms = std::sqrt(squares / count);
+    error.mean /= count;
+    if (std::isnan(error.mean)) error.max = error.mean;
+    return error;
+}
+
+}  // namespace relief
