@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Exact welding by an open-addressed hash table of those that may not be alone. Vertices enter it
-// in ascending order, so that the first of a class, the one that stays in the table, is the one
-// with the smallest index. Tests: tests/mesh/geometry/weld_test.cpp.
+// Exact welding by open-addressed hash tables, one for each value of the hash's upper bits.
+// Vertices enter them in ascending order, so that the first of a class, the one that stays in the
+// table, is the one with the smallest index. Tests: tests/mesh/geometry/weld_test.cpp.
 #include "geometry/weld.h"
 
 #include <algorithm>
@@ -9,6 +9,8 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <numeric>
+#include <utility>
 
 #include "parallel.h"
 
@@ -37,78 +39,82 @@ std::uint64_t hash_of(const std::array<float, N>& key) {
     return hash;
 }
 
-/// A quicker one of 32 bits, which compilers do for several keys at once: good enough to tell most
-/// keys apart, not all.
-template <std::size_t N>
-std::uint32_t quick_hash_of(const std::array<float, N>& key) {
-    std::uint32_t hash = 0;
-    // Turned in between: signs, the highest bits, would cancel otherwise, on every symmetric mesh.
-    for (std::size_t i = 0; i < N; ++i)
-        hash = (std::rotl(hash, 15) ^ std::bit_cast<std::uint32_t>(key[i] + 0.0F)) * 0x9e3779b1U;
-    hash = (hash ^ (hash >> 15)) * 0xc2b2ae3dU;
-    return hash ^ (hash >> 16);
-}
+/// A vertex in the bucket of its hash.
+struct Entry {
+    std::uint32_t hash;
+    std::uint32_t vertex;
+};
 
-/// Tells whether a hash has been seen once or more often; errs towards more often.
-class SeenTwice {
+/// Vertices by the upper bits of their hashes, ascending within each bucket: what is the same is in
+/// the same bucket, and a bucket's table stays in the cache.
+class Buckets {
   public:
-    explicit SeenTwice(std::size_t count)
-        : mask_(std::bit_ceil(slots_each * count + 64) - 1), words_((mask_ + 1) / slots_a_word) {}
-
-    void see(std::uint32_t hash) {
-        std::uint64_t& word = words_[(hash & mask_) / slots_a_word];
-        const std::uint64_t once = std::uint64_t(1) << 2 * (hash % slots_a_word);
-        // The upper of two bits is set where the lower one was already.
-        word |= once | (word & once) << 1;
+    explicit Buckets(std::span<const std::uint32_t> hashes)
+        : shift_(32 -
+                 std::min(most_bits, static_cast<int>(std::bit_width(hashes.size() / usual_size)))),
+          first_((std::size_t(1) << (32 - shift_)) + 1, 0),
+          entries_(hashes.size()) {
+        for (const std::uint32_t hash : hashes)
+            ++first_[bucket_of(hash) + 1];
+        std::partial_sum(first_.begin(), first_.end(), first_.begin());
+        std::vector<std::size_t> end(first_.begin(), first_.end() - 1);
+        for (std::size_t i = 0; i < hashes.size(); ++i)
+            entries_[end[bucket_of(hashes[i])]++] = {hashes[i], static_cast<std::uint32_t>(i)};
     }
-    [[nodiscard]] bool twice(std::uint32_t hash) const {
-        return (words_[(hash & mask_) / slots_a_word] >> (2 * (hash % slots_a_word) + 1) & 1) != 0;
+
+    [[nodiscard]] std::size_t count() const { return first_.size() - 1; }
+    [[nodiscard]] std::span<const Entry> at(std::size_t bucket) const {
+        return std::span(entries_).subspan(first_[bucket], first_[bucket + 1] - first_[bucket]);
     }
 
   private:
-    static constexpr std::size_t slots_each = 8;  // One in nine is taken for another by mistake.
-    static constexpr std::size_t slots_a_word = 32;
-    std::uint64_t mask_;
-    std::vector<std::uint64_t> words_;
+    static constexpr std::size_t usual_size = 4096;
+    static constexpr int most_bits = 10;
+
+    [[nodiscard]] std::size_t bucket_of(std::uint32_t hash) const {
+        return shift_ == 32 ? 0 : hash >> shift_;
+    }
+
+    int shift_;
+    std::vector<std::size_t> first_;
+    std::vector<Entry> entries_;
 };
 
 /// `key_of(i)` gives the numbers of vertex i as an array of floats.
-///
-/// Most vertices are alone, and two bits each, which fit the second cache, are enough to see that.
-/// Only the others go through a hash table.
 template <typename KeyOf>
 std::vector<std::uint32_t> weld(std::size_t count, const KeyOf& key_of) {
-    constexpr std::size_t at_once = 128;
-    std::array<std::uint32_t, at_once> hashes;
-    const auto for_hashes = [&](const auto& use) {
-        for (std::size_t first = 0; first < count; first += at_once) {
-            const std::size_t size = std::min(at_once, count - first);
-            for (std::size_t i = 0; i < size; ++i)
-                hashes[i] = quick_hash_of(key_of(first + i));
-            for (std::size_t i = 0; i < size; ++i)
-                use(first + i, hashes[i]);
+    constexpr std::size_t grain = 8192;
+    std::vector<std::uint32_t> hashes(count);
+    parallel_for(count, grain, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            const auto key = key_of(i);
+            // A NaN equals nothing: by a hash of the index they do not pile up.
+            hashes[i] = static_cast<std::uint32_t>(key == key ? hash_of(key) : mixed(i + 1));
         }
-    };
-    SeenTwice seen(count);
-    for_hashes([&](std::size_t, std::uint32_t hash) { seen.see(hash); });
-    std::vector<std::uint32_t> representatives(count);
-    std::vector<std::uint32_t> candidates;
-    for_hashes([&](std::size_t i, std::uint32_t hash) {
-        representatives[i] = static_cast<std::uint32_t>(i);
-        if (seen.twice(hash)) candidates.push_back(static_cast<std::uint32_t>(i));
     });
-
-    const std::size_t slots = std::bit_ceil(2 * candidates.size() + 1);
-    std::vector<std::uint32_t> table(slots, nobody);
-    for (const std::uint32_t i : candidates) {
-        const auto key = key_of(i);
-        if (key != key) continue;  // A NaN: alone, and not in the table, where it would pile up.
-        std::size_t slot = hash_of(key) & (slots - 1);
-        while (table[slot] != nobody && key_of(table[slot]) != key)
-            slot = (slot + 1) & (slots - 1);
-        if (table[slot] == nobody) table[slot] = i;
-        representatives[i] = table[slot];
-    }
+    const Buckets buckets(hashes);
+    std::vector<std::uint32_t> representatives = std::move(hashes);
+    std::iota(representatives.begin(), representatives.end(), 0U);
+    parallel_for(buckets.count(), 4, [&](std::size_t begin, std::size_t end) {
+        std::vector<Entry> table;
+        for (std::size_t b = begin; b < end; ++b) {
+            const std::span<const Entry> bucket = buckets.at(b);
+            const std::size_t slots = std::bit_ceil(2 * bucket.size() + 1);
+            table.assign(slots, {0, nobody});
+            for (const Entry& entry : bucket) {
+                // Positions are far apart in memory: they are looked at only where hashes agree.
+                std::size_t slot = entry.hash & (slots - 1);
+                while (table[slot].vertex != nobody &&
+                       (table[slot].hash != entry.hash ||
+                        key_of(table[slot].vertex) != key_of(entry.vertex)))
+                    slot = (slot + 1) & (slots - 1);
+                if (table[slot].vertex == nobody)
+                    table[slot] = entry;
+                else
+                    representatives[entry.vertex] = table[slot].vertex;
+            }
+        }
+    });
     return representatives;
 }
 
