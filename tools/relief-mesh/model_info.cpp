@@ -120,6 +120,10 @@ void describe(const MeshFile& contents, ModelInfo& info) {
     add_materials(info, contents.materials);
     add_part(info, contents.mesh.name, contents.mesh);
     info.bounds = info.parts.front().bounds;
+    if (!info.bounds.empty()) {
+        info.bounds.min = glm::vec3(glm::dvec3(info.bounds.min) + contents.origin);
+        info.bounds.max = glm::vec3(glm::dvec3(info.bounds.max) + contents.origin);
+    }
     info.instances = 1;
 }
 

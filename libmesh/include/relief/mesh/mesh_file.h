@@ -44,6 +44,9 @@ struct MtlMaterial {
 struct MeshFile {
     Mesh mesh;
     std::vector<MtlMaterial> materials;
+    /// Positions of the mesh are relative to this: add it for the coordinates of the file. Zero but
+    /// for files far from 0 whose digits floats could not hold otherwise.
+    glm::dvec3 origin{0.0};
 };
 
 /// Reads OBJ, PLY, STL or OFF, by extension.
@@ -60,6 +63,9 @@ struct MeshFile {
 /// they follow from the positions. v is turned to the upper left origin: all these formats are
 /// written with v upwards. OBJ triangles are grouped by material, in order of first use.
 ///
+/// Numbers written in text or as doubles whose digits floats cannot hold, because the mesh is
+/// further from 0 than 16 times its size, are kept relative to an origin near it, which is counted.
+///
 /// \param report  counts faces of fewer than three corners (left out), polygons that no ear cut
 ///                fits (cut as fans), corners that lack what others have (filled in), points, lines
 ///                and whatever else is left out, unknown materials and unreadable MTL files
@@ -72,9 +78,10 @@ MeshFile read_mesh(const std::filesystem::path& file, Report& report);
 /// Writes OBJ (with MTL where there are materials) or binary PLY, by extension.
 ///
 /// Positions, normals, texture coordinates (v turned back upwards), colours and, in OBJ, materials.
-/// Numbers in OBJ read back as the same floats (v closer to 0 than 2e-9 within 1.2e-16); so they do
-/// in PLY, but for v, within 6e-8. Tangents have no place in either and are left out.
-/// \throws FileError if it cannot be written; InvalidInput for another extension, or
+/// Positions are written with the origin added, in PLY as doubles where there is one. Numbers in
+/// OBJ read back as the same floats (v closer to 0 than 2e-9 within 1.2e-16); so they do in PLY,
+/// but for v, within 6e-8. Tangents have no place in either and are left out. \throws FileError if
+/// it cannot be written; InvalidInput for another extension, or
 ///         if the mesh is not valid or names a material that is not there
 ///
 /// Written beside and renamed: a failure leaves no half file and the old one unharmed.

@@ -208,6 +208,8 @@ GltfContents DocumentMaker::make() {
     root["scene"] = 0;
     root["scenes"] = Json::array({{{"nodes", {0}}}});
     root["nodes"] = Json::array({{{"mesh", 0}}});
+    if (file_.origin != glm::dvec3(0.0))
+        root["nodes"][0]["translation"] = {file_.origin.x, file_.origin.y, file_.origin.z};
     root["meshes"] = Json::array({{{"primitives", Json::array()}}});
     if (!mesh.name.empty()) {
         root["nodes"][0]["name"] = mesh.name;

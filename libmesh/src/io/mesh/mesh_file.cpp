@@ -10,6 +10,7 @@
 #include <new>
 
 #include "file_bytes.h"
+#include "io/mesh/far_positions.h"
 #include "io/mesh/obj_reader.h"
 #include "io/mesh/obj_writer.h"
 #include "io/mesh/ply_reader.h"
@@ -23,10 +24,10 @@ namespace relief {
 MeshFile read_mesh(const std::filesystem::path& file, Report& report) {
     const std::string extension = lower_extension(file);
     try {
-        if (extension == ".obj") return read_obj(file, report);
-        if (extension == ".ply") return read_ply(file, report);
-        if (extension == ".stl") return read_stl(file, report);
-        if (extension == ".off") return read_off(file, report);
+        if (extension == ".obj") return read_near(file, read_obj, report);
+        if (extension == ".ply") return read_near(file, read_ply, report);
+        if (extension == ".stl") return read_near(file, read_stl, report);
+        if (extension == ".off") return read_near(file, read_off, report);
     } catch (const std::bad_alloc&) {
         throw FileError(file, "needs more memory than there is");
     }

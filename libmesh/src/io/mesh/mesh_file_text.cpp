@@ -75,6 +75,17 @@ void TextScanner::fail_at(std::string_view text, const char* wanted) const {
                       : fmt::format("{} stands where {} should be", quoted(text), wanted));
 }
 
+glm::vec3 position_in(TextScanner& text, const glm::dvec3& origin) {
+    if (origin == glm::dvec3(0.0)) {
+        const auto x = text.number<float>();
+        const auto y = text.number<float>();
+        return {x, y, text.number<float>()};
+    }
+    const auto x = text.number<double>();
+    const auto y = text.number<double>();
+    return glm::vec3(glm::dvec3(x, y, text.number<double>()) - origin);
+}
+
 std::string quoted(std::string_view word) {
     std::string result = "'";
     for (const char c : word.substr(0, 40))

@@ -9,6 +9,7 @@
 #include <charconv>
 #include <cstdlib>
 #include <filesystem>
+#include <glm/glm.hpp>
 #include <limits>
 #include <optional>
 #include <string>
@@ -83,6 +84,9 @@ class TextScanner {
     char comment_;
     std::size_t line_ = 1;
 };
+
+/// The next three numbers, less the origin, rounded once. \throws FileError as number() does
+glm::vec3 position_in(TextScanner& text, const glm::dvec3& origin);
 
 /// A word of a file for a message: at most 40 characters, in quotes, unprintable ones as '?'.
 std::string quoted(std::string_view word);

@@ -36,8 +36,14 @@ bool looks_like_utf16(std::string_view text) {
 /// Reads one statement after the other. A backslash at the end of a line joins the next one to it.
 class ObjParser {
   public:
-    ObjParser(std::string_view text, const std::filesystem::path& file, Report& report)
-        : at_(text.data()), end_(text.data() + text.size()), file_(file), report_(report) {}
+    ObjParser(std::string_view text, const std::filesystem::path& file, const glm::dvec3& origin,
+              Report& report)
+        : at_(text.data()),
+          end_(text.data() + text.size()),
+          file_(file),
+          origin_(origin),
+          is_far_(origin != glm::dvec3(0.0)),
+          report_(report) {}
 
     ObjStatements parse();
 
@@ -69,6 +75,8 @@ class ObjParser {
     const char* at_;
     const char* end_;
     const std::filesystem::path& file_;
+    glm::dvec3 origin_;
+    bool is_far_;
     Report& report_;
     std::size_t line_ = 1;
     std::size_t object_count_ = 0;
@@ -212,6 +220,10 @@ void ObjParser::face() {
 void ObjParser::vertex() {
     std::array<float, 7> values{};
     std::size_t count = 0;
+    if (is_far_) {
+        for (; count < 3 && !at_line_end(); ++count)
+            values[count] = static_cast<float>(number<double>() - origin_[static_cast<int>(count)]);
+    }
     while (count < values.size() && !at_line_end())
         values[count++] = number<float>();
     if (count < 3) fail(fmt::format("a vertex has {} coordinates instead of 3", count));
@@ -347,12 +359,13 @@ ObjStatements ObjParser::parse() {
 
 }  // namespace
 
-ObjStatements parse_obj(std::string_view text, const std::filesystem::path& file, Report& report) {
+ObjStatements parse_obj(std::string_view text, const std::filesystem::path& file,
+                        const glm::dvec3& origin, Report& report) {
     if (looks_like_utf16(text)) {
         throw FileError(file, "is UTF-16 text; save it as UTF-8");
     }
     if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
-    return ObjParser(text, file, report).parse();
+    return ObjParser(text, file, origin, report).parse();
 }
 
 }  // namespace relief

@@ -50,12 +50,14 @@ struct ObjStatements {
 /// Reads the text of an OBJ file: UTF-8 or Latin, any line ending, continued lines.
 ///
 /// \param file    for messages
+/// \param origin  taken off the positions before they are rounded to float
 /// \param report  counts points, lines, faces of fewer than three corners, free-form geometry and
 ///                unknown statements, all left out; smoothing groups that are no number,
 ///                taken as off; and texture coordinates and normals that are
 ///                named but do not exist, taken as none
 /// \throws FileError naming the line of a malformed statement or of an index that counts back too
 ///         far, and the face that names a vertex which does not exist
-ObjStatements parse_obj(std::string_view text, const std::filesystem::path& file, Report& report);
+ObjStatements parse_obj(std::string_view text, const std::filesystem::path& file,
+                        const glm::dvec3& origin, Report& report);
 
 }  // namespace relief

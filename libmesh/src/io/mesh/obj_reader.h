@@ -4,6 +4,7 @@
 #pragma once
 
 #include <filesystem>
+#include <glm/glm.hpp>
 
 #include "relief/mesh/mesh_file.h"
 #include "relief/mesh/report.h"
@@ -11,6 +12,7 @@
 namespace relief {
 
 /// See read_mesh in mesh_file.h.
-MeshFile read_obj(const std::filesystem::path& file, Report& report);
+/// \param origin  taken off the positions before they are rounded to float
+MeshFile read_obj(const std::filesystem::path& file, const glm::dvec3& origin, Report& report);
 
 }  // namespace relief

@@ -71,13 +71,18 @@ std::string mtl_text(const MeshFile& contents, const std::vector<std::string>& n
     return text;
 }
 
-void add_vertices(const Mesh& mesh, std::string& text) {
+void add_vertices(const Mesh& mesh, const glm::dvec3& origin, std::string& text) {
     auto out = std::back_inserter(text);
     const bool has_alpha = std::any_of(mesh.colors.begin(), mesh.colors.end(),
                                        [](const glm::vec4& color) { return color.a != 1.0F; });
     for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
         const glm::vec3& p = mesh.positions[i];
-        fmt::format_to(out, "v {} {} {}", p.x, p.y, p.z);
+        if (origin == glm::dvec3(0.0)) {
+            fmt::format_to(out, "v {} {} {}", p.x, p.y, p.z);
+        } else {
+            const glm::dvec3 far = origin + glm::dvec3(p);
+            fmt::format_to(out, "v {} {} {}", far.x, far.y, far.z);
+        }
         if (!mesh.colors.empty()) {
             const glm::vec4& c = mesh.colors[i];
             fmt::format_to(out, " {} {} {}", c.r, c.g, c.b);
@@ -150,7 +155,7 @@ void write_obj(const std::filesystem::path& file, const MeshFile& contents) {
             name.begin(), name.end(), [](char c) { return c == '\n' || c == '\r'; }, ' ');
         text += fmt::format("o {}\n", name);
     }
-    add_vertices(mesh, text);
+    add_vertices(mesh, contents.origin, text);
     for (const MaterialRange& range : ranges_without_material_first(mesh)) {
         if (range.material) text += fmt::format("usemtl {}\n", names[*range.material]);
         add_faces(mesh, range, text);

@@ -94,8 +94,9 @@ struct PlyData {
 template <typename Values>
 class PlyElements {
   public:
-    PlyElements(Values values, const std::filesystem::path& file, Report& report)
-        : values_(values), file_(file), report_(report) {}
+    PlyElements(Values values, const std::filesystem::path& file, const glm::dvec3& origin,
+                Report& report)
+        : values_(values), file_(file), origin_(origin), report_(report) {}
 
     PlyData read(const PlyHeader& header) {
         for (const PlyElement& element : header.elements) {
@@ -166,6 +167,7 @@ class PlyElements {
 
     Values values_;
     const std::filesystem::path& file_;
+    glm::dvec3 origin_;
     Report& report_;
     PlyData data_;
 };
@@ -198,7 +200,7 @@ void PlyElements<Values>::read_vertices(const PlyElement& element) {
             }
         }
         end_element(element, i);
-        mesh.positions.emplace_back(row[x], row[y], row[z]);
+        mesh.positions.emplace_back(glm::dvec3(row[x], row[y], row[z]) - origin_);
         if (has[nx] && has[ny] && has[nz]) mesh.normals.emplace_back(row[nx], row[ny], row[nz]);
         if (has[red] && has[green] && has[blue]) {
             mesh.colors.emplace_back(row[red], row[green], row[blue], row[alpha]);
@@ -294,32 +296,36 @@ void unify_corners(PlyData& data, const std::filesystem::path& file) {
 }
 
 PlyData read_data(const PlyHeader& header, std::string_view bytes,
-                  const std::filesystem::path& file, Report& report) {
+                  const std::filesystem::path& file, const glm::dvec3& origin, Report& report) {
     switch (header.format) {
         case PlyFormat::ascii:
-            return PlyElements(PlyTextValues(bytes, file), file, report).read(header);
+            return PlyElements(PlyTextValues(bytes, file), file, origin, report).read(header);
         case PlyFormat::little_endian:
-            return PlyElements(PlyBinaryValues<false>(bytes, file), file, report).read(header);
+            return PlyElements(PlyBinaryValues<false>(bytes, file), file, origin, report)
+                .read(header);
         default:
-            return PlyElements(PlyBinaryValues<true>(bytes, file), file, report).read(header);
+            return PlyElements(PlyBinaryValues<true>(bytes, file), file, origin, report)
+                .read(header);
     }
 }
 
 }  // namespace
 
-MeshFile read_ply(const std::filesystem::path& file, Report& report) {
+MeshFile read_ply(const std::filesystem::path& file, const glm::dvec3& origin, Report& report) {
     static_assert(std::endian::native == std::endian::little);
     const std::string bytes = read_file(file);
     const PlyHeader header = parse_ply_header(bytes, file);
     PlyData data =
-        read_data(header, std::string_view(bytes).substr(header.data_begin), file, report);
+        read_data(header, std::string_view(bytes).substr(header.data_begin), file, origin, report);
     if (!data.corner_texcoords.empty()) {
         data.corner_texcoords.resize(data.polygons.corners.size());
         unify_corners(data, file);
     }
     data.mesh.name = file.stem().string();
     add_triangles(data.mesh, data.polygons, file, report);
-    return {std::move(data.mesh), {}};
+    MeshFile result;
+    result.mesh = std::move(data.mesh);
+    return result;
 }
 
 }  // namespace relief

@@ -9,6 +9,7 @@
 #pragma once
 
 #include <filesystem>
+#include <glm/glm.hpp>
 
 #include "relief/mesh/mesh_file.h"
 #include "relief/mesh/report.h"
@@ -21,6 +22,7 @@ namespace relief {
 /// Texture coordinates are s t, u v or texture_u texture_v, with v upwards, as Blender, MeshLab and
 /// others write them (the format itself does not say); v is turned here. Integer colours, normals
 /// and texture coordinates are divided by the largest value of their type.
-MeshFile read_ply(const std::filesystem::path& file, Report& report);
+/// \param origin  taken off the positions before they are rounded to float
+MeshFile read_ply(const std::filesystem::path& file, const glm::dvec3& origin, Report& report);
 
 }  // namespace relief

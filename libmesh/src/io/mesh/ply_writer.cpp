@@ -27,14 +27,14 @@ bool are_bytes(const std::vector<glm::vec4>& colors) {
     });
 }
 
-std::string header_text(const Mesh& mesh, bool has_byte_colors) {
+std::string header_text(const Mesh& mesh, bool is_far, bool has_byte_colors) {
     std::string text = fmt::format("ply\nformat binary_little_endian 1.0\nelement vertex {}\n",
                                    mesh.positions.size());
     const auto properties = [&](const char* type, std::initializer_list<const char*> names) {
         for (const char* name : names)
             text += fmt::format("property {} {}\n", type, name);
     };
-    properties("float", {"x", "y", "z"});
+    properties(is_far ? "double" : "float", {"x", "y", "z"});
     if (!mesh.normals.empty()) properties("float", {"nx", "ny", "nz"});
     if (!mesh.texcoords.empty()) properties("float", {"s", "t"});
     if (!mesh.colors.empty()) {
@@ -59,10 +59,14 @@ void write_ply(const std::filesystem::path& file, const MeshFile& contents) {
     static_assert(std::endian::native == std::endian::little);
     const Mesh& mesh = contents.mesh;
     const bool has_byte_colors = are_bytes(mesh.colors);
-    std::string bytes = header_text(mesh, has_byte_colors);
+    const bool is_far = contents.origin != glm::dvec3(0.0);
+    std::string bytes = header_text(mesh, is_far, has_byte_colors);
     bytes.reserve(bytes.size() + mesh.positions.size() * 48 + mesh.triangles.size() * 13);
     for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
-        append(bytes, mesh.positions[i]);
+        if (is_far)
+            append(bytes, contents.origin + glm::dvec3(mesh.positions[i]));
+        else
+            append(bytes, mesh.positions[i]);
         if (!mesh.normals.empty()) append(bytes, mesh.normals[i]);
         if (!mesh.texcoords.empty()) {
             append(bytes, glm::vec2(mesh.texcoords[i].x, 1.0F - mesh.texcoords[i].y));

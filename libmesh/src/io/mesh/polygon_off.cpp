@@ -83,10 +83,8 @@ glm::vec4 color_of(const std::vector<LineNumber>& numbers) {
     return are_fractions ? color : color / 255.0F;
 }
 
-void read_vertex(TextScanner& text, const OffHeader& header, Mesh& mesh) {
-    const auto x = text.number<float>();
-    const auto y = text.number<float>();
-    mesh.positions.emplace_back(x, y, text.number<float>());
+void read_vertex(TextScanner& text, const OffHeader& header, const glm::dvec3& origin, Mesh& mesh) {
+    mesh.positions.push_back(position_in(text, origin));
     if (header.has_normals) {
         const auto nx = text.number<float>();
         const auto ny = text.number<float>();
@@ -121,13 +119,13 @@ void read_face(TextScanner& text, Polygons& polygons) {
 
 }  // namespace
 
-MeshFile read_off(const std::filesystem::path& file, Report& report) {
+MeshFile read_off(const std::filesystem::path& file, const glm::dvec3& origin, Report& report) {
     const std::string bytes = read_file(file);
     TextScanner text(bytes, file, '#');
     const OffHeader header = parse_header(text, bytes.size());
     MeshFile result;
     for (std::uint64_t i = 0; i < header.vertex_count; ++i)
-        read_vertex(text, header, result.mesh);
+        read_vertex(text, header, origin, result.mesh);
     Polygons polygons;
     for (std::uint64_t i = 0; i < header.face_count; ++i)
         read_face(text, polygons);

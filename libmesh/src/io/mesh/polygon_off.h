@@ -5,6 +5,7 @@
 #pragma once
 
 #include <filesystem>
+#include <glm/glm.hpp>
 
 #include "relief/mesh/mesh_file.h"
 #include "relief/mesh/report.h"
@@ -16,6 +17,7 @@ namespace relief {
 ///
 /// Why not OpenMesh's reader: version 9 fills the rest of the file with stale numbers after a NaN,
 /// believes any count, and finds nothing if the counts stand behind "OFF".
-MeshFile read_off(const std::filesystem::path& file, Report& report);
+/// \param origin  taken off the positions before they are rounded to float
+MeshFile read_off(const std::filesystem::path& file, const glm::dvec3& origin, Report& report);
 
 }  // namespace relief

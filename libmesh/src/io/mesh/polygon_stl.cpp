@@ -41,13 +41,15 @@ class CornerWelder {
     KeyNumbers<3> numbers_;
 };
 
-Mesh read_binary(std::string_view bytes, std::size_t count) {
+Mesh read_binary(std::string_view bytes, std::size_t count, const glm::dvec3& origin) {
     CornerWelder welder(count / 2);
     Mesh mesh;
     mesh.triangles.reserve(count);
     for (std::size_t i = 0; i < count; ++i) {
         std::array<glm::vec3, 4> facet;  // The normal, then three corners.
         std::memcpy(facet.data(), bytes.data() + header_size + i * facet_size, sizeof(facet));
+        for (glm::vec3& corner : facet)
+            corner = glm::vec3(glm::dvec3(corner) - origin);
         const std::uint32_t a = welder.vertex_at(facet[1]);
         const std::uint32_t b = welder.vertex_at(facet[2]);
         mesh.triangles.emplace_back(a, b, welder.vertex_at(facet[3]));
@@ -56,16 +58,15 @@ Mesh read_binary(std::string_view bytes, std::size_t count) {
     return mesh;
 }
 
-Mesh read_ascii(std::string_view bytes, const std::filesystem::path& file) {
+Mesh read_ascii(std::string_view bytes, const std::filesystem::path& file,
+                const glm::dvec3& origin) {
     TextScanner text(bytes, file);
     CornerWelder welder(bytes.size() / 256);
     Mesh mesh;
     std::vector<std::uint32_t> corners;
     for (std::string_view word = text.word(); !word.empty(); word = text.word()) {
         if (equal_ignoring_case(word, "vertex")) {
-            const auto x = text.number<float>();
-            const auto y = text.number<float>();
-            corners.push_back(welder.vertex_at({x, y, text.number<float>()}));
+            corners.push_back(welder.vertex_at(position_in(text, origin)));
         } else if (equal_ignoring_case(word, "endloop")) {
             if (corners.size() != 3) {
                 text.fail(fmt::format("a facet has {} corners instead of 3", corners.size()));
@@ -97,7 +98,7 @@ bool says_that_it_is_ascii(std::string_view bytes, const std::filesystem::path& 
 
 }  // namespace
 
-MeshFile read_stl(const std::filesystem::path& file, Report& report) {
+MeshFile read_stl(const std::filesystem::path& file, const glm::dvec3& origin, Report& report) {
     const std::string bytes = read_file(file);
     std::uint32_t count = 0;
     if (bytes.size() >= header_size) {
@@ -106,12 +107,12 @@ MeshFile read_stl(const std::filesystem::path& file, Report& report) {
     const std::uint64_t binary_size = header_size + std::uint64_t{count} * facet_size;
     MeshFile result;
     if (bytes.size() >= header_size && binary_size == bytes.size()) {
-        result.mesh = read_binary(bytes, count);
+        result.mesh = read_binary(bytes, count, origin);
     } else if (says_that_it_is_ascii(bytes, file)) {
-        result.mesh = read_ascii(bytes, file);
+        result.mesh = read_ascii(bytes, file, origin);
     } else if (bytes.size() >= header_size && binary_size < bytes.size()) {
         report.add("bytes behind the last triangle", "byte", binary_size, "left out");
-        result.mesh = read_binary(bytes, count);
+        result.mesh = read_binary(bytes, count, origin);
     } else {
         throw FileError(file, fmt::format("is neither ASCII STL nor binary: {} triangles need {} "
                                           "bytes, but there are only {}",

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <filesystem>
+#include <glm/glm.hpp>
 
 #include "relief/mesh/mesh_file.h"
 #include "relief/mesh/report.h"
@@ -14,6 +15,7 @@ namespace relief {
 ///
 /// Why not OpenMesh's reader: version 9 drops triangles smaller than 1e-38 and those with NaN, and
 /// reads files that are cut short or have bytes behind the last triangle as empty ones.
-MeshFile read_stl(const std::filesystem::path& file, Report& report);
+/// \param origin  taken off the positions before they are rounded to float
+MeshFile read_stl(const std::filesystem::path& file, const glm::dvec3& origin, Report& report);
 
 }  // namespace relief
