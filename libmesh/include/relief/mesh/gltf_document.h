@@ -187,8 +187,8 @@ class GltfDocument {
     /// (2 / (Ns + 2))^(1/4), metallic 0, Ke to emission (KHR_materials_emissive_strength above 1),
     /// norm to the normal map. Images are embedded as they are; bump maps (heights), specular and
     /// opacity maps have no place in glTF and are left out. Normals of other than unit length,
-    /// which OBJ allows, are scaled. The origin of the file becomes the node's translation. \throws FileError if an image is missing or neither PNG nor
-    /// JPEG; InvalidInput if the mesh is
+    /// which OBJ allows, are scaled. The origin of the file becomes the node's translation. \throws
+    /// FileError if an image is missing or neither PNG nor JPEG; InvalidInput if the mesh is
     ///         not valid, has no triangle or names a material that is not there
     static GltfDocument from_mesh(const MeshFile& contents);
 
