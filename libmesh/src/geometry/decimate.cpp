@@ -184,6 +184,8 @@ FramedMesh gathered(const Mesh& mesh, const Remains& remains, Report& report) {
         const auto& triangle = remains.triangles[t];
         if (!triangle) continue;
         small.triangles.emplace_back(place[triangle->x], place[triangle->y], place[triangle->z]);
+        if (!mesh.smoothing_groups.empty())
+            small.smoothing_groups.push_back(mesh.smoothing_groups[t]);
         if (!small.material_ranges.empty()) ++small.material_ranges[parts[t]].triangle_count;
     }
     std::uint32_t first = 0;

@@ -189,6 +189,13 @@ void cut_triangles(Mesh& mesh, const Cut& cut, std::size_t vertex_count) {
         }
         first_of[t + 1] = static_cast<std::uint32_t>(triangles.size());
     }
+    if (!mesh.smoothing_groups.empty()) {
+        std::vector<std::uint32_t> groups;
+        groups.reserve(triangles.size());
+        for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+            groups.resize(first_of[t + 1], mesh.smoothing_groups[t]);
+        mesh.smoothing_groups = std::move(groups);
+    }
     for (MaterialRange& range : mesh.material_ranges) {
         const std::uint32_t end = range.first_triangle + range.triangle_count;
         range.first_triangle = first_of[range.first_triangle];

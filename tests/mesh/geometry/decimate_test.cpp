@@ -195,6 +195,25 @@ TEST(Decimate, MaterialsKeepTheirBordersAndRanges) {
     EXPECT_EQ(small.material_ranges[1].material, 1U);
 }
 
+TEST(Decimate, SmoothingGroupsGoWithTheirTriangles) {
+    // By material left and right of the middle, and by the same halves in smoothing groups.
+    Mesh sphere = test::sphere(32, 16);
+    const auto half = static_cast<std::uint32_t>(sphere.triangles.size() / 2);
+    sphere.material_ranges = {{0, half, 0U}, {half, half, 1U}};
+    sphere.smoothing_groups.assign(sphere.triangles.size(), 3);
+    std::fill(sphere.smoothing_groups.begin() + half, sphere.smoothing_groups.end(), 5);
+    DecimateOptions options;
+    options.triangles = 200;
+    Report report;
+    const Mesh small = decimated(sphere, options, report).mesh;
+    ASSERT_EQ(small.smoothing_groups.size(), small.triangles.size());
+    ASSERT_EQ(small.material_ranges.size(), 2U);
+    for (std::size_t t = 0; t < small.triangles.size(); ++t) {
+        const bool is_first = t < small.material_ranges[0].triangle_count;
+        EXPECT_EQ(small.smoothing_groups[t], is_first ? 3U : 5U) << t;
+    }
+}
+
 TEST(Decimate, ATextureIslandOfOneTriangleDoesNotVanish) {
     Mesh grid = test::grid(8);
     const auto last = static_cast<std::uint32_t>(grid.triangles.size() - 1);

@@ -211,6 +211,16 @@ TEST(Subdivide, ColoursAreMixedAndFarFromTheOriginNothingIsLost) {
         EXPECT_NEAR(far.positions[v].x - 0x1p20F, near.positions[v].x, 0.0626) << "half an ulp";
 }
 
+TEST(Subdivide, SmoothingGroupsGoWithTheirTriangles) {
+    Mesh sheet = test::grid(2);
+    sheet.smoothing_groups = {1, 1, 1, 1, 0, 7, 7, 7};
+    Report report;
+    const Mesh fine = subdivided(sheet, 2, {}, report);
+    ASSERT_EQ(fine.smoothing_groups.size(), 8U * 16U);
+    for (std::size_t t = 0; t < fine.triangles.size(); ++t)
+        EXPECT_EQ(fine.smoothing_groups[t], sheet.smoothing_groups[t / 16]) << t;
+}
+
 TEST(Subdivide, EmptyAndOneTriangle) {
     Report report;
     EXPECT_TRUE(subdivided({}, 3, {}, report).triangles.empty());

@@ -32,8 +32,9 @@ struct DecimateOptions {
 ///                simplified (non-manifold edges and their ends, triangles with a non-finite
 ///                corner), and a number of triangles that could not be reached
 /// \return a subset of the vertices with all they carry, in their order, and fewer triangles, in
-///         the order and material ranges of those that they were; `source_vertex` names the input's
-///         vertex for each. With `frames` other than keep, vertices may be split on top of that.
+///         the order, material ranges and smoothing groups of those they were; `source_vertex`
+///         names the input's vertex for each. With `frames` other than keep, vertices may be split
+///         on top of that.
 /// \throws InvalidInput if the mesh is not valid, no limit is given or one is out of range, or as
 ///         with_frames does
 ///

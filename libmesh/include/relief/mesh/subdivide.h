@@ -19,7 +19,8 @@ namespace relief {
 /// \param report  counts collapsed triangles, which are left out; triangles with a non-finite
 ///                corner, which stay as they are; non-manifold edges
 /// \return the input's vertices first, in their order, then those at the middles of edges.
-///         Triangles follow each other as those they were cut from do, material ranges with them
+///         Triangles follow each other as those they were cut from do, material ranges and
+///         smoothing groups with them
 /// \throws InvalidInput if the mesh is not valid, or `levels` is out of range
 ///
 /// Texture coordinates and colours at a new vertex are the mean of the edge's ends, on each side of
