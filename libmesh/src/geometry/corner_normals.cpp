@@ -13,7 +13,6 @@
 #include "geometry/corners.h"
 #include "geometry/normal_sums.h"
 #include "geometry/smooth_fans.h"
-#include "parallel.h"
 #include "relief/mesh/error.h"
 #include "relief/mesh/normals.h"
 
@@ -43,19 +42,6 @@ std::vector<glm::uvec3> over_places(std::span<const glm::uvec3> triangles, std::
             place[member] = shared.at(g).front();
     }
     return welded_triangles(triangles, place);
-}
-
-std::vector<glm::vec3> normals_or_zero(std::span<const glm::vec3> positions,
-                                       std::span<const glm::uvec3> triangles) {
-    constexpr std::size_t grain = 4096;
-    std::vector<glm::vec3> normals(triangles.size());
-    parallel_for(triangles.size(), grain, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t t = begin; t < end; ++t) {
-            normals[t] = triangle_normal(positions[triangles[t].x], positions[triangles[t].y],
-                                         positions[triangles[t].z]);
-        }
-    });
-    return normals;
 }
 
 /// A mesh in which no two fans share a vertex.

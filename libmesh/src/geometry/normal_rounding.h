@@ -3,10 +3,10 @@
 /// Sums of votes to unit vectors in float, where there is no doubt how they round.
 ///
 /// A unit vector's components are rounded to multiples of 2^-28, then to float. Rounding is in
-/// doubt where the true value may lie on the other side of a border between two multiples: about
-/// one vertex in 20,000 on usual meshes. All others get the bits that exact arithmetic would give,
-/// so neither order nor rounding of the sums can show. The idea is Ziv's, for elementary functions
-/// [Ziv 1991]. Tests: tests/mesh/geometry/normals_test.cpp.
+/// doubt where the true value may lie on the other side of a border between two multiples: one
+/// vertex in 10,000 or fewer on usual meshes. All others get the bits that exact arithmetic would
+/// give, so neither order nor rounding of the sums can show. The idea is Ziv's, for elementary
+/// functions [Ziv 1991]. Tests: tests/mesh/geometry/normals_test.cpp.
 #pragma once
 
 #include <cstdint>

@@ -290,6 +290,19 @@ glm::vec3 triangle_normal(const glm::vec3& a, const glm::vec3& b, const glm::vec
     return rounded(direction_or_zero(area_vector_of(a, b, c).second));
 }
 
+std::vector<glm::vec3> normals_or_zero(std::span<const glm::vec3> positions,
+                                       std::span<const glm::uvec3> triangles) {
+    constexpr std::size_t grain = 4096;
+    std::vector<glm::vec3> normals(triangles.size());
+    parallel_for(triangles.size(), grain, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t t = begin; t < end; ++t) {
+            normals[t] = triangle_normal(positions[triangles[t].x], positions[triangles[t].y],
+                                         positions[triangles[t].z]);
+        }
+    });
+    return normals;
+}
+
 float scale_for(std::span<const glm::vec3> positions) {
     float lowest = std::numeric_limits<float>::infinity();
     float highest = -lowest;

@@ -41,6 +41,10 @@ TriangleKind kind_of(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c)
 /// Unit normal of a triangle that is sound, else zero; the same whichever corner it begins with.
 glm::vec3 triangle_normal(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c);
 
+/// The same for all triangles.
+std::vector<glm::vec3> normals_or_zero(std::span<const glm::vec3> positions,
+                                       std::span<const glm::uvec3> triangles);
+
 /// A power of two that makes the edges of a mesh about 1, for arithmetic in float.
 float scale_for(std::span<const glm::vec3> positions);
 

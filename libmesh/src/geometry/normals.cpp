@@ -5,9 +5,7 @@
 
 #include "geometry/averaged_normals.h"
 #include "geometry/check_triangles.h"
-#include "geometry/direction.h"
 #include "geometry/normal_sums.h"
-#include "parallel.h"
 
 namespace relief {
 namespace {
@@ -52,14 +50,8 @@ ChosenNormals chosen_normals(std::span<const glm::vec3> positions,
 
 std::vector<glm::vec3> triangle_normals(std::span<const glm::vec3> positions,
                                         std::span<const glm::uvec3> triangles, Report& report) {
-    constexpr std::size_t grain = 4096;
     check_triangles(triangles, positions.size());
-    std::vector<glm::vec3> normals(triangles.size());
-    parallel_for(triangles.size(), grain, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t t = begin; t < end; ++t)
-            normals[t] = triangle_normal(positions[triangles[t].x], positions[triangles[t].y],
-                                         positions[triangles[t].z]);
-    });
+    std::vector<glm::vec3> normals = normals_or_zero(positions, triangles);
     std::vector<std::uint32_t> odd;
     for (std::size_t t = 0; t < normals.size(); ++t) {
         if (normals[t] != glm::vec3(0.0F)) continue;

@@ -7,11 +7,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <utility>
 
 #include "geometry/corners.h"
 #include "geometry/direction.h"
+#include "geometry/disjoint_sets.h"
 #include "parallel.h"
 
 namespace relief {
@@ -48,34 +48,24 @@ class Aliases {
         }
         std::sort(names_.begin(), names_.end());
         names_.erase(std::unique(names_.begin(), names_.end()), names_.end());
-        parents_.resize(names_.size());
-        std::iota(parents_.begin(), parents_.end(), 0U);
-        for (const auto& [a, b] : pairs_) {
-            const std::size_t roots[] = {root(index(a)), root(index(b))};
-            parents_[std::max(roots[0], roots[1])] = std::min(roots[0], roots[1]);
-        }
+        sets_.reset(names_.size());
+        for (const auto& [a, b] : pairs_)
+            sets_.join(index(a), index(b));
     }
     std::uint32_t of(std::uint32_t name) {
-        const std::size_t i = index(name);
-        return i < names_.size() && names_[i] == name ? names_[root(i)] : name;
+        const std::uint32_t i = index(name);
+        return i < names_.size() && names_[i] == name ? names_[sets_.find(i)] : name;
     }
 
   private:
-    [[nodiscard]] std::size_t index(std::uint32_t name) const {
-        return static_cast<std::size_t>(std::lower_bound(names_.begin(), names_.end(), name) -
-                                        names_.begin());
-    }
-    std::size_t root(std::size_t i) {
-        while (parents_[i] != i) {
-            parents_[i] = parents_[parents_[i]];
-            i = parents_[i];
-        }
-        return i;
+    [[nodiscard]] std::uint32_t index(std::uint32_t name) const {
+        return static_cast<std::uint32_t>(std::lower_bound(names_.begin(), names_.end(), name) -
+                                          names_.begin());
     }
 
     std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs_;
     std::vector<std::uint32_t> names_;
-    std::vector<std::size_t> parents_;
+    DisjointSets sets_;  ///< Of indices into the names.
 };
 
 class FansAtPosition {
@@ -84,11 +74,10 @@ class FansAtPosition {
                    const HardEdges& hard_edges)
         : triangles_(triangles), normals_(normals), hard_edges_(hard_edges) {}
 
-    /// For each corner, the first one here of its fan.
-    const std::vector<std::uint32_t>& find(std::span<const Corner> corners) {
+    /// The fans of the corners here, by how-many-eth they are.
+    DisjointSets& find(std::span<const Corner> corners) {
         corners_ = corners;
-        first_.resize(corners.size());
-        std::iota(first_.begin(), first_.end(), 0U);
+        fans_.reset(corners.size());
         gather_spokes();
         for (auto begin = spokes_.begin(); begin != spokes_.end();) {
             const auto end = std::find_if(begin, spokes_.end(), [&](const Spoke& spoke) {
@@ -99,9 +88,7 @@ class FansAtPosition {
                 join_along_edge({begin, end});
             begin = end;
         }
-        for (std::uint32_t i = 0; i < first_.size(); ++i)
-            first_[i] = root_of(i);
-        return first_;
+        return fans_;
     }
 
   private:
@@ -130,18 +117,7 @@ class FansAtPosition {
         return normals_[triangle_of(corners_[spoke.corner])];
     }
 
-    std::uint32_t root_of(std::uint32_t corner) {
-        while (first_[corner] != corner) {
-            first_[corner] = first_[first_[corner]];
-            corner = first_[corner];
-        }
-        return corner;
-    }
-
-    void join(const Spoke& a, const Spoke& b) {
-        const std::uint32_t roots[] = {root_of(a.corner), root_of(b.corner)};
-        first_[std::max(roots[0], roots[1])] = std::min(roots[0], roots[1]);
-    }
+    void join(const Spoke& a, const Spoke& b) { fans_.join(a.corner, b.corner); }
 
     void join_along_edge(std::span<const Spoke> spokes) {
         sound_.clear();
@@ -200,7 +176,7 @@ class FansAtPosition {
     std::span<const glm::vec3> normals_;
     const HardEdges& hard_edges_;
     std::span<const Corner> corners_;
-    std::vector<std::uint32_t> first_;
+    DisjointSets fans_;
     std::vector<Spoke> spokes_;
     std::vector<Spoke> sound_;  ///< Of one edge, those whose triangles have a normal.
     Aliases seen_through_;      ///< Neighbours that a triangle without a normal lies between.
@@ -219,9 +195,9 @@ SmoothFans smooth_fans(std::size_t position_count, std::span<const glm::uvec3> t
         FansAtPosition at(triangles, normals, hard_edges);
         for (std::size_t v = begin; v < end; ++v) {
             const std::span<const Corner> here = corners.at(v);
-            const std::vector<std::uint32_t>& first = at.find(here);
-            for (std::size_t i = 0; i < here.size(); ++i)
-                fans.fan_of_corner[here[i]] = here[first[i]];
+            DisjointSets& found = at.find(here);
+            for (std::uint32_t i = 0; i < here.size(); ++i)
+                fans.fan_of_corner[here[i]] = here[found.find(i)];
         }
     });
     std::vector<std::uint32_t> number(3 * triangles.size());

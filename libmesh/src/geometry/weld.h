@@ -25,9 +25,10 @@ std::vector<std::uint32_t> weld_vertices(std::span<const glm::vec3> positions,
 
 /// Groups of two and more, by what the functions above say.
 struct Groups {
-    std::vector<std::uint32_t> first;  ///< Where each group begins; one more at the end.
-    std::vector<std::uint32_t>
-        members;  ///< Ascending within a group, as groups are by their first.
+    /// Where each group begins; one more at the end.
+    std::vector<std::uint32_t> first;
+    /// Ascending within a group, as groups are by their first.
+    std::vector<std::uint32_t> members;
 
     [[nodiscard]] std::size_t count() const { return first.empty() ? 0 : first.size() - 1; }
     [[nodiscard]] std::span<const std::uint32_t> at(std::size_t group) const {

@@ -8,11 +8,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
-#include <numeric>
 #include <unordered_map>
 
 #include "geometry/direction.h"
+#include "geometry/disjoint_sets.h"
 
 namespace relief {
 namespace {
@@ -26,29 +25,6 @@ struct HashOfCell {
             hash = (hash ^ std::hash<double>{}(number)) * 0x9e3779b97f4a7c15ULL + (hash >> 31);
         return hash;
     }
-};
-
-/// Sets that grow together; each is known by its smallest element.
-class DisjointSets {
-  public:
-    explicit DisjointSets(std::size_t count) : parent_(count) {
-        std::iota(parent_.begin(), parent_.end(), 0U);
-    }
-    std::uint32_t find(std::uint32_t element) {
-        while (parent_[element] != element) {
-            parent_[element] = parent_[parent_[element]];
-            element = parent_[element];
-        }
-        return element;
-    }
-    void join(std::uint32_t a, std::uint32_t b) {
-        a = find(a);
-        b = find(b);
-        parent_[std::max(a, b)] = std::min(a, b);
-    }
-
-  private:
-    std::vector<std::uint32_t> parent_;
 };
 
 /// Cells in order of their first vertex, and what is in them.

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// Numbers in sets that only ever grow together; near-constant time a step.
+/// Tests: tests/mesh/geometry/weld_near_test.cpp, corner_normals_test.cpp.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <numeric>
+#include <vector>
+
+namespace relief {
+
+/// Each set is known by its smallest element.
+class DisjointSets {
+  public:
+    explicit DisjointSets(std::size_t count = 0) { reset(count); }
+
+    /// So many elements, each alone.
+    void reset(std::size_t count) {
+        parents_.resize(count);
+        std::iota(parents_.begin(), parents_.end(), 0U);
+    }
+
+    std::uint32_t find(std::uint32_t element) {
+        while (parents_[element] != element) {
+            parents_[element] = parents_[parents_[element]];
+            element = parents_[element];
+        }
+        return element;
+    }
+
+    void join(std::uint32_t a, std::uint32_t b) {
+        a = find(a);
+        b = find(b);
+        parents_[std::max(a, b)] = std::min(a, b);
+    }
+
+  private:
+    std::vector<std::uint32_t> parents_;
+};
+
+}  // namespace relief
