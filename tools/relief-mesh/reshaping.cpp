@@ -12,6 +12,7 @@
 #include "common/text.h"
 #include "model_file.h"
 #include "process_choices.h"
+#include "relief/mesh/split.h"
 #include "relief/mesh/threads.h"
 
 namespace relief::tools {
@@ -73,37 +74,29 @@ JoinedPrimitives::JoinedPrimitives(const GltfDocument& document, std::vector<Glt
     joined_.name = primitives_.front().name;
 }
 
-template <typename T>
-std::vector<T> picked(const std::vector<T>& values, const std::vector<std::uint32_t>& vertices) {
-    std::vector<T> result;
-    if (values.empty()) return result;
-    for (const std::uint32_t vertex : vertices)
-        result.push_back(values[vertex]);
-    return result;
-}
-
 /// The part of a mesh that a range of its triangles uses, and which vertices those were.
 FramedMesh range_of(const Mesh& mesh, const MaterialRange& range) {
-    FramedMesh part;
+    VertexSplit used;
     const auto begin = mesh.triangles.begin() + range.first_triangle;
-    part.mesh.triangles.assign(begin, begin + range.triangle_count);
+    used.triangles.assign(begin, begin + range.triangle_count);
     std::vector<bool> is_used(mesh.positions.size(), false);
-    for (const glm::uvec3& triangle : part.mesh.triangles) {
+    for (const glm::uvec3& triangle : used.triangles) {
         for (int k = 0; k < 3; ++k)
             is_used[triangle[k]] = true;
     }
     std::vector<std::uint32_t> place(mesh.positions.size(), 0);
     for (std::uint32_t v = 0; v < is_used.size(); ++v) {
         if (!is_used[v]) continue;
-        place[v] = static_cast<std::uint32_t>(part.source_vertex.size());
-        part.source_vertex.push_back(v);
+        place[v] = static_cast<std::uint32_t>(used.source_vertex.size());
+        used.source_vertex.push_back(v);
     }
-    for (glm::uvec3& triangle : part.mesh.triangles)
+    for (glm::uvec3& triangle : used.triangles)
         triangle = {place[triangle.x], place[triangle.y], place[triangle.z]};
-    part.mesh.positions = picked(mesh.positions, part.source_vertex);
-    part.mesh.normals = picked(mesh.normals, part.source_vertex);
-    part.mesh.texcoords = picked(mesh.texcoords, part.source_vertex);
-    part.mesh.colors = picked(mesh.colors, part.source_vertex);
+    FramedMesh part;
+    part.mesh = carried(mesh, used);
+    part.mesh.tangents.clear();  // Of other triangles.
+    part.mesh.material_ranges.clear();
+    part.source_vertex = std::move(used.source_vertex);
     return part;
 }
 

@@ -28,8 +28,8 @@ ExitCode run(const CLI::App& app, const SubdivideWords& words) {
 void add_options(CLI::App& app, SubdivideWords& words) {
     constexpr int most_levels = 12;
     add_reshape_options(app, words.request,
-                        "Normals of the result: one per triangle (flat), or averaged by area or "
-                        "angle. Default, keep: by angle where the file has normals, none where it "
+                        "Normals of the result: one per triangle (flat), or averaged as named. "
+                        "Default, keep: by angle where the file has normals, none where it "
                         "has not; its own would not fit.");
     add_value(app, "--levels", "N", "How often, 1 to 12; triangles grow fourfold. Default: 1.",
               [&words](const std::string& subject, const std::string& text) {

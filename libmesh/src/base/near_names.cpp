@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Names near to one that is not known, by edit distance. Tests:
-// tests/shade/scene/near_names_test.cpp.
+// tests/mesh/base/near_names_test.cpp.
 #include "near_names.h"
 
 #include <algorithm>

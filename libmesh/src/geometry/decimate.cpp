@@ -15,6 +15,7 @@
 #include "geometry/topology_decimation.h"
 #include "geometry/weld.h"
 #include "relief/mesh/error.h"
+#include "relief/mesh/split.h"
 
 namespace relief {
 namespace {
@@ -134,16 +135,6 @@ Remains remains_of(const Mesh& mesh, const DecimateOptions& options, Report& rep
     return remains;
 }
 
-template <typename T>
-std::vector<T> picked(const std::vector<T>& values, std::span<const std::uint32_t> vertices) {
-    std::vector<T> result;
-    if (values.empty()) return result;
-    result.reserve(vertices.size());
-    for (const std::uint32_t vertex : vertices)
-        result.push_back(values[vertex]);
-    return result;
-}
-
 /// The vertices that the remaining triangles use, in their order; isolated ones are counted.
 std::vector<std::uint32_t> used_vertices(const Mesh& mesh, const Remains& remains, Report& report) {
     std::vector<bool> was_used(mesh.positions.size(), false);
@@ -166,33 +157,33 @@ std::vector<std::uint32_t> used_vertices(const Mesh& mesh, const Remains& remain
 }
 
 FramedMesh gathered(const Mesh& mesh, const Remains& remains, Report& report) {
-    FramedMesh result{{}, used_vertices(mesh, remains, report)};
+    VertexSplit left{used_vertices(mesh, remains, report), {}};
     std::vector<std::uint32_t> place(mesh.positions.size(), 0);
-    for (std::uint32_t i = 0; i < result.source_vertex.size(); ++i)
-        place[result.source_vertex[i]] = i;
-    Mesh& small = result.mesh;
-    small.name = mesh.name;
-    small.positions = picked(mesh.positions, result.source_vertex);
-    small.normals = picked(mesh.normals, result.source_vertex);
-    small.texcoords = picked(mesh.texcoords, result.source_vertex);
-    small.colors = picked(mesh.colors, result.source_vertex);
-    small.material_ranges = mesh.material_ranges;
+    for (std::uint32_t i = 0; i < left.source_vertex.size(); ++i)
+        place[left.source_vertex[i]] = i;
+    std::vector<MaterialRange> ranges = mesh.material_ranges;
+    std::vector<std::uint32_t> groups;
     const std::vector<std::uint32_t> parts = parts_of(mesh);
-    for (MaterialRange& range : small.material_ranges)
+    for (MaterialRange& range : ranges)
         range.triangle_count = 0;
     for (std::size_t t = 0; t < remains.triangles.size(); ++t) {
         const auto& triangle = remains.triangles[t];
         if (!triangle) continue;
-        small.triangles.emplace_back(place[triangle->x], place[triangle->y], place[triangle->z]);
-        if (!mesh.smoothing_groups.empty())
-            small.smoothing_groups.push_back(mesh.smoothing_groups[t]);
-        if (!small.material_ranges.empty()) ++small.material_ranges[parts[t]].triangle_count;
+        left.triangles.emplace_back(place[triangle->x], place[triangle->y], place[triangle->z]);
+        if (!mesh.smoothing_groups.empty()) groups.push_back(mesh.smoothing_groups[t]);
+        if (!ranges.empty()) ++ranges[parts[t]].triangle_count;
     }
     std::uint32_t first = 0;
-    for (MaterialRange& range : small.material_ranges) {
+    for (MaterialRange& range : ranges) {
         range.first_triangle = first;
         first += range.triangle_count;
     }
+    FramedMesh result;
+    result.mesh = carried(mesh, left);
+    result.mesh.tangents.clear();  // Of other triangles.
+    result.mesh.material_ranges = std::move(ranges);
+    result.mesh.smoothing_groups = std::move(groups);
+    result.source_vertex = std::move(left.source_vertex);
     return result;
 }
 

@@ -51,7 +51,8 @@ std::vector<T> carried(std::span<const T> values, const VertexSplit& split) {
     return result;
 }
 
-/// A mesh after a split: every vertex attribute carried, triangles replaced, ranges kept.
+/// A mesh after a split: every vertex attribute carried, triangles replaced, ranges kept. Any
+/// choice of vertices can be carried like that, with triangles over those.
 Mesh carried(const Mesh& mesh, const VertexSplit& split);
 
 }  // namespace relief

@@ -61,7 +61,7 @@ MeshFile read_near(const std::filesystem::path& file, const ReadAround& read, Re
     }
     report.merge(findings);
     if (best.origin != glm::dvec3(0.0)) {
-        report.add("positions far from the origin", "file", 0,
+        report.add("far from the origin", "mesh", 0,
                    fmt::format("are kept relative to ({}, {}, {}), where floats hold their digits",
                                best.origin.x, best.origin.y, best.origin.z));
     }
