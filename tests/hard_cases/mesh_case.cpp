@@ -6,9 +6,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <map>
-#include <numeric>
 
+#include "hard_cases/counted_findings.h"
 #include "support/angle.h"
 
 namespace relief::test {
@@ -23,20 +22,6 @@ Mesh reordered(Mesh mesh) {
     for (glm::uvec3& triangle : mesh.triangles)
         triangle = {triangle.y, triangle.z, triangle.x};
     return mesh;
-}
-
-std::string in_words(const std::map<std::string, std::size_t>& counts) {
-    std::string text;
-    for (const auto& [kind, count] : counts)
-        text += fmt::format("{}{} x {}", text.empty() ? "" : ", ", count, kind);
-    return text.empty() ? "nothing" : text;
-}
-
-std::map<std::string, std::size_t> counts_of(const Report& report) {
-    std::map<std::string, std::size_t> counts;
-    for (const Finding& finding : report.findings())
-        counts[finding.kind] = finding.count;
-    return counts;
 }
 
 std::string not_unit(const std::vector<glm::vec3>& normals) {
@@ -118,13 +103,7 @@ MeshCase& MeshCase::normals(const Findings& findings) {
 MeshCase& MeshCase::normals_by(const std::string& step, const std::vector<NormalWeight>& weights,
                                const Findings& findings) {
     const std::map<std::string, std::size_t> expected(findings.begin(), findings.end());
-    std::string outcome = "unit";
-    if (!findings.empty()) {
-        outcome += "; reported:";
-        for (const auto& [kind, count] : findings)
-            outcome += fmt::format("{} {} x {}", outcome.back() == ':' ? "" : ",", count, kind);
-    }
-    return expect(step, outcome, [weights, expected](const Mesh& mesh) {
+    return expect(step, "unit" + reported(findings), [weights, expected](const Mesh& mesh) {
         for (const NormalWeight weight : weights) {
             if (std::string problem = wrong_normals(mesh, weight, expected); !problem.empty())
                 return fmt::format("weight {}: {}", static_cast<int>(weight), problem);

@@ -6,6 +6,7 @@
 #include <functional>
 #include <glm/glm.hpp>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -22,6 +23,17 @@ using Findings = std::vector<std::pair<std::string, std::size_t>>;
 
 /// The true normal at a vertex of the mesh, where there is one.
 using TrueNormal = std::function<std::optional<glm::dvec3>(const Mesh& mesh, std::size_t vertex)>;
+
+/// The true tangent at a corner of the mesh, where there is one; w 0: either.
+using TrueTangent = std::function<std::optional<glm::dvec4>(const Mesh& mesh, std::size_t corner)>;
+
+/// A call that gives every corner a tangent.
+struct TangentMethod {
+    std::string name;  ///< As options call it.
+    std::vector<glm::vec4> (*call)(std::span<const glm::vec3>, std::span<const glm::vec3>,
+                                   std::span<const glm::vec2>, std::span<const glm::uvec3>,
+                                   Report&);
+};
 
 /// Builds a row: MeshCase(...).checked(...).normals(...).
 class MeshCase {
@@ -43,6 +55,20 @@ class MeshCase {
     MeshCase& accurate(const std::vector<NormalWeight>& weights, double degrees,
                        const std::string& truth_in_words, const TrueNormal& truth);
 
+    /// Every method keeps the invariant (support/tangent_invariant.h), gives the same bits for
+    /// other orders of triangles, and reports exactly this. A mesh without texture is seen from
+    /// above (textured_from_above).
+    MeshCase& tangents(const Findings& findings = {});
+
+    /// The same for some methods; `step` says which.
+    MeshCase& tangents_by(const std::string& step, const std::vector<TangentMethod>& methods,
+                          const Findings& findings);
+
+    /// Tangents by every method are within so many degrees of the truth, with its w; 0: exactly
+    /// there.
+    MeshCase& tangents_near(double degrees, const std::string& truth_in_words,
+                            const TrueTangent& truth);
+
     /// Anything else: the outcome in words, and a function of the mesh that says what is wrong.
     MeshCase& expect(const std::string& step, const std::string& outcome,
                      const std::function<std::string(const Mesh&)>& problem);
@@ -53,6 +79,9 @@ class MeshCase {
     HardCase row_;
     std::function<Mesh()> make_;
 };
+
+/// The methods that every row of `tangents` runs through.
+const std::vector<TangentMethod>& all_tangent_methods();
 
 /// The weightings that every row of `normals` runs through.
 const std::vector<NormalWeight>& all_weights();

@@ -42,7 +42,8 @@ HardCase scale_case(float scale) {
                "meshoptimizer gives NaN at 1e20, measured", [scale] { return scaled_torus(scale); })
         .checked({})
         .normals()
-        .accurate({NormalWeight::angle}, 1e-4, "those at size 1", unscaled_normal);
+        .accurate({NormalWeight::angle}, 1e-4, "those at size 1", unscaled_normal)
+        .tangents();
 }
 
 constexpr float distance = 1e6F;
@@ -84,7 +85,9 @@ HardCase non_finite_case(const std::string& name, float value) {
                     [value] { return grid_with(value); })
         .checked({{triangle_not_finite, 6}, {edge_boundary, 22}, {vertex_not_finite, 1}})
         .normals({{"triangle with a non-finite corner", 6}, {"non-finite position", 1}})
-        .accurate(all_weights(), 0, "the grid's; (0,0,1) at the vertex itself", up);
+        .accurate(all_weights(), 0, "the grid's; (0,0,1) at the vertex itself", up)
+        .tangents(
+            {{"corner without texture direction", 6}, {"triangle with non-finite values", 6}});
 }
 
 /// What a call says when it refuses a mesh.
@@ -120,7 +123,8 @@ std::vector<HardCase> number_cases() {
                  "MikkTSpace gives tangents of length zero, measured", far_grid)
             .checked({{edge_boundary, 24}, {mesh_far_away, 1}})
             .normals()
-            .expect("normals", "the same bits as of the mesh moved back", differs_when_moved_back),
+            .expect("normals", "the same bits as of the mesh moved back", differs_when_moved_back)
+            .tangents(),
         non_finite_case("NaN in a position", std::numeric_limits<float>::quiet_NaN()),
         non_finite_case("infinity in a position", std::numeric_limits<float>::infinity()),
         MeshCase("index out of range", "A triangle that names a vertex that is not there.",
@@ -135,14 +139,16 @@ std::vector<HardCase> number_cases() {
                     wrongly_refused),
         MeshCase("empty mesh", "No vertex and no triangle.", "bevy#8429", [] { return Mesh{}; })
             .checked({})
-            .normals(),
+            .normals()
+            .tangents(),
         MeshCase("one triangle", "Nothing else.", "bevy#14874",
                  [] {
                      return mesh_of({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}});
                  })
             .checked({{edge_boundary, 3}})
             .normals()
-            .accurate(all_weights(), 0, "its own", up),
+            .accurate(all_weights(), 0, "its own", up)
+            .tangents(),
     };
 }
 

@@ -14,6 +14,7 @@ constexpr const char* introduction = R"(# Hard cases
 What breaks naive code has one defined outcome here, and nothing is repaired, dropped or clamped without a word: a fallback is a finding in
 the report. Directions are always unit vectors; the same input gives the same bits, whatever the order of triangles and the number of threads.
 Every line of both tables is run by a test (`tests/hard_cases/`); this page is written from the same table by `relief-hard-cases-page`.
+*Orthonormal* tangents are unit and perpendicular to their normals within 1e-6, w is 1 or -1 and one all over a triangle; a row without texture has one laid on from above for them.
 
 `relief-mesh check` uses the words of the first table.
 ```sh

@@ -5,12 +5,25 @@
 #include <numbers>
 #include <utility>
 
+#include "relief/mesh/normals.h"
+
 namespace relief::test {
 
 Mesh mesh_of(std::vector<glm::vec3> positions, std::vector<glm::uvec3> triangles) {
     Mesh mesh;
     mesh.positions = std::move(positions);
     mesh.triangles = std::move(triangles);
+    return mesh;
+}
+
+Mesh textured_from_above(Mesh mesh) {
+    Report ignored;
+    if (mesh.normals.empty()) {
+        mesh.normals = vertex_normals(mesh.positions, mesh.triangles, NormalWeight::angle, ignored);
+    }
+    mesh.texcoords.clear();
+    for (const glm::vec3& position : mesh.positions)
+        mesh.texcoords.emplace_back(position.x, -position.y);
     return mesh;
 }
 

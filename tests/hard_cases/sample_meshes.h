@@ -11,6 +11,10 @@ namespace relief::test {
 
 Mesh mesh_of(std::vector<glm::vec3> positions, std::vector<glm::uvec3> triangles);
 
+/// The mesh with normals averaged by angle, unless it has some, and the image laid on it from +z,
+/// upright: u is x, v is -y.
+Mesh textured_from_above(Mesh mesh);
+
 /// The square from (0,0,0) to (1,1,0), facing +z: vertices 0 to 3 around, two triangles.
 Mesh square();
 

@@ -50,14 +50,16 @@ std::vector<HardCase> stored_cases() {
             .checked({{edge_boundary, 4},
                       {normal_not_finite, 1},
                       {normal_zero, 1},
-                      {normal_not_unit, 1}}),
+                      {normal_not_unit, 1}})
+            .tangents({{"normal without direction", 2}}),
         MeshCase("normals that face the wrong way",
                  "A square with a normal that points backwards and one that lies in it.",
                  "the Corset of the glTF samples",
                  [] {
                      return square_with_normals({{0, 0, 1}, {0, 0, -1}, {0, 0, 1}, {1, 0, 0}});
                  })
-            .checked({{edge_boundary, 4}, {normal_opposed, 1}, {normal_divided, 1}}),
+            .checked({{edge_boundary, 4}, {normal_opposed, 1}, {normal_divided, 1}})
+            .tangents({{"cancelling tangents", 1}, {"corner without texture direction", 1}}),
         MeshCase("tangents that are none",
                  "A square whose tangents are NaN, of length 2 without handedness, along the "
                  "normal, and leaning by 6 degrees.",
@@ -71,7 +73,8 @@ std::vector<HardCase> stored_cases() {
                       {tangent_not_unit, 1},
                       {tangent_unhanded, 1},
                       {tangent_along_normal, 1},
-                      {tangent_leaning, 1}}),
+                      {tangent_leaning, 1}})
+            .tangents(),
         MeshCase("all texture coordinates equal", "A square that shows one point of the image.",
                  "MikkTSpace#1, lslib#51",
                  [] {
@@ -79,7 +82,9 @@ std::vector<HardCase> stored_cases() {
                          mesh.texcoords[v] = {0.5F, 0.5F};
                      });
                  })
-            .checked({{edge_boundary, 4}, {texture_degenerate, 2}}),
+            .checked({{edge_boundary, 4}, {texture_degenerate, 2}})
+            .tangents({{"corner without texture direction", 6},
+                       {"triangle without texture gradient", 2}}),
         MeshCase("texture coordinate that is NaN",
                  "One corner of a square; its triangles have no place in the image.",
                  "exporters that divide by zero",
@@ -88,7 +93,9 @@ std::vector<HardCase> stored_cases() {
                      mesh.texcoords[1].x = nan;
                      return mesh;
                  })
-            .checked({{edge_boundary, 4}, {texture_not_finite, 1}}),
+            .checked({{edge_boundary, 4}, {texture_not_finite, 1}})
+            .tangents(
+                {{"corner without texture direction", 1}, {"triangle with non-finite values", 1}}),
         MeshCase("mirrored texture", "A square that shows the image the wrong way round.",
                  "Godot#114508",
                  [] {
@@ -96,7 +103,8 @@ std::vector<HardCase> stored_cases() {
                          mesh.texcoords[v].x = 1.0F - mesh.texcoords[v].x;
                      });
                  })
-            .checked({{edge_boundary, 4}, {texture_mirrored, 2}}),
+            .checked({{edge_boundary, 4}, {texture_mirrored, 2}})
+            .tangents(),
         MeshCase("overlapping texture",
                  "A square whose two triangles show the same half of the image.",
                  "bakes where two places write one texel",
@@ -109,7 +117,8 @@ std::vector<HardCase> stored_cases() {
                      mesh.texcoords = {{0, 1}, {1, 1}, {1, 0}, {1, 0}, {0, 1}, {1, 1}};
                      return mesh;
                  })
-            .checked({{edge_boundary, 4}, {texture_overlapping, 2}}),
+            .checked({{edge_boundary, 4}, {texture_overlapping, 2}})
+            .tangents(),
     };
 }
 

@@ -133,41 +133,49 @@ std::vector<HardCase> surface_cases() {
                           if (vertex > 1) return std::nullopt;
                           return up(mesh, vertex);
                       })
-            .expect("normals, auto", "nowhere further off than by area", worse_than_area),
+            .expect("normals, auto", "nowhere further off than by area", worse_than_area)
+            .tangents(),
         MeshCase("flipped triangle",
                  "A flat grid with one triangle in its middle the wrong way round.",
                  "scans and hand-made meshes", flipped_triangle)
             .checked({{edge_flipped, 3}, {edge_boundary, 16}})
             .normals()
-            .accurate(all_weights(), 0, "the grid's", up),
+            .accurate(all_weights(), 0, "the grid's", up)
+            .tangents(),
         MeshCase("double-sided sheet",
                  "A square with a back on the same vertices: its normals cancel, and are (0,0,1).",
                  "leaves and cloth in games", double_sided_square)
             .checked({{triangle_backed, 4}})
             .normals({{"cancelling normals", 4}})
-            .accurate(all_weights(), 0, "(0,0,1)", up),
+            .accurate(all_weights(), 0, "(0,0,1)", up)
+            .tangents(),
         MeshCase("tip of a cone",
                  "A cone with an open base; no normal at its tip suits every side.",
                  "bevy PR#10905", cone)
             .checked({{edge_boundary, 16}})
             .normals()
-            .accurate(all_weights(), 1e-5, "the axis at the tip", cone_axis_at_tip),
+            .accurate(all_weights(), 1e-5, "the axis at the tip", cone_axis_at_tip)
+            .tangents(),
         MeshCase("cube with an uneven triangulation",
                  "Eight vertices; some corners have three triangles, some four or more.",
                  "CGAL#2047", uneven_cube)
             .checked({})
             .normals()
-            .accurate({NormalWeight::angle}, 1e-5, "the diagonals of the cube", corner_of_cube),
+            .accurate({NormalWeight::angle}, 1e-5, "the diagonals of the cube", corner_of_cube)
+            .tangents({{"triangle without texture gradient", 8}}),
         MeshCase("flat fan of 10000 triangles", "So many triangles around one vertex, in a plane.",
                  "CGAL PR#8684", [] { return fan(10000); })
             .checked({{edge_boundary, 10000}})
             .normals()
-            .accurate(all_weights(), 0, "the plane's", up),
+            .accurate(all_weights(), 0, "the plane's", up)
+            .tangents(),
         MeshCase("edge of three triangles",
                  "Three triangles on one edge, so that there is no inside and outside.",
                  "pairs of corners that depend on order in MikkTSpace", three_on_an_edge)
             .checked({{edge_non_manifold, 1}, {edge_boundary, 6}})
-            .normals(),
+            .normals()
+            .tangents({{"corner without texture direction", 1},
+                       {"triangle without texture gradient", 1}}),
         MeshCase("bow-tie", "Two triangles that touch in one vertex, at right angles.",
                  "meshes cut along a line", bow_tie)
             .checked({{edge_boundary, 6}, {vertex_bow_tie, 1}})
@@ -180,7 +188,9 @@ std::vector<HardCase> surface_cases() {
             .expect("normals, crease 180", "each triangle's own: they share no edge",
                     [](const Mesh& mesh) {
                         return all_flat(mesh, 180.0) ? "" : "they are averaged all the same";
-                    }),
+                    })
+            .tangents({{"corner without texture direction", 2},
+                       {"triangle without texture gradient", 1}}),
         MeshCase("crease", "A flat square and one that rises from it at 45 degrees.",
                  "angles exactly at a crease's limit", [] { return ramp(0.0F, 0.0F); })
             .checked({{edge_boundary, 6}})
@@ -189,12 +199,14 @@ std::vector<HardCase> surface_cases() {
             .expect("normals, crease 45", "smooth: an edge at the limit is",
                     [](const Mesh& mesh) { return all_flat(mesh, 45.0) ? "it is hard" : ""; })
             .expect("normals, crease 44.99", "each square's own",
-                    [](const Mesh& mesh) { return all_flat(mesh, 44.99) ? "" : "it is smooth"; }),
+                    [](const Mesh& mesh) { return all_flat(mesh, 44.99) ? "" : "it is smooth"; })
+            .tangents(),
         MeshCase("+0 and -0", "The crease with its edge stored twice, once at +0 and once at -0.",
                  "bitwise comparison of positions", [] { return ramp(0.0F, -0.0F); })
             .checked({{edge_boundary, 6}})
             .normals()
-            .accurate({NormalWeight::angle}, 1e-5, "half way on the common edge", ramp_normal),
+            .accurate({NormalWeight::angle}, 1e-5, "half way on the common edge", ramp_normal)
+            .tangents(),
         MeshCase("vertices one unit in the last place apart",
                  "The crease with its edge stored twice, at 1 and at the float after it: "
                  "positions are equal or they are not, unless a tolerance is asked for.",
@@ -206,7 +218,8 @@ std::vector<HardCase> surface_cases() {
                       [](const Mesh&, std::size_t vertex) -> std::optional<glm::dvec3> {
                           return vertex < 4 ? glm::dvec3(0, 0, 1) : glm::dvec3(-1, 0, 1);
                       })
-            .expect("normals, weld 1e-6", "shared on the common edge", not_joined),
+            .expect("normals, weld 1e-6", "shared on the common edge", not_joined)
+            .tangents(),
     };
 }
 

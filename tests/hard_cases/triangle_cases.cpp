@@ -50,7 +50,8 @@ std::vector<HardCase> triangle_cases() {
                  })
             .checked({{triangle_collapsed, 1}, {edge_boundary, 4}})
             .normals({{"degenerate triangle", 1}})
-            .accurate(all_weights(), 0, "the square's", up_at_first(4)),
+            .accurate(all_weights(), 0, "the square's", up_at_first(4))
+            .tangents({{"triangle with coinciding corners", 1}}),
         MeshCase("triangle on a line",
                  "A triangle whose three corners are on a line, on the side of another.",
                  "libigl#791, libigl#1923",
@@ -60,7 +61,9 @@ std::vector<HardCase> triangle_cases() {
                  })
             .checked({{triangle_collinear, 1}, {edge_boundary, 4}, {vertex_voiceless, 1}})
             .normals({{"degenerate triangle", 1}, {"vertex with only degenerate triangles", 1}})
-            .accurate(all_weights(), 0, "the sound triangle's", up_at_first(3)),
+            .accurate(all_weights(), 0, "the sound triangle's", up_at_first(3))
+            .tangents({{"corner without texture direction", 1},
+                       {"triangle without texture gradient", 1}}),
         MeshCase(
             "vertex with only degenerate triangles",
             "A square and a vertex that only a collapsed triangle uses; its normal is (0,0,1).",
@@ -70,7 +73,9 @@ std::vector<HardCase> triangle_cases() {
             })
             .checked({{triangle_collapsed, 1}, {edge_boundary, 4}, {vertex_voiceless, 1}})
             .normals({{"degenerate triangle", 1}, {"vertex with only degenerate triangles", 1}})
-            .accurate(all_weights(), 0, "(0,0,1)", up_at_first(5)),
+            .accurate(all_weights(), 0, "(0,0,1)", up_at_first(5))
+            .tangents(
+                {{"corner without texture direction", 2}, {"triangle with coinciding corners", 1}}),
         MeshCase("isolated vertex",
                  "A square and a vertex that no triangle uses; its normal is (0,0,1).",
                  "CGAL PR#847",
@@ -79,7 +84,8 @@ std::vector<HardCase> triangle_cases() {
                  })
             .checked({{edge_boundary, 4}, {vertex_isolated, 1}})
             .normals({{"isolated vertex", 1}})
-            .accurate(all_weights(), 0, "(0,0,1)", up_at_first(5)),
+            .accurate(all_weights(), 0, "(0,0,1)", up_at_first(5))
+            .tangents(),
         MeshCase("needle", "A triangle of length 1 and width 1e-6, turned about its length.",
                  "6.6 degrees off in float, measured", needle)
             .checked({{triangle_needle, 1}, {edge_boundary, 3}})
@@ -87,7 +93,8 @@ std::vector<HardCase> triangle_cases() {
             .accurate(all_weights(), 1e-4, "the true normal",
                       [](const Mesh&, std::size_t) -> std::optional<glm::dvec3> {
                           return glm::dvec3(0, -std::sin(0.5), std::cos(0.5));
-                      }),
+                      })
+            .tangents(),
         MeshCase("edges all but parallel",
                  "A triangle between two edges whose directions differ by less than a float can "
                  "hold: an arc cosine of their product would have an argument above 1.",
@@ -97,7 +104,9 @@ std::vector<HardCase> triangle_cases() {
             .accurate(all_weights(), 1e-4, "the true normal",
                       [](const Mesh&, std::size_t) -> std::optional<glm::dvec3> {
                           return glm::dvec3(2, -1, 0);
-                      }),
+                      })
+            .tangents({{"corner without texture direction", 3},
+                       {"triangle without texture gradient", 1}}),
         MeshCase("repeated triangle",
                  "A square with one of its triangles three times over, begun at different corners.",
                  "three copies of a face in assets exported twice",
@@ -106,7 +115,8 @@ std::vector<HardCase> triangle_cases() {
                  })
             .checked({{triangle_repeated, 2}, {edge_boundary, 4}})
             .normals()
-            .accurate(all_weights(), 0, "the square's", up_at_first(4)),
+            .accurate(all_weights(), 0, "the square's", up_at_first(4))
+            .tangents({{"repeated triangle", 2}}),
     };
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
 
 #include "geometry/diagnose_parts.h"
 #include "geometry/direction.h"
@@ -17,24 +18,45 @@ namespace {
 constexpr std::size_t first_limit = 8;
 constexpr std::size_t small_mesh = 2048;
 
-// A mesh whose floats are coarser than this part of its size keeps fewer than 16 of a float's 24
-// bits: steps that show in its shading.
+// What is coarser than this part of its size keeps fewer than 16 of a float's 24 bits: steps that
+// show in shading and in the image.
 constexpr float coarsest = 1.0F / 65536.0F;
 
-/// Size, spacing of floats, and whether they fit together.
-void diagnose_place(const Mesh& mesh, Diagnosis& diagnosis, Tally& tally) {
-    const Bounds bounds = bounds_of(mesh);
-    if (bounds.empty()) return;
-    float farthest = 0.0F;
-    for (int i = 0; i < 3; ++i) {
-        farthest = std::max({farthest, std::abs(bounds.min[i]), std::abs(bounds.max[i])});
-        // Half of each: the difference of two large floats may overflow.
-        const float side = 0.5F * bounds.max[i] - 0.5F * bounds.min[i];
-        diagnosis.size = std::max(diagnosis.size, std::min(side, 0x1.fffffep126F) * 2.0F);
+/// The box of all finite points, and how coarse floats are out there.
+template <int N>
+struct Place {
+    float size = 0.0F;     ///< The longest side.
+    float spacing = 0.0F;  ///< Between neighbouring floats at the largest coordinate.
+
+    explicit Place(std::span<const glm::vec<N, float>> points) {
+        constexpr float infinity = std::numeric_limits<float>::infinity();
+        glm::vec<N, float> low(infinity);
+        glm::vec<N, float> high(-infinity);
+        for (const auto& point : points) {
+            if (!is_finite(point)) continue;
+            low = glm::min(low, point);
+            high = glm::max(high, point);
+        }
+        if (!(low.x <= high.x)) return;
+        float farthest = 0.0F;
+        for (int i = 0; i < N; ++i) {
+            farthest = std::max({farthest, std::abs(low[i]), std::abs(high[i])});
+            // Half of each: the difference of two large floats may overflow.
+            const float side = 0.5F * high[i] - 0.5F * low[i];
+            size = std::max(size, std::min(side, 0x1.fffffep126F) * 2.0F);
+        }
+        spacing = farthest - std::nextafter(farthest, 0.0F);
     }
-    diagnosis.spacing = farthest - std::nextafter(farthest, 0.0F);
-    if (diagnosis.size > 0.0F && diagnosis.spacing > coarsest * diagnosis.size)
-        tally.add(MeshCondition::mesh_far_away, 0);
+
+    [[nodiscard]] bool is_far() const { return size > 0.0F && spacing > coarsest * size; }
+};
+
+void diagnose_places(const Mesh& mesh, Diagnosis& diagnosis, Tally& tally) {
+    const Place<3> positions(mesh.positions);
+    diagnosis.size = positions.size;
+    diagnosis.spacing = positions.spacing;
+    if (positions.is_far()) tally.add(MeshCondition::mesh_far_away, 0);
+    if (Place<2>(mesh.texcoords).is_far()) tally.add(MeshCondition::texture_far_away, 0);
 }
 
 /// The triangles that have an area in space; others are moved together, so that they have none in
@@ -115,7 +137,7 @@ Diagnosis diagnose(const Mesh& mesh, const DiagnoseOptions& options) {
             if (options.texture_overlap && !mesh.texcoords.empty())
                 diagnose_overlap(subject, diagnosis, tally);
         },
-        [&](Tally& tally) { diagnose_place(mesh, diagnosis, tally); },
+        [&](Tally& tally) { diagnose_places(mesh, diagnosis, tally); },
     };
     std::vector<Tally> tallies(parts.size());
     std::vector<std::function<void()>> tasks;

@@ -73,6 +73,8 @@ constexpr std::array conditions = {
                       "shares texels with another: nothing can be baked there"},
     MeshConditionInfo{MeshCondition::mesh_far_away, "far from the origin", "mesh", remark,
                       "floats are so coarse out there that details are rounded away"},
+    MeshConditionInfo{MeshCondition::texture_far_away, "texture far from its origin", "mesh",
+                      remark, "floats are so coarse out there that the image is torn"},
 };
 
 /// Whether the row of each condition is where the condition looks for it.
@@ -80,7 +82,7 @@ constexpr bool are_in_order() {
     for (std::size_t i = 0; i < conditions.size(); ++i) {
         if (conditions[i].condition != static_cast<MeshCondition>(i)) return false;
     }
-    return conditions.back().condition == MeshCondition::mesh_far_away;
+    return conditions.back().condition == MeshCondition::texture_far_away;
 }
 static_assert(are_in_order());
 

@@ -262,6 +262,23 @@ TEST(Diagnose, FarAwayIsWhereFloatsAreCoarseForTheSizeOfTheMesh) {
     EXPECT_EQ(diagnose(mesh).count(MeshCondition::mesh_far_away), 1U);
 }
 
+TEST(Diagnose, TextureIsFarAwayWhereFloatsAreCoarseForItsExtent) {
+    const auto found_at = [](float offset, float scale) {
+        Mesh mesh = make_cube();  // The whole image on every side: from 0 to 1.
+        for (glm::vec2& texcoord : mesh.texcoords)
+            texcoord = scale * (texcoord + glm::vec2(0, -offset));
+        return diagnose(mesh).count(MeshCondition::texture_far_away);
+    };
+    // From 128 to 256 floats are 1/65536 apart, and above twice that.
+    for (const float scale : {1.0F, 0x1p-80F, 0x1p80F}) {
+        EXPECT_EQ(found_at(0, scale), 0U);
+        EXPECT_EQ(found_at(255, scale), 0U);
+        EXPECT_EQ(found_at(257, scale), 1U);
+        EXPECT_EQ(found_at(1e6F, scale), 1U);
+    }
+    EXPECT_EQ(found_at(1e6F, 0.0F), 0U) << "no extent";
+}
+
 TEST(Diagnose, ScaleChangesNothing) {
     for (const float scale : {1e-30F, 1e-20F, 1e20F, 1e30F}) {
         Mesh mesh = make_torus(0.4F, 24, 12);

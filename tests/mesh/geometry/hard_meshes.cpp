@@ -7,10 +7,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
-#include <random>
 
 #include "support/shapes.h"
+#include "support/tangent_invariant.h"
 
 namespace relief::test {
 namespace {
@@ -151,18 +150,6 @@ void add_textures_and_normals(std::vector<NamedMesh>& meshes) {
     }
 }
 
-void expect_tangent(const glm::vec4& tangent, const glm::vec3& vertex_normal, std::size_t corner) {
-    constexpr double tolerance = 1e-6;
-    const glm::dvec3 direction(tangent);
-    ASSERT_TRUE(std::abs(glm::length(direction) - 1.0) <= tolerance)
-        << "corner " << corner << " has length " << glm::length(direction);
-    ASSERT_EQ(std::abs(tangent.w), 1.0F) << "corner " << corner;
-    const double length = glm::length(glm::dvec3(vertex_normal));
-    if (!(length > 0.0) || !std::isfinite(length)) return;
-    const double cosine = glm::dot(direction, glm::dvec3(vertex_normal) / length);
-    ASSERT_LE(std::abs(cosine), tolerance) << "corner " << corner;
-}
-
 }  // namespace
 
 std::vector<NamedMesh> hard_meshes() {
@@ -174,40 +161,8 @@ std::vector<NamedMesh> hard_meshes() {
     return meshes;
 }
 
-Mesh with_triangle_order(const Mesh& mesh, const std::vector<std::size_t>& order) {
-    Mesh result = mesh;
-    for (std::size_t i = 0; i < order.size(); ++i)
-        result.triangles[i] = mesh.triangles[order[i]];
-    return result;
-}
-
-std::vector<glm::vec4> corners_in_order(const std::vector<glm::vec4>& values,
-                                        const std::vector<std::size_t>& order) {
-    std::vector<glm::vec4> result;
-    for (const std::size_t triangle : order) {
-        const auto first = values.begin() + static_cast<std::ptrdiff_t>(3 * triangle);
-        result.insert(result.end(), first, first + 3);
-    }
-    return result;
-}
-
-std::vector<std::size_t> shuffled(std::size_t count) {
-    std::vector<std::size_t> order(count);
-    std::iota(order.begin(), order.end(), std::size_t{0});
-    std::mt19937 generator(20240229);
-    for (std::size_t i = count; i > 1; --i)
-        std::swap(order[i - 1], order[generator() % i]);
-    return order;
-}
-
 void expect_tangent_invariants(const Mesh& mesh, const std::vector<glm::vec4>& tangents) {
-    ASSERT_EQ(tangents.size(), 3 * mesh.triangles.size());
-    for (std::size_t corner = 0; corner < tangents.size(); ++corner) {
-        const glm::uvec3& triangle = mesh.triangles[corner / 3];
-        const std::uint32_t vertex = triangle[static_cast<int>(corner % 3)];
-        ASSERT_NO_FATAL_FAILURE(expect_tangent(tangents[corner], mesh.normals[vertex], corner));
-        ASSERT_EQ(tangents[corner].w, tangents[corner / 3 * 3].w) << "corner " << corner;
-    }
+    ASSERT_EQ(broken_tangents(mesh, tangents), "");
 }
 
 }  // namespace relief::test

@@ -63,7 +63,8 @@ enum class MeshCondition {
     texture_mirrored,     ///< The image is on the triangle the wrong way round.
     texture_overlapping,  ///< Shares texels with another triangle.
     // The whole.
-    mesh_far_away,  ///< Floats so far out are coarser than 1/65536 of the mesh's size.
+    mesh_far_away,     ///< Floats so far out are coarser than 1/65536 of the mesh's size.
+    texture_far_away,  ///< The same of texture coordinates, and of the box around them.
 };
 
 /// A condition in words.

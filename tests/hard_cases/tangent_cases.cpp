@@ -1,0 +1,424 @@
+// SPDX-License-Identifier: Apache-2.0
+// Truths are exact where the surface is flat, and those of the same mesh without the trouble
+// elsewhere. Tests: hard_cases_test.cpp.
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+
+#include "hard_cases/mesh_case.h"
+#include "hard_cases/mesh_cases.h"
+#include "hard_cases/sample_meshes.h"
+#include "relief/mesh/frames.h"
+#include "relief/mesh/shapes.h"
+#include "relief/mesh/threads.h"
+#include "support/angle.h"
+#include "support/triangle_orders.h"
+
+namespace relief::test {
+namespace {
+
+constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+constexpr float infinity = std::numeric_limits<float>::infinity();
+
+// As a Report names them.
+constexpr const char* no_gradient = "triangle without texture gradient";
+constexpr const char* coinciding = "triangle with coinciding corners";
+constexpr const char* not_finite = "triangle with non-finite values";
+constexpr const char* no_direction = "corner without texture direction";
+constexpr const char* cancelling = "cancelling tangents";
+constexpr const char* no_normal = "normal without direction";
+
+std::vector<glm::vec4> tangents_of(const Mesh& mesh, const TangentMethod& method) {
+    Report ignored;
+    return method.call(mesh.positions, mesh.normals, mesh.texcoords, mesh.triangles, ignored);
+}
+
+std::uint32_t vertex_at(const Mesh& mesh, std::size_t corner) {
+    return mesh.triangles[corner / 3][static_cast<int>(corner % 3)];
+}
+
+Mesh torus() {
+    return make_torus(0.4F, 24, 12);
+}
+
+Mesh textured_grid() {
+    return textured_from_above(flat_grid(4));
+}
+
+template <typename Change>
+Mesh changed(Mesh mesh, const Change& change) {
+    for (std::size_t v = 0; v < mesh.positions.size(); ++v)
+        change(mesh, v);
+    return mesh;
+}
+
+std::optional<glm::dvec4> along_x(const Mesh&, std::size_t) {
+    return glm::dvec4(1, 0, 0, 1);
+}
+
+/// The tangents of a mesh, for one that has the same surface and texture.
+template <typename Make>
+std::function<std::string(const Mesh&)> differs_from(const Make& make, double degrees) {
+    return [=](const Mesh& mesh) {
+        const Mesh sound = make();
+        for (const TangentMethod& method : all_tangent_methods()) {
+            const auto expected = tangents_of(sound, method);
+            const auto found = tangents_of(mesh, method);
+            for (std::size_t corner = 0; corner < found.size(); ++corner) {
+                const double error =
+                    degrees_between(glm::dvec3(found[corner]), glm::dvec3(expected[corner]));
+                if (!(error <= degrees) || found[corner].w != expected[corner].w) {
+                    return fmt::format("{}: corner {} is {} degrees off, w {}", method.name, corner,
+                                       error, found[corner].w);
+                }
+            }
+        }
+        return std::string();
+    };
+}
+
+Mesh collinear_texture() {
+    return changed(textured_grid(), [](Mesh& mesh, std::size_t v) {
+        mesh.texcoords[v].y = 0.5F * mesh.texcoords[v].x;
+    });
+}
+
+/// Half of the grid has texture, the other shows a line of it.
+Mesh half_textured() {
+    return changed(textured_grid(), [](Mesh& mesh, std::size_t v) {
+        mesh.texcoords[v].x = std::min(mesh.texcoords[v].x, 2.0F);
+    });
+}
+
+/// A triangle of length 1 and width 1e-6 that shows the whole image, its length along u.
+Mesh textured_sliver() {
+    const glm::dvec3 along = glm::normalize(glm::dvec3(0.6, 0.7, 0.3));
+    const glm::dvec3 across = glm::normalize(glm::cross(glm::dvec3(0, 0, 1), along));
+    Mesh mesh = mesh_of({glm::vec3(0), along, 0.5 * along + 1e-6 * across}, {{0, 1, 2}});
+    mesh.normals.assign(3, glm::cross(along, across));
+    mesh.texcoords = {{0, 1}, {1, 1}, {0.5F, 0}};
+    return mesh;
+}
+
+std::optional<glm::dvec4> along_sliver(const Mesh&, std::size_t) {
+    return glm::dvec4(0.6, 0.7, 0.3, 1);
+}
+
+/// The grid with u mirrored about its middle column.
+Mesh mirrored_grid() {
+    return changed(textured_grid(), [](Mesh& mesh, std::size_t v) {
+        mesh.texcoords[v].x = std::abs(mesh.texcoords[v].x - 2.0F);
+    });
+}
+
+std::optional<glm::dvec4> mirrored_truth(const Mesh& mesh, std::size_t corner) {
+    const glm::uvec3& triangle = mesh.triangles[corner / 3];
+    float x = 0.0F;
+    for (int i = 0; i < 3; ++i)
+        x += mesh.positions[triangle[i]].x / 3.0F;
+    return x < 2.0F ? glm::dvec4(-1, 0, 0, -1) : glm::dvec4(1, 0, 0, 1);
+}
+
+/// with_frames() splits the vertices of the line and no others.
+std::string wrongly_split(const Mesh& mesh) {
+    Report report;
+    FrameOptions options;
+    options.tangents = TangentMode::mikktspace;
+    const FramedMesh framed = with_frames(mesh, options, report);
+    for (std::size_t v = mesh.positions.size(); v < framed.source_vertex.size(); ++v) {
+        if (framed.mesh.positions[v].x != 2.0F) return "a vertex beside the line is split";
+    }
+    const std::size_t copies = framed.source_vertex.size() - mesh.positions.size();
+    return copies == 5 ? "" : fmt::format("{} vertices are split", copies);
+}
+
+/// A triangle without texture gradient between one that is upright and one that is mirrored.
+Mesh between_handednesses() {
+    Mesh mesh = mesh_of({{0, 0, 0}, {1, 0, 0}, {0.5F, 1, 0}, {-0.5F, 1, 0}, {1.5F, 1, 0}},
+                        {{0, 1, 2}, {0, 2, 3}, {1, 4, 2}});
+    mesh.normals.assign(5, {0, 0, 1});
+    mesh.texcoords = {{0, 0}, {1, 0}, {0.5F, 0}, {0, -1}, {1, 1}};
+    return mesh;
+}
+
+HardCase texture_scale_case(float scale) {
+    return MeshCase(
+               fmt::format("texture of size {:g}", scale),
+               "A torus, all its texture coordinates multiplied.",
+               scale < 1e-20F ? "MikkTSpace and meshoptimizer: five in six tangents lean, measured"
+                              : "MikkTSpace: five in six tangents lean, measured",
+               [scale] {
+                   return changed(
+                       torus(), [scale](Mesh& mesh, std::size_t v) { mesh.texcoords[v] *= scale; });
+               })
+        .checked({})
+        .tangents()
+        .expect("tangents", "within 0.0001 degrees of those at size 1", differs_from(torus, 1e-4));
+}
+
+HardCase position_scale_case(float scale, const std::string& source) {
+    return MeshCase(fmt::format("textured torus of size {:g}", scale),
+                    "A torus with texture, all its positions multiplied.", source,
+                    [scale] {
+                        return changed(torus(), [scale](Mesh& mesh, std::size_t v) {
+                            mesh.positions[v] *= scale;
+                        });
+                    })
+        .checked({})
+        .tangents()
+        .expect("tangents", "within 0.0001 degrees of those at size 1", differs_from(torus, 1e-4));
+}
+
+// Where floats are 1/16 apart.
+constexpr float far = 1e6F;
+
+/// A wavy grid whose texture coordinates are multiples of 1/16.
+Mesh coarsely_textured() {
+    Mesh mesh = textured_from_above(wavy_grid(6));
+    for (std::size_t v = 0; v < mesh.positions.size(); ++v)
+        mesh.texcoords[v].x += 0.0625F * static_cast<float>(v % 3);
+    return mesh;
+}
+
+HardCase texture_value_case(const std::string& name, float value) {
+    using enum MeshCondition;
+    return MeshCase(name,
+                    "A flat grid whose middle vertex is nowhere in the image; its six triangles "
+                    "have no place there, all others are unharmed.",
+                    "meshoptimizer: one NaN spoils 36 corners, measured",
+                    [value] {
+                        Mesh mesh = textured_grid();
+                        mesh.texcoords[12].y = value;
+                        return mesh;
+                    })
+        .checked({{edge_boundary, 16}, {texture_not_finite, 1}})
+        .tangents({{not_finite, 6}, {no_direction, 6}})
+        .tangents_near(0, "the grid's, but for w at the six", [](const Mesh&, std::size_t) {
+            return std::optional(glm::dvec4(1, 0, 0, 0));
+        });
+}
+
+HardCase normal_value_case(const std::string& name, const glm::vec3& normal,
+                           MeshCondition condition) {
+    return MeshCase(name, "A flat grid whose middle vertex has a normal that is no direction.",
+                    "glTF-Transform#1859",
+                    [normal] {
+                        Mesh mesh = textured_grid();
+                        mesh.normals[12] = normal;
+                        return mesh;
+                    })
+        .checked({{MeshCondition::edge_boundary, 16}, {condition, 1}})
+        .tangents({{no_normal, 1}})
+        .tangents_near(0, "along the texture", along_x);
+}
+
+Mesh with_normals_of_lengths() {
+    return changed(torus(), [](Mesh& mesh, std::size_t v) {
+        mesh.normals[v] *= std::ldexp(1.0F, 20 * (static_cast<int>(v % 5) - 2));
+    });
+}
+
+/// The normals of the grid turned into its surface: along u.
+Mesh with_normals_along_the_texture() {
+    return changed(textured_grid(), [](Mesh& mesh, std::size_t v) { mesh.normals[v] = {1, 0, 0}; });
+}
+
+/// For any number of threads, many orders of triangles.
+std::string depends_on_order(const Mesh& mesh) {
+    std::string problem;
+    for (const TangentMethod& method : all_tangent_methods()) {
+        const auto expected = tangents_of(mesh, method);
+        for (std::uint32_t seed = 0; seed < 12; ++seed) {
+            set_thread_limit(static_cast<int>(seed % 4));
+            const auto order = shuffled(mesh.triangles.size(), seed);
+            const auto found = tangents_of(with_triangle_order(mesh, order), method);
+            if (!same_bits(found, corners_in_order(expected, order)))
+                problem = method.name + ": other bits";
+        }
+    }
+    set_thread_limit(0);
+    return problem;
+}
+
+/// Positions and texture of a wavy grid, and frames that do not belong to it.
+Mesh without_normals() {
+    Mesh mesh = textured_from_above(wavy_grid(2));
+    mesh.normals.clear();
+    mesh.tangents.assign(mesh.positions.size(), {0, 1, 0, -1});
+    return mesh;
+}
+
+/// Of no particular length; zero where two corners coincide.
+glm::dvec3 triangle_normal_of(const Mesh& mesh, const glm::uvec3& triangle) {
+    const glm::dvec3 origin(mesh.positions[triangle.x]);
+    return glm::cross(glm::dvec3(mesh.positions[triangle.y]) - origin,
+                      glm::dvec3(mesh.positions[triangle.z]) - origin);
+}
+
+/// Flat normals, and tangents made for them: the given ones are not looked at.
+std::string wrong_flat_frames(const Mesh& mesh) {
+    Report report;
+    FrameOptions options;
+    options.if_missing = NormalMode::flat;
+    options.tangents = TangentMode::keep;
+    const Mesh framed = with_frames(mesh, options, report).mesh;
+    for (std::size_t corner = 0; corner < 3 * framed.triangles.size(); ++corner) {
+        const glm::dvec3 normal = triangle_normal_of(framed, framed.triangles[corner / 3]);
+        const std::uint32_t v = vertex_at(framed, corner);
+        if (!(degrees_between(glm::dvec3(framed.normals[v]), normal) < 1e-5))
+            return "a normal is not its triangle's";
+        const glm::dvec3 tangent = glm::cross(glm::dvec3(0, 1, 0), normal);  // y stays: along x.
+        if (!(degrees_between(glm::dvec3(framed.tangents[v]), tangent) < 1e-5) ||
+            framed.tangents[v].w != 1.0F)
+            return "a tangent is not its triangle's";
+    }
+    return "";
+}
+
+Mesh sphere_with_poles() {
+    return make_sphere(12, 6);
+}
+
+bool is_pole(const Mesh& mesh, std::size_t corner) {
+    return std::abs(mesh.normals[vertex_at(mesh, corner)].y) > 0.999F;
+}
+
+std::optional<glm::dvec4> east_of(const glm::dvec3& point) {
+    return glm::dvec4(point.z, 0, -point.x, 1);
+}
+
+std::optional<glm::dvec4> east_beside_poles(const Mesh& mesh, std::size_t corner) {
+    if (is_pole(mesh, corner)) return std::nullopt;
+    return east_of(glm::dvec3(mesh.positions[vertex_at(mesh, corner)]));
+}
+
+/// At a pole no direction is east: there it is that of the triangle's middle.
+std::optional<glm::dvec4> east_at_poles(const Mesh& mesh, std::size_t corner) {
+    const glm::uvec3& triangle = mesh.triangles[corner / 3];
+    const bool is_collapsed = triangle_normal_of(mesh, triangle) == glm::dvec3(0.0);
+    if (is_collapsed || !is_pole(mesh, corner)) return std::nullopt;
+    return east_of(glm::dvec3(mesh.positions[triangle.x]) + glm::dvec3(mesh.positions[triangle.y]) +
+                   glm::dvec3(mesh.positions[triangle.z]));
+}
+
+/// The mesh mirrored in the plane x = 0, its triangles turned so that they face outwards.
+Mesh mirrored_torus() {
+    Mesh mesh = torus();
+    for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
+        mesh.positions[v].x *= -1.0F;
+        mesh.normals[v].x *= -1.0F;
+    }
+    for (glm::uvec3& triangle : mesh.triangles)
+        std::swap(triangle.y, triangle.z);
+    return mesh;
+}
+
+std::string not_mirrored(const Mesh& mesh) {
+    for (const TangentMethod& method : all_tangent_methods()) {
+        const auto before = tangents_of(torus(), method);
+        const auto after = tangents_of(mesh, method);
+        for (std::size_t corner = 0; corner < after.size(); ++corner) {
+            const glm::dvec4 was(before[corner / 3 * 3 + (3 - corner % 3) % 3]);
+            const double error =
+                degrees_between(glm::dvec3(after[corner]), glm::dvec3(-was.x, was.y, was.z));
+            if (!(error < 1e-5) || after[corner].w != -static_cast<float>(was.w))
+                return method.name + fmt::format(": corner {} is not", corner);
+        }
+    }
+    return "";
+}
+
+}  // namespace
+
+std::vector<HardCase> tangent_cases() {
+    using enum MeshCondition;
+    return {
+        MeshCase("texture on a line", "A grid that shows a line of the image.",
+                 "MikkTSpace#1, lslib#51", collinear_texture)
+            .checked({{edge_boundary, 16}, {texture_degenerate, 32}})
+            .tangents({{no_gradient, 32}, {no_direction, 96}})
+            .tangents_near(
+                0, "the x axis, turned into the plane of the normal",
+                [](const Mesh&, std::size_t) { return std::optional(glm::dvec4(1, 0, 0, -1)); }),
+        MeshCase("texture on one side only", "A grid half of which shows a line of the image.",
+                 "meshes unwrapped in part", half_textured)
+            .checked({{edge_boundary, 16}, {texture_degenerate, 16}})
+            .tangents({{no_gradient, 16}, {no_direction, 36}})
+            .tangents_near(
+                0, "the texture's, also where there is none",
+                [](const Mesh&, std::size_t) { return std::optional(glm::dvec4(1, 0, 0, 0)); }),
+        MeshCase("sliver with a good texture",
+                 "A triangle of length 1 and width 1e-6 that shows the whole image.",
+                 "glTF-Transform#1859", textured_sliver)
+            .checked({{triangle_needle, 1}, {edge_boundary, 3}})
+            .tangents()
+            .tangents_near(1e-4, "its length", along_sliver),
+        MeshCase("mirrored texture on shared vertices",
+                 "A grid whose image is mirrored about its middle column.", "Godot#114508",
+                 mirrored_grid)
+            .checked({{edge_boundary, 16}, {texture_mirrored, 16}, {texture_overlapping, 32}})
+            .tangents()
+            .tangents_near(0, "each side's own", mirrored_truth)
+            .expect("frames", "5 vertices of the line are split, and no other", wrongly_split),
+        MeshCase("no gradient between both handednesses",
+                 "A triangle that shows a line, between an upright and a mirrored one.",
+                 "glTF#2480: w must be one all over a triangle", between_handednesses)
+            .checked({{edge_boundary, 5}, {texture_degenerate, 1}, {texture_mirrored, 1}})
+            .tangents({{no_gradient, 1}}),
+        texture_scale_case(1e-18F),
+        texture_scale_case(1e-25F),
+        texture_scale_case(1e18F),
+        MeshCase("texture a million from its origin",
+                 "A wavy grid whose texture coordinates are multiples of 1/16 out there, which is "
+                 "what floats are.",
+                 "MikkTSpace and meshoptimizer: 540 of 3072 corners lean, measured",
+                 [] {
+                     return changed(coarsely_textured(), [](Mesh& mesh, std::size_t v) {
+                         mesh.texcoords[v] += glm::vec2(far, -far);
+                     });
+                 })
+            .checked({{edge_boundary, 24}, {texture_far_away, 1}})
+            .tangents()
+            .expect("tangents", "exactly those of the texture moved back",
+                    differs_from(coarsely_textured, 0.0)),
+        texture_value_case("NaN in a texture coordinate", nan),
+        texture_value_case("infinity in a texture coordinate", infinity),
+        normal_value_case("normal of length zero", {0, 0, 0}, normal_zero),
+        normal_value_case("normal that is NaN", {0, nan, 1}, normal_not_finite),
+        normal_value_case("normal that is infinite", {0, 0, infinity}, normal_not_finite),
+        MeshCase("normals of any length", "A torus with normals of lengths from 2^-40 to 2^40.",
+                 "MikkTSpace and meshoptimizer: 3000 of 3072 corners lean, measured",
+                 with_normals_of_lengths)
+            .tangents()
+            .expect("tangents", "exactly those of unit normals", differs_from(torus, 0.0)),
+        MeshCase("normals along the texture", "A flat grid whose normals are where u grows.",
+                 "baked meshes with broken normals", with_normals_along_the_texture)
+            .tangents({{cancelling, 96}, {no_direction, 96}}),
+        position_scale_case(1e-25F, "underflow of squared lengths"),
+        position_scale_case(1e20F, "meshoptimizer: 3067 NaN, measured"),
+        position_scale_case(1e25F, "overflow of squared lengths"),
+        MeshCase("triangles in another order", "A torus, its triangles shuffled in twelve ways.",
+                 "MikkTSpace and meshoptimizer: other bits at 72 of 100 corners, measured", torus)
+            .tangents()
+            .expect("tangents", "the same bits, with 1, 2, 3 threads or all", depends_on_order),
+        MeshCase("no normals, but tangents",
+                 "A wavy grid whose stored tangents go with normals that it has not.", "glTF#2480",
+                 without_normals)
+            .expect("frames, flat", "flat normals, and each triangle's tangent for them",
+                    wrong_flat_frames),
+        MeshCase("poles of a sphere", "A sphere by longitude and latitude, of 12 slices.",
+                 "p5.js PR#9068", sphere_with_poles)
+            .checked({{triangle_collapsed, 24}})
+            .tangents({{coinciding, 24}, {no_direction, 2}})
+            .tangents_near(1e-4, "each triangle's own east at the poles", east_at_poles)
+            .tangents_near(15.001, "east elsewhere: half a slice, at the seam", east_beside_poles),
+        MeshCase("mirrored surface", "A torus mirrored in x, its triangles still facing outwards.",
+                 "instances scaled by -1", mirrored_torus)
+            .checked({{texture_mirrored, 576}})
+            .tangents()
+            .expect("tangents", "mirrored within 1e-5 degrees, w negated", not_mirrored),
+    };
+}
+
+}  // namespace relief::test
