@@ -23,6 +23,17 @@ void parallel_for(std::size_t count, std::size_t grain,
                       [&](const auto& piece) { body(piece.begin(), piece.end()); });
 }
 
+void parallel_for_reporting(std::size_t count, std::size_t grain, Report& report,
+                            const std::function<void(std::size_t, std::size_t, Report&)>& body) {
+    std::vector<Report> found((count + grain - 1) / grain);
+    parallel_for(found.size(), 1, [&](std::size_t first, std::size_t last) {
+        for (std::size_t piece = first; piece < last; ++piece)
+            body(piece * grain, std::min(count, (piece + 1) * grain), found[piece]);
+    });
+    for (const Report& one : found)
+        report.merge(one);
+}
+
 std::size_t thread_count() {
     // The cap of set_thread_limit, or what the machine has. Asking starts no threads.
     const auto capped =

@@ -7,6 +7,8 @@
 #include <functional>
 #include <vector>
 
+#include "relief/mesh/report.h"
+
 namespace relief {
 
 /// Calls body(begin, end) over disjoint pieces that cover [0, count), on all threads at once.
@@ -17,6 +19,12 @@ namespace relief {
 /// the outcome is the same for any number of threads. An exception from a body reaches the caller.
 void parallel_for(std::size_t count, std::size_t grain,
                   const std::function<void(std::size_t begin, std::size_t end)>& body);
+
+/// The same, where each piece may find something: what all report comes together in `report`, in
+/// the order of the pieces, which are the same for any number of threads.
+void parallel_for_reporting(
+    std::size_t count, std::size_t grain, Report& report,
+    const std::function<void(std::size_t begin, std::size_t end, Report& found)>& body);
 
 /// How many threads parallel_for() has at most: for those who must make as many of something.
 std::size_t thread_count();

@@ -13,9 +13,8 @@ namespace {
 // A normal that is perpendicular to a triangle up to rounding neither faces it nor opposes it.
 constexpr float sidewise = 1e-3F;
 
-// Cosines between normal and tangent: 8-bit storage leaves up to 0.014, so 0.02 is the author's;
-// 0.999 leaves no more of the tangent than that storage could have made up.
-constexpr double leaning = 0.02;
+// A cosine between normal and tangent that leaves no more of the tangent than 8-bit storage could
+// have made up.
 constexpr double along = 0.999;
 
 bool is_unit(double length) {
@@ -78,7 +77,7 @@ void diagnose_slant(const Mesh& mesh, std::size_t vertex, Tally& tally) {
     const double cosine = std::abs(glm::dot(tangent, normal));
     if (cosine > along)
         tally.add(MeshCondition::tangent_along_normal, vertex);
-    else if (cosine > leaning)
+    else if (cosine > leaning_tolerance)
         tally.add(MeshCondition::tangent_leaning, vertex);
 }
 

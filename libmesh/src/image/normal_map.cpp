@@ -10,7 +10,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <mutex>
 
 #include "parallel.h"
 #include "relief/mesh/error.h"
@@ -42,14 +41,11 @@ bool make_unit(Direction& direction) {
 /// Calls each(texel, report) for every texel in parallel; the findings come together in `report`.
 template <typename Each>
 void for_each_texel(std::size_t count, Report& report, Each each) {
-    std::mutex mutex;
-    parallel_for(count, texels_per_piece, [&](std::size_t begin, std::size_t end) {
-        Report piece;
-        for (std::size_t texel = begin; texel < end; ++texel)
-            each(texel, piece);
-        const std::lock_guard lock(mutex);
-        report.merge(piece);
-    });
+    parallel_for_reporting(count, texels_per_piece, report,
+                           [&](std::size_t begin, std::size_t end, Report& found) {
+                               for (std::size_t texel = begin; texel < end; ++texel)
+                                   each(texel, found);
+                           });
 }
 
 /// Codes of 8 or 16 bits under one of the two meanings of zero.

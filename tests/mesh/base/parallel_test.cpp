@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <stdexcept>
 #include <vector>
 
@@ -25,6 +26,27 @@ TEST(Parallel, EveryElementIsVisitedOnce) {
             EXPECT_THAT(visits, testing::Each(1)) << threads << " threads";
         }
     }
+}
+
+TEST(Parallel, FindingsComeInTheOrderOfThePieces) {
+    const auto found = [](unsigned threads) {
+        set_thread_limit(threads);
+        Report report;
+        parallel_for_reporting(1001, 10, report, [](std::size_t begin, std::size_t end, Report& r) {
+            for (std::size_t i = begin; i < end; ++i)
+                r.add(i % 7 == 3 ? "one" : "other", "thing", i, "counted");
+        });
+        set_thread_limit(0);
+        return report;
+    };
+    const Report alone = found(1);
+    ASSERT_EQ(alone.findings().size(), 2U);
+    EXPECT_EQ(alone.findings()[0].kind, "other");
+    EXPECT_EQ(alone.count("one"), 143U);
+    EXPECT_EQ(alone.count("other"), 858U);
+    const Report together = found(0);
+    EXPECT_TRUE(std::equal(alone.findings().begin(), alone.findings().end(),
+                           together.findings().begin(), together.findings().end()));
 }
 
 TEST(Parallel, AnExceptionReachesTheCaller) {

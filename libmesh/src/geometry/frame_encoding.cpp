@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+// Many frames to codes and back, in parallel. Each frame is on its own: same input, same bits, for
+// any number of threads. Tests: tests/mesh/geometry/frame_encoding_test.cpp.
+#include "relief/mesh/frame_encoding.h"
+
+#include <fmt/format.h>
+
+#include "geometry/direction.h"
+#include "geometry/frame_codes.h"
+#include "parallel.h"
+#include "relief/mesh/error.h"
+
+namespace relief {
+namespace {
+
+constexpr std::size_t frames_per_piece = 1 << 12;
+
+}  // namespace
+
+std::size_t words_per_frame(FrameEncoding encoding) {
+    switch (encoding) {
+        case FrameEncoding::float32:
+            return 7;
+        case FrameEncoding::octahedral8:
+        case FrameEncoding::quaternion8:
+        case FrameEncoding::angle10:
+            return 1;
+        case FrameEncoding::octahedral10:
+        case FrameEncoding::octahedral16:
+        case FrameEncoding::quaternion16:
+        case FrameEncoding::angle16:
+            break;
+    }
+    return 2;
+}
+
+std::vector<std::uint32_t> encode_frames(std::span<const glm::vec3> normals,
+                                         std::span<const glm::vec4> tangents,
+                                         FrameEncoding encoding, FrameRounding rounding,
+                                         Report& report) {
+    if (normals.size() != tangents.size()) {
+        throw InvalidInput(
+            fmt::format("there are {} normals, but {} tangents", normals.size(), tangents.size()));
+    }
+    const std::size_t stride = words_per_frame(encoding);
+    std::vector<std::uint32_t> words(normals.size() * stride);
+    parallel_for_reporting(normals.size(), frames_per_piece, report,
+                           [&](std::size_t begin, std::size_t end, Report& found) {
+                               for (std::size_t i = begin; i < end; ++i) {
+                                   encode_frame(sound_frame(normals[i], tangents[i], i, found),
+                                                encoding, rounding, &words[i * stride]);
+                               }
+                           });
+    return words;
+}
+
+Frames decode_frames(std::span<const std::uint32_t> words, FrameEncoding encoding, Report& report) {
+    const std::size_t stride = words_per_frame(encoding);
+    if (words.size() % stride != 0) {
+        throw InvalidInput(
+            fmt::format("{} words are not whole frames of {} words", words.size(), stride));
+    }
+    const std::size_t count = words.size() / stride;
+    Frames frames{std::vector<glm::vec3>(count), std::vector<glm::vec4>(count)};
+    parallel_for_reporting(
+        count, frames_per_piece, report, [&](std::size_t begin, std::size_t end, Report& found) {
+            for (std::size_t i = begin; i < end; ++i) {
+                const SoundFrame frame = decode_frame(&words[i * stride], encoding, i, found);
+                frames.normals[i] = rounded(frame.normal);
+                frames.tangents[i] =
+                    glm::vec4(rounded(frame.tangent), frame.mirrored ? -1.0F : 1.0F);
+            }
+        });
+    return frames;
+}
+
+}  // namespace relief
