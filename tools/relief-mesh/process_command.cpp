@@ -21,6 +21,8 @@
 namespace relief::tools {
 namespace {
 
+constexpr int largest_uv_set = 1000;
+
 struct ProcessOptions {
     FileWords words;
     ProcessRequest request;  ///< What to do to each model; its files are filled in per model.
@@ -30,12 +32,17 @@ struct ProcessOptions {
 
 /// Refuses what the command line alone shows to be useless.
 void check_request(const ProcessRequest& request) {
-    readable_format(request.input);
+    const ModelFormat input = readable_format(request.input);
     const ModelFormat output = writable_format(request.output);
-    if (request.tangents == TangentMode::mikktspace && !is_document(output)) {
-        throw UsageError(fmt::format("--tangents mikktspace: {} cannot hold tangents",
-                                     extension_of(request.output)),
+    if (computes_tangents(request.tangents) && !is_document(output)) {
+        throw UsageError(fmt::format("--tangents {}: {} cannot hold tangents",
+                                     word_of(request.tangents), extension_of(request.output)),
                          "write .glb or .gltf");
+    }
+    if (request.uv_set.value_or(0) > 0 && !is_document(input)) {
+        throw UsageError(fmt::format("--uv-set {}: {}: has no texture coordinate set but 0",
+                                     *request.uv_set, request.input.string()),
+                         "only glTF has several");
     }
 }
 
@@ -54,9 +61,19 @@ void check_normals(const ProcessRequest& request) {
          "is for normals that are kept: leave --normals out");
 }
 
+/// Refuses to choose texture coordinates for tangents that are not computed.
+void check_tangents(const ProcessRequest& request) {
+    const bool follow_normals =
+        request.tangents == TangentMode::keep && request.normals != NormalMode::keep;
+    if (!request.uv_set || computes_tangents(request.tangents) || follow_normals) return;
+    throw UsageError(fmt::format("--uv-set {}: is for tangents that are computed", *request.uv_set),
+                     "give --tangents mikktspace");
+}
+
 /// The same work for every model. \throws UsageError, FileError before anything is done
 std::vector<ProcessRequest> requests_of(const ProcessOptions& options, const JobList& list) {
     check_normals(options.request);
+    check_tangents(options.request);
     std::vector<ProcessRequest> requests;
     std::vector<std::filesystem::path> files;
     for (const Job& job : list.jobs) {
@@ -135,20 +152,35 @@ void add_normal_options(CLI::App& app, ProcessRequest& request) {
         ->group(group);
 }
 
-void add_options(CLI::App& app, ProcessOptions& options) {
-    add_file_options(app, options.words);
-    add_normal_options(app, options.request);
-    add_choice(app, "--tangents", options.request.tangents, tangent_choices(),
+void add_tangent_options(CLI::App& app, ProcessRequest& request) {
+    const char* group = "Tangents";
+    add_choice(app, "--tangents", request.tangents, tangent_choices(),
                "Tangents for normal maps: the file's own (keep; computed anew where normals are), "
                "none, or computed as MikkTSpace does, splitting vertices where needed. "
                "Default: keep.")
-        ->group("Tangents");
+        ->group(group);
+    add_value(app, "--uv-set", "N",
+              "Compute tangents from texture coordinate set N (TEXCOORD_N of glTF; other formats "
+              "have set 0 alone). Default: for each primitive the set of its normal texture, as "
+              "glTF asks, where KHR_texture_transform has the last word; the first set if there "
+              "is no normal texture. All sets stay in the file.",
+              [&request](const std::string& subject, const std::string& text) {
+                  request.uv_set = parse_integer(subject, text, 0, largest_uv_set);
+              })
+        ->group(group);
+}
+
+void add_options(CLI::App& app, ProcessOptions& options) {
+    add_file_options(app, options.words);
+    add_normal_options(app, options.request);
+    add_tangent_options(app, options.request);
     add_report_options(app, options.report);
     add_general_options(app, options.general);
     set_examples(
         app,
         {"relief-mesh process data/vase.obj out/vase.glb --tangents mikktspace",
          "relief-mesh process out/vase.glb out/vase-flat.glb --normals flat",
+         "relief-mesh process out/vase.glb out/vase-0.glb --tangents mikktspace --uv-set 0",
          "relief-mesh process data/vase.obj out/vase.ply --normals area --report out/vase.json",
          "relief-mesh process data/vase.obj out/vase-hard.glb --normals auto --crease 40",
          "relief-mesh process data/*.obj -o out/models/ --format glb --normals angle"});

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <functional>
 #include <map>
 
@@ -52,12 +53,21 @@ std::string normals_in_words(const ProcessedPart& part) {
     return text + (part.smoothing_groups ? ", within the file's smoothing groups" : "");
 }
 
+/// "MikkTSpace", "area-weighted", ...
+std::string method_in_words(TangentMode mode) {
+    return mode == TangentMode::mikktspace ? "MikkTSpace" : word_of(mode);
+}
+
 std::string tangents_in_words(const ProcessedPart& part) {
     switch (part.tangents) {
         case Fate::kept:
             return "kept";
-        case Fate::computed:
-            return "computed, MikkTSpace";
+        case Fate::computed: {
+            const std::string method = "computed, " + method_in_words(part.tangent_mode);
+            if (part.texcoords.is_only && part.texcoords.set == 0) return method;
+            return fmt::format("{}, from texture coordinate set {} ({})", method,
+                               part.texcoords.set, part.texcoords.reason);
+        }
         case Fate::removed:
             return "removed";
         case Fate::absent:
@@ -100,6 +110,26 @@ std::string fate_word(Fate fate) {
     return "none";
 }
 
+/// Notes of all primitives; those that several share, once.
+std::vector<std::string> notes_in_words(const Processed& done) {
+    std::vector<std::pair<std::string, std::vector<std::string>>> places;
+    for (const ProcessedPart& part : done.parts) {
+        for (const std::string& note : part.notes) {
+            auto place = std::find_if(places.begin(), places.end(),
+                                      [&](const auto& other) { return other.first == note; });
+            if (place == places.end()) place = places.insert(places.end(), {note, {}});
+            place->second.push_back(part.name);
+        }
+    }
+    std::vector<std::string> lines;
+    for (const auto& [note, names] : places) {
+        lines.push_back(fmt::format(
+            "{}{}: {}", names.front(),
+            names.size() == 1 ? "" : fmt::format(" and {} more", names.size() - 1), note));
+    }
+    return lines;
+}
+
 nlohmann::ordered_json parts_json(const Processed& done) {
     nlohmann::ordered_json parts = nlohmann::ordered_json::array();
     for (const ProcessedPart& part : done.parts) {
@@ -115,8 +145,12 @@ nlohmann::ordered_json parts_json(const Processed& done) {
             json["smoothing_groups"] = part.smoothing_groups;
         }
         json["tangents"] = fate_word(part.tangents);
-        if (part.tangents == Fate::computed)
-            json["tangent_method"] = word_of(TangentMode::mikktspace);
+        if (part.tangents == Fate::computed) {
+            json["tangent_method"] = word_of(part.tangent_mode);
+            json["texcoord_set"] = part.texcoords.set;
+            json["texcoord_set_reason"] = part.texcoords.reason;
+        }
+        json["notes"] = part.notes;
         parts.push_back(std::move(json));
     }
     return parts;
@@ -152,6 +186,7 @@ void print_summary(const ProcessRequest& request, const Processed& done, const S
     print_entry("splits", splits_in_words(totals));
     print_entry("findings",
                 done.findings.empty() ? std::vector<std::string>{"none"} : done.findings.lines());
+    print_entry("notes", notes_in_words(done));
     if (!done.decompressed.empty()) {
         print_entry("unpacked",
                     fmt::format("{} (written uncompressed)", fmt::join(done.decompressed, ", ")));
@@ -186,6 +221,7 @@ void print_line(const ProcessRequest& request, const Processed& done, const Stag
 nlohmann::ordered_json options_json(const ProcessRequest& request) {
     nlohmann::ordered_json json = {{"normals", word_of(request.normals)},
                                    {"tangents", word_of(request.tangents)}};
+    if (request.uv_set) json["uv_set"] = *request.uv_set;
     if (request.crease_degrees) json["crease_degrees"] = *request.crease_degrees;
     json["weld_tolerance"] = request.weld_tolerance;
     return json;

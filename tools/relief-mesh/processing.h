@@ -22,6 +22,7 @@ struct ProcessRequest {
     std::filesystem::path output;
     NormalMode normals = NormalMode::keep;
     TangentMode tangents = TangentMode::keep;
+    std::optional<int> uv_set;  ///< Of computed tangents; absent: the normal texture's.
     std::optional<double>
         crease_degrees;  ///< As the following, for averaged normals; see frames.h.
     double weld_tolerance = 0.0;
@@ -31,6 +32,13 @@ struct ProcessRequest {
 
 /// What became of an attribute of one primitive.
 enum class Fate { kept, computed, removed, absent };
+
+/// The texture coordinates that tangents were computed from.
+struct TangentTexcoords {
+    int set = 0;
+    bool is_only = true;  ///< There are no others.
+    std::string reason;   ///< "asked for", "of the normal texture", ..., "the first".
+};
 
 /// What was done to one primitive.
 struct ProcessedPart {
@@ -43,6 +51,9 @@ struct ProcessedPart {
     std::size_t normals_by_area = 0;            ///< Vertices, where the mode is automatic.
     bool smoothing_groups = false;              ///< They followed the file's.
     Fate tangents = Fate::absent;
+    TangentMode tangent_mode = TangentMode::keep;  ///< How they were computed, where they were.
+    TangentTexcoords texcoords;                    ///< What from.
+    std::vector<std::string> notes;  ///< What is worth knowing, but nothing wrong in the input.
 };
 
 struct Processed {
@@ -52,10 +63,14 @@ struct Processed {
     Findings findings;
 };
 
+/// Whether a mode computes tangents, whatever the mesh has.
+bool computes_tangents(TangentMode mode);
+
 /// Reads, computes, writes.
 ///
 /// \throws FileError if a file cannot be read or written, if it holds no triangles, or if tangents
-///         are asked for and no primitive has texture coordinates; then nothing is written
+///         are asked for and no primitive has texture coordinates, or none of the set asked for;
+///         then nothing is written
 Processed process(const ProcessRequest& request, Stages& stages);
 
 }  // namespace relief::tools

@@ -155,6 +155,22 @@ struct GltfView {
     std::vector<GltfImage> images;
 };
 
+/// Which texture coordinates the tangents of a primitive belong to.
+struct GltfTangentTexcoords {
+    int set = 0;  ///< TEXCOORD_n.
+    /// The texture of its material that asks for them: "normalTexture", "clearcoatNormalTexture" or
+    /// "anisotropyTexture"; empty where none does, and the set is the first that there is.
+    std::string texture;
+    /// The set that the texture names, where the primitive does not have it: `set` is then the
+    /// first that it has.
+    std::optional<int> missing;
+    /// KHR_texture_transform turns or mirrors the texture. Tangents belong to the coordinates as
+    /// stored all the same: a renderer turns them together with the texture.
+    bool is_turned = false;
+
+    friend bool operator==(const GltfTangentTexcoords&, const GltfTangentTexcoords&) = default;
+};
+
 /// One way in which parts of a file were compressed when it was read.
 struct GltfCompression {
     std::string extension;    ///< "KHR_draco_mesh_compression", ...
@@ -222,6 +238,19 @@ class GltfDocument {
     /// \throws InvalidInput if indices are out of range or make no whole triangles, if attributes
     ///         differ in number or have the wrong type, or if there is no such primitive
     [[nodiscard]] Mesh mesh(GltfPrimitiveId id, int texcoord_set = 0) const;
+
+    /// The texture coordinate sets that a primitive has, ascending.
+    [[nodiscard]] std::vector<int> texcoord_sets(GltfPrimitiveId id) const;
+
+    /// Those that its tangents belong to: the set of its material's normal texture, where
+    /// KHR_texture_transform has the last word.
+    ///
+    /// Where there is no normal texture, the set of the clearcoat's normal texture or of the
+    /// anisotropy texture, which are looked up in the same frame; else the first set. Scales,
+    /// turns and shifts of KHR_texture_transform have no say in tangents: they can be animated, and
+    /// other textures of the material share the tangents without sharing the transform. hrows
+    /// InvalidInput if there is no such primitive
+    [[nodiscard]] GltfTangentTexcoords tangent_texcoords(GltfPrimitiveId id) const;
 
     /// Replaces a primitive's NORMAL and TANGENT by those of `framed`, which with_frames() or
     /// decimated() made from mesh(id). Where vertices were split or left out, indices are rewritten

@@ -12,6 +12,7 @@
 #include "io/gltf/gltf_morph.h"
 #include "io/gltf/gltf_primitive.h"
 #include "io/gltf/gltf_reader.h"
+#include "io/gltf/gltf_tangent_texcoords.h"
 #include "io/gltf/gltf_view.h"
 #include "io/gltf/gltf_writer.h"
 
@@ -97,6 +98,14 @@ std::string GltfDocument::describe(GltfPrimitiveId id) const {
 
 Mesh GltfDocument::mesh(GltfPrimitiveId id, int texcoord_set) const {
     return read_primitive(contents_->data, id, texcoord_set);
+}
+
+std::vector<int> GltfDocument::texcoord_sets(GltfPrimitiveId id) const {
+    return texcoord_sets_of(contents_->data, id);
+}
+
+GltfTangentTexcoords GltfDocument::tangent_texcoords(GltfPrimitiveId id) const {
+    return tangent_texcoords_of(contents_->data, id);
 }
 
 void GltfDocument::set_frames(GltfPrimitiveId id, const FramedMesh& framed) {

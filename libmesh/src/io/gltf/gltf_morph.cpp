@@ -132,9 +132,13 @@ MorphReplacement::MorphReplacement(GltfContents& contents, GltfPrimitiveId id,
         options_.normals = options_.if_missing;
     }
     has_new_normals_ = options_.normals != NormalMode::keep && !framed_.mesh.normals.empty();
-    has_new_tangents_ = !framed_.mesh.tangents.empty() &&
-                        (has_new_normals_ || options_.tangents == TangentMode::mikktspace);
-    options_.tangents = has_new_tangents_ ? TangentMode::mikktspace : TangentMode::none;
+    const bool asked_for =
+        options_.tangents != TangentMode::keep && options_.tangents != TangentMode::none;
+    has_new_tangents_ = !framed_.mesh.tangents.empty() && (has_new_normals_ || asked_for);
+    if (!has_new_tangents_)
+        options_.tangents = TangentMode::none;
+    else if (!asked_for)
+        options_.tangents = TangentMode::mikktspace;  // What new normals bring about.
 }
 
 /// A target gets the displacements that it had, and those that a renderer made of its displaced

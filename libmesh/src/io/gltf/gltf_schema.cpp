@@ -196,6 +196,8 @@ constexpr Rule rules[] = {
     {"spot", "outerConeAngle", Kind::number},
     {"node+KHR_lights_punctual", "light", Kind::index, "lights", required},
     {"material+KHR_materials_emissive_strength", "emissiveStrength", Kind::number},
+    {"material+KHR_materials_clearcoat", "clearcoatNormalTexture", Kind::object, "textureInfo"},
+    {"material+KHR_materials_anisotropy", "anisotropyTexture", Kind::object, "textureInfo"},
     {"textureInfo+KHR_texture_transform", "offset", Kind::numbers, {}, false, 2},
     {"textureInfo+KHR_texture_transform", "rotation", Kind::number},
     {"textureInfo+KHR_texture_transform", "scale", Kind::numbers, {}, false, 2},
