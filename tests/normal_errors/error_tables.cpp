@@ -11,6 +11,7 @@
 #include "relief/mesh/analytic_surfaces.h"
 #include "relief/mesh/direction_error.h"
 #include "relief/mesh/normals.h"
+#include "support/error_page.h"
 
 namespace relief::test {
 namespace {
@@ -53,32 +54,10 @@ constexpr std::array surfaces = {
     Named{"cubic", AnalyticSurface::cubic}};
 
 std::string header() {
-    std::string first = "| |";
-    std::string second = "|---|";
-    for (const Method& method : methods()) {
-        first += fmt::format(" {} |", method.name);
-        second += "---|";
-    }
-    return first + "\n" + second + "\n";
-}
-
-/// Three digits, and no exponent for what is 0 but for float's rounding.
-std::string in_digits(double degrees) {
-    if (degrees < 0.0005) return "0.000";
-    return degrees < 10.0 ? fmt::format("{:.3f}", degrees) : fmt::format("{:.1f}", degrees);
-}
-
-/// The best of a row in bold.
-std::string row(const std::string& name, const std::vector<double>& ranks,
-                const std::vector<std::string>& cells) {
-    double best = ranks.front();
-    for (const double rank : ranks)
-        best = std::min(best, rank);
-    std::string text = fmt::format("| {} |", name);
-    for (std::size_t i = 0; i < cells.size(); ++i)
-        text += ranks[i] <= best * 1.0005 + 5e-4 ? fmt::format(" **{}** |", cells[i])
-                                                 : fmt::format(" {} |", cells[i]);
-    return text + "\n";
+    std::vector<std::string> names;
+    for (const Method& method : methods())
+        names.emplace_back(method.name);
+    return table_header(names);
 }
 
 std::string surface_table(const char* title, Triangulation triangulation) {
@@ -94,7 +73,7 @@ std::string surface_table(const char* title, Triangulation triangulation) {
             ranks.push_back(error.rms);
             entries.push_back(in_digits(error.rms) + " / " + in_digits(error.max));
         }
-        text += row(named.name, ranks, entries);
+        text += table_row(named.name, ranks, entries);
     }
     return text;
 }
@@ -121,7 +100,7 @@ std::string fan_table() {
             ranks.push_back(std::sqrt(sum / fans));
             entries.push_back(in_digits(ranks.back()));
         }
-        text += row(fmt::format("{} neighbours", valence), ranks, entries);
+        text += table_row(fmt::format("{} neighbours", valence), ranks, entries);
     }
     return text;
 }

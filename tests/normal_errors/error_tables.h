@@ -11,9 +11,8 @@ namespace relief::test {
 /// Markdown. The same on every machine and for every compiler.
 std::string normal_error_tables();
 
-/// What stands in the page around them, so that they can be put in and compared.
+/// The line before them in the page (support/error_page.h).
 inline constexpr const char* tables_begin =
     "<!-- tables: written by relief-normal-errors-page -->\n";
-inline constexpr const char* tables_end = "<!-- end of tables -->\n";
 
 }  // namespace relief::test

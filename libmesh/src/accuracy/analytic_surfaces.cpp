@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Parameters (s, t) in [0,1]^2 to a point and its normal; the random numbers are a generator of our
-// own, since those of the standard library's distributions differ between libraries.
-// Tests: tests/mesh/accuracy/analytic_surfaces_test.cpp.
+// Parameters (s, t) in [0,1]^2 to a point, its normal and how it moves with them; the random
+// numbers are a generator of our own, since those of the standard library's distributions differ
+// between libraries. Tests: tests/mesh/accuracy/analytic_surfaces_test.cpp.
 #include "relief/mesh/analytic_surfaces.h"
 
 #include <fmt/format.h>
@@ -11,6 +11,7 @@
 #include <cmath>
 #include <functional>
 #include <numbers>
+#include <utility>
 
 #include "relief/mesh/error.h"
 
@@ -40,6 +41,8 @@ class Random {
 struct SurfacePoint {
     glm::dvec3 position;
     glm::dvec3 normal;
+    glm::dvec3 along_s;  ///< The position's derivatives.
+    glm::dvec3 along_t;
 };
 
 /// Where a surface runs back into itself when a parameter does.
@@ -52,11 +55,16 @@ struct Parametrised {
 SurfacePoint on_ellipsoid(const glm::dvec3& axes, double s, double t) {
     // The poles, where triangles do not keep their shape when they shrink, are left out.
     constexpr double from_pole = 0.15 * std::numbers::pi;
-    const double polar = from_pole + t * (std::numbers::pi - 2.0 * from_pole);
+    constexpr double pole_to_pole = std::numbers::pi - 2.0 * from_pole;
+    const double polar = from_pole + t * pole_to_pole;
     const double around = full_turn * s;
     const glm::dvec3 direction(std::sin(polar) * std::cos(around),
                                std::sin(polar) * std::sin(around), std::cos(polar));
-    return {axes * direction, glm::normalize(direction / axes)};
+    const glm::dvec3 east(-std::sin(around), std::cos(around), 0.0);
+    const glm::dvec3 down(std::cos(polar) * std::cos(around), std::cos(polar) * std::sin(around),
+                          -std::sin(polar));
+    return {axes * direction, glm::normalize(direction / axes),
+            axes * east * (full_turn * std::sin(polar)), axes * down * pole_to_pole};
 }
 
 SurfacePoint on_torus(double s, double t) {
@@ -65,7 +73,10 @@ SurfacePoint on_torus(double s, double t) {
     const double across = full_turn * t;
     const glm::dvec3 out(std::cos(around), std::sin(around), 0.0);
     const glm::dvec3 normal = std::cos(across) * out + std::sin(across) * glm::dvec3(0.0, 0.0, 1.0);
-    return {out + minor * normal, normal};
+    const glm::dvec3 on(-std::sin(around), std::cos(around), 0.0);
+    return {out + minor * normal, normal, on * full_turn * (1.0 + minor * std::cos(across)),
+            full_turn * minor *
+                (std::cos(across) * glm::dvec3(0.0, 0.0, 1.0) - std::sin(across) * out)};
 }
 
 /// z = the sum of c[i][j] x^i y^j.
@@ -84,7 +95,10 @@ struct Cubic {
                 if (j > 0) along_y += factor * j * std::pow(x, i) * std::pow(y, j - 1);
             }
         }
-        return {{x, y, z}, glm::normalize(glm::dvec3(-along_x, -along_y, 1.0))};
+        return {{x, y, z},
+                glm::normalize(glm::dvec3(-along_x, -along_y, 1.0)),
+                {1.0, 0.0, along_x},
+                {0.0, 1.0, along_y}};
     }
 };
 
@@ -103,7 +117,12 @@ Cubic random_cubic(Random& random, int lowest, double size) {
 
 Parametrised parametrised(AnalyticSurface surface, Random& random) {
     const auto over_square = [](auto at) {
-        return [at](double s, double t) { return at(2.0 * s - 1.0, 2.0 * t - 1.0); };
+        return [at](double s, double t) {
+            SurfacePoint point = at(2.0 * s - 1.0, 2.0 * t - 1.0);
+            point.along_s *= 2.0;
+            point.along_t *= 2.0;
+            return point;
+        };
     };
     switch (surface) {
         case AnalyticSurface::sphere:
@@ -129,6 +148,11 @@ Parametrised parametrised(AnalyticSurface surface, Random& random) {
     return {over_square([=](double x, double y) { return cubic.at(x, y); }), false, false};
 }
 
+/// Parameters of the sphere and the ellipsoid run clockwise seen from outside.
+bool runs_clockwise(AnalyticSurface surface) {
+    return surface == AnalyticSurface::sphere || surface == AnalyticSurface::ellipsoid;
+}
+
 /// How far points move, in cells.
 double jitter_of(Triangulation triangulation) {
     switch (triangulation) {
@@ -143,23 +167,84 @@ double jitter_of(Triangulation triangulation) {
     return 0.6;
 }
 
+/// Cells, and the vertices that they are between: as many, or one more where nothing closes.
+struct Grid {
+    int columns;
+    int rows;
+    int across;
+    int down;
+};
+
+Grid grid_of(Triangulation triangulation, int cells) {
+    if (cells < 4) throw InvalidInput(fmt::format("{} cells are too few: 4 or more", cells));
+    const bool stretched = triangulation == Triangulation::anisotropic;
+    const int columns = stretched ? 4 * cells : cells;
+    const int rows = stretched ? std::max(cells / 4, 1) : cells;
+    return {columns, rows, columns + 1, rows + 1};
+}
+
+/// Two triangles a cell, along a diagonal drawn at random where there is a generator.
+void add_cells(Mesh& mesh, const Grid& grid, Random* random) {
+    for (int r = 0; r < grid.rows; ++r) {
+        for (int c = 0; c < grid.columns; ++c) {
+            const auto vertex = [&](int column, int row) {
+                return static_cast<std::uint32_t>(row % grid.down * grid.across +
+                                                  column % grid.across);
+            };
+            const std::uint32_t a = vertex(c, r), b = vertex(c + 1, r), d = vertex(c, r + 1),
+                                e = vertex(c + 1, r + 1);
+            const bool other = random != nullptr && random->between(0.0, 1.0) < 0.5;
+            mesh.triangles.push_back(other ? glm::uvec3(a, b, d) : glm::uvec3(a, b, e));
+            mesh.triangles.push_back(other ? glm::uvec3(b, e, d) : glm::uvec3(a, e, d));
+        }
+    }
+}
+
+void turn_over(Mesh& mesh) {
+    for (glm::uvec3& triangle : mesh.triangles)
+        std::swap(triangle.y, triangle.z);
+}
+
+glm::dvec2 texcoord_at(TextureLayout layout, const glm::dvec2& parameters) {
+    const double s = parameters.x;
+    const double t = parameters.y;
+    switch (layout) {
+        case TextureLayout::upright:
+            break;
+        case TextureLayout::sheared:
+            return {s, 1.0 - t + 0.5 * s};
+        case TextureLayout::mirrored:
+            return {s < 0.5 ? 2.0 * s : 2.0 - 2.0 * s, 1.0 - t};
+    }
+    return {s, 1.0 - t};
+}
+
+/// From how the parameters change with u and v: the layouts' equations solved for s and t.
+SurfaceFrame frame_of(const SurfacePoint& point, TextureLayout layout, double s) {
+    glm::dvec3 along_u = point.along_s;
+    const glm::dvec3 up = point.along_t;
+    if (layout == TextureLayout::sheared) along_u += 0.5 * point.along_t;
+    if (layout == TextureLayout::mirrored && s >= 0.5) along_u = -along_u;
+    SurfaceFrame frame{point.normal, glm::normalize(along_u), 1.0};
+    if (glm::dot(glm::cross(frame.normal, frame.tangent), up) < 0.0) frame.handedness = -1.0;
+    return frame;
+}
+
 }  // namespace
 
 AnalyticMesh analytic_mesh(AnalyticSurface surface, Triangulation triangulation, int cells,
                            std::uint32_t seed) {
-    if (cells < 4) throw InvalidInput(fmt::format("{} cells are too few: 4 or more", cells));
+    Grid grid = grid_of(triangulation, cells);
     Random random(seed);
     const Parametrised where = parametrised(surface, random);
-    const bool stretched = triangulation == Triangulation::anisotropic;
-    const int columns = stretched ? 4 * cells : cells;
-    const int rows = stretched ? std::max(cells / 4, 1) : cells;
-    const int across = where.s_closes ? columns : columns + 1;
-    const int down = where.t_closes ? rows : rows + 1;
+    const auto [columns, rows] = std::pair(grid.columns, grid.rows);
+    if (where.s_closes) grid.across = columns;
+    if (where.t_closes) grid.down = rows;
 
     AnalyticMesh result;
     const double jitter = jitter_of(triangulation);
-    for (int r = 0; r < down; ++r) {
-        for (int c = 0; c < across; ++c) {
+    for (int r = 0; r < grid.down; ++r) {
+        for (int c = 0; c < grid.across; ++c) {
             const bool inner = (where.s_closes || (c > 0 && c < columns)) &&
                                (where.t_closes || (r > 0 && r < rows));
             const double move_s = inner ? random.between(-jitter, jitter) : 0.0;
@@ -170,25 +255,77 @@ AnalyticMesh analytic_mesh(AnalyticSurface surface, Triangulation triangulation,
             result.inner.push_back(inner ? 1 : 0);
         }
     }
-    for (int r = 0; r < rows; ++r) {
-        for (int c = 0; c < columns; ++c) {
-            const auto vertex = [&](int column, int row) {
-                return static_cast<std::uint32_t>(row % down * across + column % across);
-            };
-            const std::uint32_t a = vertex(c, r), b = vertex(c + 1, r), d = vertex(c, r + 1),
-                                e = vertex(c + 1, r + 1);
-            const bool other = jitter > 0.0 && random.between(0.0, 1.0) < 0.5;
-            result.mesh.triangles.push_back(other ? glm::uvec3(a, b, d) : glm::uvec3(a, b, e));
-            result.mesh.triangles.push_back(other ? glm::uvec3(b, e, d) : glm::uvec3(a, e, d));
+    add_cells(result.mesh, grid, jitter > 0.0 ? &random : nullptr);
+    if (runs_clockwise(surface)) turn_over(result.mesh);
+    return result;
+}
+
+TexturedMesh textured_mesh(AnalyticSurface surface, Triangulation triangulation,
+                           TextureLayout layout, int cells, std::uint32_t seed) {
+    const Grid grid = grid_of(triangulation, cells);
+    if (layout == TextureLayout::mirrored && grid.columns % 2 != 0)
+        throw InvalidInput(fmt::format("{} columns have no line in their middle", grid.columns));
+    Random random(seed);
+    const Parametrised where = parametrised(surface, random);
+    TexturedMesh result;
+    const double jitter = jitter_of(triangulation);
+    for (int r = 0; r < grid.down; ++r) {
+        for (int c = 0; c < grid.across; ++c) {
+            const bool inner = c > 0 && c < grid.columns && r > 0 && r < grid.rows;
+            // The line along which the image is mirrored is one of edges.
+            const bool stays = layout == TextureLayout::mirrored && 2 * c == grid.columns;
+            const double move_s = inner && !stays ? random.between(-jitter, jitter) : 0.0;
+            const double move_t = inner ? random.between(-jitter, jitter) : 0.0;
+            const glm::dvec2 place((c + move_s) / grid.columns, (r + move_t) / grid.rows);
+            // The two sides of a seam are at the very same place.
+            const SurfacePoint point = where.at(where.s_closes && c == grid.columns ? 0.0 : place.x,
+                                                where.t_closes && r == grid.rows ? 0.0 : place.y);
+            result.mesh.positions.emplace_back(point.position);
+            result.mesh.normals.emplace_back(point.normal);
+            result.mesh.texcoords.emplace_back(texcoord_at(layout, place));
+            result.parameters.push_back(place);
+            result.inner.push_back(inner ? 1 : 0);
         }
     }
-    // Parameters of the sphere and the ellipsoid run clockwise seen from outside.
-    const bool mirrored =
-        surface == AnalyticSurface::sphere || surface == AnalyticSurface::ellipsoid;
-    if (mirrored) {
-        for (glm::uvec3& triangle : result.mesh.triangles)
-            std::swap(triangle.y, triangle.z);
+    add_cells(result.mesh, grid, jitter > 0.0 ? &random : nullptr);
+    if (runs_clockwise(surface)) turn_over(result.mesh);
+    result.frame_at = [where, layout](const glm::dvec2& parameters) {
+        return frame_of(where.at(parameters.x, parameters.y), layout, parameters.x);
+    };
+    return result;
+}
+
+TexturedMesh bevelled_plate(double width) {
+    if (!(width > 0.0)) throw InvalidInput(fmt::format("bevels {} wide: above 0", width));
+    TexturedMesh result;
+    const auto add = [&](const glm::dvec3& position, const glm::dvec3& normal,
+                         const glm::dvec2& place_in_image, bool inner) {
+        result.mesh.positions.emplace_back(position);
+        result.mesh.normals.emplace_back(glm::normalize(normal));
+        result.mesh.texcoords.emplace_back(0.5 + 0.5 * place_in_image.x,
+                                           0.5 - 0.5 * place_in_image.y);
+        result.parameters.emplace_back(position);
+        result.inner.push_back(inner ? 1 : 0);
+    };
+    const std::array<glm::dvec2, 4> corners = {glm::dvec2(-1.0, -1.0), glm::dvec2(1.0, -1.0),
+                                               glm::dvec2(1.0, 1.0), glm::dvec2(-1.0, 1.0)};
+    for (const glm::dvec2& corner : corners)
+        add({corner, 0.0}, {0.0, 0.0, 1.0}, corner, true);
+    for (const glm::dvec2& corner : corners) {
+        const glm::dvec2 outside = corner * (1.0 + width);
+        // A quarter turn of the way there: along each edge by as much as the bevel is wide.
+        const glm::dvec2 along = width * glm::dvec2(-corner.y, corner.x);
+        add({outside, -width}, {corner, 0.0}, outside + along, false);
     }
+    result.mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
+    for (std::uint32_t i = 0; i < 4; ++i) {
+        const std::uint32_t next = (i + 1) % 4;
+        result.mesh.triangles.emplace_back(i, i + 4, next + 4);
+        result.mesh.triangles.emplace_back(i, next + 4, next);
+    }
+    result.frame_at = [](const glm::dvec2&) {
+        return SurfaceFrame{{0.0, 0.0, 1.0}, {1.0, 0.0, 0.0}, 1.0};
+    };
     return result;
 }
 

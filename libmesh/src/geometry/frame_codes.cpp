@@ -150,7 +150,7 @@ using QuaternionCode = std::array<int, 4>;
 QuaternionCode quaternion_code(const Quaternion& rotation, double scale) {
     QuaternionCode code{};
     for (std::size_t i = 0; i < 4; ++i)
-        code[i] = static_cast<int>(std::round(rotation[i] * scale));
+        code[i] = rounded_to_int(rotation[i] * scale);
     // Never 0: its sign is the handedness.
     code[3] = std::max(code[3], 1);
     return code;
@@ -324,10 +324,9 @@ glm::dvec3 sound_tangent(const glm::dvec3& tangent, const glm::dvec3& normal, st
     return fallback_tangent(normal);
 }
 
-}  // namespace
-
-SoundFrame sound_frame(const glm::vec3& normal, const glm::vec4& tangent, std::size_t index,
-                       Report& found) {
+/// With everything that is amiss counted.
+SoundFrame repaired_frame(const glm::vec3& normal, const glm::vec4& tangent, std::size_t index,
+                          Report& found) {
     SoundFrame frame;
     const glm::dvec3 unit_normal = direction_or_zero(glm::dvec3(normal));
     if (unit_normal != glm::dvec3(0.0)) {
@@ -346,6 +345,24 @@ SoundFrame sound_frame(const glm::vec3& normal, const glm::vec4& tangent, std::s
     }
     frame.mirrored = tangent.w < 0.0F;
     return frame;
+}
+
+}  // namespace
+
+SoundFrame sound_frame(const glm::vec3& normal, const glm::vec4& tangent, std::size_t index,
+                       Report& found) {
+    const glm::dvec3 n(normal);
+    const glm::dvec3 t(tangent);
+    const double normal_length = glm::length(n);
+    const glm::dvec3 unit = n * (1.0 / normal_length);
+    const double along = glm::dot(unit, t);
+    // Written so that NaN is not sound. Nearly all frames are, and cost three square roots.
+    const bool is_sound = std::abs(normal_length - 1.0) <= unit_tolerance &&
+                          std::abs(glm::length(t) - 1.0) <= unit_tolerance &&
+                          std::abs(along) <= leaning_tolerance && std::abs(tangent.w) == 1.0F;
+    if (!is_sound) return repaired_frame(normal, tangent, index, found);
+    const glm::dvec3 remainder = t - unit * along;
+    return {unit, remainder * (1.0 / glm::length(remainder)), tangent.w < 0.0F};
 }
 
 void encode_frame(const SoundFrame& frame, FrameEncoding encoding, FrameRounding rounding,

@@ -6,13 +6,23 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <cstdlib>
 #include <glm/glm.hpp>
 #include <limits>
 
 namespace relief {
+
+/// The nearest whole number, halves away from 0. Plain casts: without SSE 4.1, std::round and
+/// std::floor are calls.
+inline int rounded_to_int(double value) {
+    return static_cast<int>(value + (value < 0.0 ? -0.5 : 0.5));
+}
+
+/// The largest whole number that is no larger.
+inline int floor_to_int(double value) {
+    const int whole = static_cast<int>(value);
+    return value < whole ? whole - 1 : whole;
+}
 
 /// Each from -M to M, where M is the largest code: 127, 511 or 32767.
 struct OctahedralCode {
@@ -42,8 +52,8 @@ inline glm::dvec2 octahedral_place(const glm::dvec3& unit, int largest) {
 /// `parity` where that is 0 or 1), the one with the least error(code).
 template <typename Error>
 OctahedralCode best_code(const glm::dvec2& place, int largest, int parity, Error error) {
-    const int left = static_cast<int>(std::floor(place.x));
-    const int below = static_cast<int>(std::floor(place.y));
+    const int left = floor_to_int(place.x);
+    const int below = floor_to_int(place.y);
     // Of a parity there is one on each side within two steps.
     const bool any = parity < 0;
     OctahedralCode best{};
@@ -64,8 +74,7 @@ OctahedralCode best_code(const glm::dvec2& place, int largest, int parity, Error
 
 /// The code next to a place; y's lowest bit is `parity` where that is 0 or 1.
 inline OctahedralCode nearest_code(const glm::dvec2& place, int largest, int parity) {
-    OctahedralCode code{static_cast<int>(std::round(place.x)),
-                        static_cast<int>(std::round(place.y))};
+    OctahedralCode code{rounded_to_int(place.x), rounded_to_int(place.y)};
     if (parity < 0 || (code.y & 1) == parity) return code;
     code.y += place.y < code.y ? -1 : 1;
     // The largest code is odd: what steps over it was to be even.

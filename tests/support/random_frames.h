@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// Tangent frames in double, and the same rounded to float.
+#pragma once
+
+#include <glm/glm.hpp>
+#include <vector>
+
+namespace relief::test {
+
+/// Frames before they are rounded to float, so that float's own error is seen too.
+struct TrueFrames {
+    std::vector<glm::dvec3> normals;
+    std::vector<glm::dvec3> tangents;
+    std::vector<glm::vec3> float_normals;
+    std::vector<glm::vec4> float_tangents;
+
+    void add(const glm::dvec3& normal, const glm::dvec3& tangent, float w);
+};
+
+/// Evenly distributed, left- and right-handed by turns; the same on every machine.
+TrueFrames random_frames(std::size_t count);
+
+}  // namespace relief::test
