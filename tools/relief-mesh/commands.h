@@ -10,6 +10,7 @@ namespace relief::tools {
 Command add_process_command(CLI::App& tool);
 Command add_info_command(CLI::App& tool);
 Command add_check_command(CLI::App& tool);
+Command add_compare_command(CLI::App& tool);
 Command add_decimate_command(CLI::App& tool);
 Command add_subdivide_command(CLI::App& tool);
 

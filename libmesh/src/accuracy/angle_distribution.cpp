@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+// Degrees in, their distribution out. Percentiles are values that occur (nearest rank). Linear
+// expected time. Tests: tests/mesh/accuracy/angle_distribution_test.cpp.
+#include "relief/mesh/angle_distribution.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace relief {
+namespace {
+
+/// The smallest value that `percent` of 100 of the values do not exceed. Reorders them.
+double percentile(std::vector<float>& values, std::size_t percent) {
+    const std::size_t rank = (values.size() * percent + 99) / 100;
+    const auto place =
+        values.begin() + static_cast<std::ptrdiff_t>(std::max<std::size_t>(rank, 1) - 1);
+    std::nth_element(values.begin(), place, values.end());
+    return *place;
+}
+
+std::size_t bin_of(double degrees) {
+    const auto& bounds = AngleDistribution::bounds;
+    const auto bin = std::lower_bound(bounds.begin(), bounds.end() - 1, degrees);
+    return static_cast<std::size_t>(bin - bounds.begin());
+}
+
+}  // namespace
+
+AngleDistribution angle_distribution(std::vector<float> degrees) {
+    AngleDistribution result;
+    const std::size_t all = degrees.size();
+    std::erase_if(degrees, [](float angle) { return std::isnan(angle); });
+    result.count = degrees.size();
+    result.undefined = all - degrees.size();
+    if (degrees.empty()) return result;
+    double squares = 0.0;
+    for (const float angle : degrees) {
+        const auto value = static_cast<double>(angle);
+        squares += value * value;
+        result.mean += value;
+        result.max = std::max(result.max, value);
+        ++result.histogram[bin_of(value)];
+    }
+    const auto count = static_cast<double>(result.count);
+    result.rms = std::sqrt(squares / count);
+    result.mean /= count;
+    result.median = percentile(degrees, 50);
+    result.p90 = percentile(degrees, 90);
+    result.p99 = percentile(degrees, 99);
+    return result;
+}
+
+}  // namespace relief

@@ -1,0 +1,243 @@
+// SPDX-License-Identifier: Apache-2.0
+// Triangles within a tolerance of each other, found by their centroids in a hashed grid. Where all
+// corners are within the tolerance, so are the centroids: with cells twice as wide, eight of them
+// hold every candidate. Each triangle of b asks for its nearest of a; of several that ask for the
+// same one the nearest gets it, and the others ask again. Object space, computed in double.
+// Tests: tests/mesh/geometry/compare_test.cpp.
+#include "geometry/corner_match_near.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "geometry/direction.h"
+#include "parallel.h"
+
+namespace relief {
+namespace {
+
+constexpr std::size_t grain = 1024;
+constexpr std::uint32_t nobody = std::numeric_limits<std::uint32_t>::max();
+constexpr std::size_t most_in_a_cell = 64;
+constexpr int most_rounds = 32;  // Few are left after three, but for crowds.
+
+using Cell = glm::dvec3;  // Whole numbers, which may be larger than integers hold.
+
+glm::dvec3 centroid(const Mesh& mesh, std::uint32_t triangle) {
+    const glm::uvec3& t = mesh.triangles[triangle];
+    return (glm::dvec3(mesh.positions[t.x]) + glm::dvec3(mesh.positions[t.y]) +
+            glm::dvec3(mesh.positions[t.z])) /
+           3.0;
+}
+
+std::size_t hash_of(const Cell& cell) {
+    std::uint64_t hash = 0;
+    for (int i = 0; i < 3; ++i) {
+        // Of whole numbers only the upper bits are set: they are brought down first.
+        hash += std::bit_cast<std::uint64_t>(cell[i] + 0.0);
+        hash = (hash ^ hash >> 32) * 0x9e3779b97f4a7c15ULL;
+        hash = (hash ^ hash >> 29) * 0xbf58476d1ce4e5b9ULL;
+        hash ^= hash >> 32;
+    }
+    return hash;
+}
+
+/// Triangles of one mesh by the cell of their centroid.
+class Grid {
+  public:
+    Grid(const Mesh& mesh, std::span<const std::uint32_t> triangles, double cell_size)
+        : cell_size_(cell_size),
+          heads_(std::bit_ceil(2 * triangles.size() + 1), nobody),
+          next_(triangles.size(), nobody),
+          cells_(triangles.size()) {
+        for (std::size_t i = triangles.size(); i-- > 0;) {
+            const glm::dvec3 at = centroid(mesh, triangles[i]);
+            if (!is_finite(at)) continue;
+            cells_[i] = glm::floor(at / cell_size);
+            std::uint32_t& head = heads_[slot(cells_[i])];
+            next_[i] = head;
+            head = static_cast<std::uint32_t>(i);
+        }
+    }
+
+    /// Calls visit(i) for the triangles in the cells that a box of half this cell size touches.
+    template <typename Visit>
+    void near(const glm::dvec3& at, double radius, const Visit& visit) const {
+        const Cell low = glm::floor((at - radius) / cell_size_);
+        const Cell high = glm::floor((at + radius) / cell_size_);
+        for (int corner = 0; corner < 8; ++corner) {
+            Cell cell = low;
+            bool is_new = true;
+            for (int i = 0; i < 3; ++i) {
+                if ((corner >> i & 1) == 0) continue;
+                is_new = is_new && high[i] != low[i];
+                cell[i] = high[i];
+            }
+            if (is_new) visit_cell(cell, visit);
+        }
+    }
+
+  private:
+    [[nodiscard]] std::size_t slot(const Cell& cell) const {
+        return hash_of(cell) & (heads_.size() - 1);
+    }
+
+    template <typename Visit>
+    void visit_cell(const Cell& cell, const Visit& visit) const {
+        std::size_t seen = 0;
+        for (std::uint32_t i = heads_[slot(cell)]; i != nobody; i = next_[i]) {
+            if (cells_[i] != cell) continue;
+            visit(i);
+            if (++seen == most_in_a_cell) return;
+        }
+    }
+
+    double cell_size_;
+    std::vector<std::uint32_t> heads_;
+    std::vector<std::uint32_t> next_;
+    std::vector<Cell> cells_;
+};
+
+/// How far two triangles are apart, in tolerances; infinite if they do not match.
+double cost_of(const Mesh& a, const glm::uvec3& ta, const Mesh& b, const glm::uvec3& tb, int turn,
+               const MatchOptions& options) {
+    constexpr double never = std::numeric_limits<double>::infinity();
+    double cost = 0.0;
+    for (int k = 0; k < 3; ++k) {
+        const std::uint32_t va = ta[k];
+        const std::uint32_t vb = tb[(k + turn) % 3];
+        const double apart = glm::length(glm::dvec3(a.positions[va]) - glm::dvec3(b.positions[vb]));
+        if (!(apart <= options.position_tolerance)) return never;
+        if (apart > 0.0) cost += apart / options.position_tolerance;
+        if (!options.by_texcoord) continue;
+        const glm::dvec2 off = glm::abs(glm::dvec2(a.texcoords[va]) - glm::dvec2(b.texcoords[vb]));
+        const double texcoord_apart = std::max(off.x, off.y);
+        if (!(texcoord_apart <= options.texcoord_tolerance) || std::isnan(off.y)) return never;
+        if (texcoord_apart > 0.0) cost += texcoord_apart / options.texcoord_tolerance;
+    }
+    return cost;
+}
+
+/// What a triangle of b asks for.
+struct Wish {
+    std::uint32_t a = nobody;  ///< Index into the triangles of a that are left.
+    int turn = 0;
+    double cost = std::numeric_limits<double>::infinity();
+    std::uint32_t choices = 0;
+};
+
+/// A different order for everyone who asks, so that not all of a crowd ask for the same.
+std::uint32_t preference(std::uint32_t a, std::uint32_t b) {
+    std::uint32_t hash = (a * 0x9e3779b1U) ^ (b * 0x85ebca77U);
+    hash = (hash ^ hash >> 15) * 0x2c1b3c6dU;
+    return hash ^ hash >> 13;
+}
+
+class NearPairing {
+  public:
+    NearPairing(const Mesh& a, const Mesh& b, std::span<const std::uint32_t> left_a,
+                std::span<const std::uint32_t> left_b, const MatchOptions& options)
+        : a_(a),
+          b_(b),
+          left_a_(left_a),
+          left_b_(left_b),
+          options_(options),
+          radius_(std::max(options.position_tolerance, rounding())),
+          grid_(a, left_a, 2.0 * radius_),
+          is_taken_(left_a.size(), 0) {}
+
+    std::vector<NearPair> run() {
+        std::vector<std::uint32_t> asking(left_b_.size());
+        for (std::uint32_t i = 0; i < asking.size(); ++i)
+            asking[i] = i;
+        for (int i = 0; i < most_rounds && !asking.empty(); ++i)
+            asking = round(asking);
+        std::sort(pairs_.begin(), pairs_.end(),
+                  [](const NearPair& p, const NearPair& q) { return p.b < q.b; });
+        return std::move(pairs_);
+    }
+
+  private:
+    /// Of a centroid, whose sum depends on which corner comes first.
+    [[nodiscard]] double rounding() const {
+        double largest = 0.0;
+        for (const glm::vec3& p : a_.positions) {
+            if (!is_finite(p)) continue;
+            largest =
+                std::max({largest, std::abs(static_cast<double>(p.x)),
+                          std::abs(static_cast<double>(p.y)), std::abs(static_cast<double>(p.z))});
+        }
+        return std::max(largest * 1e-15, std::numeric_limits<double>::min());
+    }
+
+    [[nodiscard]] Wish wish_of(std::uint32_t triangle) const {
+        Wish wish;
+        const glm::dvec3 at = centroid(b_, triangle);
+        if (!is_finite(at)) return wish;
+        grid_.near(at, radius_, [&](std::uint32_t i) {
+            if (is_taken_[i] != 0) return;
+            Wish candidate{i};
+            for (int turn = 0; turn < 3; ++turn) {
+                const double cost = cost_of(a_, a_.triangles[left_a_[i]], b_,
+                                            b_.triangles[triangle], turn, options_);
+                if (cost < candidate.cost) candidate = {i, turn, cost};
+            }
+            if (!std::isfinite(candidate.cost)) return;
+            const std::uint32_t choices = wish.choices + 1;
+            if (candidate.cost < wish.cost ||
+                (candidate.cost == wish.cost &&
+                 preference(i, triangle) < preference(wish.a, triangle)))
+                wish = candidate;
+            wish.choices = choices;
+        });
+        return wish;
+    }
+
+    /// Grants what it can. \return those who have to ask again
+    std::vector<std::uint32_t> round(const std::vector<std::uint32_t>& asking) {
+        std::vector<Wish> wishes(asking.size());
+        parallel_for(asking.size(), grain, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i)
+                wishes[i] = wish_of(left_b_[asking[i]]);
+        });
+        std::vector<std::uint32_t> order;
+        for (std::uint32_t i = 0; i < wishes.size(); ++i) {
+            if (wishes[i].a != nobody) order.push_back(i);
+        }
+        std::stable_sort(order.begin(), order.end(), [&](std::uint32_t p, std::uint32_t q) {
+            return wishes[p].cost < wishes[q].cost;
+        });
+        std::vector<std::uint32_t> again;
+        for (const std::uint32_t i : order) {
+            const Wish& wish = wishes[i];
+            if (is_taken_[wish.a] != 0) {
+                again.push_back(asking[i]);
+                continue;
+            }
+            is_taken_[wish.a] = 1;
+            pairs_.push_back({left_a_[wish.a], left_b_[asking[i]], wish.turn, wish.choices > 1});
+        }
+        return again;
+    }
+
+    const Mesh& a_;
+    const Mesh& b_;
+    std::span<const std::uint32_t> left_a_;
+    std::span<const std::uint32_t> left_b_;
+    MatchOptions options_;
+    double radius_;
+    Grid grid_;
+    std::vector<unsigned char> is_taken_;
+    std::vector<NearPair> pairs_;
+};
+
+}  // namespace
+
+std::vector<NearPair> pair_near(const Mesh& a, const Mesh& b, std::span<const std::uint32_t> left_a,
+                                std::span<const std::uint32_t> left_b,
+                                const MatchOptions& options) {
+    if (left_a.empty() || left_b.empty()) return {};
+    return NearPairing(a, b, left_a, left_b, options).run();
+}
+
+}  // namespace relief
