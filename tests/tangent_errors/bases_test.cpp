@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "relief/mesh/tangents.h"
 #include "support/angle.h"
 #include "support/shapes.h"
@@ -36,6 +38,30 @@ TEST(Bases, AMirroredImageTurnsTangentAndHand) {
     const glm::dmat3 found = basis_at(mesh, {}, ShaderBasis::derived, {0});
     EXPECT_LE(glm::length(found[0] - glm::dvec3(-1.0, 0.0, 0.0)), 1e-12);
     EXPECT_LE(glm::length(found[1] - glm::dvec3(0.0, 1.0, 0.0)), 1e-12);
+}
+
+TEST(Bases, DerivedTangentsRunAlongTheImagesRowsOnAnyTriangle) {
+    const TexturedMesh truth = textured_mesh(AnalyticSurface::torus, Triangulation::anisotropic,
+                                             TextureLayout::sheared, 16, 7);
+    for (const Sample& sample : samples_of(truth)) {
+        const glm::uvec3& t = truth.mesh.triangles[sample.triangle];
+        const glm::dmat3 basis = basis_at(truth.mesh, {}, ShaderBasis::derived, sample);
+        const glm::dvec3 a(truth.mesh.positions[t.x]);
+        const glm::dvec3 e1 = glm::dvec3(truth.mesh.positions[t.y]) - a;
+        const glm::dvec3 e2 = glm::dvec3(truth.mesh.positions[t.z]) - a;
+        const glm::dvec2 origin(truth.mesh.texcoords[t.x]);
+        const glm::dvec2 d1 = glm::dvec2(truth.mesh.texcoords[t.y]) - origin;
+        const glm::dvec2 d2 = glm::dvec2(truth.mesh.texcoords[t.z]) - origin;
+        // The point of the triangle's plane that is one step of the tangent away, up to the normal.
+        const glm::dvec3 steps = glm::inverse(glm::dmat3(e1, e2, basis[2])) * basis[0];
+        const glm::dvec2 moved = d1 * steps.x + d2 * steps.y;
+        EXPECT_GT(moved.x, 0.0);
+        EXPECT_LE(std::abs(moved.y), 1e-9 * moved.x);
+        EXPECT_LE(std::abs(glm::dot(basis[0], basis[2])), 1e-12);
+        // The bitangent is on the side where v falls.
+        const glm::dvec3 up = glm::inverse(glm::dmat3(e1, e2, basis[2])) * basis[1];
+        EXPECT_LT((d1 * up.x + d2 * up.y).y, 0.0);
+    }
 }
 
 TEST(Bases, InterpolatedVectorsStayShortUnlessMadeUnit) {
