@@ -1,7 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every edge is looked at from its smaller vertex, where all its triangles meet; so no table of
-// edges is needed, and no edge is seen twice.
-//
 // An edge with one triangle in each direction makes them neighbours. Where there are more (the
 // reference implementation then takes them in the order of the list, so that its answer depends on
 // that), triangles whose textures run the same way are paired first, those with the smaller third
@@ -12,87 +9,39 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
+#include <cassert>
 #include <numeric>
 #include <tuple>
 
-#include "parallel.h"
-
 namespace relief {
-namespace {
 
-/// A triangle at an edge, seen from the edge's smaller vertex.
 struct EdgeUse {
-    std::uint32_t other_vertex;  ///< The edge's larger vertex.
-    bool arrives;                ///< The triangle runs towards the smaller vertex.
+    std::uint32_t other_vertex;  ///< The edge's other end.
+    bool arrives;                ///< The triangle runs towards the vertex.
     Gradient kind;
     std::uint32_t third_vertex;
-    int rotation;   ///< Which corner of the triangle stands at its smallest vertex.
-    Corner corner;  ///< Of the triangle at the edge's smaller vertex.
+    std::uint32_t rotation;  ///< Which corner of the triangle stands at its smallest vertex.
+    std::uint32_t triangle;
+    CornerLinker::Place corner;  ///< Of the triangle, at the vertex.
 
     [[nodiscard]] auto rank() const {
         return std::tuple(other_vertex, arrives, kind, third_vertex);
     }
     friend bool operator<(const EdgeUse& a, const EdgeUse& b) {
-        return std::tuple(a.rank(), a.rotation, a.corner) <
-               std::tuple(b.rank(), b.rotation, b.corner);
+        return std::tuple(a.rank(), a.rotation, a.triangle) <
+               std::tuple(b.rank(), b.rotation, b.triangle);
     }
 };
 
+namespace {
+
 using Uses = std::span<EdgeUse>;
 
-/// All uses of the edges from `vertex` to larger vertices, sorted: edge by edge, leaving triangles
-/// before arriving ones, and so on.
-void collect(std::uint32_t vertex, std::span<const glm::uvec3> triangles,
-             std::span<const Corner> around, std::span<const Gradient> kinds,
-             std::vector<EdgeUse>& uses) {
-    uses.clear();
-    for (const Corner corner : around) {
-        const std::uint32_t next = vertex_of(next_in_triangle(corner), triangles);
-        const std::uint32_t previous = vertex_of(previous_in_triangle(corner), triangles);
-        const Gradient kind = kinds[triangle_of(corner)];
-        const auto rotation = [&](std::uint32_t third, Corner third_corner) {
-            return static_cast<int>((third < vertex ? third_corner : corner) % 3);
-        };
-        if (next > vertex) {
-            uses.push_back({next, false, kind, previous,
-                            rotation(previous, previous_in_triangle(corner)), corner});
-        }
-        if (previous > vertex) {
-            uses.push_back(
-                {previous, true, kind, next, rotation(next, next_in_triangle(corner)), corner});
-        }
-    }
-    std::sort(uses.begin(), uses.end());
-}
-
-void link(const EdgeUse& leaving, const EdgeUse& arriving, CornerLinks& links) {
-    links.across[leaving.corner] = arriving.corner;
-    links.across[previous_in_triangle(arriving.corner)] = next_in_triangle(leaving.corner);
-}
-
-/// Drops all but the first of identical triangles, and notes it as their twin. Each triangle is
-/// noted once, at the edge that leaves its smallest vertex.
-Uses without_twins(Uses uses, std::uint32_t vertex, CornerLinks& links) {
-    auto kept = uses.begin();
-    for (auto use = uses.begin(); use != uses.end(); ++use) {
-        if (kept != uses.begin() && std::prev(kept)->rank() == use->rank()) {
-            if (!use->arrives && use->third_vertex > vertex) {
-                links.twin[triangle_of(use->corner)] = triangle_of(std::prev(kept)->corner);
-            }
-            continue;
-        }
-        *kept++ = *use;
-    }
-    return {uses.begin(), kept};
-}
-
-/// Makes neighbours of as many as there are on both sides, and leaves the rest.
-void pair_up(Uses& leaving, Uses& arriving, CornerLinks& links) {
-    const std::size_t pairs = std::min(leaving.size(), arriving.size());
-    for (std::size_t i = 0; i < pairs; ++i)
-        link(leaving[i], arriving[i], links);
-    leaving = leaving.subspan(pairs);
-    arriving = arriving.subspan(pairs);
+/// Which corner of a triangle stands at its smallest vertex.
+std::uint32_t rotation_of(const glm::uvec3& triangle) {
+    if (triangle.x < triangle.y && triangle.x < triangle.z) return 0;
+    return triangle.y < triangle.z ? 1 : 2;
 }
 
 /// The uses of one direction, sorted, by kind: upright, mirrored, none.
@@ -109,46 +58,122 @@ std::array<Uses, 3> by_kind(Uses uses) {
     return parts;
 }
 
+}  // namespace
+
+CornerLinker::CornerLinker(std::span<const glm::uvec3> triangles, std::span<const Gradient> kinds)
+    : triangles_(triangles), kinds_(kinds) {}
+
+CornerLinker::~CornerLinker() = default;
+
+/// All uses of the edges of the vertex, sorted: edge by edge, leaving triangles before arriving
+/// ones, and so on.
+void CornerLinker::collect(std::span<const Corner> around) {
+    uses_.clear();
+    for (Place place = 0; place < around.size(); ++place) {
+        const Corner corner = around[place];
+        const std::uint32_t triangle = triangle_of(corner);
+        const std::uint32_t next = vertex_of(next_in_triangle(corner), triangles_);
+        const std::uint32_t previous = vertex_of(previous_in_triangle(corner), triangles_);
+        const std::uint32_t rotation = rotation_of(triangles_[triangle]);
+        const Gradient kind = kinds_[triangle];
+        uses_.push_back({next, false, kind, previous, rotation, triangle, place});
+        uses_.push_back({previous, true, kind, next, rotation, triangle, place});
+    }
+    std::sort(uses_.begin(), uses_.end());
+}
+
+void CornerLinker::link(const EdgeUse& leaving, const EdgeUse& arriving) {
+    across_[leaving.corner] = arriving.corner;
+    across_previous_[arriving.corner] = leaving.corner;
+}
+
+/// Drops all but the first of identical triangles, and notes it as their twin.
+Uses CornerLinker::without_twins(Uses uses) {
+    auto kept = uses.begin();
+    for (auto use = uses.begin(); use != uses.end(); ++use) {
+        if (kept != uses.begin() && std::prev(kept)->rank() == use->rank()) {
+            twin_[use->corner] = std::prev(kept)->corner;
+            continue;
+        }
+        *kept++ = *use;
+    }
+    return {uses.begin(), kept};
+}
+
+/// Makes neighbours of as many as there are on both sides, and leaves the rest.
+void CornerLinker::pair_up(Uses& leaving, Uses& arriving) {
+    const std::size_t pairs = std::min(leaving.size(), arriving.size());
+    for (std::size_t i = 0; i < pairs; ++i)
+        link(leaving[i], arriving[i]);
+    leaving = leaving.subspan(pairs);
+    arriving = arriving.subspan(pairs);
+}
+
 /// Finds the neighbours at one edge.
-void link_edge(Uses uses, std::uint32_t vertex, CornerLinks& links) {
+void CornerLinker::link_edge(Uses uses) {
     const auto turn =
         std::find_if(uses.begin(), uses.end(), [](const EdgeUse& use) { return use.arrives; });
     if (uses.size() == 2 && turn == uses.begin() + 1) {
-        link(uses[0], uses[1], links);
+        link(uses[0], uses[1]);
         return;
     }
-    std::array<Uses, 3> leaving = by_kind(without_twins({uses.begin(), turn}, vertex, links));
-    std::array<Uses, 3> arriving = by_kind(without_twins({turn, uses.end()}, vertex, links));
+    std::array<Uses, 3> leaving = by_kind(without_twins({uses.begin(), turn}));
+    std::array<Uses, 3> arriving = by_kind(without_twins({turn, uses.end()}));
     for (std::size_t kind = 0; kind < 3; ++kind)
-        pair_up(leaving[kind], arriving[kind], links);
+        pair_up(leaving[kind], arriving[kind]);
+    // The two lines serve different triangles: seen from the edge's other end, where leaving is
+    // arriving, they come in the other order to the same.
     for (std::size_t kind = 0; kind < 2; ++kind) {
-        pair_up(leaving[kind], arriving[2], links);
-        pair_up(leaving[2], arriving[kind], links);
+        pair_up(leaving[kind], arriving[2]);
+        pair_up(leaving[2], arriving[kind]);
     }
 }
 
-}  // namespace
+void CornerLinker::link(std::span<const Corner> around) {
+    across_.assign(around.size(), nowhere);
+    across_previous_.assign(around.size(), nowhere);
+    twin_.resize(around.size());
+    std::iota(twin_.begin(), twin_.end(), Place(0));
+    collect(around);
+    for (auto first = uses_.begin(); first != uses_.end();) {
+        const auto last = std::find_if(first, uses_.end(), [&](const EdgeUse& use) {
+            return use.other_vertex != first->other_vertex;
+        });
+        link_edge({first, last});
+        first = last;
+    }
+}
 
-CornerLinks link_corners(std::span<const glm::uvec3> triangles, const CornersByVertex& corners,
-                         std::span<const Gradient> kinds) {
-    CornerLinks links{std::vector<Corner>(3 * triangles.size(), no_corner),
-                      std::vector<std::uint32_t>(triangles.size())};
-    std::iota(links.twin.begin(), links.twin.end(), 0U);
-    parallel_for(corners.vertex_count(), 4096, [&](std::size_t begin, std::size_t end) {
-        std::vector<EdgeUse> uses;
-        for (std::size_t v = begin; v < end; ++v) {
-            const auto vertex = static_cast<std::uint32_t>(v);
-            collect(vertex, triangles, corners.at(v), kinds, uses);
-            for (auto first = uses.begin(); first != uses.end();) {
-                const auto last = std::find_if(first, uses.end(), [&](const EdgeUse& use) {
-                    return use.other_vertex != first->other_vertex;
-                });
-                link_edge({first, last}, vertex, links);
-                first = last;
-            }
+bool is_single_fan(std::span<const std::uint32_t> next, std::span<const std::uint32_t> previous) {
+    constexpr std::size_t most = 16;
+    const std::size_t count = next.size();
+    assert(count >= 1 && count <= most && previous.size() == count);
+    std::array<std::uint32_t, most> after;  // `count` where a corner has nobody across.
+    std::uint32_t followed = 0;             // A bit for each corner that follows another.
+    std::size_t links = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+        auto found = static_cast<std::uint32_t>(count);
+        std::size_t matches = 0;
+        for (std::size_t k = 0; k < count; ++k) {
+            const bool match = previous[k] == next[i];
+            found = match ? static_cast<std::uint32_t>(k) : found;
+            matches += match ? 1 : 0;
         }
-    });
-    return links;
+        if (matches > 1) return false;
+        after[i] = found;
+        followed |= static_cast<std::uint32_t>(matches) << found;
+        links += matches;
+    }
+    // No corner may follow two, and only one may be the last.
+    if (static_cast<std::size_t>(std::popcount(followed)) != links || links + 1 < count)
+        return false;
+    // Now there is one chain, and otherwise only rings: from the chain's first, or any corner of a
+    // ring, all must be reached.
+    const auto first = links == count ? 0U : static_cast<std::uint32_t>(std::countr_one(followed));
+    std::size_t reached = 1;
+    for (std::uint32_t i = after[first]; i != count && i != first; i = after[i])
+        ++reached;
+    return reached == count;
 }
 
 }  // namespace relief

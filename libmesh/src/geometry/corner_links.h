@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Which triangles are neighbours across which edge, found and stored corner by corner.
+/// Which triangles around a vertex are neighbours across which edge.
 ///
 /// Two triangles are neighbours when they run along an edge in opposite directions. At an edge with
 /// more than two triangles, each has at most one neighbour, chosen by a fixed rule (see
-/// corner_links.cpp) that looks at vertices and textures, never at the order of triangles. Time is
-/// linear but for sorting the edges of each vertex.
+/// corner_links.cpp) that looks at vertices and textures, never at the order of triangles, and
+/// gives the same at both ends of the edge. Time is that of sorting the edges of the vertex.
 /// Tests: tests/mesh/geometry/corner_links_test.cpp.
 #pragma once
 
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -19,25 +20,54 @@
 
 namespace relief {
 
-struct CornerLinks {
-    /// For a corner at vertex V whose triangle goes on from V to W: the corner at V of the
-    /// neighbour across the edge VW; no_corner where there is none.
-    std::vector<Corner> across;
-    /// For a triangle with the same corners in the same order around as another, the one among them
-    /// that counts; for any other triangle its own index. Only that one has neighbours.
-    std::vector<std::uint32_t> twin;
+/// An edge of a triangle, seen from the vertex at its end.
+struct EdgeUse;
 
-    /// The corner at the same vertex across the edge on which the triangle arrives at it; the
-    /// inverse of `across`.
-    [[nodiscard]] Corner across_previous(Corner corner) const {
-        const Corner beyond = across[previous_in_triangle(corner)];
-        return beyond == no_corner ? no_corner : previous_in_triangle(beyond);
-    }
+/// Finds neighbours around one vertex after another; keeps its buffers.
+class CornerLinker {
+  public:
+    /// A corner's place in the list of those around its vertex.
+    using Place = std::uint32_t;
+    static constexpr Place nowhere = std::numeric_limits<Place>::max();
+
+    /// \param triangles  over welded vertices
+    CornerLinker(std::span<const glm::uvec3> triangles, std::span<const Gradient> kinds);
+    ~CornerLinker();
+    CornerLinker(const CornerLinker&) = delete;
+    CornerLinker& operator=(const CornerLinker&) = delete;
+
+    /// \param around  the corners at one vertex of the triangles that take part
+    void link(std::span<const Corner> around);
+
+    /// Of a corner whose triangle goes on from the vertex to W: the corner at the vertex of the
+    /// neighbour across that edge.
+    [[nodiscard]] Place across(Place corner) const { return across_[corner]; }
+    /// The corner across the edge on which the triangle arrives; the inverse of `across`.
+    [[nodiscard]] Place across_previous(Place corner) const { return across_previous_[corner]; }
+    /// For a triangle with the same corners in the same order around as another, the corner of the
+    /// one among them that counts; for any other its own. Only that one has neighbours.
+    [[nodiscard]] Place twin(Place corner) const { return twin_[corner]; }
+
+  private:
+    void collect(std::span<const Corner> around);
+    void link_edge(std::span<EdgeUse> uses);
+    std::span<EdgeUse> without_twins(std::span<EdgeUse> uses);
+    void pair_up(std::span<EdgeUse>& leaving, std::span<EdgeUse>& arriving);
+    void link(const EdgeUse& leaving, const EdgeUse& arriving);
+
+    std::span<const glm::uvec3> triangles_;
+    std::span<const Gradient> kinds_;
+    std::vector<EdgeUse> uses_;
+    std::vector<Place> across_;
+    std::vector<Place> across_previous_;
+    std::vector<Place> twin_;
 };
 
-/// \param triangles  over welded vertices
-/// \param corners    of those triangles that take part
-CornerLinks link_corners(std::span<const glm::uvec3> triangles, const CornersByVertex& corners,
-                         std::span<const Gradient> kinds);
+/// Whether the corners at a vertex make one chain or one ring: each triangle the neighbour of the
+/// next, none left over, no edge with a third. Then neighbours need not be looked for.
+///
+/// \param next,previous  of each corner: the vertices that its triangle goes on to and comes from;
+///                       1 to 16 of them
+bool is_single_fan(std::span<const std::uint32_t> next, std::span<const std::uint32_t> previous);
 
 }  // namespace relief

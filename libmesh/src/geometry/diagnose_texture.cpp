@@ -14,7 +14,7 @@ void diagnose_texture(const Subject& subject, Tally& tally) {
         if (!is_finite(mesh.texcoords[v])) tally.add(MeshCondition::texture_not_finite, v);
     }
     const std::vector<Gradient> gradients =
-        triangle_gradients(mesh.positions, mesh.texcoords, mesh.triangles).kinds;
+        gradient_kinds(mesh.positions, mesh.texcoords, mesh.triangles);
     for (std::size_t t = 0; t < gradients.size(); ++t) {
         if (!has_area(subject.shapes[t])) continue;
         if (gradients[t] == Gradient::none) tally.add(MeshCondition::texture_degenerate, t);

@@ -61,36 +61,4 @@ inline bool comes_before(const glm::dvec3& a, const glm::dvec3& b) {
     return a.z < b.z;
 }
 
-/// A sum of vectors, and how long it could have been at most.
-struct StableSum {
-    glm::dvec3 vector{0.0};
-    double longest = 0.0;  ///< Sum of the terms' lengths.
-
-    void add(const glm::dvec3& term) {
-        vector += term;
-        longest += glm::length(term);
-    }
-
-    /// The terms cancel to less than `fraction` of what they are.
-    [[nodiscard]] bool cancels(double fraction) const {
-        return !(glm::length(vector) > fraction * longest);
-    }
-
-    friend StableSum operator+(const StableSum& a, const StableSum& b) {
-        return {a.vector + b.vector, a.longest + b.longest};
-    }
-    friend StableSum operator-(const StableSum& a, const StableSum& b) {
-        return {a.vector - b.vector, a.longest - b.longest};
-    }
-};
-
-/// Sorts the terms by value and adds them up in that order: same terms, same bits.
-inline StableSum stable_sum(std::vector<glm::dvec3>& terms) {
-    std::sort(terms.begin(), terms.end(), comes_before);
-    StableSum sum;
-    for (const glm::dvec3& term : terms)
-        sum.add(term);
-    return sum;
-}
-
 }  // namespace relief

@@ -26,8 +26,7 @@ void check_options(const Mesh& mesh, const FrameOptions& options) {
     if (options.if_missing == NormalMode::keep) {
         throw InvalidInput("normals that are missing cannot be kept: if_missing must name a mode");
     }
-    if (options.tangents == TangentMode::mikktspace && mesh.texcoords.empty() &&
-        !mesh.positions.empty()) {
+    if (computes_tangents(options.tangents) && mesh.texcoords.empty() && !mesh.positions.empty()) {
         throw InvalidInput("tangents need texture coordinates, but the mesh has none");
     }
 }
@@ -193,10 +192,25 @@ void make_normals(FramedMesh& framed, NormalMode mode, const FrameOptions& optio
     }
 }
 
-void make_tangents(FramedMesh& framed, Report& report) {
-    const Mesh& mesh = framed.mesh;
-    const std::vector<glm::vec4> tangents =
-        mikktspace_tangents(mesh.positions, mesh.normals, mesh.texcoords, mesh.triangles, report);
+std::vector<glm::vec4> corner_tangents(const Mesh& mesh, TangentMode mode, Report& report) {
+    const auto tangents_by = [&](const auto& method) {
+        return method(mesh.positions, mesh.normals, mesh.texcoords, mesh.triangles, report);
+    };
+    switch (mode) {
+        case TangentMode::area_weighted:
+            return tangents_by(area_weighted_tangents);
+        case TangentMode::lengyel:
+            return tangents_by(lengyel_tangents);
+        case TangentMode::mikktspace:
+        case TangentMode::keep:
+        case TangentMode::none:
+            break;
+    }
+    return tangents_by(mikktspace_tangents);
+}
+
+void make_tangents(FramedMesh& framed, TangentMode mode, Report& report) {
+    const std::vector<glm::vec4> tangents = corner_tangents(framed.mesh, mode, report);
     store_corners(framed, tangents, &Mesh::tangents, [&](std::size_t vertex) {
         report.add("tangent of an isolated vertex", "vertex", vertex,
                    "is a fixed one perpendicular to its normal");
@@ -232,7 +246,7 @@ FramedMesh with_frames(Mesh mesh, const FrameOptions& options, Report& report) {
     const TangentMode tangents = resolved_tangents(framed.mesh, options.tangents, mode, report);
     if (tangents != TangentMode::keep) framed.mesh.tangents.clear();
     make_normals(framed, mode, options, report);
-    if (tangents == TangentMode::mikktspace) make_tangents(framed, report);
+    if (computes_tangents(tangents)) make_tangents(framed, tangents, report);
     return framed;
 }
 

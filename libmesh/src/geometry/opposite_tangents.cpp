@@ -10,6 +10,8 @@
 #include <numeric>
 #include <tuple>
 
+#include "geometry/direction.h"
+
 namespace relief {
 namespace {
 
@@ -50,7 +52,7 @@ class TurnSteps {
 };
 
 struct SteppedTerm {
-    glm::dvec3 term;
+    VoteSum term;
     std::int32_t u_step;
     std::int32_t v_step;
 };
@@ -59,50 +61,53 @@ struct SteppedTerm {
 template <typename Key>
 class SumsByKey {
   public:
-    /// \param members  in ascending order of `key_of(member)`, then of terms
+    /// \param members  in ascending order of `key_of(member)`
     template <typename KeyOf>
     SumsByKey(std::span<const SteppedTerm> members, const KeyOf& key_of) {
         for (const SteppedTerm& member : members) {
             const Key key = key_of(member);
-            if (sums_.empty() || sums_.back().first != key) sums_.emplace_back(key, StableSum{});
-            sums_.back().second.add(member.term);
+            if (sums_.empty() || sums_.back().first != key) sums_.emplace_back(key, VoteSum{});
+            sums_.back().second += member.term;
         }
     }
 
-    [[nodiscard]] StableSum at(const Key& key) const {
+    [[nodiscard]] VoteSum at(const Key& key) const {
         const auto found =
             std::lower_bound(sums_.begin(), sums_.end(), key,
                              [](const auto& entry, const Key& k) { return entry.first < k; });
-        return found != sums_.end() && found->first == key ? found->second : StableSum{};
+        return found != sums_.end() && found->first == key ? found->second : VoteSum{};
     }
 
   private:
-    std::vector<std::pair<Key, StableSum>> sums_;
+    std::vector<std::pair<Key, VoteSum>> sums_;
 };
 
-std::vector<StableSum> sums_by_steps(std::span<const SteppedTerm> members) {
+std::vector<VoteSum> sums_by_steps(std::span<const SteppedTerm> members) {
     const auto u_of = [](const SteppedTerm& m) { return m.u_step; };
     const auto v_of = [](const SteppedTerm& m) { return m.v_step; };
     const auto uv_of = [](const SteppedTerm& m) { return std::pair(m.u_step, m.v_step); };
     std::vector<SteppedTerm> sorted(members.begin(), members.end());
-    std::sort(sorted.begin(), sorted.end(), [&](const SteppedTerm& a, const SteppedTerm& b) {
-        return uv_of(a) != uv_of(b) ? uv_of(a) < uv_of(b) : comes_before(a.term, b.term);
-    });
+    std::sort(sorted.begin(), sorted.end(),
+              [&](const SteppedTerm& a, const SteppedTerm& b) { return uv_of(a) < uv_of(b); });
     const SumsByKey<std::int32_t> by_u(sorted, u_of);
     const SumsByKey<std::pair<std::int32_t, std::int32_t>> by_both(sorted, uv_of);
-    std::stable_sort(sorted.begin(), sorted.end(),
-                     [&](const SteppedTerm& a, const SteppedTerm& b) { return v_of(a) < v_of(b); });
+    std::sort(sorted.begin(), sorted.end(),
+              [&](const SteppedTerm& a, const SteppedTerm& b) { return v_of(a) < v_of(b); });
     const SumsByKey<std::int32_t> by_v(sorted, v_of);
-    StableSum all;
+    VoteSum all;
     for (const SteppedTerm& member : sorted)
-        all.add(member.term);
+        all += member.term;
 
-    std::vector<StableSum> sums;
+    std::vector<VoteSum> sums;
     sums.reserve(members.size());
     for (const SteppedTerm& member : members) {
         const std::int32_t u = TurnSteps::opposite(member.u_step);
         const std::int32_t v = TurnSteps::opposite(member.v_step);
-        sums.push_back(all - by_u.at(u) - by_v.at(v) + by_both.at({u, v}));
+        VoteSum sum = all;
+        sum -= by_u.at(u);
+        sum -= by_v.at(v);
+        sum += by_both.at({u, v});
+        sums.push_back(sum);
     }
     return sums;
 }
@@ -111,15 +116,14 @@ bool are_opposite(const SidedTerm& a, const SidedTerm& b) {
     return glm::dot(a.along_u, b.along_u) <= -1.0F || glm::dot(a.along_v, b.along_v) <= -1.0F;
 }
 
-std::vector<StableSum> sums_by_pairs(std::span<const SidedTerm> members) {
-    std::vector<StableSum> sums;
-    std::vector<glm::dvec3> terms;
+std::vector<VoteSum> sums_by_pairs(std::span<const SidedTerm> members) {
+    std::vector<VoteSum> sums;
     for (const SidedTerm& member : members) {
-        terms.clear();
+        VoteSum sum;
         for (const SidedTerm& other : members) {
-            if (!are_opposite(member, other)) terms.push_back(other.term);
+            if (!are_opposite(member, other)) sum += other.term;
         }
-        sums.push_back(stable_sum(terms));
+        sums.push_back(sum);
     }
     return sums;
 }
@@ -132,8 +136,8 @@ glm::vec3 float_direction_in_plane(const glm::vec3& vector, const glm::vec3& nor
     return length > 0.0F ? 1.0F / length * projected : glm::vec3(0.0F);
 }
 
-std::vector<StableSum> sums_without_opposites(std::span<const SidedTerm> members,
-                                              const glm::dvec3& normal) {
+std::vector<VoteSum> sums_without_opposites(std::span<const SidedTerm> members,
+                                            const glm::dvec3& normal) {
     if (members.size() <= most_pairwise) return sums_by_pairs(members);
     const TurnSteps turn(normal);
     std::vector<SteppedTerm> stepped;

@@ -13,14 +13,14 @@
 #include <span>
 #include <vector>
 
-#include "geometry/direction.h"
+#include "geometry/tangent_votes.h"
 
 namespace relief {
 
 /// One triangle's share in a sum, and its texture directions in the plane of the normal, as float
 /// has them: unit, or zero.
 struct SidedTerm {
-    glm::dvec3 term;
+    VoteSum term;
     glm::vec3 along_u;
     glm::vec3 along_v;
 };
@@ -38,7 +38,7 @@ glm::vec3 float_direction_in_plane(const glm::vec3& vector, const glm::vec3& nor
 /// steps of a turn instead, and opposite steps are opposite.
 ///
 /// \param normal  unit, or zero: then there are no steps, and large groups have no opposites
-std::vector<StableSum> sums_without_opposites(std::span<const SidedTerm> members,
-                                              const glm::dvec3& normal);
+std::vector<VoteSum> sums_without_opposites(std::span<const SidedTerm> members,
+                                            const glm::dvec3& normal);
 
 }  // namespace relief

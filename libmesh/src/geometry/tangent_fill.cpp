@@ -57,15 +57,15 @@ VertexOffers offers_at(std::span<const Corner> around, std::span<const glm::vec4
 /// The offers of all vertices that have an open corner.
 class Offers {
   public:
-    Offers(const TangentInput& input, std::span<const Corner> open,
+    Offers(const GroupInput& input, std::span<const Corner> open,
            std::span<const glm::vec4> tangents)
         : slots_(input.corners.vertex_count(), none) {
         for (const Corner corner : open) {
-            std::uint32_t& slot = slots_[vertex_of(corner, input.triangles)];
+            std::uint32_t& slot = slots_[vertex_of(corner, input.mesh.triangles)];
             if (slot != none) continue;
             slot = static_cast<std::uint32_t>(offers_.size());
             offers_.push_back(
-                offers_at(input.corners.at(vertex_of(corner, input.triangles)), tangents));
+                offers_at(input.corners.at(vertex_of(corner, input.mesh.triangles)), tangents));
         }
     }
 
@@ -80,67 +80,63 @@ class Offers {
 };
 
 /// The w that can be had at more corners of a triangle without one.
-float voted_sign(std::uint32_t triangle, const TangentInput& input, const Offers& offers) {
+float voted_sign(std::uint32_t triangle, const GroupInput& input, const Offers& offers) {
     std::array<int, 2> votes{};
     for (int i = 0; i < 3; ++i) {
-        const VertexOffers& offer = offers.at(input.triangles[triangle][i]);
+        const VertexOffers& offer = offers.at(input.mesh.triangles[triangle][i]);
         for (std::size_t slot = 0; slot < 2; ++slot)
             votes[slot] += offer[slot] ? 1 : 0;
     }
     return votes[0] > 0 && votes[0] >= votes[1] ? 1.0F : -1.0F;
 }
 
-void copy_twin(std::uint32_t triangle, const TangentInput& input, CornerTangents& tangents) {
-    const std::uint32_t twin = input.links.twin[triangle];
-    for (Corner corner = 3 * triangle; corner < 3 * triangle + 3; ++corner) {
-        Corner same = 3 * twin;
-        while (vertex_of(same, input.triangles) != vertex_of(corner, input.triangles))
+void copy_twin(const GroupFindings::Repeated& repeated, std::span<const glm::uvec3> triangles,
+               std::span<glm::vec4> tangents) {
+    const Corner first = 3 * repeated.triangle;
+    for (Corner corner = first; corner < first + 3; ++corner) {
+        Corner same = 3 * repeated.twin;
+        while (vertex_of(same, triangles) != vertex_of(corner, triangles))
             ++same;
-        tangents.values[corner] = tangents.values[same];
-        tangents.states[corner] = tangents.states[same];
+        tangents[corner] = tangents[same];
     }
 }
 
-void report_corners(const CornerTangents& tangents, std::span<const Corner> invented,
-                    Report& report) {
-    for (const Corner corner : invented) {
-        report.add("corner without texture direction", "corner", corner,
-                   "gets a fixed tangent perpendicular to its normal");
+/// The corners without a tangent, but for those of repeated triangles.
+std::vector<Corner> open_corners(std::span<const glm::vec4> tangents,
+                                 std::span<const GroupFindings::Repeated> repeated) {
+    std::vector<Corner> open;
+    auto next = repeated.begin();
+    for (Corner corner = 0; corner < tangents.size(); ++corner) {
+        if (tangents[corner].w != 0.0F) continue;
+        while (next != repeated.end() && next->triangle < triangle_of(corner))
+            ++next;
+        if (next == repeated.end() || next->triangle != triangle_of(corner)) open.push_back(corner);
     }
-    for (std::size_t corner = 0; corner < tangents.states.size(); ++corner) {
-        if (tangents.states[corner] != CornerState::cancelled) continue;
-        report.add("cancelling tangents", "corner", corner, "keeps its own triangle's tangent");
-    }
+    return open;
 }
 
 }  // namespace
 
-void fill_open_corners(const TangentInput& input, std::span<const std::int8_t> signs,
-                       CornerTangents& tangents, Report& report) {
-    const auto is_repeated = [&](Corner corner) {
-        return input.links.twin[triangle_of(corner)] != triangle_of(corner);
-    };
-    std::vector<Corner> open;
-    for (Corner corner = 0; corner < tangents.values.size(); ++corner) {
-        if (tangents.values[corner].w == 0.0F && !is_repeated(corner)) open.push_back(corner);
-    }
-    const Offers offers(input, open, tangents.values);
+std::vector<Corner> fill_open_corners(const GroupInput& input,
+                                      std::span<const GroupFindings::Repeated> repeated,
+                                      std::span<glm::vec4> tangents) {
+    const std::vector<Corner> open = open_corners(tangents, repeated);
+    const Offers offers(input, open, tangents);
     std::vector<Corner> invented;
     for (const Corner corner : open) {
         const std::uint32_t triangle = triangle_of(corner);
-        const std::uint32_t vertex = vertex_of(corner, input.triangles);
-        const float sign = signs[triangle] != 0 ? static_cast<float>(signs[triangle])
-                                                : voted_sign(triangle, input, offers);
+        const std::uint32_t vertex = vertex_of(corner, input.mesh.triangles);
+        const float sign = input.signs[triangle] != 0 ? static_cast<float>(input.signs[triangle])
+                                                      : voted_sign(triangle, input, offers);
         const VertexOffers& offer = offers.at(vertex);
         const Offer& found = offer[slot_of(sign)] ? offer[slot_of(sign)] : offer[slot_of(-sign)];
         if (!found) invented.push_back(corner);
-        tangents.values[corner] =
-            glm::vec4(found ? *found : perpendicular_to(input.normals[vertex]), sign);
+        tangents[corner] =
+            glm::vec4(found ? *found : perpendicular_to(input.mesh.normals[vertex]), sign);
     }
-    for (std::uint32_t triangle = 0; triangle < input.triangles.size(); ++triangle) {
-        if (input.links.twin[triangle] != triangle) copy_twin(triangle, input, tangents);
-    }
-    report_corners(tangents, invented, report);
+    for (const GroupFindings::Repeated& triangle : repeated)
+        copy_twin(triangle, input.mesh.triangles, tangents);
+    return invented;
 }
 
 }  // namespace relief

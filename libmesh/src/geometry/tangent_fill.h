@@ -7,10 +7,12 @@
 #pragma once
 
 #include <cstdint>
+#include <glm/glm.hpp>
 #include <span>
+#include <vector>
 
+#include "geometry/corners.h"
 #include "geometry/tangent_groups.h"
-#include "relief/mesh/report.h"
 
 namespace relief {
 
@@ -19,10 +21,13 @@ namespace relief {
 /// A corner takes the tangent that most corners of its welded vertex have (the first by value among
 /// equals), among those with its triangle's w where there are any; where there is none at the
 /// vertex, it gets the x axis, or if the normal is near that the y axis, turned into the plane of
-/// the normal. A triangle that no sign has reached (tangent_groups.h) takes the w that it can find
+/// the normal. A triangle that no sign has reached (tangent_signs.h) takes the w that it can find
 /// at more of its corners, +1 before -1, and -1 where it finds none, which is what the reference
 /// implementation has there. A repeated triangle copies its twin.
-void fill_open_corners(const TangentInput& input, std::span<const std::int8_t> signs,
-                       CornerTangents& tangents, Report& report);
+///
+/// \return the corners that found none at their vertex; ascending
+std::vector<Corner> fill_open_corners(const GroupInput& input,
+                                      std::span<const GroupFindings::Repeated> repeated,
+                                      std::span<glm::vec4> tangents);
 
 }  // namespace relief

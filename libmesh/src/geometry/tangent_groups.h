@@ -11,41 +11,45 @@
 #include <span>
 #include <vector>
 
-#include "geometry/corner_links.h"
 #include "geometry/corners.h"
-#include "geometry/texture_gradient.h"
+#include "geometry/tangent_votes.h"
 
 namespace relief {
 
-/// What the averaging works on; everything is indexed by welded vertices.
-struct TangentInput {
-    std::span<const glm::vec3> positions;
-    std::span<const glm::vec3> normals;  ///< Any length; without a direction: tangents are free.
-    std::span<const glm::uvec3> triangles;
+/// Which votes at a vertex are added up: those of one handedness, and of them
+enum class TangentGroups {
+    connected,  ///< of triangles that follow each other across edges [Mikkelsen 2008];
+    all,        ///< all.
+};
+
+/// What the averaging works on. Triangles are over welded vertices.
+struct GroupInput {
+    TangentInput mesh;
     const CornersByVertex& corners;
-    const CornerLinks& links;
-    const TriangleGradients& gradients;
+    std::span<const Gradient> kinds;
+    std::span<const std::int8_t> signs;  ///< tangent_signs.h
+    TangentGroups groups;
 };
 
-/// The w of every triangle. One without a gradient takes that of most triangles with one that end
-/// the runs of such triangles around its vertices, since their groups could claim it; failing
-/// these, of most neighbours that have found theirs first; +1 if they balance, 0 where there are
-/// none at all. (The reference implementation takes that of the first group to come in the list.)
-std::vector<std::int8_t> triangle_signs(const TangentInput& input);
+/// What averaging had to make do with; ascending.
+struct GroupFindings {
+    std::vector<Corner> cancelled;     ///< Their group's tangents cancel: they have their own.
+    std::vector<Corner> along_normal;  ///< Their triangle's u runs along the normal: no vote.
+    /// A triangle with the same corners in the same order around as another, and the one among them
+    /// that counts.
+    struct Repeated {
+        std::uint32_t triangle;
+        std::uint32_t twin;
 
-/// How a corner came by its tangent.
-enum class CornerState : std::uint8_t {
-    open,       ///< It has none: its triangle or its group has nothing to say.
-    agreed,     ///< The average over its group.
-    cancelled,  ///< The tangents of its group cancel: it has its own triangle's, or none.
+        friend bool operator<(const Repeated& a, const Repeated& b) {
+            return a.triangle < b.triangle;
+        }
+    };
+    std::vector<Repeated> repeated;
 };
 
-struct CornerTangents {
-    std::vector<glm::vec4> values;  ///< w is 0 where there is none.
-    std::vector<CornerState> states;
-};
-
-/// The tangents of all corners whose triangles take part, and can.
-CornerTangents grouped_tangents(const TangentInput& input, std::span<const std::int8_t> signs);
+/// Turns the votes of corners into their tangents, in place; w is 0 where a corner has none: its
+/// triangle takes no part, is repeated, has no sign, or nobody in its group has a vote.
+GroupFindings average_groups(const GroupInput& input, std::span<glm::vec4> corners);
 
 }  // namespace relief

@@ -12,20 +12,26 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "geometry/check_triangles.h"
-#include "geometry/corner_links.h"
 #include "geometry/corners.h"
 #include "geometry/direction.h"
 #include "geometry/tangent_fill.h"
 #include "geometry/tangent_groups.h"
-#include "geometry/texture_gradient.h"
+#include "geometry/tangent_signs.h"
+#include "geometry/tangent_votes.h"
 #include "geometry/weld.h"
+#include "large_memory.h"
 #include "relief/mesh/error.h"
 
 namespace relief {
 namespace {
 
-void check_lengths(std::size_t positions, std::size_t normals, std::size_t texcoords) {
+void check(const TangentInput& input) {
+    const std::size_t positions = input.positions.size();
+    const std::size_t normals = input.normals.size();
+    const std::size_t texcoords = input.texcoords.size();
     if (normals != positions) {
         throw InvalidInput(
             fmt::format("there are {} normals, but {} positions", normals, positions));
@@ -34,19 +40,19 @@ void check_lengths(std::size_t positions, std::size_t normals, std::size_t texco
         throw InvalidInput(fmt::format("there are {} texture coordinates, but {} positions",
                                        texcoords, positions));
     }
+    check_triangles(input.triangles, positions);
 }
 
 void report_normals(std::span<const glm::vec3> normals, Report& report) {
     for (std::size_t v = 0; v < normals.size(); ++v) {
-        if (direction_or_zero(glm::dvec3(normals[v])) == glm::dvec3(0.0)) {
+        if (!is_finite(normals[v]) || normals[v] == glm::vec3(0.0F)) {
             report.add("normal without direction", "vertex", v,
                        "its tangents follow the texture alone");
         }
     }
 }
 
-void report_triangles(std::span<const Gradient> kinds, std::span<const std::uint32_t> twins,
-                      Report& report) {
+void report_triangles(std::span<const Gradient> kinds, Report& report) {
     for (std::size_t t = 0; t < kinds.size(); ++t) {
         switch (kinds[t]) {
             case Gradient::upright:
@@ -65,10 +71,66 @@ void report_triangles(std::span<const Gradient> kinds, std::span<const std::uint
                            "takes the tangents of triangles at its vertices");
                 break;
         }
-        if (twins[t] != t) {
-            report.add("repeated triangle", "triangle", t, "counts once and shares its tangents");
-        }
     }
+}
+
+void report_groups(const GroupFindings& findings, Report& report) {
+    for (const GroupFindings::Repeated& repeated : findings.repeated) {
+        report.add("repeated triangle", "triangle", repeated.triangle,
+                   "counts once and shares its tangents");
+    }
+    for (const Corner corner : findings.along_normal) {
+        report.add("texture direction along the normal", "corner", corner,
+                   "takes the tangent of others at its vertex");
+    }
+    for (const Corner corner : findings.cancelled)
+        report.add("cancelling tangents", "corner", corner, "keeps its own triangle's tangent");
+}
+
+/// Triangles over vertices that are all different; nothing is copied where they already are.
+class WeldedTriangles {
+  public:
+    explicit WeldedTriangles(const TangentInput& input) : triangles_(input.triangles) {
+        const std::vector<std::uint32_t> first =
+            weld_vertices(input.positions, input.normals, input.texcoords);
+        std::uint32_t vertex = 0;
+        if (std::all_of(first.begin(), first.end(),
+                        [&](std::uint32_t index) { return index == vertex++; }))
+            return;
+        welded_ = welded_triangles(input.triangles, first);
+        triangles_ = welded_;
+    }
+    [[nodiscard]] std::span<const glm::uvec3> get() const { return triangles_; }
+
+  private:
+    std::vector<glm::uvec3> welded_;
+    std::span<const glm::uvec3> triangles_;
+};
+
+std::vector<glm::vec4> tangents_of(TangentInput input, TangentWeight weight, TangentGroups groups,
+                                   Report& report) {
+    check(input);
+    const WeldedTriangles welded(input);
+    input.triangles = welded.get();
+
+    std::vector<glm::vec4> tangents;
+    reserve_to_fill(tangents, 3 * input.triangles.size());
+    tangents.resize(3 * input.triangles.size());
+    const std::vector<Gradient> kinds = cast_votes(input, weight, tangents);
+    const CornersByVertex corners(input.positions.size(), input.triangles,
+                                  [&](std::size_t t) { return takes_part(kinds[t]); });
+    const std::vector<std::int8_t> signs = triangle_signs(input.triangles, corners, kinds);
+    const GroupInput group_input{input, corners, kinds, signs, groups};
+    const GroupFindings findings = average_groups(group_input, tangents);
+
+    report_normals(input.normals, report);
+    report_triangles(kinds, report);
+    report_groups(findings, report);
+    for (const Corner corner : fill_open_corners(group_input, findings.repeated, tangents)) {
+        report.add("corner without texture direction", "corner", corner,
+                   "gets a fixed tangent perpendicular to its normal");
+    }
+    return tangents;
 }
 
 }  // namespace
@@ -77,23 +139,25 @@ std::vector<glm::vec4> mikktspace_tangents(std::span<const glm::vec3> positions,
                                            std::span<const glm::vec3> normals,
                                            std::span<const glm::vec2> texcoords,
                                            std::span<const glm::uvec3> triangles, Report& report) {
-    check_lengths(positions.size(), normals.size(), texcoords.size());
-    check_triangles(triangles, positions.size());
+    return tangents_of({positions, normals, texcoords, triangles}, TangentWeight::angle,
+                       TangentGroups::connected, report);
+}
 
-    const std::vector<glm::uvec3> welded =
-        welded_triangles(triangles, weld_vertices(positions, normals, texcoords));
-    const TriangleGradients gradients = triangle_gradients(positions, texcoords, welded);
-    const CornersByVertex corners(positions.size(), welded,
-                                  [&](std::size_t t) { return takes_part(gradients.kinds[t]); });
-    const CornerLinks links = link_corners(welded, corners, gradients.kinds);
-    const TangentInput input{positions, normals, welded, corners, links, gradients};
-    const std::vector<std::int8_t> signs = triangle_signs(input);
-    CornerTangents tangents = grouped_tangents(input, signs);
+std::vector<glm::vec4> area_weighted_tangents(std::span<const glm::vec3> positions,
+                                              std::span<const glm::vec3> normals,
+                                              std::span<const glm::vec2> texcoords,
+                                              std::span<const glm::uvec3> triangles,
+                                              Report& report) {
+    return tangents_of({positions, normals, texcoords, triangles}, TangentWeight::area,
+                       TangentGroups::connected, report);
+}
 
-    report_normals(normals, report);
-    report_triangles(gradients.kinds, links.twin, report);
-    fill_open_corners(input, signs, tangents, report);
-    return std::move(tangents.values);
+std::vector<glm::vec4> lengyel_tangents(std::span<const glm::vec3> positions,
+                                        std::span<const glm::vec3> normals,
+                                        std::span<const glm::vec2> texcoords,
+                                        std::span<const glm::uvec3> triangles, Report& report) {
+    return tangents_of({positions, normals, texcoords, triangles}, TangentWeight::stretch,
+                       TangentGroups::all, report);
 }
 
 }  // namespace relief

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Solves position = origin + u * along_u + v * along_v over each triangle, for directions only.
-// Tests: tests/mesh/geometry/tangents_test.cpp.
+// Solves position = origin + u * along_u + v * along_v over one triangle, whatever its floats are.
+// tangent_votes.cpp does the same for many ordinary triangles at once.
+// Tests: tests/mesh/geometry/texture_gradient_test.cpp.
 #include "geometry/texture_gradient.h"
 
 #include <algorithm>
@@ -24,72 +25,81 @@ double float_difference(float a, float b) {
 }
 
 /// Two edges of a triangle from its first corner, in float, multiplied by a power of two that
-/// brings them near to 1 where they are far from it: no digit changes, and no later product can
-/// overflow or vanish.
-template <int N>
+/// brings the largest number to 1 or a bit more: no digit that counts changes, and no later product
+/// can overflow or vanish.
+template <std::size_t N>
 struct Edges {
-    glm::vec<N, float> first;
-    glm::vec<N, float> second;
+    std::array<float, N> first;
+    std::array<float, N> second;
+    int exponent = 0;  ///< They are the true ones times 2^-exponent.
 
-    explicit Edges(const glm::vec<N, float> (&corners)[3]) {
-        glm::vec<N, double> to_second;
-        glm::vec<N, double> to_third;
+    explicit Edges(const glm::vec<static_cast<int>(N), float> (&corners)[3]) {
+        std::array<double, N> to_second;
+        std::array<double, N> to_third;
         double largest = 0.0;
-        for (int i = 0; i < N; ++i) {
-            to_second[i] = float_difference(corners[0][i], corners[1][i]);
-            to_third[i] = float_difference(corners[0][i], corners[2][i]);
+        for (std::size_t i = 0; i < N; ++i) {
+            const int k = static_cast<int>(i);
+            to_second[i] = float_difference(corners[0][k], corners[1][k]);
+            to_third[i] = float_difference(corners[0][k], corners[2][k]);
             largest = std::max({largest, std::abs(to_second[i]), std::abs(to_third[i])});
         }
-        const bool is_near_one = largest > 0x1p-15 && largest < 0x1p15;
-        const double factor =
-            is_near_one || largest == 0.0 ? 1.0 : std::ldexp(1.0, -std::ilogb(largest));
-        first = glm::vec<N, float>(to_second * factor);
-        second = glm::vec<N, float>(to_third * factor);
+        if (largest != 0.0) exponent = std::ilogb(largest);
+        for (std::size_t i = 0; i < N; ++i) {
+            first[i] = static_cast<float>(std::ldexp(to_second[i], -exponent));
+            second[i] = static_cast<float>(std::ldexp(to_third[i], -exponent));
+        }
     }
 };
 
-/// In float, with the operations of the reference implementation in their order. Where float
-/// decides anything here, it has to decide the same: on slivers its rounding is the result. The
-/// sign of the area is nevertheless exact, since rounding keeps the order of the two products; it
-/// is 0 where they round to the same.
-Gradient gradient_of(const glm::vec3 (&p)[3], const glm::vec2 (&t)[3], glm::vec3& along_u,
-                     glm::vec3& along_v) {
+/// As long as 1, by the reference implementation's operations where float has the range for them.
+glm::vec3 float_direction(const std::array<float, 3>& axis, float sign) {
+    constexpr float least = 1e-18F;  // Its square is still a normal number.
+    const glm::vec3 vector(axis[0], axis[1], axis[2]);
+    const float length = glm::length(vector);
+    return length > least ? sign / length * vector
+                          : glm::vec3(double(sign) * direction_or_zero(glm::dvec3(vector)));
+}
+
+TriangleGradient gradient_of(const glm::vec3 (&p)[3], const glm::vec2 (&t)[3]) {
     for (int i = 0; i < 3; ++i) {
-        if (!is_finite(p[i]) || !is_finite(t[i])) return Gradient::non_finite;
+        if (!is_finite(p[i]) || !is_finite(t[i])) return {.kind = Gradient::non_finite};
     }
-    if (p[0] == p[1] || p[1] == p[2] || p[2] == p[0]) return Gradient::coinciding;
+    if (p[0] == p[1] || p[1] == p[2] || p[2] == p[0]) return {.kind = Gradient::coinciding};
 
     const Edges<3> d(p);
     const Edges<2> s(t);
-    const float area = s.first.x * s.second.y - s.first.y * s.second.x;
-    if (area == 0.0F) return Gradient::none;
-    const glm::vec3 u = s.second.y * d.first - s.first.y * d.second;   // [Mikkelsen 2008] eq. 18
-    const glm::vec3 v = -s.second.x * d.first + s.first.x * d.second;  // [Mikkelsen 2008] eq. 19
-    if (u == glm::vec3(0.0F) || v == glm::vec3(0.0F)) return Gradient::none;
-    const float sign = area > 0.0F ? 1.0F : -1.0F;
-    along_u = sign / glm::length(u) * u;
-    along_v = sign / glm::length(v) * v;
-    return area > 0.0F ? Gradient::upright : Gradient::mirrored;
+    const TextureAxes axes = texture_axes(d.first, d.second, s.first, s.second);
+    constexpr std::array nowhere = {0.0F, 0.0F, 0.0F};
+    if (axes.area == 0.0F || axes.u == nowhere || axes.v == nowhere) return {};
+    const float sign = axes.area > 0.0F ? 1.0F : -1.0F;
+    const double length = glm::length(glm::dvec3(axes.u[0], axes.u[1], axes.u[2]));
+    return {.kind = axes.area > 0.0F ? Gradient::upright : Gradient::mirrored,
+            .along_u = float_direction(axes.u, sign),
+            .along_v = float_direction(axes.v, sign),
+            .stretch = std::ldexp(length / std::abs(static_cast<double>(axes.area)),
+                                  d.exponent - s.exponent)};
 }
 
 }  // namespace
 
-TriangleGradients triangle_gradients(std::span<const glm::vec3> positions,
+TriangleGradient triangle_gradient(std::span<const glm::vec3> positions,
+                                   std::span<const glm::vec2> texcoords,
+                                   const glm::uvec3& triangle) {
+    const glm::vec3 p[] = {positions[triangle.x], positions[triangle.y], positions[triangle.z]};
+    const glm::vec2 t[] = {upright(texcoords[triangle.x]), upright(texcoords[triangle.y]),
+                           upright(texcoords[triangle.z])};
+    return gradient_of(p, t);
+}
+
+std::vector<Gradient> gradient_kinds(std::span<const glm::vec3> positions,
                                      std::span<const glm::vec2> texcoords,
                                      std::span<const glm::uvec3> triangles) {
-    TriangleGradients gradients{std::vector<Gradient>(triangles.size()),
-                                std::vector<glm::vec3>(triangles.size(), glm::vec3(0.0F)),
-                                std::vector<glm::vec3>(triangles.size(), glm::vec3(0.0F))};
+    std::vector<Gradient> kinds(triangles.size());
     parallel_for(triangles.size(), 4096, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) {
-            const glm::uvec3& v = triangles[i];
-            const glm::vec3 p[] = {positions[v.x], positions[v.y], positions[v.z]};
-            const glm::vec2 t[] = {upright(texcoords[v.x]), upright(texcoords[v.y]),
-                                   upright(texcoords[v.z])};
-            gradients.kinds[i] = gradient_of(p, t, gradients.along_u[i], gradients.along_v[i]);
-        }
+        for (std::size_t i = begin; i < end; ++i)
+            kinds[i] = triangle_gradient(positions, texcoords, triangles[i]).kind;
     });
-    return gradients;
+    return kinds;
 }
 
 }  // namespace relief

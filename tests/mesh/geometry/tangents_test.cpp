@@ -28,9 +28,18 @@ constexpr glm::vec4 along_x(1.0F, 0.0F, 0.0F, 1.0F);
 // A unit vector in floats is off by up to 6e-8 in all, or 3.4e-6 degrees.
 constexpr double float_degrees = 4e-6;
 
-std::vector<glm::vec4> tangents_of(const Mesh& mesh, Report& report) {
-    return mikktspace_tangents(mesh.positions, mesh.normals, mesh.texcoords, mesh.triangles,
-                               report);
+using Method = decltype(&mikktspace_tangents);
+
+constexpr Method all_methods[] = {mikktspace_tangents, area_weighted_tangents, lengyel_tangents};
+
+std::vector<glm::vec4> tangents_of(const Mesh& mesh, Report& report,
+                                   Method method = mikktspace_tangents) {
+    return method(mesh.positions, mesh.normals, mesh.texcoords, mesh.triangles, report);
+}
+
+std::vector<glm::vec4> tangents_of(const Mesh& mesh, Method method) {
+    Report report;
+    return tangents_of(mesh, report, method);
 }
 
 std::vector<glm::vec4> tangents_of(const Mesh& mesh) {
@@ -152,7 +161,8 @@ TEST(Tangents, AreTheSameForSeveralCopiesOfAVertex) {
 TEST(Tangents, HoldTheInvariantsOnEveryHardMesh) {
     for (const test::NamedMesh& hard : test::hard_meshes()) {
         SCOPED_TRACE(hard.name);
-        test::expect_tangent_invariants(hard.mesh, tangents_of(hard.mesh));
+        for (const Method method : all_methods)
+            test::expect_tangent_invariants(hard.mesh, tangents_of(hard.mesh, method));
     }
 }
 
@@ -162,9 +172,11 @@ TEST(Tangents, PermutingTrianglesChangesNoBit) {
     for (const test::NamedMesh& hard : meshes) {
         SCOPED_TRACE(hard.name);
         const auto order = test::shuffled(hard.mesh.triangles.size());
-        const auto permuted = tangents_of(test::with_triangle_order(hard.mesh, order));
-        EXPECT_TRUE(
-            test::same_bits(permuted, test::corners_in_order(tangents_of(hard.mesh), order)));
+        for (const Method method : all_methods) {
+            const auto permuted = tangents_of(test::with_triangle_order(hard.mesh, order), method);
+            const auto expected = test::corners_in_order(tangents_of(hard.mesh, method), order);
+            EXPECT_TRUE(test::same_bits(permuted, expected));
+        }
     }
 }
 
@@ -329,6 +341,77 @@ TEST(Tangents, NonFiniteValuesStayAtTheirOwnTriangles) {
             EXPECT_EQ(tangents[corner], expected[corner]) << "corner " << corner;
         }
     }
+}
+
+/// Two squares of 10 by 10 at a right angle, a bevel of 0.1 between them; normals are smooth over
+/// the bevel, and the texture is turned by 45 degrees on it.
+Mesh bevelled() {
+    Mesh mesh;
+    const glm::vec3 up(0, 0, 1), slanted = glm::normalize(glm::vec3(1, 0, 1)), side(1, 0, 0);
+    const auto quad = [&](const std::array<glm::vec3, 4>& corners, const glm::vec3& normal,
+                          const std::array<glm::vec2, 4>& texcoords) {
+        const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+        mesh.positions.insert(mesh.positions.end(), corners.begin(), corners.end());
+        mesh.normals.insert(mesh.normals.end(), 4, normal);
+        mesh.texcoords.insert(mesh.texcoords.end(), texcoords.begin(), texcoords.end());
+        mesh.triangles.emplace_back(first, first + 1, first + 2);
+        mesh.triangles.emplace_back(first, first + 2, first + 3);
+    };
+    // The large face has the shared normal at its edge to the bevel, so that they are neighbours.
+    quad({{{-10, 0, 0}, {0, 0, 0}, {0, 10, 0}, {-10, 10, 0}}}, up,
+         {{{0, 0}, {1, 0}, {1, -1}, {0, -1}}});
+    quad({{{0, 0, 0}, {0.1F, 0, -0.1F}, {0.1F, 10, -0.1F}, {0, 10, 0}}}, slanted,
+         {{{1, 0}, {1.01F, -0.01F}, {1.01F, -1.01F}, {1, -1}}});
+    mesh.normals[4] = mesh.normals[7] = up;
+    return mesh;
+}
+
+TEST(Tangents, AreaWeightsLeaveALargeFaceUndisturbedByAThinBevel) {
+    const Mesh mesh = bevelled();
+    const auto by_angle = tangents_of(mesh);
+    const auto by_area = tangents_of(mesh, area_weighted_tangents);
+    // Corner 1 of triangle 0 is at the bevel. The bevel's u runs 0.1 along the slope for each 0.1
+    // in y: seen from above, 45 degrees off.
+    const double disturbed = degrees_between(by_angle[1], {1, 0, 0});
+    const double undisturbed = degrees_between(by_area[1], {1, 0, 0});
+    EXPECT_GT(disturbed, 5.0);
+    // Areas of 50 against two triangles of 0.7 in all.
+    EXPECT_LT(undisturbed, 1.5);
+    EXPECT_GT(undisturbed, 0.0) << "but they are averaged";
+}
+
+TEST(Tangents, LengyelsAddUpGradientsWhateverTheirTrianglesAreTo) {
+    // Two triangles that only touch at vertex 0; the second's texture is 3 times as stretched, its
+    // u along y.
+    Mesh mesh;
+    mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {-1, 0, 0}};
+    mesh.positions[3] *= 3.0F;
+    mesh.normals.assign(5, {0, 0, 1});
+    mesh.texcoords = {{0, 0}, {1, 0}, {0, -1}, {-1, 0}, {0, -1}};
+    mesh.triangles = {{0, 1, 2}, {0, 4, 3}};
+    const auto tangents = tangents_of(mesh, lengyel_tangents);
+    EXPECT_EQ(tangents[0], tangents[3]);
+    EXPECT_LE(degrees_between(tangents[0], {1, 3, 0}), float_degrees);
+    EXPECT_EQ(tangents[0].w, 1.0F);
+    EXPECT_NE(tangents_of(mesh)[0], tangents_of(mesh)[3]) << "which are no neighbours";
+}
+
+TEST(Tangents, LengyelsKeepHandednessesApart) {
+    Mesh mesh = test::grid(2);
+    for (glm::vec2& texcoord : mesh.texcoords)
+        texcoord.x = std::abs(texcoord.x - 0.5F);
+    EXPECT_EQ(tangents_of(mesh, lengyel_tangents), tangents_of(mesh));
+}
+
+TEST(Tangents, ATextureThatRunsAlongTheNormalIsCounted) {
+    Mesh mesh = test::grid(2);
+    // At the middle vertex u runs along the normal; its neighbours have nothing else to offer.
+    mesh.normals[4] = {1, 0, 0};
+    Report report;
+    const auto tangents = tangents_of(mesh, report);
+    EXPECT_EQ(report.count("texture direction along the normal"), 6U);
+    EXPECT_EQ(report.count("corner without texture direction"), 6U);
+    test::expect_tangent_invariants(mesh, tangents);
 }
 
 TEST(Tangents, ZeroNormalsLeaveTheTextureDirection) {

@@ -31,7 +31,14 @@ enum class TangentMode {
     keep,        ///< The mesh's own, or none; computed anew (mikktspace) where normals are.
     none,        ///< Removed.
     mikktspace,  ///< Computed, see tangents.h.
+    area_weighted,
+    lengyel,
 };
+
+/// Whether this mode makes tangents, for which a mesh needs texture coordinates.
+constexpr bool computes_tangents(TangentMode mode) {
+    return mode != TangentMode::keep && mode != TangentMode::none;
+}
 
 struct FrameOptions {
     NormalMode normals = NormalMode::keep;
@@ -74,7 +81,8 @@ struct FramedMesh {
 ///         changed if `repair` says so. Vertices without a
 ///         triangle keep their place, with frames by the fallbacks named there. Tangents whose
 ///         normals change are removed, and counted, where there are no texture coordinates.
-/// \throws InvalidInput if the mesh is not valid (mesh.h), if `tangents` is mikktspace and there
+/// \throws InvalidInput if the mesh is not valid (mesh.h), if `tangents` are to be computed and
+/// there
 ///         are no texture coordinates, if `if_missing` is keep,
 ///         or if an option is not within what normals.h allows
 FramedMesh with_frames(Mesh mesh, const FrameOptions& options, Report& report);

@@ -43,4 +43,25 @@ std::vector<glm::vec4> mikktspace_tangents(std::span<const glm::vec3> positions,
                                            std::span<const glm::vec2> texcoords,
                                            std::span<const glm::uvec3> triangles, Report& report);
 
+/// The same frames, but that each triangle counts for its area instead of the angle of its corner:
+/// thin bevels, whose corners have angles like any other's, then leave large faces undisturbed.
+///
+/// Not MikkTSpace: a map baked for one of the two shows seams with the other.
+std::vector<glm::vec4> area_weighted_tangents(std::span<const glm::vec3> positions,
+                                              std::span<const glm::vec3> normals,
+                                              std::span<const glm::vec2> texcoords,
+                                              std::span<const glm::uvec3> triangles,
+                                              Report& report);
+
+/// The same, but that at a vertex all triangles of one handedness are averaged, neighbours or not,
+/// each as far as it stretches the texture along u: the sum of the gradients of position along u,
+/// made perpendicular to the normal and unit. Where the plain method has one tangent for a vertex
+/// of triangles of both handednesses, this has one for each.
+///
+/// Source: [Lengyel 2001].
+std::vector<glm::vec4> lengyel_tangents(std::span<const glm::vec3> positions,
+                                        std::span<const glm::vec3> normals,
+                                        std::span<const glm::vec2> texcoords,
+                                        std::span<const glm::uvec3> triangles, Report& report);
+
 }  // namespace relief

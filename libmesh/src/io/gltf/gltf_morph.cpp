@@ -132,12 +132,11 @@ MorphReplacement::MorphReplacement(GltfContents& contents, GltfPrimitiveId id,
         options_.normals = options_.if_missing;
     }
     has_new_normals_ = options_.normals != NormalMode::keep && !framed_.mesh.normals.empty();
-    const bool asked_for =
-        options_.tangents != TangentMode::keep && options_.tangents != TangentMode::none;
-    has_new_tangents_ = !framed_.mesh.tangents.empty() && (has_new_normals_ || asked_for);
+    has_new_tangents_ = !framed_.mesh.tangents.empty() &&
+                        (has_new_normals_ || computes_tangents(options_.tangents));
     if (!has_new_tangents_)
         options_.tangents = TangentMode::none;
-    else if (!asked_for)
+    else if (!computes_tangents(options_.tangents))
         options_.tangents = TangentMode::mikktspace;  // What new normals bring about.
 }
 
