@@ -59,7 +59,8 @@ std::vector<HardCase> stored_cases() {
                      return square_with_normals({{0, 0, 1}, {0, 0, -1}, {0, 0, 1}, {1, 0, 0}});
                  })
             .checked({{edge_boundary, 4}, {normal_opposed, 1}, {normal_divided, 1}})
-            .tangents({{"cancelling tangents", 1}, {"corner without texture direction", 1}}),
+            .tangents({{"corner without texture direction", 1},
+                       {"texture direction along the normal", 1}}),
         MeshCase("tangents that are none",
                  "A square whose tangents are NaN, of length 2 without handedness, along the "
                  "normal, and leaning by 6 degrees.",
