@@ -54,7 +54,9 @@ struct Method {
     const char* name;
     TangentFunction function;
 };
-constexpr std::array methods = {Method{"mikktspace", mikktspace_tangents}};
+constexpr std::array methods = {Method{"mikktspace", mikktspace_tangents},
+                                Method{"area-weighted", area_weighted_tangents},
+                                Method{"lengyel", lengyel_tangents}};
 
 std::vector<glm::vec4> tangents_of(const Mesh& mesh, TangentFunction function) {
     Report report;

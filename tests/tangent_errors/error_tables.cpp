@@ -39,6 +39,8 @@ TangentMethod stored(const char* name, TangentFunction function) {
 
 const std::vector<TangentMethod>& methods() {
     static const std::vector<TangentMethod> all = {stored("mikktspace", mikktspace_tangents),
+                                                   stored("area-weighted", area_weighted_tangents),
+                                                   stored("lengyel", lengyel_tangents),
                                                    {"screen-space", {}, ShaderBasis::derived}};
     return all;
 }
@@ -200,7 +202,7 @@ Errors mismatch(const TexturedMesh& truth, const TangentMethod& baker,
 std::string mismatch_table(const std::string& title, const TexturedMesh& truth) {
     std::vector<TangentMethod> bases = methods();
     bases.push_back(bases.front());
-    bases.back().name += ", made unit in the shader";
+    bases.back().name += ", made unit";
     bases.back().basis = ShaderBasis::made_unit;
     std::vector<std::string> names;
     for (const TangentMethod& reader : bases)
