@@ -180,6 +180,44 @@ std::string method_tables() {
            method_table("The tangent's direction inside of triangles", false, inner_errors) + "\n";
 }
 
+/// What a method costs, as bench/frame_costs_bench.cpp measured it, in turns in one run: times are
+/// no part of what a test can hold, so they are put in here by hand, and the page dates them.
+struct MeasuredCost {
+    const char* method;
+    const char* computing;
+    const char* bytes;
+    const char* drawing;
+};
+constexpr std::array measured_costs = {
+    MeasuredCost{"mikktspace", "1 (110 ns a triangle, one thread)", "28; 4 or 8", "1"},
+    MeasuredCost{"area-weighted", "0.94", "28; 4 or 8", "1"},
+    MeasuredCost{"lengyel", "0.90", "28; 4 or 8", "1"},
+    MeasuredCost{"screen-space", "0", "12: normals alone", "1.05 to 1.08"}};
+
+/// Errors of three meshes beside what that costs.
+std::string cost_table() {
+    const std::array<std::string, 3> shown = {"torus, jittered", "cubic, anisotropic",
+                                              "plate with thin bevels, image sheared on those"};
+    std::string text = "\n";
+    text += table_header({"error: torus, jittered", "cubic, anisotropic", "plate with thin bevels",
+                          "computing", "bytes a vertex: floats; codes", "drawing"});
+    for (std::size_t i = 0; i < methods().size(); ++i) {
+        const TangentMethod& method = methods()[i];
+        std::vector<std::string> cells;
+        for (const std::string& name : shown) {
+            const auto mesh = std::find_if(meshes().begin(), meshes().end(),
+                                           [&](const NamedMesh& one) { return one.name == name; });
+            const TexturedMesh& truth = mesh->truth;
+            cells.push_back(in_digits(
+                texel_errors(truth, tangents_of(method, truth.mesh), method.basis).rms()));
+        }
+        const MeasuredCost& cost = measured_costs.at(i);
+        cells.insert(cells.end(), {cost.computing, cost.bytes, cost.drawing});
+        text += table_row(cost.method, std::vector(cells.size(), not_compared), cells);
+    }
+    return text + "\n";
+}
+
 /// What becomes of a true normal that is baked in one basis and read in another.
 Errors mismatch(const TexturedMesh& truth, const TangentMethod& baker,
                 const TangentMethod& reader) {
@@ -312,6 +350,7 @@ std::string begin_of(const char* which) {
 std::vector<PageSection> tangent_error_sections() {
     return {{begin_of("methods"), method_tables()},
             {begin_of("bases"), mismatch_tables()},
+            {begin_of("costs"), cost_table()},
             {begin_of("encodings"), encoding_tables()}};
 }
 
