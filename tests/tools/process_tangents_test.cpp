@@ -6,6 +6,7 @@
 
 #include <cstring>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "relief/mesh/gltf_document.h"
 #include "support/angle.h"
@@ -149,6 +150,30 @@ TEST_F(ProcessTangents, OfNewNormalsComeFromTheNormalTexturesSetToo) {
     expect_along(first_tangent(), {1, 0, 0}, 1);
     ASSERT_EQ(process("").exit_code, 0);
     expect_along(first_tangent(), {0, 0, 1}, 1);
+}
+
+TEST_F(ProcessTangents, AreMadeByTheMethodNamed) {
+    const std::vector<std::pair<std::string, std::string>> methods = {
+        {"mikktspace", "MikkTSpace"}, {"area-weighted", "area-weighted"}, {"lengyel", "lengyel"}};
+    std::set<std::string> contents;
+    for (const auto& [word, words] : methods) {
+        const ProgramResult result = workplace_.run(
+            "relief-mesh process data/vase.obj out/vase.glb --report out/r.json --tangents " +
+            word);
+        ASSERT_EQ(result.exit_code, 0) << result.error;
+        EXPECT_THAT(result.out, HasSubstr("tangents  computed, " + words + "\n"));
+        EXPECT_EQ(report()["options"]["tangents"], word);
+        EXPECT_EQ(report()["primitives"][0]["tangent_method"], word);
+        contents.insert(workplace_.read("out/vase.glb"));
+    }
+    EXPECT_EQ(contents.size(), 3U) << "each gives others";
+    // Kept tangents of new normals are MikkTSpace's, however they were made before.
+    ASSERT_EQ(workplace_
+                  .run("relief-mesh process out/vase.glb out/new.glb --normals area --report "
+                       "out/r.json")
+                  .exit_code,
+              0);
+    EXPECT_EQ(report()["primitives"][0]["tangent_method"], "mikktspace");
 }
 
 TEST_F(ProcessTangents, BelongToTheCoordinatesAsStoredWhateverTheTransform) {

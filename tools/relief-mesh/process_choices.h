@@ -24,7 +24,9 @@ inline Choices<NormalMode> normal_choices() {
 inline Choices<TangentMode> tangent_choices() {
     return {{"keep", TangentMode::keep},
             {"none", TangentMode::none},
-            {"mikktspace", TangentMode::mikktspace}};
+            {"mikktspace", TangentMode::mikktspace},
+            {"area-weighted", TangentMode::area_weighted},
+            {"lengyel", TangentMode::lengyel}};
 }
 
 }  // namespace relief::tools

@@ -156,8 +156,10 @@ void add_tangent_options(CLI::App& app, ProcessRequest& request) {
     const char* group = "Tangents";
     add_choice(app, "--tangents", request.tangents, tangent_choices(),
                "Tangents for normal maps: the file's own (keep; computed anew where normals are), "
-               "none, or computed as MikkTSpace does, splitting vertices where needed. "
-               "Default: keep.")
+               "none, or computed, splitting vertices where needed: as bakers and glTF assume "
+               "(mikktspace), weighted by area, so that thin bevels do not disturb large faces, or "
+               "by Lengyel's sum over each vertex. A map is right only in the frame that it was "
+               "baked for: docs/tangents.md. Default: keep.")
         ->group(group);
     add_value(app, "--uv-set", "N",
               "Compute tangents from texture coordinate set N (TEXCOORD_N of glTF; other formats "
@@ -181,6 +183,7 @@ void add_options(CLI::App& app, ProcessOptions& options) {
         {"relief-mesh process data/vase.obj out/vase.glb --tangents mikktspace",
          "relief-mesh process out/vase.glb out/vase-flat.glb --normals flat",
          "relief-mesh process out/vase.glb out/vase-0.glb --tangents mikktspace --uv-set 0",
+         "relief-mesh process data/vase.obj out/vase-area.glb --tangents area-weighted",
          "relief-mesh process data/vase.obj out/vase.ply --normals area --report out/vase.json",
          "relief-mesh process data/vase.obj out/vase-hard.glb --normals auto --crease 40",
          "relief-mesh process data/*.obj -o out/models/ --format glb --normals angle"});

@@ -207,10 +207,6 @@ bool has_tangents(const Processed& done) {
 
 }  // namespace
 
-bool computes_tangents(TangentMode mode) {
-    return mode != TangentMode::keep && mode != TangentMode::none;
-}
-
 Processed process(const ProcessRequest& request, Stages& stages) {
     const FrameOptions options = frame_options(request, readable_format(request.input));
     Processed done;

@@ -63,9 +63,6 @@ struct Processed {
     Findings findings;
 };
 
-/// Whether a mode computes tangents, whatever the mesh has.
-bool computes_tangents(TangentMode mode);
-
 /// Reads, computes, writes.
 ///
 /// \throws FileError if a file cannot be read or written, if it holds no triangles, or if tangents
