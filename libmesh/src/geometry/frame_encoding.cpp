@@ -5,6 +5,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "geometry/direction.h"
 #include "geometry/frame_codes.h"
 #include "parallel.h"
@@ -14,6 +17,24 @@ namespace relief {
 namespace {
 
 constexpr std::size_t frames_per_piece = 1 << 12;
+
+Frames stored_and_read(std::span<const glm::vec3> normals, std::span<const glm::vec4> tangents,
+                       FrameEncoding encoding, FrameRounding rounding) {
+    Report seen_before;  // What is no frame is not news here.
+    return decode_frames(encode_frames(normals, tangents, encoding, rounding, seen_before),
+                         encoding, seen_before);
+}
+
+FrameEncodingError error_against(const Frames& truth, const Frames& found) {
+    const std::vector<glm::dvec3> normals(truth.normals.begin(), truth.normals.end());
+    const std::vector<glm::dvec3> tangents(truth.tangents.begin(), truth.tangents.end());
+    const std::vector<glm::vec3> found_tangents(found.tangents.begin(), found.tangents.end());
+    return {direction_error(found.normals, normals), direction_error(found_tangents, tangents)};
+}
+
+double largest(const FrameEncodingError& error) {
+    return std::max(error.normal.max, error.tangent.max);
+}
 
 }  // namespace
 
@@ -72,6 +93,36 @@ Frames decode_frames(std::span<const std::uint32_t> words, FrameEncoding encodin
             }
         });
     return frames;
+}
+
+FrameEncodingError frame_encoding_error(std::span<const glm::vec3> normals,
+                                        std::span<const glm::vec4> tangents, FrameEncoding encoding,
+                                        FrameRounding rounding) {
+    return error_against(
+        stored_and_read(normals, tangents, FrameEncoding::float32, FrameRounding::nearest),
+        stored_and_read(normals, tangents, encoding, rounding));
+}
+
+ChosenEncoding smallest_encoding_within(double max_degrees, std::span<const glm::vec3> normals,
+                                        std::span<const glm::vec4> tangents,
+                                        FrameRounding rounding) {
+    if (!(max_degrees >= 0.0) || !std::isfinite(max_degrees)) {
+        throw InvalidInput(
+            fmt::format("an error of {} degrees is no bound: 0 or more", max_degrees));
+    }
+    const Frames truth =
+        stored_and_read(normals, tangents, FrameEncoding::float32, FrameRounding::nearest);
+    ChosenEncoding chosen{FrameEncoding::float32, error_against(truth, truth)};
+    for (const FrameEncoding encoding : all_frame_encodings) {
+        const std::size_t words = words_per_frame(encoding);
+        const std::size_t fewest = words_per_frame(chosen.encoding);
+        if (encoding == FrameEncoding::float32 || words > fewest) continue;
+        const FrameEncodingError error =
+            error_against(truth, stored_and_read(normals, tangents, encoding, rounding));
+        if (largest(error) > max_degrees) continue;
+        if (words < fewest || largest(error) < largest(chosen.error)) chosen = {encoding, error};
+    }
+    return chosen;
 }
 
 }  // namespace relief

@@ -12,6 +12,7 @@
 #include <span>
 #include <vector>
 
+#include "relief/mesh/direction_error.h"
 #include "relief/mesh/report.h"
 
 namespace relief {
@@ -105,5 +106,34 @@ struct Frames {
 ///         within 2e-7, w exactly 1 or -1
 /// \throws InvalidInput if the words are not a multiple of words_per_frame()
 Frames decode_frames(std::span<const std::uint32_t> words, FrameEncoding encoding, Report& report);
+
+/// How far directions are from where they were, in degrees, after they have been stored.
+struct FrameEncodingError {
+    DirectionError normal;
+    DirectionError tangent;
+};
+
+/// What an encoding does to these frames. What is no frame is compared with what it is replaced by;
+/// a tangent that leans is compared with the one turned into the plane.
+///
+/// \throws InvalidInput if the spans are not equally long
+FrameEncodingError frame_encoding_error(std::span<const glm::vec3> normals,
+                                        std::span<const glm::vec4> tangents, FrameEncoding encoding,
+                                        FrameRounding rounding);
+
+/// An encoding, and what it does to the frames that it was chosen for.
+struct ChosenEncoding {
+    FrameEncoding encoding = FrameEncoding::float32;
+    FrameEncodingError error;
+};
+
+/// The encoding of fewest bytes that leaves no normal and no tangent further off than a bound; of
+/// several, the one whose largest error is least; float32 if no other keeps to it.
+///
+/// \param max_degrees  finite, at least 0
+/// \throws InvalidInput if that is not so, or the spans are not equally long
+ChosenEncoding smallest_encoding_within(double max_degrees, std::span<const glm::vec3> normals,
+                                        std::span<const glm::vec4> tangents,
+                                        FrameRounding rounding);
 
 }  // namespace relief
