@@ -97,7 +97,8 @@ ExitCode run(const CLI::App& app, const CheckOptions& options) {
 
 Command add_check_command(CLI::App& tool) {
     CLI::App& app = add_subcommand(
-        tool, "check", "Says how healthy model files are: trouble, and what is worth knowing.");
+        tool, "check",
+        "Says how healthy model files are, and by which method their tangents were made.");
     const auto options = std::make_shared<CheckOptions>();
     add_files(app, "FILES", options->files, "Models to read: .glb .gltf .obj .ply .stl .off")
         ->required();
@@ -105,7 +106,9 @@ Command add_check_command(CLI::App& tool) {
         app, "--json", options->json,
         "Print one JSON object: tool, version, sound, with_trouble and unreadable (numbers "
         "of files), words, files [file, sound, error or: format, trouble and remarks (of reading), "
-        "primitives [name, sound, triangles, vertices, size, spacing, overlap_raster, "
+        "primitives [name, sound, triangles, vertices, size, spacing, overlap_raster, tangents "
+        "{basis, variant, same_here, texcoord_set, texcoord_set_of_material, corners, left_out, "
+        "without_direction, stored_bits, tolerance, agreements} or null, "
         "trouble and remarks [kind, element, count, first, outcome]]].");
     add_switch(app, "--strict", options->strict,
                "Exit with 3 if a file has trouble. Remarks are no trouble.");

@@ -47,7 +47,7 @@ Severity severity_of(MeshCondition condition, const Use& use) {
 
 void add_part(CheckedModel& model, std::string name, const Mesh& mesh, const Use& use) {
     CheckedPart part{
-        std::move(name), mesh.triangles.size(), mesh.positions.size(), diagnose(mesh), {}, {}};
+        std::move(name), mesh.triangles.size(), mesh.positions.size(), diagnose(mesh), {}, {}, {}};
     for (const FoundCondition& found : part.diagnosis.found) {
         const bool is_trouble = severity_of(found.condition, use) == Severity::trouble;
         (is_trouble ? part.trouble : part.remarks).add(to_finding(found));
@@ -79,6 +79,7 @@ void add_parts(CheckedModel& model, const GltfDocument& document, bool for_bakin
     for (const GltfPrimitiveId id : document.triangle_primitives()) {
         const Mesh mesh = document.mesh(id);
         add_part(model, document.describe(id), mesh, {wants_tangents(mesh, materials), for_baking});
+        model.parts.back().tangents = check_tangents(document, id, mesh);
     }
 }
 
@@ -152,6 +153,23 @@ std::string remarks_in_words(const CheckedModel& model) {
     return fmt::format("{}", fmt::join(words, ", "));
 }
 
+/// What the tangents of each primitive are.
+std::vector<std::string> tangents_in_words(const CheckedModel& model) {
+    constexpr std::size_t listed_at_most = 12;
+    std::vector<std::string> lines;
+    std::size_t more = 0;
+    for (const CheckedPart& part : model.parts) {
+        if (!part.tangents) continue;
+        if (lines.size() == listed_at_most) {
+            ++more;
+            continue;
+        }
+        lines.push_back((part.name.empty() ? "" : part.name + ": ") + in_words(*part.tangents));
+    }
+    if (more != 0) lines.push_back(fmt::format("... and {} more (--json lists all)", more));
+    return lines;
+}
+
 /// Findings of a place that is named beside them.
 nlohmann::ordered_json findings_json(const Report& report) {
     Findings findings;
@@ -170,6 +188,7 @@ nlohmann::ordered_json part_json(const CheckedPart& part) {
             {"size", part.diagnosis.size},
             {"spacing", part.diagnosis.spacing},
             {"overlap_raster", part.diagnosis.overlap_raster},
+            {"tangents", part.tangents ? json_of(*part.tangents) : nlohmann::ordered_json()},
             {"trouble", findings_json(part.trouble)},
             {"remarks", findings_json(part.remarks)}};
 }
@@ -207,6 +226,7 @@ void print_text(const CheckedModel& model) {
     print_entry("trouble", trouble_lines(model));
     const std::string remarks = remarks_in_words(model);
     if (!remarks.empty()) print_entry("remarks", remarks);
+    print_entry("tangents", tangents_in_words(model));
 }
 
 nlohmann::ordered_json json_of(const CheckedModel& model) {

@@ -6,11 +6,13 @@
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "common/findings.h"
 #include "relief/mesh/diagnose.h"
+#include "tangent_check.h"
 
 namespace relief::tools {
 
@@ -22,6 +24,7 @@ struct CheckedPart {
     Diagnosis diagnosis;
     Report trouble;
     Report remarks;
+    std::optional<CheckedTangents> tangents;  ///< Where it has some.
 };
 
 struct CheckedModel {
