@@ -26,6 +26,10 @@ constexpr double skewed_cosine_squared = 0.448;
 // Votes have 30 bits: their largest number is from 2^29 up to 2^30.
 constexpr int vote_bits = 30;
 
+// A corner without angle or area still has a direction, which counts where there is no other: less
+// than any weight that floats can come to.
+constexpr double least_weight = 1e-200;
+
 constexpr std::size_t triangles_at_once = 64;
 
 /// One number of every triangle of a block.
@@ -369,7 +373,8 @@ TriangleVotesAndKind careful_votes(const TangentInput& input, TangentWeight weig
         const double cosine = glm::dot(along_u, along_v);
         const bool skewed =
             !(cosine * cosine < skewed_cosine_squared) || along_v == glm::dvec3(0.0);
-        result.votes[static_cast<std::size_t>(k)] = vote_of(length * along_u, side, skewed);
+        result.votes[static_cast<std::size_t>(k)] =
+            vote_of(std::max(length, least_weight) * along_u, side, skewed);
     }
     return result;
 }
