@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Runs every command that README.md, ARCHITECTURE.md and docs/*.md show, page by page, in a folder
-// laid out like a built checkout; out/ there is its own. Scripts must exist and be executable, but
-// are not run: they set up whole machines.
+// Runs every command that README.md, ARCHITECTURE.md, docs/*.md and conformance/*.md show, page by
+// page, in a folder laid out like a built checkout; out/ there is its own. Scripts must exist and
+// be executable, but are not run: they set up whole machines.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 /// Pages relative to the sources, sorted.
 std::vector<std::string> pages() {
     std::set<std::string> found;
-    for (const char* folder : {".", "docs"}) {
+    for (const char* folder : {".", "conformance", "docs"}) {
         if (!fs::is_directory(source_directory() / folder)) continue;
         for (const auto& entry : fs::directory_iterator(source_directory() / folder)) {
             if (entry.path().extension() == ".md")

@@ -13,6 +13,7 @@ Workplace::Workplace() {
     fs::create_directory(folder_ / "out");
     fs::create_directory(folder_ / "build");
     fs::create_directory_symlink(source_directory() / "data", folder_ / "data");
+    fs::create_directory_symlink(source_directory() / "conformance", folder_ / "conformance");
     fs::create_directory_symlink(source_directory() / "scripts", folder_ / "scripts");
     fs::create_directory_symlink(RELIEF_BUILD_DIRECTORY, folder_ / "build/release");
 }

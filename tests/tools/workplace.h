@@ -12,7 +12,8 @@
 
 namespace relief::test {
 
-/// data/ and scripts/ as in the sources, build/release/bin, and an empty out/. Removed at exit.
+/// data/, conformance/ and scripts/ as in the sources, build/release/bin, and an empty out/.
+/// Removed at exit.
 class Workplace {
   public:
     Workplace();

@@ -13,5 +13,6 @@ Command add_check_command(CLI::App& tool);
 Command add_compare_command(CLI::App& tool);
 Command add_decimate_command(CLI::App& tool);
 Command add_subdivide_command(CLI::App& tool);
+Command add_conformance_command(CLI::App& tool);
 
 }  // namespace relief::tools

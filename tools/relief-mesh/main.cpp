@@ -9,6 +9,6 @@ int main(int argc, char** argv) {
         {"relief-mesh",
          "Gives meshes normals, tangents and other resolutions; says what is in them, and wrong.",
          {add_process_command, add_decimate_command, add_subdivide_command, add_info_command,
-          add_check_command, add_compare_command}},
+          add_check_command, add_compare_command, add_conformance_command}},
         argc, argv);
 }

@@ -1,0 +1,482 @@
+// SPDX-License-Identifier: Apache-2.0
+// One function a mesh, or a sentence; the table of all is at the end. Tests:
+// tests/tools/conformance_kit_test.cpp.
+#include "kit_meshes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "kit_shapes.h"
+
+namespace relief::conformance {
+namespace {
+
+using Texcoord = glm::dvec2;
+
+template <typename Change>
+Mesh changed(Mesh mesh, const Change& change) {
+    for (std::size_t v = 0; v < mesh.positions.size(); ++v)
+        change(mesh, v);
+    return mesh;
+}
+
+void append(Mesh& mesh, const Mesh& other) {
+    const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+    mesh.positions.insert(mesh.positions.end(), other.positions.begin(), other.positions.end());
+    mesh.normals.insert(mesh.normals.end(), other.normals.begin(), other.normals.end());
+    mesh.texcoords.insert(mesh.texcoords.end(), other.texcoords.begin(), other.texcoords.end());
+    for (const glm::uvec3& triangle : other.triangles)
+        mesh.triangles.push_back(triangle + first);
+}
+
+Mesh mirrored_torus() {
+    return retextured(torus(20, 10), [](Texcoord t) { return Texcoord(std::abs(t.x - 0.5), t.y); });
+}
+
+Mesh mirrored_hills() {
+    return retextured(
+        hills(8), [](Texcoord t) { return Texcoord(std::abs(t.x - 0.5), std::abs(t.y - 0.5)); });
+}
+
+/// Squares of 2 x 2 cells, each with the image turned, scaled and put elsewhere.
+Mesh islands() {
+    Mesh all;
+    Random random(11);
+    for (int island = 0; island < 16; ++island) {
+        const double turn = 2.0 * std::numbers::pi * random.unit();
+        const double scale = 0.1 + 0.4 * random.unit();
+        const Texcoord place{random.unit(), random.unit()};
+        append(all, patch(2, 2, [&](double x, double y) {
+                   const Texcoord at((island % 4 + x) / 4.0, (island / 4 + y) / 4.0);
+                   Point point = hill(at.x, at.y);
+                   point.texcoord =
+                       place + scale * Texcoord(std::cos(turn) * x + std::sin(turn) * y,
+                                                std::sin(turn) * x - std::cos(turn) * y);
+                   return point;
+               }));
+    }
+    return all;
+}
+
+Mesh sheared() {
+    return retextured(hills(10), [](Texcoord t) { return Texcoord(16.0 * t.x + 9.0 * t.y, t.y); });
+}
+
+/// A random place in the image for every vertex: handedness and size change from one triangle to
+/// the next.
+Mesh scrambled() {
+    Random random(12);
+    return retextured(hills(10), [&](Texcoord) { return Texcoord{random.unit(), random.unit()}; });
+}
+
+Mesh scaled() {
+    return changed(hills(6), [](Mesh& mesh, std::size_t v) {
+        mesh.positions[v] = mesh.positions[v] * 1024.0F + glm::vec3(300, -200, 100);
+        mesh.texcoords[v] = mesh.texcoords[v] * 0.0078125F + 3.0F;
+    });
+}
+
+Mesh long_triangles() {
+    return changed(hills(8), [](Mesh& mesh, std::size_t v) { mesh.positions[v].x *= 40.0F; });
+}
+
+Mesh leaning_normals() {
+    Random random(13);
+    return changed(hills(8), [&](Mesh& mesh, std::size_t v) {
+        const double x = 3.0 * random.unit() - 1.5;
+        const double y = 3.0 * random.unit() - 1.5;
+        mesh.normals[v] = glm::normalize(glm::dvec3(x, y, 1.0));
+    });
+}
+
+/// Every triangle with its own normal, as glTF asks for where there are none.
+Mesh facets() {
+    Mesh mesh = soup(hills(7));
+    for (const glm::uvec3& triangle : mesh.triangles) {
+        const glm::dvec3 origin(mesh.positions[triangle.x]);
+        const glm::dvec3 normal =
+            glm::normalize(glm::cross(glm::dvec3(mesh.positions[triangle.y]) - origin,
+                                      glm::dvec3(mesh.positions[triangle.z]) - origin));
+        for (int i = 0; i < 3; ++i)
+            mesh.normals[triangle[i]] = normal;
+    }
+    return mesh;
+}
+
+/// Triangles that name a vertex twice, have two corners in one place, lie on a line, or show a
+/// line or a point of the image, all between sound ones.
+Mesh degenerate() {
+    Mesh mesh = hills(8);
+    Random random(14);
+    const auto count = static_cast<std::uint32_t>(mesh.positions.size());
+    for (int i = 0; i < 8; ++i) {
+        const std::uint32_t a = random.below(count);
+        const std::uint32_t b = random.below(count);
+        mesh.triangles.emplace_back(a, b, a);
+    }
+    for (int i = 0; i < 8; ++i) {
+        const glm::uvec3 near = mesh.triangles[random.below(128)];
+        mesh.positions.push_back(mesh.positions[near.x]);
+        mesh.normals.push_back(mesh.normals[near.x]);
+        mesh.texcoords.emplace_back(mesh.texcoords[near.y]);
+        mesh.triangles.emplace_back(near.x, near.y,
+                                    static_cast<std::uint32_t>(mesh.positions.size() - 1));
+    }
+    // Of the flat middle of an edge: on a line in space, but not in the image.
+    for (int i = 0; i < 8; ++i) {
+        const glm::uvec3 near = mesh.triangles[random.below(128)];
+        mesh.positions.push_back((mesh.positions[near.x] + mesh.positions[near.y]) * 0.5F);
+        mesh.normals.push_back(mesh.normals[near.x]);
+        mesh.texcoords.push_back(mesh.texcoords[near.z]);
+        mesh.triangles.emplace_back(near.y, near.x,
+                                    static_cast<std::uint32_t>(mesh.positions.size() - 1));
+    }
+    for (const std::size_t v : {40U, 41U, 49U})
+        mesh.texcoords[v] = mesh.texcoords[31];
+    return mesh;
+}
+
+/// Five pages of a book around the y axis, some facing one way, some the other: every edge of its
+/// back has several partners to choose from.
+Mesh book() {
+    Mesh all;
+    for (int page = 0; page < 5; ++page) {
+        const double turn = 2.0 * std::numbers::pi * page / 5.0 + 0.1;
+        const bool is_left = page % 2 == 1;
+        append(all, patch(2, 6, [&](double x, double y) {
+                   const double radius = is_left ? 1.0 - x : x;
+                   const double u = radius * (1.0 + page);
+                   return Point{{radius * std::cos(turn), y, radius * std::sin(turn)},
+                                {0.2, 0.1, 1.0},
+                                {is_left ? -u : u, 1.0 - y}};
+               }));
+    }
+    return all;
+}
+
+/// Triangles that share corners, but no edge.
+Mesh bow_ties() {
+    Mesh mesh = hills(8);
+    std::vector<glm::uvec3> kept;
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+        if (t % 4 == (t / 16) % 4) kept.push_back(mesh.triangles[t]);
+    }
+    mesh.triangles = kept;
+    return mesh;
+}
+
+Mesh flipped() {
+    Mesh mesh = hills(8);
+    Random random(15);
+    for (glm::uvec3& triangle : mesh.triangles) {
+        if (random.below(4) == 0) std::swap(triangle.x, triangle.z);
+    }
+    return mesh;
+}
+
+/// Vertices stored several times over, in part as -0 where they are 0, and named at random.
+Mesh duplicates() {
+    Mesh mesh = changed(hills(8), [](Mesh& m, std::size_t v) {
+        m.positions[v].z = std::abs(m.positions[v].x) < 0.3F ? 0.0F : m.positions[v].z;
+    });
+    const auto count = static_cast<std::uint32_t>(mesh.positions.size());
+    const auto negated = [](float value) { return value == 0.0F ? -0.0F : value; };
+    for (int copy = 0; copy < 2; ++copy) {
+        for (std::uint32_t v = 0; v < count; ++v) {
+            glm::vec3 position = mesh.positions[v];
+            glm::vec3 normal = mesh.normals[v];
+            glm::vec2 texcoord = mesh.texcoords[v];
+            if (copy == 1) {
+                position = {negated(position.x), negated(position.y), negated(position.z)};
+                normal = {negated(normal.x), negated(normal.y), negated(normal.z)};
+                texcoord = {negated(texcoord.x), negated(texcoord.y)};
+            }
+            mesh.positions.push_back(position);
+            mesh.normals.push_back(normal);
+            mesh.texcoords.push_back(texcoord);
+        }
+    }
+    Random random(16);
+    for (glm::uvec3& triangle : mesh.triangles) {
+        for (int i = 0; i < 3; ++i)
+            triangle[i] += count * random.below(3);
+    }
+    return mesh;
+}
+
+/// A strip that overhangs like an S, seen from above: its texture runs on, but as the common
+/// normal sees it, it turns back exactly where the strip does.
+Mesh folded_back() {
+    constexpr double places[] = {0, 1, 2, 1, 0, 1, 2};
+    return patch(6, 2, [&](double x, double y) {
+        const auto step = static_cast<std::size_t>(std::lround(6.0 * x));
+        return Point{{places[step], 2.0 * y, 0.5 * static_cast<double>(step)},
+                     {0, 0, 1},
+                     {static_cast<double>(step) / 8.0, 1.0 - y}};
+    });
+}
+
+/// Quads whose shorter diagonal in the image is now the one, now the other.
+KitMesh quads() {
+    const int cells = 8;
+    Random random(17);
+    const Mesh whole = patch(cells, cells, [&](double x, double y) {
+        Point point = hill(x, y);
+        const double u = x + 0.06 * (random.unit() - 0.5);
+        point.texcoord = {u, 1.0 - y + 0.06 * (random.unit() - 0.5)};
+        return point;
+    });
+    KitMesh kit{"quads",
+                Group::conformance,
+                "Quads, also as OBJ; each is cut along the diagonal that is shorter in the image.",
+                whole,
+                {}};
+    kit.mesh.triangles.clear();
+    for (std::uint32_t row = 0; row < cells; ++row) {
+        for (std::uint32_t column = 0; column < cells; ++column) {
+            const std::uint32_t a = row * (cells + 1) + column;
+            const glm::uvec4 quad(a, a + 1, a + cells + 2, a + cells + 1);
+            kit.quads.push_back(quad);
+            const auto squared = [&](std::uint32_t i, std::uint32_t j) {
+                const glm::vec2 d = whole.texcoords[i] - whole.texcoords[j];
+                return d.x * d.x + d.y * d.y;
+            };
+            if (squared(quad.x, quad.z) < squared(quad.y, quad.w)) {
+                kit.mesh.triangles.emplace_back(quad.x, quad.y, quad.z);
+                kit.mesh.triangles.emplace_back(quad.x, quad.z, quad.w);
+            } else {
+                kit.mesh.triangles.emplace_back(quad.x, quad.y, quad.w);
+                kit.mesh.triangles.emplace_back(quad.y, quad.z, quad.w);
+            }
+        }
+    }
+    return kit;
+}
+
+/// A few hills, their triangles in an order in which the reference misses neighbours: around the
+/// vertex whose edges it comes to last, and does not sort to the end. One order in a hundred does.
+Mesh unsorted_bucket() {
+    Random random(284);
+    Mesh mesh = retextured(hills(4), [&](Texcoord t) {
+        const double x = random.unit();
+        return t + 0.3 * Texcoord(x, random.unit());
+    });
+    for (std::size_t t = mesh.triangles.size(); t > 1; --t)
+        std::swap(mesh.triangles[t - 1],
+                  mesh.triangles[random.below(static_cast<std::uint32_t>(t))]);
+    return mesh;
+}
+
+Mesh one_triangle() {
+    Mesh mesh;
+    add(mesh, {{0, 0, 0}, {0, 0.25, 1}, {0.25, 0.75}});
+    add(mesh, {{2, 0, 0}, {0, 0.25, 1}, {0.75, 0.5}});
+    add(mesh, {{0.5, 1.5, 0.5}, {0, 0.25, 1}, {0.5, 0.25}});
+    mesh.triangles = {{0, 1, 2}};
+    return mesh;
+}
+
+std::vector<KitMesh> conformance_meshes() {
+    const auto judged = Group::conformance;
+    return {
+        {"one-triangle", judged, "Nothing else.", one_triangle(), {}},
+        {"sphere", judged, "A sphere with a texture seam and two poles.", sphere(16, 8), {}},
+        {"torus-mirrored",
+         judged,
+         "A torus whose image is mirrored along two of its circles.",
+         mirrored_torus(),
+         {}},
+        {"hills-mirrored",
+         judged,
+         "Hills whose image is mirrored in u and in v, on shared vertices.",
+         mirrored_hills(),
+         {}},
+        {"cube-hard",
+         judged,
+         "A cube with hard edges; two of its sides are mirrored.",
+         cube(3, false),
+         {}},
+        {"cube-smooth",
+         judged,
+         "A cube with smooth normals; sides do not share texture coordinates.",
+         cube(3, true),
+         {}},
+        {"fan", judged, "Many triangles around one vertex.", fan(150), {}},
+        {"islands",
+         judged,
+         "Hills in 16 islands, each turned and scaled in the image.",
+         islands(),
+         {}},
+        {"sheared", judged, "Hills with a texture stretched 16 to 1, and sheared.", sheared(), {}},
+        {"scrambled", judged, "Hills with texture coordinates at random.", scrambled(), {}},
+        {"scaled",
+         judged,
+         "Hills a thousand times as large, off the origin, in a small part of "
+         "the image.",
+         scaled(),
+         {}},
+        {"long-triangles", judged, "Hills drawn out 40 times along u.", long_triangles(), {}},
+        {"leaning-normals",
+         judged,
+         "Hills whose normals lean away from the surface.",
+         leaning_normals(),
+         {}},
+        {"facets", judged, "Hills with flat normals: no corner shares a vertex.", facets(), {}},
+        {"degenerate",
+         judged,
+         "Hills with triangles that have no area, in space or in the image.",
+         degenerate(),
+         {}},
+        {"non-manifold", judged, "Five pages on one edge, and one normal for all.", book(), {}},
+        {"bow-ties", judged, "Triangles that touch in corners only.", bow_ties(), {}},
+        {"flipped", judged, "Hills with every fourth triangle wound the other way.", flipped(), {}},
+        quads(),
+        {"soup",
+         judged,
+         "Hills with three vertices for every triangle, and no indices.",
+         soup(hills(7)),
+         {},
+         false},
+        {"duplicates",
+         judged,
+         "Hills whose vertices are stored three times, with -0 for 0.",
+         duplicates(),
+         {}},
+        {"folded-back",
+         judged,
+         "A strip that turns back on itself under one normal: the limit of 180 degrees.",
+         folded_back(),
+         {}},
+        {"unsorted-bucket",
+         Group::defect,
+         "A vertex whose edges the reference does not sort, so that it misses neighbours.",
+         unsorted_bucket(),
+         {}},
+    };
+}
+
+Mesh with_texture(float scale) {
+    return changed(sphere(12, 6), [=](Mesh& mesh, std::size_t v) { mesh.texcoords[v] *= scale; });
+}
+
+Mesh with_far_texture() {
+    return changed(sphere(24, 12), [](Mesh& mesh, std::size_t v) { mesh.texcoords[v] += 1e6F; });
+}
+
+Mesh with_positions(float scale, float offset) {
+    return changed(sphere(12, 6), [=](Mesh& mesh, std::size_t v) {
+        mesh.positions[v] = mesh.positions[v] * scale + offset;
+    });
+}
+
+Mesh with_normals_of_lengths() {
+    Random random(18);
+    return changed(sphere(12, 6), [&](Mesh& mesh, std::size_t v) {
+        mesh.normals[v] *= static_cast<float>(0.1 + 9.0 * random.unit());
+    });
+}
+
+/// Normals along the texture, or along each triangle's edges.
+Mesh normals_in_the_surface() {
+    return changed(hills(6), [](Mesh& mesh, std::size_t v) {
+        mesh.normals[v] = v % 2 == 0 ? glm::vec3(1, 0, 0) : glm::vec3(0, 1, 0);
+    });
+}
+
+Mesh slivers() {
+    return changed(hills(6), [](Mesh& mesh, std::size_t v) {
+        mesh.positions[v].y = 1e-6F * mesh.positions[v].y + 0.3F * mesh.positions[v].x;
+    });
+}
+
+Mesh half_textured() {
+    return retextured(hills(6), [](Texcoord t) { return Texcoord(std::min(t.x, 0.5), t.y); });
+}
+
+std::vector<KitMesh> stability_meshes() {
+    const auto usable = Group::stability;
+    const auto none = [](Texcoord) { return Texcoord(0.5); };
+    const auto line = [](Texcoord t) { return Texcoord(t.x, 0.5 * t.x); };
+    return {
+        {"texture-1e-19",
+         usable,
+         "A sphere, texture coordinates times 1e-19.",
+         with_texture(1e-19F),
+         {}},
+        {"texture-1e-25",
+         usable,
+         "A sphere, texture coordinates times 1e-25.",
+         with_texture(1e-25F),
+         {}},
+        {"texture-1e18",
+         usable,
+         "A sphere, texture coordinates times 1e18.",
+         with_texture(1e18F),
+         {}},
+        {"texture-far",
+         usable,
+         "A sphere, texture coordinates plus a million.",
+         with_far_texture(),
+         {}},
+        {"positions-1e-25", usable, "A sphere of radius 1e-25.", with_positions(1e-25F, 0), {}},
+        {"positions-1e20", usable, "A sphere of radius 1e20.", with_positions(1e20F, 0), {}},
+        {"positions-1e25", usable, "A sphere of radius 1e25.", with_positions(1e25F, 0), {}},
+        {"positions-far",
+         usable,
+         "A unit sphere a million from the origin.",
+         with_positions(1, 1e6F),
+         {}},
+        {"normals-of-lengths",
+         usable,
+         "A sphere with normals of lengths from 0.1 to 9.1.",
+         with_normals_of_lengths(),
+         {}},
+        {"normals-in-the-surface",
+         usable,
+         "Hills whose normals lie along their edges.",
+         normals_in_the_surface(),
+         {}},
+        {"texture-of-a-point",
+         usable,
+         "Hills with one texture coordinate.",
+         retextured(hills(6), none),
+         {}},
+        {"texture-of-a-line",
+         usable,
+         "Hills that show a line of the image.",
+         retextured(hills(6), line),
+         {}},
+        {"texture-on-one-side",
+         usable,
+         "Hills half of which show a line of the image.",
+         half_textured(),
+         {}},
+        {"slivers", usable, "Hills pressed together to a millionth along v.", slivers(), {}},
+        {"degenerate-usable", usable, "The mesh `degenerate`, every corner.", degenerate(), {}},
+        {"non-manifold-usable", usable, "The mesh `non-manifold`, every corner.", book(), {}},
+    };
+}
+
+}  // namespace
+
+std::vector<KitMesh> kit_meshes() {
+    std::vector<KitMesh> all = conformance_meshes();
+    for (KitMesh& mesh : stability_meshes())
+        all.push_back(std::move(mesh));
+    return all;
+}
+
+std::string name_of(Group group) {
+    switch (group) {
+        case Group::conformance:
+            return "conformance";
+        case Group::defect:
+            return "defect";
+        case Group::stability:
+            break;
+    }
+    return "stability";
+}
+
+}  // namespace relief::conformance

@@ -1,0 +1,259 @@
+// SPDX-License-Identifier: Apache-2.0
+// Judging by hand-made meshes, and relief-mesh conformance as users run it.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "conformance_judge.h"
+#include "tools/workplace.h"
+
+namespace relief::tools {
+namespace {
+
+using nlohmann::json;
+using test::ProgramResult;
+using test::Workplace;
+using testing::HasSubstr;
+
+/// A square of two triangles, the image upright on it.
+KitMesh square(KitGroup group = KitGroup::conformance) {
+    KitMesh kit;
+    kit.name = "square";
+    kit.group = group;
+    kit.mesh.positions = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
+    kit.mesh.normals.assign(4, {0, 0, 1});
+    kit.mesh.texcoords = {{0, 1}, {1, 1}, {1, 0}, {0, 0}};
+    kit.mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
+    kit.expected.assign(6, {1, 0, 0, 1});
+    return kit;
+}
+
+/// What a sound program makes of it.
+Mesh answer_to(const KitMesh& kit) {
+    Mesh mesh = kit.mesh;
+    mesh.tangents.assign(mesh.positions.size(), {1, 0, 0, 1});
+    return mesh;
+}
+
+TEST(ConformanceJudge, PassesWhatIsExpected) {
+    const KitMesh kit = square();
+    const Judgement judgement = judge(kit, answer_to(kit));
+    EXPECT_TRUE(judgement.passes(kit.group));
+    EXPECT_EQ(judgement.corners, 6U);
+    EXPECT_EQ(judgement.judged, 6U);
+    EXPECT_EQ(judgement.max_degrees, 0.0);
+}
+
+TEST(ConformanceJudge, FindsTrianglesInAnyOrderBegunAnywhereWithMinusZeros) {
+    const KitMesh kit = square();
+    Mesh theirs = answer_to(kit);
+    theirs.positions[0] = {-0.0F, 0.0F, -0.0F};
+    theirs.texcoords[1].y = 1.0F;
+    theirs.triangles = {{2, 3, 0}, {1, 2, 0}};
+    const Judgement judgement = judge(kit, theirs);
+    EXPECT_EQ(judgement.judged, 6U);
+    EXPECT_TRUE(judgement.passes(kit.group));
+}
+
+TEST(ConformanceJudge, SaysWhatIsMissingAndWhatIsTooMuch) {
+    const KitMesh kit = square();
+    Mesh theirs = answer_to(kit);
+    theirs.triangles = {{0, 1, 2}, {0, 1, 3}};
+    const Judgement judgement = judge(kit, theirs);
+    EXPECT_EQ(judgement.missing, 3U);
+    EXPECT_EQ(judgement.extra, 3U);
+    EXPECT_EQ(judgement.judged, 3U);
+    EXPECT_FALSE(judgement.passes(kit.group));
+    theirs.triangles = {{0, 2, 1}, {0, 2, 3}};
+    EXPECT_EQ(judge(kit, theirs).missing, 3U) << "the other way round";
+}
+
+TEST(ConformanceJudge, LetsTrianglesWithoutAreaBeLeftOut) {
+    KitMesh kit = square();
+    kit.mesh.triangles.emplace_back(0, 1, 1);
+    kit.expected.resize(9, {1, 0, 0, 1});
+    Mesh theirs = answer_to(kit);
+    theirs.triangles.pop_back();
+    const Judgement judgement = judge(kit, theirs);
+    EXPECT_EQ(judgement.left_out, 3U);
+    EXPECT_EQ(judgement.missing, 0U);
+    EXPECT_TRUE(judgement.passes(kit.group));
+}
+
+TEST(ConformanceJudge, TellsTrianglesAlikeByTheirNormals) {
+    KitMesh kit = square();
+    for (std::uint32_t v = 0; v < 3; ++v) {
+        kit.mesh.positions.push_back(kit.mesh.positions[v]);
+        kit.mesh.texcoords.push_back(kit.mesh.texcoords[v]);
+        kit.mesh.normals.emplace_back(0.6F, 0, 0.8F);
+    }
+    kit.mesh.triangles.emplace_back(4, 5, 6);
+    kit.expected.resize(9, {0.8F, 0, -0.6F, 1});
+    Mesh theirs = answer_to(kit);
+    for (std::size_t v = 4; v < 7; ++v)
+        theirs.tangents[v] = {0.8F, 0, -0.6F, 1};
+    std::swap(theirs.triangles[0], theirs.triangles[2]);
+    EXPECT_TRUE(judge(kit, theirs).passes(kit.group));
+}
+
+TEST(ConformanceJudge, CountsEveryFault) {
+    const KitMesh kit = square();
+    const auto judged = [&](const glm::vec4& tangent) {
+        Mesh theirs = answer_to(kit);
+        theirs.tangents[1] = tangent;  // One corner of six.
+        const Judgement judgement = judge(kit, theirs);
+        EXPECT_FALSE(judgement.passes(kit.group));
+        return judgement;
+    };
+    EXPECT_EQ(judged({std::numeric_limits<float>::quiet_NaN(), 0, 0, 1}).not_finite, 1U);
+    EXPECT_EQ(judged({1.01F, 0, 0, 1}).not_unit, 1U);
+    EXPECT_EQ(judged({0.8F, 0, 0.6F, 1}).leaning, 1U);
+    EXPECT_EQ(judged({1, 0, 0, 0.5F}).unhanded, 1U);
+    EXPECT_EQ(judged({1, 0, 0, -1}).other_sign, 1U);
+    EXPECT_EQ(judged({1, 0, 0, -1}).mixed, 3U) << "all corners of its triangle";
+    const Judgement off = judged({std::cos(0.0002F), std::sin(0.0002F), 0, 1});
+    EXPECT_EQ(off.too_far, 1U) << "0.0115 degrees";
+    EXPECT_NEAR(off.max_degrees, 0.01146, 1e-4);
+    EXPECT_NEAR(off.mean_degrees, 0.01146 / 6, 1e-4);
+    EXPECT_EQ(off.worst_corner, 1U);
+    Mesh near = answer_to(kit);
+    near.tangents[1] = {std::cos(0.00017F), std::sin(0.00017F), 0, 1};
+    EXPECT_TRUE(judge(kit, near).passes(kit.group)) << "0.0097 degrees";
+}
+
+TEST(ConformanceJudge, JudgesHardMeshesOnlyByWhatIsUsable) {
+    KitMesh kit = square(KitGroup::stability);
+    kit.expected.clear();
+    Mesh theirs = answer_to(kit);
+    theirs.tangents.assign(4, {0, 1, 0, -1});
+    EXPECT_TRUE(judge(kit, theirs).passes(kit.group)) << "any direction in the plane";
+    theirs.tangents[2] = {0, 1, 2e-6F, -1};
+    EXPECT_EQ(judge(kit, theirs).leaning, 2U);
+    kit.mesh.normals.assign(4, {0, 0, 0});
+    EXPECT_TRUE(judge(kit, theirs).passes(kit.group)) << "a normal without direction binds nothing";
+}
+
+TEST(ConformanceJudge, PassesOverCornersThatTheKitExcuses) {
+    KitMesh kit = square();
+    kit.expected[1] = glm::vec4(0.0F);
+    Mesh theirs = answer_to(kit);
+    theirs.tangents[1] = {0, 1, 0, 1};
+    const Judgement judgement = judge(kit, theirs);
+    EXPECT_EQ(judgement.judged, 5U);
+    EXPECT_TRUE(judgement.passes(kit.group));
+}
+
+void process_kit(const Workplace& workplace) {
+    const ProgramResult result = workplace.run(
+        "relief-mesh process conformance/kit/*.glb -o out/kit/ --tangents mikktspace --quiet");
+    ASSERT_EQ(result.exit_code, 0) << result.error;
+}
+
+TEST(ConformanceCommand, SaysThatReliefConforms) {
+    const Workplace workplace;
+    process_kit(workplace);
+    const ProgramResult result = workplace.run("relief-mesh conformance out/kit --strict");
+    EXPECT_EQ(result.exit_code, 0) << result.out;
+    EXPECT_EQ(result.error, "");
+    EXPECT_THAT(result.out,
+                HasSubstr("sphere                  conforms: 672 of 672 corners judged, "
+                          "degrees off "));
+    EXPECT_THAT(result.out, HasSubstr("unsorted-bucket         defect mended: "));
+    EXPECT_THAT(result.out, HasSubstr("verdict   conforms: 22 of 22 meshes; usable tangents on 16 "
+                                      "of 16 hard ones\n"));
+    const json report = json::parse(workplace.run("relief-mesh conformance out/kit --json").out);
+    EXPECT_EQ(report["conforms"], true);
+    EXPECT_EQ(report["stable"], true);
+    EXPECT_EQ(report["meshes"].size(), 39U);
+    EXPECT_EQ(report["meshes"][1]["name"], "sphere");
+    EXPECT_EQ(report["meshes"][1]["group"], "conformance");
+    EXPECT_EQ(report["meshes"][1]["judged"], 672);
+    EXPECT_LT(report["meshes"][1]["degrees"]["max"], 1e-4);
+    EXPECT_FALSE(report["meshes"][38].contains("degrees")) << "nothing to compare with";
+}
+
+TEST(ConformanceCommand, JudgesWhatBecameOfQuads) {
+    const Workplace workplace;
+    process_kit(workplace);
+    const ProgramResult quads = workplace.run(
+        "relief-mesh process conformance/kit/quads.obj out/kit/quads.glb --tangents mikktspace "
+        "--quiet");
+    ASSERT_EQ(quads.exit_code, 0) << quads.error;
+    const ProgramResult result = workplace.run("relief-mesh conformance out/kit");
+    EXPECT_EQ(result.exit_code, 0) << result.out;
+    EXPECT_THAT(result.out, HasSubstr("quads                   conforms: 384 of 384 corners"));
+}
+
+TEST(ConformanceCommand, ExitsWith1WhereTangentsDiffer) {
+    const Workplace workplace;
+    process_kit(workplace);
+    std::filesystem::copy_file(workplace / "conformance/kit/sphere.glb",
+                               workplace / "out/kit/sphere.glb",
+                               std::filesystem::copy_options::overwrite_existing);
+    std::filesystem::copy_file(workplace / "out/kit/fan.glb", workplace / "out/kit/facets.glb",
+                               std::filesystem::copy_options::overwrite_existing);
+    std::filesystem::remove(workplace / "out/kit/soup.glb");
+    std::ofstream(workplace / "out/kit/quads.glb") << "glTF";
+    const ProgramResult result = workplace.run("relief-mesh conformance out/kit");
+    EXPECT_EQ(result.exit_code, 1);
+    EXPECT_THAT(result.out, HasSubstr("sphere                  NOT JUDGED: has no tangents\n"));
+    EXPECT_THAT(result.out, HasSubstr("facets                  DIFFERS: 0 of 294 corners judged"));
+    EXPECT_THAT(result.out, HasSubstr("294 missing, 450 not of this mesh\n"));
+    EXPECT_THAT(
+        result.out,
+        HasSubstr("soup                    NOT JUDGED: there is no soup.glb or soup.gltf\n"));
+    EXPECT_THAT(result.out, HasSubstr("quads                   NOT JUDGED: out/kit/quads.glb: "));
+    EXPECT_THAT(result.out, HasSubstr("verdict   DIFFERS: 18 of 22 meshes;"));
+    const json report = json::parse(workplace.run("relief-mesh conformance out/kit --json").out);
+    EXPECT_EQ(report["conforms"], false);
+    EXPECT_EQ(report["meshes"][1]["error"], "has no tangents");
+}
+
+TEST(ConformanceCommand, IsStrictAboutHardMeshesWhenAsked) {
+    const Workplace workplace;
+    process_kit(workplace);
+    std::filesystem::remove(workplace / "out/kit/slivers.glb");
+    EXPECT_EQ(workplace.run("relief-mesh conformance out/kit --quiet").exit_code, 0);
+    const ProgramResult strict = workplace.run("relief-mesh conformance out/kit --quiet --strict");
+    EXPECT_EQ(strict.exit_code, 3);
+    EXPECT_EQ(strict.out, "");
+    EXPECT_EQ(strict.error,
+              "relief-mesh: warning: 1 mesh with unusable tangents (exit code 3, because of "
+              "--strict)\n");
+}
+
+TEST(ConformanceCommand, SaysWhereTheKitAndTheResultsShouldBe) {
+    const Workplace workplace;
+    EXPECT_EQ(workplace.run("relief-mesh conformance out --kit data").error,
+              "relief-mesh: error: data/kit.json: cannot be read (--kit names the folder of the "
+              "kit: conformance/kit of relief's sources)\n");
+    const ProgramResult result = workplace.run("relief-mesh conformance nowhere");
+    EXPECT_EQ(result.exit_code, 1);
+    EXPECT_EQ(result.error,
+              "relief-mesh: error: nowhere: no such folder (it holds what a program made of the "
+              "kit's meshes, under their names)\n");
+    EXPECT_EQ(workplace.run("relief-mesh conformance out --json --quiet").exit_code, 2);
+}
+
+TEST(ConformanceCommand, RefusesAKitThatIsNone) {
+    const Workplace workplace;
+    std::filesystem::create_directory(workplace / "kit");
+    const auto error_of = [&](const std::string& list) {
+        workplace.write("kit/kit.json", list);
+        return workplace.run("relief-mesh conformance out --kit kit").error;
+    };
+    EXPECT_THAT(error_of("{"), HasSubstr("kit/kit.json: "));
+    EXPECT_THAT(error_of(R"({"format":2})"), HasSubstr("is of another format than 1"));
+    EXPECT_THAT(error_of(R"({"format":1,"meshes":[{"name":"a","group":"odd","about":""}]})"),
+                HasSubstr("group: not one of conformance, defect, stability"));
+    std::filesystem::copy_file(workplace / "conformance/kit/fan.glb", workplace / "kit/fan.glb");
+    workplace.write("kit/fan.f32", "short");
+    EXPECT_THAT(error_of(R"({"format":1,"meshes":[{"name":"fan","group":"defect","about":""}]})"),
+                HasSubstr("kit/fan.f32: does not hold 450 tangents of 16 bytes"));
+}
+
+}  // namespace
+}  // namespace relief::tools

@@ -1,0 +1,247 @@
+// SPDX-License-Identifier: Apache-2.0
+// `relief-mesh conformance OUTPUT_DIR`: judges what any program made of the conformance kit's
+// meshes, as text or JSON. Tests: tests/tools/conformance_test.cpp.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+
+#include "commands.h"
+#include "common/options.h"
+#include "common/text.h"
+#include "conformance_judge.h"
+
+namespace relief::tools {
+namespace {
+
+struct ConformanceOptions {
+    std::filesystem::path results;
+    std::filesystem::path kit = "conformance/kit";
+    bool json = false;
+    bool strict = false;
+    bool quiet = false;
+};
+
+/// A mesh of the kit and what became of it.
+struct Result {
+    std::string name;
+    KitGroup group = KitGroup::conformance;
+    std::string error;  ///< Why there is no judgement.
+    Judgement judgement;
+
+    [[nodiscard]] bool passed() const { return error.empty() && judgement.passes(group); }
+};
+
+Result result_of(const KitMesh& kit, const std::filesystem::path& folder) {
+    Result result{kit.name, kit.group, "", {}};
+    std::filesystem::path file = folder / (kit.name + ".glb");
+    if (!std::filesystem::exists(file)) file.replace_extension(".gltf");
+    if (!std::filesystem::exists(file)) {
+        result.error = fmt::format("there is no {0}.glb or {0}.gltf", kit.name);
+        return result;
+    }
+    try {
+        const Mesh theirs = read_triangles(file);
+        const bool has_none = std::all_of(theirs.tangents.begin(), theirs.tangents.end(),
+                                          [](const glm::vec4& t) { return t == glm::vec4(0.0F); });
+        if (has_none)
+            result.error = "has no tangents";
+        else
+            result.judgement = judge(kit, theirs);
+    } catch (const FileError& error) {
+        result.error = error.what();
+    }
+    return result;
+}
+
+/// "3 corners of other sign, 5 off by more than 0.01 degrees"
+std::string faults(const Judgement& judgement) {
+    std::vector<std::string> list;
+    const auto add = [&](std::size_t count, const std::string& what) {
+        if (count != 0) list.push_back(fmt::format("{} {}", count, what));
+    };
+    add(judgement.missing, "missing");
+    add(judgement.extra, "not of this mesh");
+    add(judgement.not_finite, "not finite");
+    add(judgement.not_unit, "not unit");
+    add(judgement.leaning, "not perpendicular");
+    add(judgement.unhanded, "with w not 1 or -1");
+    add(judgement.mixed, "of triangles with two handednesses");
+    if (judgement.other_sign == judgement.judged && judgement.judged != 0)
+        list.emplace_back("all of the other sign (w for v upwards? glTF's v runs down)");
+    else
+        add(judgement.other_sign, "of the other sign");
+    add(judgement.too_far, fmt::format("off by more than {} degrees", conforming_degrees));
+    return list.empty() ? "" : fmt::format("; {}", fmt::join(list, ", "));
+}
+
+std::string verdict(const Result& result) {
+    if (result.group == KitGroup::stability) return result.passed() ? "usable" : "UNUSABLE";
+    if (result.group == KitGroup::defect)
+        return result.passed() ? "defect mended" : "with the reference's defect, or worse";
+    return result.passed() ? "conforms" : "DIFFERS";
+}
+
+std::string in_words(const Result& result) {
+    if (!result.error.empty()) return "NOT JUDGED: " + result.error;
+    const Judgement& j = result.judgement;
+    std::string text =
+        fmt::format("{}: {} of {} judged", verdict(result), j.judged, counted(j.corners, "corner"));
+    if (result.group != KitGroup::stability) {
+        text += fmt::format(", degrees off {:.2g} mean, {:.2g} for 99 %, {:.2g} at most",
+                            j.mean_degrees, j.p99_degrees, j.max_degrees);
+    }
+    return text + faults(j);
+}
+
+/// How many meshes of a group there are, and passed.
+struct Score {
+    std::size_t passed = 0;
+    std::size_t meshes = 0;
+};
+
+Score score_of(const std::vector<Result>& results, KitGroup group) {
+    Score score;
+    for (const Result& result : results) {
+        if (result.group != group) continue;
+        ++score.meshes;
+        score.passed += result.passed() ? 1U : 0U;
+    }
+    return score;
+}
+
+/// How many meshes of both groups that count there are, and passed.
+struct Scores {
+    Score conforming;
+    Score usable;
+
+    explicit Scores(const std::vector<Result>& results)
+        : conforming(score_of(results, KitGroup::conformance)),
+          usable(score_of(results, KitGroup::stability)) {}
+
+    [[nodiscard]] bool conforms() const { return conforming.passed == conforming.meshes; }
+    [[nodiscard]] bool is_stable() const { return usable.passed == usable.meshes; }
+};
+
+void show_text(const std::vector<Result>& results) {
+    std::size_t longest = 0;
+    for (const Result& result : results)
+        longest = std::max(longest, result.name.size());
+    std::vector<std::string> lines;
+    for (const Result& result : results)
+        lines.push_back(fmt::format("{:<{}}  {}", result.name, longest, in_words(result)));
+    print_entry("meshes", lines);
+    const Scores scores(results);
+    print_entry("verdict",
+                fmt::format("{}: {} of {} meshes; usable tangents on {} of {} hard ones",
+                            scores.conforms() ? "conforms" : "DIFFERS", scores.conforming.passed,
+                            scores.conforming.meshes, scores.usable.passed, scores.usable.meshes));
+}
+
+const char* word(KitGroup group) {
+    switch (group) {
+        case KitGroup::conformance:
+            return "conformance";
+        case KitGroup::defect:
+            return "defect";
+        case KitGroup::stability:
+            break;
+    }
+    return "stability";
+}
+
+nlohmann::ordered_json json_of(const Result& result) {
+    nlohmann::ordered_json json = {
+        {"name", result.name}, {"group", word(result.group)}, {"passed", result.passed()}};
+    if (!result.error.empty()) {
+        json["error"] = result.error;
+        return json;
+    }
+    const Judgement& j = result.judgement;
+    json.update({{"corners", j.corners},
+                 {"judged", j.judged},
+                 {"missing", j.missing},
+                 {"left_out", j.left_out},
+                 {"extra", j.extra},
+                 {"not_finite", j.not_finite},
+                 {"not_unit", j.not_unit},
+                 {"not_perpendicular", j.leaning},
+                 {"unhanded", j.unhanded},
+                 {"mixed_handedness", j.mixed}});
+    if (result.group == KitGroup::stability) return json;
+    json.update(
+        {{"other_sign", j.other_sign},
+         {"too_far", j.too_far},
+         {"degrees", {{"mean", j.mean_degrees}, {"p99", j.p99_degrees}, {"max", j.max_degrees}}},
+         {"worst_corner", j.worst_corner}});
+    return json;
+}
+
+void show_json(const std::vector<Result>& results) {
+    const Scores scores(results);
+    nlohmann::ordered_json meshes = nlohmann::ordered_json::array();
+    for (const Result& result : results)
+        meshes.push_back(json_of(result));
+    print_json(nlohmann::ordered_json{{"tool", "relief-mesh"},
+                                      {"version", version()},
+                                      {"conforms", scores.conforms()},
+                                      {"stable", scores.is_stable()},
+                                      {"meshes", std::move(meshes)}});
+}
+
+ExitCode run(const CLI::App& app, const ConformanceOptions& options) {
+    if (options.json && options.quiet) throw UsageError("--json and --quiet contradict each other");
+    const std::vector<KitMesh> kit = read_kit(options.kit);
+    if (!std::filesystem::is_directory(options.results)) {
+        throw failure(options.results, "no such folder",
+                      "it holds what a program made of the kit's meshes, under their names");
+    }
+    Stages stages(options.quiet);
+    std::vector<Result> results;
+    for (const KitMesh& mesh : kit) {
+        results.push_back(stages.run("judge", "judge " + mesh.name,
+                                     [&] { return result_of(mesh, options.results); }));
+    }
+    if (options.json)
+        show_json(results);
+    else if (!options.quiet)
+        show_text(results);
+    const Scores scores(results);
+    if (!scores.conforms()) return ExitCode::failed;
+    if (!options.strict || scores.is_stable()) return ExitCode::done;
+    warn(app, fmt::format("{} with unusable tangents (exit code 3, because of --strict)",
+                          counted(scores.usable.meshes - scores.usable.passed, "mesh", "meshes")));
+    return ExitCode::fell_back;
+}
+
+}  // namespace
+
+Command add_conformance_command(CLI::App& tool) {
+    CLI::App& app = add_subcommand(
+        tool, "conformance",
+        "Judges any program's tangents for the conformance kit against MikkTSpace's.");
+    const auto options = std::make_shared<ConformanceOptions>();
+    add_file(app, "OUTPUT_DIR", options->results,
+             "Folder with what the program made of conformance/kit: NAME.glb or NAME.gltf with "
+             "TANGENT for each NAME.glb there");
+    add_path(app, "--kit", options->kit,
+             "Folder of the kit. Default: conformance/kit, as seen from relief's sources.");
+    add_switch(app, "--json", options->json,
+               "Print one JSON object: tool, version, conforms, stable, meshes [name, group, "
+               "passed, error "
+               "or: corners, judged, missing, left_out, extra, not_finite, not_unit, "
+               "not_perpendicular, unhanded, mixed_handedness and, against the reference, "
+               "other_sign, too_far, degrees {mean, p99, max}, worst_corner].");
+    add_switch(
+        app, "--strict", options->strict,
+        "Exit with 3 if tangents conform, but are unusable on meshes of the stability group, "
+        "on which the reference fails.");
+    add_switch(app, "--quiet", options->quiet, "Print nothing but errors; the exit code tells.");
+    set_examples(app,
+                 {"relief-mesh process conformance/kit/*.glb -o out/kit/ --tangents mikktspace",
+                  "relief-mesh conformance out/kit",
+                  "relief-mesh conformance out/kit --kit conformance/kit --json"});
+    return {&app, [&app, options] { return run(app, *options); }};
+}
+
+}  // namespace relief::tools
