@@ -72,7 +72,9 @@ std::function<std::string(const Mesh&)> with_each(const std::vector<TangentMetho
 }  // namespace
 
 const std::vector<TangentMethod>& all_tangent_methods() {
-    static const std::vector<TangentMethod> methods = {{"mikktspace", mikktspace_tangents}};
+    static const std::vector<TangentMethod> methods = {{"mikktspace", mikktspace_tangents},
+                                                       {"area-weighted", area_weighted_tangents},
+                                                       {"lengyel", lengyel_tangents}};
     return methods;
 }
 
