@@ -105,6 +105,21 @@ std::optional<glm::dvec4> along_sliver(const Mesh&, std::size_t) {
     return glm::dvec4(0.6, 0.7, 0.3, 1);
 }
 
+/// A square, and a triangle on its lower edge that lies on a line in space but, mirrored, not in
+/// the image: its corners have angles of 0.
+Mesh textured_line() {
+    Mesh mesh = square();
+    mesh.positions.emplace_back(0.5F, 0, 0);
+    mesh.triangles.emplace_back(1, 0, 4);
+    mesh.normals.assign(5, {0, 0, 1});
+    mesh.texcoords = {{0, 0}, {1, -1}, {1, -2}, {0, -1}, {0.25F, -1}};
+    return mesh;
+}
+
+std::optional<glm::dvec4> on_textured_line(const Mesh&, std::size_t corner) {
+    return corner / 3 == 2 ? glm::dvec4(1, 0, 0, -1) : glm::dvec4(1, -1, 0, 1);
+}
+
 /// The grid with u mirrored about its middle column.
 Mesh mirrored_grid() {
     return changed(textured_grid(), [](Mesh& mesh, std::size_t v) {
@@ -354,6 +369,15 @@ std::vector<HardCase> tangent_cases() {
             .checked({{triangle_needle, 1}, {edge_boundary, 3}})
             .tangents()
             .tangents_near(1e-4, "its length", along_sliver),
+        MeshCase(
+            "texture on a triangle of no area",
+            "A square, and a triangle on its edge that lies on a line in space, but has an area "
+            "in the image.",
+            "the conformance kit: a corner of angle 0 has no weight, but a direction",
+            textured_line)
+            .checked({{triangle_collinear, 1}, {edge_boundary, 5}, {vertex_voiceless, 1}})
+            .tangents()
+            .tangents_near(1e-5, "each triangle's own", on_textured_line),
         MeshCase("mirrored texture on shared vertices",
                  "A grid whose image is mirrored about its middle column.", "Godot#114508",
                  mirrored_grid)
