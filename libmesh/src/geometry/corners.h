@@ -6,13 +6,17 @@
 /// Tests: tests/mesh/geometry/corners_test.cpp.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <limits>
-#include <numeric>
 #include <span>
+#include <utility>
 #include <vector>
+
+#include "large_memory.h"
+#include "parallel.h"
 
 namespace relief {
 
@@ -50,20 +54,45 @@ class CornersByVertex {
     CornersByVertex(std::size_t vertex_count, std::span<const glm::uvec3> triangles,
                     const Counts& counts)
         : first_(vertex_count + 1, 0) {
-        for (std::size_t t = 0; t < triangles.size(); ++t) {
-            if (!counts(t)) continue;
-            for (int i = 0; i < 3; ++i)
-                ++first_[triangles[t][i] + 1];
+        // Parts of the triangles count their own corners at each vertex first, so that each knows
+        // where its corners go.
+        const std::size_t parts = parts_for(vertex_count, triangles.size());
+        const auto for_triangles = [&](std::size_t part, const auto& body) {
+            const std::size_t end = triangles.size() * (part + 1) / parts;
+            for (std::size_t t = triangles.size() * part / parts; t < end; ++t) {
+                if (counts(t)) body(t);
+            }
+        };
+        std::vector<std::vector<std::uint32_t>> places(parts);
+        parallel_for(parts, 1, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t part = begin; part < end; ++part) {
+                std::vector<std::uint32_t>& count = places[part];
+                count.resize(vertex_count);
+                for_triangles(part, [&](std::size_t t) {
+                    for (int i = 0; i < 3; ++i)
+                        ++count[triangles[t][i]];
+                });
+            }
+        });
+        std::uint32_t next = 0;
+        for (std::size_t v = 0; v < vertex_count; ++v) {
+            first_[v] = next;
+            for (std::vector<std::uint32_t>& place : places)
+                next += std::exchange(place[v], next);
         }
-        std::partial_sum(first_.begin(), first_.end(), first_.begin());
-        corners_.resize(first_.back());
-        std::vector<std::uint32_t> end(first_.begin(), first_.end() - 1);
-        for (std::size_t t = 0; t < triangles.size(); ++t) {
-            if (!counts(t)) continue;
-            for (int i = 0; i < 3; ++i)
-                corners_[end[triangles[t][i]]++] =
-                    static_cast<Corner>(3 * t) + static_cast<Corner>(i);
-        }
+        first_[vertex_count] = next;
+        reserve_to_fill(corners_, next);
+        corners_.resize(next);
+        parallel_for(parts, 1, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t part = begin; part < end; ++part) {
+                std::vector<std::uint32_t>& place = places[part];
+                for_triangles(part, [&](std::size_t t) {
+                    const auto corner = static_cast<Corner>(3 * t);
+                    for (int i = 0; i < 3; ++i)
+                        corners_[place[triangles[t][i]]++] = corner + static_cast<Corner>(i);
+                });
+            }
+        });
     }
 
     [[nodiscard]] std::size_t vertex_count() const { return first_.size() - 1; }
@@ -73,6 +102,15 @@ class CornersByVertex {
     }
 
   private:
+    /// One for each thread, where there is enough to do; not so many that their counts take more
+    /// memory than the corners.
+    static std::size_t parts_for(std::size_t vertex_count, std::size_t triangle_count) {
+        constexpr std::size_t worth_a_thread = 100'000;
+        const std::size_t most = 2 * triangle_count / std::max<std::size_t>(vertex_count, 1);
+        return std::clamp<std::size_t>(std::min(triangle_count / worth_a_thread, most), 1,
+                                       thread_count());
+    }
+
     std::vector<std::uint32_t> first_;  ///< Where each vertex's corners begin; one more at the end.
     std::vector<Corner> corners_;
 };

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <numeric>
 
 #include "geometry/check_triangles.h"
 #include "geometry/corners.h"

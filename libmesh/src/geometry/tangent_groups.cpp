@@ -29,10 +29,32 @@ constexpr double cancelled = 1e-6;
 // are within 84 degrees of each other; v directions that are not skewed then within 168.
 constexpr double near_cosine_squared = 0.553;
 
-/// The direction of a sum of tangents, in the plane of a unit normal.
-glm::vec3 tangent_of(const VoteSum& sum, const glm::dvec3& normal) {
-    return rounded(direction_or_zero(in_plane(sum.vector(), normal)));
-}
+/// The plane that a vertex's tangents lie in; all of space where its normal has no direction.
+class TangentPlane {
+  public:
+    TangentPlane() = default;
+    explicit TangentPlane(const glm::vec3& normal) : normal_(normal) {
+        const double square = glm::dot(normal_, normal_);
+        if (square > 0.0 && std::isfinite(square))
+            per_square_ = 1.0 / square;
+        else
+            normal_ = glm::dvec3(0.0);
+    }
+
+    /// Unit, or zero.
+    [[nodiscard]] glm::dvec3 normal() const { return std::sqrt(per_square_) * normal_; }
+
+    /// The direction that a sum of tangents has in the plane.
+    [[nodiscard]] glm::vec3 tangent_along(const glm::dvec3& sum) const {
+        const glm::dvec3 projected = sum - (glm::dot(normal_, sum) * per_square_) * normal_;
+        const double square = glm::dot(projected, projected);
+        return square > 0.0 ? rounded(1.0 / std::sqrt(square) * projected) : glm::vec3(0.0F);
+    }
+
+  private:
+    glm::dvec3 normal_{0.0};
+    double per_square_ = 0.0;
+};
 
 /// Averages the groups at one vertex after another; keeps its buffers.
 class GroupAverager {
@@ -46,7 +68,7 @@ class GroupAverager {
     void average_at(std::size_t vertex) {
         const std::span<const Corner> around = input_.corners.at(vertex);
         if (around.empty()) return;
-        normal_ = direction_or_zero(glm::dvec3(input_.mesh.normals[vertex]));
+        plane_ = TangentPlane(input_.mesh.normals[vertex]);
         if (around.size() > most_at_once || !average_single_fan(around)) average_carefully(around);
     }
 
@@ -55,29 +77,28 @@ class GroupAverager {
 
     /// The usual case: one fan, one handedness, all votes near each other. False where it is not.
     bool average_single_fan(std::span<const Corner> around) {
-        std::array<CornerVote, most_at_once> votes;
-        std::array<std::uint32_t, most_at_once> next;
-        std::array<std::uint32_t, most_at_once> previous;
         int highest = std::numeric_limits<int>::min();
         bool usual = true;
         for (std::size_t i = 0; i < around.size(); ++i) {
-            votes[i] = vote_at(corners_, around[i]);
-            usual &= votes[i].side != 0 && votes[i].side == votes[0].side && votes[i].skewed == 0;
-            highest = std::max(highest, int(votes[i].exponent));
+            const CornerVote vote = vote_at(corners_, around[i]);
+            fan_votes_[i] = vote;
+            usual &= vote.side != 0 && vote.side == fan_votes_[0].side && vote.skewed == 0;
+            highest = std::max(highest, int(vote.exponent));
             const glm::uvec3& triangle = input_.mesh.triangles[triangle_of(around[i])];
             const Corner place = around[i] % 3;
-            next[i] = triangle[static_cast<int>(place == 2 ? 0 : place + 1)];
-            previous[i] = triangle[static_cast<int>(place == 0 ? 2 : place - 1)];
+            fan_next_[i] = triangle[static_cast<int>(place == 2 ? 0 : place + 1)];
+            fan_previous_[i] = triangle[static_cast<int>(place == 0 ? 2 : place - 1)];
         }
-        const std::span all(votes.data(), around.size());
-        if (!usual || !are_near(all) ||
-            !is_single_fan({next.data(), around.size()}, {previous.data(), around.size()}))
+        const std::span votes(fan_votes_.data(), around.size());
+        if (!usual || !are_near(votes) ||
+            !is_single_fan({fan_next_.data(), around.size()},
+                           {fan_previous_.data(), around.size()}))
             return false;
         const VoteScale scale(highest, around.size());
         VoteSum sum;
-        for (const CornerVote& vote : all)
+        for (const CornerVote& vote : votes)
             sum += scale.scaled(vote);
-        const glm::vec4 tangent(tangent_of(sum, normal_), static_cast<float>(votes[0].side));
+        const glm::vec4 tangent(plane_.tangent_along(sum.vector()), float(votes[0].side));
         for (const Corner corner : around)
             corners_[corner] = tangent;
         return true;
@@ -122,8 +143,10 @@ class GroupAverager {
                 collect_side(sign(place));
             settle_group();
         }
-        for (Place place = 0; place < around.size(); ++place)
+        for (Place place = 0; place < around.size(); ++place) {
             corners_[around[place]] = tangents_[place];
+            findings_.all_settled &= tangents_[place].w != 0.0F;
+        }
     }
 
     using Place = CornerLinker::Place;
@@ -203,8 +226,8 @@ class GroupAverager {
         const bool cancels = sum.cancels(cancelled);
         if (cancels) findings_.cancelled.push_back(around_[place]);
         if (cancels && vote.side == 0) return;
-        const VoteSum& used = cancels ? VoteSum{vote.x, vote.y, vote.z, 0} : sum;
-        tangents_[place] = glm::vec4(tangent_of(used, normal_), float(sign(place)));
+        const glm::dvec3 used = cancels ? glm::dvec3(vote.x, vote.y, vote.z) : sum.vector();
+        tangents_[place] = glm::vec4(plane_.tangent_along(used), float(sign(place)));
     }
 
     /// Texture directions of the group's corners that have votes, as float has them.
@@ -237,21 +260,25 @@ class GroupAverager {
         for (const Place place : group_) {
             if (votes_[place].side != 0) (member++)->term = scale.scaled(votes_[place]);
         }
-        return sums_without_opposites(axes_, normal_);
+        return sums_without_opposites(axes_, plane_.normal());
     }
 
     /// The normal as it was given where that is unit as far as float can be, to the last bit.
     [[nodiscard]] glm::vec3 float_normal() const {
         const glm::vec3 given = input_.mesh.normals[vertex_of(around_[0], input_.mesh.triangles)];
-        return std::abs(glm::length(glm::dvec3(given)) - 1.0) < 1e-6 ? given : glm::vec3(normal_);
+        return std::abs(glm::length(glm::dvec3(given)) - 1.0) < 1e-6 ? given
+                                                                     : glm::vec3(plane_.normal());
     }
 
     const GroupInput& input_;
     std::span<glm::vec4> corners_;
     GroupFindings& findings_;
     CornerLinker linker_;
-    glm::dvec3 normal_{0.0};
+    TangentPlane plane_;
     std::span<const Corner> around_;
+    std::array<CornerVote, most_at_once> fan_votes_;
+    std::array<std::uint32_t, most_at_once> fan_next_{};
+    std::array<std::uint32_t, most_at_once> fan_previous_{};
     std::vector<CornerVote> votes_;
     std::vector<glm::vec4> tangents_;
     std::vector<std::uint8_t> is_open_;
@@ -278,6 +305,7 @@ GroupFindings average_groups(const GroupInput& input, std::span<glm::vec4> corne
         append(all.cancelled, findings.cancelled);
         append(all.along_normal, findings.along_normal);
         append(all.repeated, findings.repeated);
+        all.all_settled &= findings.all_settled;
     });
     std::sort(all.cancelled.begin(), all.cancelled.end());
     std::sort(all.along_normal.begin(), all.along_normal.end());

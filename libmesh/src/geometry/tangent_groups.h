@@ -46,6 +46,7 @@ struct GroupFindings {
         }
     };
     std::vector<Repeated> repeated;
+    bool all_settled = true;  ///< Every corner of triangles that take part has a tangent.
 };
 
 /// Turns the votes of corners into their tangents, in place; w is 0 where a corner has none: its

@@ -119,8 +119,8 @@ class SignFinder {
 };
 
 std::int8_t sign_of(Gradient kind) {
-    if (kind == Gradient::upright) return 1;
-    return kind == Gradient::mirrored ? -1 : 0;
+    return static_cast<std::int8_t>(int(kind == Gradient::upright) -
+                                    int(kind == Gradient::mirrored));
 }
 
 }  // namespace

@@ -126,9 +126,11 @@ std::vector<glm::vec4> tangents_of(TangentInput input, TangentWeight weight, Tan
     report_normals(input.normals, report);
     report_triangles(kinds, report);
     report_groups(findings, report);
-    for (const Corner corner : fill_open_corners(group_input, findings.repeated, tangents)) {
-        report.add("corner without texture direction", "corner", corner,
-                   "gets a fixed tangent perpendicular to its normal");
+    if (!findings.all_settled || !std::all_of(kinds.begin(), kinds.end(), takes_part)) {
+        for (const Corner corner : fill_open_corners(group_input, findings.repeated, tangents)) {
+            report.add("corner without texture direction", "corner", corner,
+                       "gets a fixed tangent perpendicular to its normal");
+        }
     }
     return tangents;
 }
