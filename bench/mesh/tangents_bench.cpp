@@ -1,30 +1,185 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "relief/mesh/tangents.h"
+// Tangents in turns with the plainest loop that gives any and with a triad over memory:
+// `relief-tangents-bench [TRIANGLES [ROUNDS]]` prints tables in Markdown, `relief-tangents-bench
+// shapes` what crowded shapes take.
+#include <fmt/format.h>
 
-#include <benchmark/benchmark.h>
+#include <chrono>
+#include <cstdlib>
+#include <fstream>
+#include <functional>
+#include <string>
+#include <vector>
 
 #include "mesh/bumpy_sphere.h"
+#include "mesh/tangent_shapes.h"
+#include "mesh/triad.h"
+#include "relief/mesh/tangents.h"
 #include "relief/mesh/threads.h"
+#include "relief/mesh/timing.h"
 
 namespace relief::bench {
 namespace {
 
-void tangents_mikktspace(benchmark::State& state) {
-    const Mesh mesh = bumpy_sphere(static_cast<std::size_t>(state.range(0)));
-    set_thread_limit(static_cast<unsigned>(state.range(1)));
-    for (auto _ : state) {
-        Report report;
-        benchmark::DoNotOptimize(mikktspace_tangents(mesh.positions, mesh.normals, mesh.texcoords,
-                                                     mesh.triangles, report));
-    }
-    set_thread_limit(0);
-    state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(mesh.triangles.size()));
+using Method = decltype(&mikktspace_tangents);
+
+volatile float sink = 0.0F;
+
+void keep(const std::vector<glm::vec4>& tangents) {
+    sink = tangents[tangents.size() / 2].x;
 }
-BENCHMARK(tangents_mikktspace)
-    ->ArgNames({"triangles", "threads"})
-    ->ArgsProduct({{100'000, 1'000'000}, {1, 2}})
-    ->UseRealTime()
-    ->Unit(benchmark::kMillisecond);
+
+/// What engines have in a page of code: gradients added up at vertices, in float. Wrong where
+/// textures are mirrored, NaN where they have no gradient, split at seams, other bits in another
+/// order.
+std::vector<glm::vec4> naive_tangents(const Mesh& mesh) {
+    std::vector<glm::vec3> along_u(mesh.positions.size(), glm::vec3(0.0F));
+    std::vector<glm::vec3> along_v(mesh.positions.size(), glm::vec3(0.0F));
+    for (const glm::uvec3& triangle : mesh.triangles) {
+        const glm::vec3& origin = mesh.positions[triangle.x];
+        const glm::vec3 d1 = mesh.positions[triangle.y] - origin;
+        const glm::vec3 d2 = mesh.positions[triangle.z] - origin;
+        const glm::vec2 s1 = mesh.texcoords[triangle.y] - mesh.texcoords[triangle.x];
+        const glm::vec2 s2 = mesh.texcoords[triangle.z] - mesh.texcoords[triangle.x];
+        const float per_area = 1.0F / (s1.x * s2.y - s1.y * s2.x);
+        const glm::vec3 u = per_area * (s2.y * d1 - s1.y * d2);
+        const glm::vec3 v = per_area * (s1.x * d2 - s2.x * d1);
+        for (int corner = 0; corner < 3; ++corner) {
+            along_u[triangle[corner]] += u;
+            along_v[triangle[corner]] += v;
+        }
+    }
+    std::vector<glm::vec4> tangents(mesh.positions.size());
+    for (std::size_t v = 0; v < tangents.size(); ++v) {
+        const glm::vec3& n = mesh.normals[v];
+        const glm::vec3 tangent = glm::normalize(along_u[v] - glm::dot(n, along_u[v]) * n);
+        const float w = glm::dot(glm::cross(n, tangent), along_v[v]) < 0.0F ? 1.0F : -1.0F;
+        tangents[v] = glm::vec4(tangent, w);
+    }
+    return tangents;
+}
+
+struct Contender {
+    std::string name;
+    std::function<void()> run;
+    std::vector<double> nanoseconds;
+};
+
+Contender ours(const Mesh& mesh, const std::string& name, Method method, unsigned threads) {
+    return {fmt::format("{}{}", name, threads == 1 ? "" : ", 2 threads"),
+            [&mesh, method, threads] {
+                set_thread_limit(threads);
+                Report report;
+                keep(method(mesh.positions, mesh.normals, mesh.texcoords, mesh.triangles, report));
+                set_thread_limit(0);
+            },
+            {}};
+}
+
+double timed(const std::function<void()>& work) {
+    const auto begin = std::chrono::steady_clock::now();
+    work();
+    return std::chrono::duration<double, std::nano>(std::chrono::steady_clock::now() - begin)
+        .count();
+}
+
+/// A line of /proc/self/status, in MiB; 0 where there is none.
+double status_mib(const std::string& key) {
+    std::ifstream status("/proc/self/status");
+    for (std::string line; std::getline(status, line);) {
+        if (line.starts_with(key)) return std::strtod(line.c_str() + key.size(), nullptr) / 1024.0;
+    }
+    return 0.0;
+}
+
+/// How much memory a call takes at most, its result included, beyond what was in use before.
+double peak_mib(const std::function<void()>& work) {
+    std::ofstream("/proc/self/clear_refs") << "5";  // Linux: forget the highest mark.
+    const double before = status_mib("VmRSS:");
+    work();
+    return status_mib("VmHWM:") - before;
+}
+
+void print_table(const std::string& title, const Mesh& mesh, std::size_t rounds) {
+    Triad triad;
+    std::vector<Contender> all;
+    all.push_back({"plain loop, float", [&] { keep(naive_tangents(mesh)); }, {}});
+    for (const unsigned threads : {1U, 2U}) {
+        all.push_back(ours(mesh, "mikktspace", mikktspace_tangents, threads));
+        all.push_back(ours(mesh, "area-weighted", area_weighted_tangents, threads));
+        all.push_back(ours(mesh, "lengyel", lengyel_tangents, threads));
+    }
+    const double peak = peak_mib(all[1].run);
+    all.push_back({"triad", [&] { triad.run(); }, {}});
+    interleave(all.size(), {rounds, 1}, [&](std::size_t i, bool counted) {
+        const double taken = timed(all[i].run);
+        if (counted) all[i].nanoseconds.push_back(taken);
+    });
+
+    const auto count = static_cast<double>(mesh.triangles.size());
+    const double plain = spread_of(all[0].nanoseconds).median;
+    fmt::print(
+        "\n{}, {} triangles, {} vertices\n\n| who | ns/triangle | p10 to p90 | times the "
+        "plain loop |\n|---|---|---|---|\n",
+        title, mesh.triangles.size(), mesh.positions.size());
+    for (std::size_t i = 0; i + 1 < all.size(); ++i) {
+        const Spread spread = spread_of(all[i].nanoseconds);
+        fmt::print("| {} | {:.1f} | {:.1f} to {:.1f} | {:.2f} |\n", all[i].name,
+                   spread.median / count, spread.p10 / count, spread.p90 / count,
+                   spread.median / plain);
+    }
+    const double bandwidth = Triad::bytes / spread_of(all.back().nanoseconds).median;
+    const double vertex_bytes = 32.0 * static_cast<double>(mesh.positions.size());
+    const double input = 12.0 * count + vertex_bytes;
+    const double output = 48.0 * count;
+    fmt::print(
+        "\nTriad: {:.1f} GB/s. Input read and output written once: {:.1f} ns/triangle.\n"
+        "Input {:.0f} MiB, output {:.0f}; mikktspace takes {:.0f} at most, output included: "
+        "{:.2f} times input and output.\n",
+        bandwidth, (input + output) / bandwidth / count, input / 0x1p20, output / 0x1p20, peak,
+        (input / 0x1p20 + peak) / ((input + output) / 0x1p20));
+}
+
+void print_shapes() {
+    struct Shape {
+        const char* name;
+        Mesh mesh;
+    };
+    const Shape shapes[] = {{"fan, 100k", fan(100'000)},
+                            {"fan, 1M", fan(1'000'000)},
+                            {"on one edge, 100k", book(100'000)},
+                            {"on one edge, 1M", book(1'000'000)},
+                            {"collapsed to a point, 100k", collapsed_to_a_point(100'000)},
+                            {"collapsed to a line, 100k", collapsed_to_a_line(100'000)}};
+    fmt::print("| shape | mikktspace, s | 2 threads | lengyel |\n|---|---|---|---|\n");
+    for (const Shape& shape : shapes) {
+        const auto seconds = [&](Method method, unsigned threads) {
+            Contender contender = ours(shape.mesh, "", method, threads);
+            for (int round = 0; round < 5; ++round)
+                contender.nanoseconds.push_back(timed(contender.run));
+            return spread_of(contender.nanoseconds).median * 1e-9;
+        };
+        fmt::print("| {} | {:.3f} | {:.3f} | {:.3f} |\n", shape.name,
+                   seconds(mikktspace_tangents, 1), seconds(mikktspace_tangents, 2),
+                   seconds(lengyel_tangents, 1));
+    }
+}
+
+int run(int argc, char** argv) {
+    if (argc > 1 && std::string(argv[1]) == "shapes") {
+        print_shapes();
+        return 0;
+    }
+    const std::size_t triangles = argc > 1 ? std::strtoul(argv[1], nullptr, 10) : 1'000'000;
+    const std::size_t rounds = argc > 2 ? std::strtoul(argv[2], nullptr, 10) : 11;
+    print_table("Bumpy sphere", bumpy_sphere(triangles), rounds);
+    print_table("Displaced grid", displaced_grid(triangles), rounds);
+    return 0;
+}
 
 }  // namespace
 }  // namespace relief::bench
+
+int main(int argc, char** argv) {
+    return relief::bench::run(argc, argv);
+}
