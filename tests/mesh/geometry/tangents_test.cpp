@@ -403,6 +403,36 @@ TEST(Tangents, LengyelsKeepHandednessesApart) {
     EXPECT_EQ(tangents_of(mesh, lengyel_tangents), tangents_of(mesh));
 }
 
+TEST(Tangents, ATriangleOnALineInSpaceKeepsItsTexturesDirection) {
+    // Its corners have no angle or area, so they count for nothing; but alone in its group, which a
+    // mirrored texture makes it, it is all there is.
+    Mesh mesh = test::grid(1);
+    mesh.positions.emplace_back(0.5F, 0.5F, 0.0F);
+    mesh.normals.emplace_back(0, 0, 1);
+    mesh.texcoords.emplace_back(0.9F, 0.3F);
+    const std::uint32_t upper_left = 0;
+    const std::uint32_t lower_right = 3;
+    ASSERT_EQ(mesh.positions[upper_left] + mesh.positions[lower_right],
+              2.0F * mesh.positions.back());
+    mesh.triangles.emplace_back(lower_right, upper_left, 4);
+    for (const Method method : all_methods) {
+        Report report;
+        const auto tangents = tangents_of(mesh, report, method);
+        EXPECT_TRUE(report.empty()) << report.findings().front().kind;
+        test::expect_tangent_invariants(mesh, tangents);
+        for (std::size_t corner = 0; corner < 6; ++corner)
+            EXPECT_EQ(tangents[corner], along_x);
+        const glm::dvec3 diagonal(mesh.positions[lower_right] - mesh.positions[upper_left]);
+        for (std::size_t corner = 6; corner < 9; ++corner) {
+            const glm::dvec3 tangent(tangents[corner]);
+            EXPECT_LE(
+                std::min(degrees_between(tangent, diagonal), degrees_between(tangent, -diagonal)),
+                float_degrees);
+        }
+        EXPECT_EQ(tangents[6], tangents[7]);
+    }
+}
+
 TEST(Tangents, ATextureThatRunsAlongTheNormalIsCounted) {
     Mesh mesh = test::grid(2);
     // At the middle vertex u runs along the normal; its neighbours have nothing else to offer.
