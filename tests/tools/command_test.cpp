@@ -38,7 +38,7 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(
         WrongUsage{"relief-mesh",
                    "relief-mesh: error: a command is missing: process or decimate or subdivide or "
-                   "info or check (see "
+                   "info or check or compare or conformance (see "
                    "relief-mesh --help)"},
         WrongUsage{"relief-mesh proces a b",
                    "relief-mesh: error: proces: unknown command (did you mean process?)"},
