@@ -175,6 +175,20 @@ TEST(CompareCommand, PrimitivesAreListed) {
     EXPECT_EQ(all["corners"], corners);
 }
 
+TEST(CompareCommand, QuantisedModelsAreComparedInWorldSpace) {
+    RELIEF_NEEDS_SHARED(folder, "data/models/gltf/Duck");
+    const Workplace workplace;
+    const std::string files = (folder / "glTF-Binary/Duck.glb").string() + " " +
+                              (folder / "glTF-Quantized/Duck.gltf").string();
+    EXPECT_EQ(workplace.run("relief-mesh compare " + files).exit_code, 1) << "nothing in common";
+    const json result = compared(workplace, files + " --world --ignore-uv --tolerance 0.001");
+    EXPECT_EQ(result["triangles"]["only_in_a"], 0);
+    EXPECT_TRUE(result["world_space"].get<bool>());
+    // Normals of 8 bits.
+    EXPECT_GT(result["normals"]["mean"].get<double>(), 0.05);
+    EXPECT_LT(result["normals"]["max"].get<double>(), 1.0);
+}
+
 TEST(CompareCommand, RealModelsKeepWhatProcessingKeeps) {
     RELIEF_NEEDS_SHARED(folder, "data/models/gltf-ext/misc/DuplicateMeshes");
     const std::string file = (folder / "duplicate_meshes.gltf").string();

@@ -45,8 +45,9 @@ ExitCode judge(const CLI::App& app, const CompareOptions& options, const Compare
         return ExitCode::failed;
     };
     if (compared.all.corners == 0) {
-        return fail(fmt::format("has no triangle in common with {} (try --tolerance, --ignore-uv)",
-                                options.request.a.string()));
+        return fail(
+            fmt::format("has no triangle in common with {} (try --world, --tolerance, --ignore-uv)",
+                        options.request.a.string()));
     }
     if (options.max_angle && !compared.is_within(*options.max_angle)) {
         return fail(fmt::format("differs from {} by more than {} degrees: {}",
@@ -98,6 +99,11 @@ void add_matching_options(CLI::App& app, CompareRequest& request) {
     add_number(app, "--uv-tolerance", "DISTANCE", request.uv_tolerance, distance,
                "The same for texture coordinates. Default: 1e-6, times the largest if that is "
                "above 1.")
+        ->group(group);
+    add_switch(app, "--world", request.in_world_space,
+               "Compare where the nodes of a scene place their meshes, once for each place, for "
+               "files whose nodes differ (quantised, flattened, re-exported). Default: in the "
+               "object space of each primitive if both files are glTF.")
         ->group(group);
     add_switch(app, "--ignore-uv", request.ignore_uv,
                "Match by position alone. So it is anyway where a file has no texture coordinates.")

@@ -10,6 +10,7 @@
 #include <iterator>
 
 #include "common/text.h"
+#include "relief/mesh/placed.h"
 
 namespace relief::tools {
 namespace {
@@ -61,6 +62,18 @@ struct ReadModel {
     [[nodiscard]] bool is_document() const { return std::holds_alternative<GltfDocument>(model); }
 };
 
+void append_primitives(ComparedModel& model, const GltfDocument& document, bool in_world_space) {
+    if (!in_world_space) {
+        for (const GltfPrimitiveId id : document.triangle_primitives())
+            append(model, document.mesh(id), document.describe(id));
+        return;
+    }
+    for (const auto& primitive : document.view().primitives) {
+        append(model, placed(document.mesh(primitive.what), primitive.world_from_object),
+               document.describe(primitive.what));
+    }
+}
+
 ComparedModel joined(const std::filesystem::path& file, ReadModel read, bool in_world_space,
                      const glm::dvec3& origin) {
     ComparedModel result;
@@ -70,13 +83,7 @@ ComparedModel joined(const std::filesystem::path& file, ReadModel read, bool in_
         if (auto* contents = std::get_if<MeshFile>(&read.model)) {
             append(result, std::move(contents->mesh), "");
         } else {
-            const GltfDocument& document = std::get<GltfDocument>(read.model);
-            if (in_world_space) {
-                append(result, flattened(document).mesh, "");
-            } else {
-                for (const GltfPrimitiveId id : document.triangle_primitives())
-                    append(result, document.mesh(id), document.describe(id));
-            }
+            append_primitives(result, std::get<GltfDocument>(read.model), in_world_space);
         }
     });
     if (result.mesh.triangles.empty()) throw FileError(file, "holds no triangles");
@@ -260,7 +267,7 @@ std::string matched_in_words(const ComparedModels& compared) {
     return text;
 }
 
-/// What has no partner, or no certain one.
+/// What has no partner.
 std::vector<std::string> unmatched_lines(const ComparedModels& compared) {
     const auto line = [](const char* where, const std::vector<ComparedPart>& parts,
                          const std::vector<std::uint32_t>& only) {
@@ -279,10 +286,6 @@ std::vector<std::string> unmatched_lines(const ComparedModels& compared) {
     const CornerMatch& match = compared.match;
     if (!match.only_a.empty()) lines.push_back(line("A", compared.a.parts, match.only_a));
     if (!match.only_b.empty()) lines.push_back(line("B", compared.b.parts, match.only_b));
-    if (match.ambiguous != 0) {
-        lines.push_back(fmt::format("{} paired with one of several at the same place",
-                                    counted(match.ambiguous, "triangle")));
-    }
     return lines;
 }
 
@@ -382,7 +385,7 @@ ComparedModels compare_models(const CompareRequest& request) {
     ReadModel a(request.a, ignored);
     ReadModel b(request.b, ignored);
     ComparedModels result;
-    result.in_world_space = a.is_document() != b.is_document();
+    result.in_world_space = request.in_world_space || a.is_document() != b.is_document();
     const glm::dvec3 origin = a.origin != glm::dvec3(0.0) ? a.origin : b.origin;
     const bool moves = a.origin != b.origin;
     result.a = joined(request.a, std::move(a), result.in_world_space, origin);
@@ -407,16 +410,16 @@ void print_text(const ComparedModels& compared) {
     print_entry("B", in_words(compared.b));
     print_entry("matched", matched_in_words(compared));
     print_entry("unmatched", unmatched_lines(compared));
+    if (compared.match.ambiguous != 0) {
+        print_entry("ambiguous", fmt::format("{} paired with one of several at the same place",
+                                             counted(compared.match.ambiguous, "triangle")));
+    }
     print_entry("normals", attribute_lines(compared.all.normals,
                                            any_has(compared.a, &ComparedPart::has_normals),
                                            any_has(compared.b, &ComparedPart::has_normals)));
-    if (compared.in_world_space) {
-        print_entry("tangents", "only glTF has them");
-    } else {
-        print_entry("tangents", attribute_lines(compared.all.tangents,
-                                                any_has(compared.a, &ComparedPart::has_tangents),
-                                                any_has(compared.b, &ComparedPart::has_tangents)));
-    }
+    print_entry("tangents", attribute_lines(compared.all.tangents,
+                                            any_has(compared.a, &ComparedPart::has_tangents),
+                                            any_has(compared.b, &ComparedPart::has_tangents)));
     if (compared.all.sign_differences != 0) {
         print_entry("signs", fmt::format("{} of other handedness",
                                          counted(compared.all.sign_differences, "tangent")));

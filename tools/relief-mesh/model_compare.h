@@ -21,6 +21,7 @@ struct CompareRequest {
     std::optional<double> tolerance;     ///< Of positions, in the models' unit.
     std::optional<double> uv_tolerance;  ///< Of texture coordinates.
     bool ignore_uv = false;
+    bool in_world_space = false;  ///< Two glTF files too.
 };
 
 /// A primitive in the joined mesh.
@@ -56,8 +57,9 @@ struct ComparedModels {
     [[nodiscard]] bool is_complete() const;
 };
 
-/// Two glTF files are compared in the object space of each primitive; a glTF file and one of
-/// another format in world space, since that is what it was written in.
+/// Two glTF files are compared in the object space of each primitive, unless they are to be in
+/// world space, once for each place; a glTF file and one of another format always in world space,
+/// since that is what it was written in.
 ///
 /// \throws FileError if a file cannot be read, or holds no triangles
 ComparedModels compare_models(const CompareRequest& request);

@@ -1,17 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // All primitives of a glTF scene as one mesh in world space.
 //
-// Normals turn by the inverse transpose; where the transform mirrors, triangles are turned round,
-// so that they stay counter-clockwise. Attributes that only some primitives have are filled in:
-// flat normals (as glTF asks), texture coordinate (0, 0), white. Tangents are left out: neither
+// Each primitive is placed as placed.h says. Attributes that only some primitives have are filled
+// in: flat normals (as glTF asks), texture coordinate (0, 0), white. Tangents are left out: neither
 // format has them. Tests: tests/mesh/io/gltf/gltf_view_test.cpp.
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "relief/mesh/error.h"
 #include "relief/mesh/gltf_document.h"
+#include "relief/mesh/placed.h"
 
 namespace relief {
 namespace {
@@ -40,52 +39,19 @@ MtlMaterial translated(const GltfMaterial& material, const GltfView& view) {
     return result;
 }
 
-/// In double, and scaled so that tiny and huge transforms keep their digits.
-glm::dmat3 normal_transform(const glm::mat4& world_from_object) {
-    glm::dmat3 linear(world_from_object);
-    double largest = 0.0;
-    for (int column = 0; column < 3; ++column) {
-        for (int row = 0; row < 3; ++row)
-            largest = std::max(largest, std::abs(linear[column][row]));
-    }
-    if (!(largest > 0.0)) return glm::dmat3(1.0);
-    linear /= largest;
-    // The cofactors: the inverse transpose but for a factor, and defined where that is not.
-    const glm::dmat3 cofactors(glm::cross(linear[1], linear[2]), glm::cross(linear[2], linear[0]),
-                               glm::cross(linear[0], linear[1]));
-    return glm::determinant(linear) < 0.0 ? -cofactors : cofactors;
-}
-
-glm::vec3 transformed(const glm::dmat3& transform, const glm::vec3& normal) {
-    const glm::dvec3 turned = transform * glm::dvec3(normal);
-    const double length = glm::length(turned);
-    return length > 0.0 ? glm::vec3(turned / length) : normal;
-}
-
-bool mirrors(const glm::mat4& matrix) {
-    return glm::determinant(glm::dmat3(matrix)) < 0.0;
-}
-
 /// Appends one placed primitive. Arrays are completed for those that lack them.
-void append(Mesh& all, Mesh part, const glm::mat4& world_from_object) {
+void append(Mesh& all, Mesh part) {
     const auto first = static_cast<std::uint32_t>(all.positions.size());
-    const glm::dmat3 normals = normal_transform(world_from_object);
-    for (const glm::vec3& position : part.positions) {
-        all.positions.emplace_back(glm::dmat4(world_from_object) * glm::dvec4(position, 1.0));
-    }
-    for (const glm::vec3& normal : part.normals)
-        all.normals.push_back(transformed(normals, normal));
     const std::size_t count = part.positions.size();
     if (part.texcoords.empty()) part.texcoords.assign(count, glm::vec2(0.0F));
     if (part.colors.empty()) part.colors.assign(count, glm::vec4(1.0F));
+    all.positions.insert(all.positions.end(), part.positions.begin(), part.positions.end());
+    all.normals.insert(all.normals.end(), part.normals.begin(), part.normals.end());
     all.texcoords.insert(all.texcoords.end(), part.texcoords.begin(), part.texcoords.end());
     all.colors.insert(all.colors.end(), part.colors.begin(), part.colors.end());
     const auto first_triangle = static_cast<std::uint32_t>(all.triangles.size());
-    const bool is_mirrored = mirrors(world_from_object);
-    for (glm::uvec3 triangle : part.triangles) {
-        if (is_mirrored) std::swap(triangle.y, triangle.z);
+    for (const glm::uvec3& triangle : part.triangles)
         all.triangles.push_back(triangle + first);
-    }
     for (MaterialRange range : part.material_ranges) {
         range.first_triangle += first_triangle;
         MaterialRange* last = all.material_ranges.empty() ? nullptr : &all.material_ranges.back();
@@ -124,7 +90,7 @@ MeshFile flattened(const GltfDocument& document) {
             Report ignored;  // The document's own processing reports what matters.
             parts[i] = with_frames(std::move(parts[i]), options, ignored).mesh;
         }
-        append(result.mesh, std::move(parts[i]), view.primitives[i].world_from_object);
+        append(result.mesh, placed(std::move(parts[i]), view.primitives[i].world_from_object));
     }
     if (!any_texcoords) result.mesh.texcoords.clear();
     if (!any_colors) result.mesh.colors.clear();
