@@ -54,6 +54,47 @@ std::set<std::tuple<float, float, float>> places_near_the_border(const Mesh& mes
     return places;
 }
 
+/// The vase with a second texture coordinate set, its x and y, which its normal texture is on.
+void write_vase_of_two_sets(const Workplace& workplace) {
+    ASSERT_EQ(workplace.run("relief-mesh process data/vase.obj out/vase.gltf").exit_code, 0);
+    json root = json::parse(workplace.read("out/vase.gltf"));
+    json& primitive = root["meshes"][0]["primitives"][0];
+    const json position = root["accessors"][primitive["attributes"]["POSITION"].get<std::size_t>()];
+    json view = root["bufferViews"][position["bufferView"].get<std::size_t>()];
+    view["byteStride"] = 12;
+    primitive["attributes"]["TEXCOORD_1"] = root["accessors"].size();
+    root["accessors"].push_back({{"bufferView", root["bufferViews"].size()},
+                                 {"componentType", 5126},
+                                 {"type", "VEC2"},
+                                 {"count", position["count"]}});
+    root["bufferViews"].push_back(view);
+    root["images"] = json::parse(R"([{"uri": "data:image/png;base64,AAAA"}])");
+    root["textures"] = json::parse(R"([{"source": 0}])");
+    root["materials"] = json::parse(R"([{"normalTexture": {"index": 0, "texCoord": 1}}])");
+    primitive["material"] = 0;
+    workplace.write("out/vase.gltf", root.dump());
+    ASSERT_EQ(workplace
+                  .run("relief-mesh process out/vase.gltf out/two.glb --normals angle --tangents "
+                       "mikktspace")
+                  .exit_code,
+              0);
+}
+
+TEST(DecimateCommand, NewTangentsBelongToTheNormalTexturesSet) {
+    const Workplace workplace;
+    write_vase_of_two_sets(workplace);
+    ASSERT_EQ(
+        workplace.run("relief-mesh decimate out/two.glb out/low.glb --triangles 2000").exit_code,
+        0);
+    const ProgramResult checked = workplace.run("relief-mesh check out/low.glb --json");
+    ASSERT_EQ(checked.exit_code, 0) << checked.error;
+    const json tangents = json::parse(checked.out)["files"][0]["primitives"][0]["tangents"];
+    EXPECT_EQ(tangents["basis"], "mikktspace");
+    EXPECT_EQ(tangents["texcoord_set_of_material"], 1);
+    EXPECT_EQ(tangents["texcoord_set"], 1);
+    EXPECT_EQ(tangents["corners"], tangents["agreements"][0]["agreeing"]);
+}
+
 TEST(DecimateCommand, MeetsANumberARatioAndReports) {
     const Workplace workplace;
     ProgramResult result = workplace.run(

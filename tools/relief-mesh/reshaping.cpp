@@ -32,9 +32,13 @@ class JoinedPrimitives {
 
   private:
     void add(Mesh primitive);
+    FramedMesh with_new_tangents(FramedMesh part, const FramedMesh& changed, std::size_t i,
+                                 Report& report) const;
 
     std::vector<GltfPrimitiveId> ids_;
     std::vector<Mesh> primitives_;
+    /// The texture coordinates that each one's tangents belong to; empty where it has none.
+    std::vector<std::vector<glm::vec2>> tangent_texcoords_;
     std::vector<std::uint32_t> first_vertex_;
     Mesh joined_;
 };
@@ -69,8 +73,13 @@ void JoinedPrimitives::add(Mesh primitive) {
 
 JoinedPrimitives::JoinedPrimitives(const GltfDocument& document, std::vector<GltfPrimitiveId> ids)
     : ids_(std::move(ids)) {
-    for (const GltfPrimitiveId id : ids_)
-        add(document.mesh(id));
+    for (const GltfPrimitiveId id : ids_) {
+        Mesh mesh = document.mesh(id);
+        const int set = document.tangent_texcoords(id).set;
+        const bool differs = !mesh.tangents.empty() && set != 0;
+        tangent_texcoords_.push_back(differs ? document.mesh(id, set).texcoords : mesh.texcoords);
+        add(std::move(mesh));
+    }
     joined_.name = primitives_.front().name;
 }
 
@@ -100,6 +109,24 @@ FramedMesh range_of(const Mesh& mesh, const MaterialRange& range) {
     return part;
 }
 
+/// Tangents made anew, from the texture coordinates that they belong to. Those of further sets go
+/// along with vertices that stay; where there are new vertices no primitive has further sets.
+FramedMesh JoinedPrimitives::with_new_tangents(FramedMesh part, const FramedMesh& changed,
+                                               std::size_t i, Report& report) const {
+    if (!changed.source_vertex.empty()) {
+        part.mesh.texcoords.clear();
+        for (const std::uint32_t v : part.source_vertex) {
+            part.mesh.texcoords.push_back(
+                tangent_texcoords_[i][changed.source_vertex[v] - first_vertex_[i]]);
+        }
+    }
+    FramedMesh framed =
+        with_frames(std::move(part.mesh), {.tangents = TangentMode::mikktspace}, report);
+    for (std::uint32_t& source : framed.source_vertex)
+        source = part.source_vertex[source];
+    return framed;
+}
+
 FramedMesh JoinedPrimitives::part(const FramedMesh& changed, std::size_t i, NormalMode normals,
                                   Report& report) const {
     const Mesh& before = primitives_[i];
@@ -108,16 +135,11 @@ FramedMesh JoinedPrimitives::part(const FramedMesh& changed, std::size_t i, Norm
     if (before.texcoords.empty()) part.mesh.texcoords.clear();
     if (before.colors.empty()) part.mesh.colors.clear();
     if (!before.tangents.empty()) {
-        const bool possible = !before.texcoords.empty();
+        // Without normals glTF says that tangents do not count.
+        const bool possible = !tangent_texcoords_[i].empty() && !part.mesh.normals.empty();
         report.add("tangents of other triangles", "primitive", ids_[i].primitive,
                    possible ? "are computed anew" : "are removed");
-        if (possible) {
-            FramedMesh framed =
-                with_frames(std::move(part.mesh), {.tangents = TangentMode::mikktspace}, report);
-            for (std::uint32_t& source : framed.source_vertex)
-                source = part.source_vertex[source];
-            part = std::move(framed);
-        }
+        if (possible) part = with_new_tangents(std::move(part), changed, i, report);
     }
     for (std::uint32_t& source : part.source_vertex) {
         if (changed.source_vertex.empty()) break;
