@@ -14,6 +14,7 @@ std::vector<HardCase> surface_cases();   ///< How triangles meet.
 std::vector<HardCase> number_cases();    ///< Scale, place, rounding, values that are none.
 std::vector<HardCase> stored_cases();    ///< Normals, tangents, texture coordinates of the file.
 std::vector<HardCase> tangent_cases();   ///< How the texture lies on the surface.
-std::vector<HardCase> encoding_cases();  ///< Frames in few bits.
+std::vector<HardCase> tangent_surface_cases();  ///< How the surfaces under it meet.
+std::vector<HardCase> encoding_cases();         ///< Frames in few bits.
 
 }  // namespace relief::test

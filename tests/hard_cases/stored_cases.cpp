@@ -4,6 +4,7 @@
 #include "hard_cases/mesh_case.h"
 #include "hard_cases/mesh_cases.h"
 #include "hard_cases/sample_meshes.h"
+#include "hard_cases/tangent_samples.h"
 
 namespace relief::test {
 namespace {
@@ -26,13 +27,6 @@ Mesh textured_square() {
 Mesh square_with_tangents(const std::vector<glm::vec4>& tangents) {
     Mesh mesh = square_with_normals(std::vector<glm::vec3>(4, {0, 0, 1}));
     mesh.tangents = tangents;
-    return mesh;
-}
-
-template <typename Change>
-Mesh changed(Mesh mesh, const Change& change) {
-    for (std::size_t v = 0; v < mesh.positions.size(); ++v)
-        change(mesh, v);
     return mesh;
 }
 

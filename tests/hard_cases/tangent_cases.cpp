@@ -9,11 +9,9 @@
 #include "hard_cases/mesh_case.h"
 #include "hard_cases/mesh_cases.h"
 #include "hard_cases/sample_meshes.h"
+#include "hard_cases/tangent_samples.h"
 #include "relief/mesh/frames.h"
-#include "relief/mesh/shapes.h"
-#include "relief/mesh/threads.h"
 #include "support/angle.h"
-#include "support/triangle_orders.h"
 
 namespace relief::test {
 namespace {
@@ -23,35 +21,10 @@ constexpr float infinity = std::numeric_limits<float>::infinity();
 
 // As a Report names them.
 constexpr const char* no_gradient = "triangle without texture gradient";
-constexpr const char* coinciding = "triangle with coinciding corners";
 constexpr const char* not_finite = "triangle with non-finite values";
 constexpr const char* no_direction = "corner without texture direction";
 constexpr const char* along_normal = "texture direction along the normal";
 constexpr const char* no_normal = "normal without direction";
-
-std::vector<glm::vec4> tangents_of(const Mesh& mesh, const TangentMethod& method) {
-    Report ignored;
-    return method.call(mesh.positions, mesh.normals, mesh.texcoords, mesh.triangles, ignored);
-}
-
-std::uint32_t vertex_at(const Mesh& mesh, std::size_t corner) {
-    return mesh.triangles[corner / 3][static_cast<int>(corner % 3)];
-}
-
-Mesh torus() {
-    return make_torus(0.4F, 24, 12);
-}
-
-Mesh textured_grid() {
-    return textured_from_above(flat_grid(4));
-}
-
-template <typename Change>
-Mesh changed(Mesh mesh, const Change& change) {
-    for (std::size_t v = 0; v < mesh.positions.size(); ++v)
-        change(mesh, v);
-    return mesh;
-}
 
 std::optional<glm::dvec4> along_x(const Mesh&, std::size_t) {
     return glm::dvec4(1, 0, 0, 1);
@@ -158,43 +131,38 @@ Mesh between_handednesses() {
 }
 
 HardCase texture_scale_case(float scale) {
-    return MeshCase(
-               fmt::format("texture of size {:g}", scale),
-               "A torus, all its texture coordinates multiplied.",
-               scale < 1e-20F ? "MikkTSpace and meshoptimizer: five in six tangents lean, measured"
-                              : "MikkTSpace: five in six tangents lean, measured",
-               [scale] {
-                   return changed(
-                       torus(), [scale](Mesh& mesh, std::size_t v) { mesh.texcoords[v] *= scale; });
-               })
+    return MeshCase(fmt::format("texture of size {:g}", scale),
+                    "A textured_torus, all its texture coordinates multiplied.",
+                    scale < 1e-20F
+                        ? "MikkTSpace and meshoptimizer: five in six tangents lean, measured"
+                        : "MikkTSpace: five in six tangents lean, measured",
+                    [scale] {
+                        return changed(textured_torus(), [scale](Mesh& mesh, std::size_t v) {
+                            mesh.texcoords[v] *= scale;
+                        });
+                    })
         .checked({})
         .tangents()
-        .expect("tangents", "within 0.0001 degrees of those at size 1", differs_from(torus, 1e-4));
+        .expect("tangents", "within 0.0001 degrees of those at size 1",
+                differs_from(textured_torus, 1e-4));
 }
 
 HardCase position_scale_case(float scale, const std::string& source) {
     return MeshCase(fmt::format("textured torus of size {:g}", scale),
                     "A torus with texture, all its positions multiplied.", source,
                     [scale] {
-                        return changed(torus(), [scale](Mesh& mesh, std::size_t v) {
+                        return changed(textured_torus(), [scale](Mesh& mesh, std::size_t v) {
                             mesh.positions[v] *= scale;
                         });
                     })
         .checked({})
         .tangents()
-        .expect("tangents", "within 0.0001 degrees of those at size 1", differs_from(torus, 1e-4));
+        .expect("tangents", "within 0.0001 degrees of those at size 1",
+                differs_from(textured_torus, 1e-4));
 }
 
 // Where floats are 1/16 apart.
 constexpr float far = 1e6F;
-
-/// A wavy grid whose texture coordinates are multiples of 1/16.
-Mesh coarsely_textured() {
-    Mesh mesh = textured_from_above(wavy_grid(6));
-    for (std::size_t v = 0; v < mesh.positions.size(); ++v)
-        mesh.texcoords[v].x += 0.0625F * static_cast<float>(v % 3);
-    return mesh;
-}
 
 HardCase texture_value_case(const std::string& name, float value) {
     using enum MeshCondition;
@@ -229,7 +197,7 @@ HardCase normal_value_case(const std::string& name, const glm::vec3& normal,
 }
 
 Mesh with_normals_of_lengths() {
-    return changed(torus(), [](Mesh& mesh, std::size_t v) {
+    return changed(textured_torus(), [](Mesh& mesh, std::size_t v) {
         mesh.normals[v] *= std::ldexp(1.0F, 20 * (static_cast<int>(v % 5) - 2));
     });
 }
@@ -237,111 +205,6 @@ Mesh with_normals_of_lengths() {
 /// The normals of the grid turned into its surface: along u.
 Mesh with_normals_along_the_texture() {
     return changed(textured_grid(), [](Mesh& mesh, std::size_t v) { mesh.normals[v] = {1, 0, 0}; });
-}
-
-/// For any number of threads, many orders of triangles.
-std::string depends_on_order(const Mesh& mesh) {
-    std::string problem;
-    for (const TangentMethod& method : all_tangent_methods()) {
-        const auto expected = tangents_of(mesh, method);
-        for (std::uint32_t seed = 0; seed < 12; ++seed) {
-            set_thread_limit(static_cast<int>(seed % 4));
-            const auto order = shuffled(mesh.triangles.size(), seed);
-            const auto found = tangents_of(with_triangle_order(mesh, order), method);
-            if (!same_bits(found, corners_in_order(expected, order)))
-                problem = method.name + ": other bits";
-        }
-    }
-    set_thread_limit(0);
-    return problem;
-}
-
-/// Positions and texture of a wavy grid, and frames that do not belong to it.
-Mesh without_normals() {
-    Mesh mesh = textured_from_above(wavy_grid(2));
-    mesh.normals.clear();
-    mesh.tangents.assign(mesh.positions.size(), {0, 1, 0, -1});
-    return mesh;
-}
-
-/// Of no particular length; zero where two corners coincide.
-glm::dvec3 triangle_normal_of(const Mesh& mesh, const glm::uvec3& triangle) {
-    const glm::dvec3 origin(mesh.positions[triangle.x]);
-    return glm::cross(glm::dvec3(mesh.positions[triangle.y]) - origin,
-                      glm::dvec3(mesh.positions[triangle.z]) - origin);
-}
-
-/// Flat normals, and tangents made for them: the given ones are not looked at.
-std::string wrong_flat_frames(const Mesh& mesh) {
-    Report report;
-    FrameOptions options;
-    options.if_missing = NormalMode::flat;
-    options.tangents = TangentMode::keep;
-    const Mesh framed = with_frames(mesh, options, report).mesh;
-    for (std::size_t corner = 0; corner < 3 * framed.triangles.size(); ++corner) {
-        const glm::dvec3 normal = triangle_normal_of(framed, framed.triangles[corner / 3]);
-        const std::uint32_t v = vertex_at(framed, corner);
-        if (!(degrees_between(glm::dvec3(framed.normals[v]), normal) < 1e-5))
-            return "a normal is not its triangle's";
-        const glm::dvec3 tangent = glm::cross(glm::dvec3(0, 1, 0), normal);  // y stays: along x.
-        if (!(degrees_between(glm::dvec3(framed.tangents[v]), tangent) < 1e-5) ||
-            framed.tangents[v].w != 1.0F)
-            return "a tangent is not its triangle's";
-    }
-    return "";
-}
-
-Mesh sphere_with_poles() {
-    return make_sphere(12, 6);
-}
-
-bool is_pole(const Mesh& mesh, std::size_t corner) {
-    return std::abs(mesh.normals[vertex_at(mesh, corner)].y) > 0.999F;
-}
-
-std::optional<glm::dvec4> east_of(const glm::dvec3& point) {
-    return glm::dvec4(point.z, 0, -point.x, 1);
-}
-
-std::optional<glm::dvec4> east_beside_poles(const Mesh& mesh, std::size_t corner) {
-    if (is_pole(mesh, corner)) return std::nullopt;
-    return east_of(glm::dvec3(mesh.positions[vertex_at(mesh, corner)]));
-}
-
-/// At a pole no direction is east: there it is that of the triangle's middle.
-std::optional<glm::dvec4> east_at_poles(const Mesh& mesh, std::size_t corner) {
-    const glm::uvec3& triangle = mesh.triangles[corner / 3];
-    const bool is_collapsed = triangle_normal_of(mesh, triangle) == glm::dvec3(0.0);
-    if (is_collapsed || !is_pole(mesh, corner)) return std::nullopt;
-    return east_of(glm::dvec3(mesh.positions[triangle.x]) + glm::dvec3(mesh.positions[triangle.y]) +
-                   glm::dvec3(mesh.positions[triangle.z]));
-}
-
-/// The mesh mirrored in the plane x = 0, its triangles turned so that they face outwards.
-Mesh mirrored_torus() {
-    Mesh mesh = torus();
-    for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
-        mesh.positions[v].x *= -1.0F;
-        mesh.normals[v].x *= -1.0F;
-    }
-    for (glm::uvec3& triangle : mesh.triangles)
-        std::swap(triangle.y, triangle.z);
-    return mesh;
-}
-
-std::string not_mirrored(const Mesh& mesh) {
-    for (const TangentMethod& method : all_tangent_methods()) {
-        const auto before = tangents_of(torus(), method);
-        const auto after = tangents_of(mesh, method);
-        for (std::size_t corner = 0; corner < after.size(); ++corner) {
-            const glm::dvec4 was(before[corner / 3 * 3 + (3 - corner % 3) % 3]);
-            const double error =
-                degrees_between(glm::dvec3(after[corner]), glm::dvec3(-was.x, was.y, was.z));
-            if (!(error < 1e-5) || after[corner].w != -static_cast<float>(was.w))
-                return method.name + fmt::format(": corner {} is not", corner);
-        }
-    }
-    return "";
 }
 
 }  // namespace
@@ -415,33 +278,13 @@ std::vector<HardCase> tangent_cases() {
                  "MikkTSpace and meshoptimizer: 3000 of 3072 corners lean, measured",
                  with_normals_of_lengths)
             .tangents()
-            .expect("tangents", "exactly those of unit normals", differs_from(torus, 0.0)),
+            .expect("tangents", "exactly those of unit normals", differs_from(textured_torus, 0.0)),
         MeshCase("normals along the texture", "A flat grid whose normals are where u grows.",
                  "baked meshes with broken normals", with_normals_along_the_texture)
             .tangents({{no_direction, 96}, {along_normal, 96}}),
         position_scale_case(1e-25F, "underflow of squared lengths"),
         position_scale_case(1e20F, "meshoptimizer: 3067 NaN, measured"),
         position_scale_case(1e25F, "overflow of squared lengths"),
-        MeshCase("triangles in another order", "A torus, its triangles shuffled in twelve ways.",
-                 "MikkTSpace and meshoptimizer: other bits at 72 of 100 corners, measured", torus)
-            .tangents()
-            .expect("tangents", "the same bits, with 1, 2, 3 threads or all", depends_on_order),
-        MeshCase("no normals, but tangents",
-                 "A wavy grid whose stored tangents go with normals that it has not.", "glTF#2480",
-                 without_normals)
-            .expect("frames, flat", "flat normals, and each triangle's tangent for them",
-                    wrong_flat_frames),
-        MeshCase("poles of a sphere", "A sphere by longitude and latitude, of 12 slices.",
-                 "p5.js PR#9068", sphere_with_poles)
-            .checked({{triangle_collapsed, 24}})
-            .tangents({{coinciding, 24}, {no_direction, 2}})
-            .tangents_near(1e-4, "each triangle's own east at the poles", east_at_poles)
-            .tangents_near(15.001, "east elsewhere: half a slice, at the seam", east_beside_poles),
-        MeshCase("mirrored surface", "A torus mirrored in x, its triangles still facing outwards.",
-                 "instances scaled by -1", mirrored_torus)
-            .checked({{texture_mirrored, 576}})
-            .tangents()
-            .expect("tangents", "mirrored within 1e-5 degrees, w negated", not_mirrored),
     };
 }
 
