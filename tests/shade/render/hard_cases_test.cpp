@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "draw_test.h"
+#include "relief/mesh/frames.h"
 #include "relief/shade/image_compare.h"
 #include "support/shapes.h"
 
@@ -364,6 +365,60 @@ TEST_F(HardCases, AnEmptySceneIsItsBackground) {
     scene.instances = {{0, glm::mat4(1), "empty"}};
     scene.ambient = {1, 1, 1};
     EXPECT_EQ(pixel(finite_radiance(scene), 8, 8), glm::dvec4(0.25, 0.5, 0.75, 1));
+}
+
+/// A sphere with tangents and a map that leans, lit from one side.
+Scene leaning_sphere() {
+    Material material;
+    material.diffuse = glm::vec3(1.0F);
+    material.normal_map = NormalMap{Texture{0}, 1.0F, Green::up, FlatCode::middle};
+    Report report;
+    FrameOptions options;
+    options.tangents = TangentMode::mikktspace;
+    Scene scene = test::scene_of(with_frames(test::sphere(24, 12), options, report).mesh, material);
+    Image map = make_image(1, 1, 3, 8, ColorSpace::data);
+    map.samples = std::vector<std::uint8_t>{178, 108, 228};
+    scene.images = {{"map", map}};
+    scene.directional_lights = {{{-1, -0.5F, -1}, {0.9F, 0.9F, 0.9F}}};
+    return scene;
+}
+
+/// The mesh where the matrix puts it: normals by the inverse transpose, tangents by the matrix,
+/// the other hand where it mirrors, and triangles turned so that they face outwards again.
+Mesh placed(Mesh mesh, const glm::mat3& matrix) {
+    const bool mirrors = glm::determinant(matrix) < 0.0F;
+    const glm::mat3 of_normals = glm::transpose(glm::inverse(matrix));
+    for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
+        mesh.positions[v] = matrix * mesh.positions[v];
+        mesh.normals[v] = glm::normalize(of_normals * mesh.normals[v]);
+        const glm::vec3 tangent = glm::normalize(matrix * glm::vec3(mesh.tangents[v]));
+        mesh.tangents[v] = glm::vec4(tangent, mesh.tangents[v].w * (mirrors ? -1.0F : 1.0F));
+    }
+    for (glm::uvec3& triangle : mesh.triangles) {
+        if (mirrors) std::swap(triangle.y, triangle.z);
+    }
+    return mesh;
+}
+
+TEST_F(HardCases, AnInstanceThatMirrorsShadesAsItsMirroredSurface) {
+    for (const glm::vec3& scale : {glm::vec3(-1, 1, 1), glm::vec3(1, 1, -1), glm::vec3(-1, -1, -1),
+                                   glm::vec3(-1.2F, 0.7F, 0.9F)}) {
+        const glm::mat3 matrix(scale.x, 0, 0, 0, scale.y, 0, 0, 0, scale.z);
+        const Scene original = leaning_sphere();
+        Scene instanced = original;
+        instanced.instances[0].world_from_object = glm::mat4(matrix);
+        Scene moved = original;
+        moved.meshes[0] = placed(original.meshes[0], matrix);
+        const Image image = finite_radiance(instanced, 48);
+        // Normals and tangents of unit length interpolate a little differently after a stretch.
+        const bool is_uniform = scale * scale == glm::vec3(1.0F);
+        const double tolerance = is_uniform ? 1e-4 : 0.03;
+        EXPECT_LE(compare(image, finite_radiance(moved, 48)).max, tolerance) << scale.x;
+        // The map shows: without the hand turned, the picture is another.
+        for (glm::vec4& tangent : moved.meshes[0].tangents)
+            tangent.w = -tangent.w;
+        EXPECT_GT(compare(image, finite_radiance(moved, 48)).max, 0.1) << scale.x;
+    }
 }
 
 }  // namespace
