@@ -102,25 +102,34 @@ void copy_twin(const GroupFindings::Repeated& repeated, std::span<const glm::uve
 }
 
 /// The corners without a tangent, but for those of repeated triangles.
-std::vector<Corner> open_corners(std::span<const glm::vec4> tangents,
-                                 std::span<const GroupFindings::Repeated> repeated) {
+std::vector<Corner> open_corners(const GroupInput& input, const GroupFindings& findings,
+                                 std::span<const glm::vec4> tangents) {
     std::vector<Corner> open;
-    auto next = repeated.begin();
-    for (Corner corner = 0; corner < tangents.size(); ++corner) {
-        if (tangents[corner].w != 0.0F) continue;
-        while (next != repeated.end() && next->triangle < triangle_of(corner))
+    auto next = findings.repeated.begin();
+    const auto look_at = [&](std::uint32_t triangle) {
+        while (next != findings.repeated.end() && next->triangle < triangle)
             ++next;
-        if (next == repeated.end() || next->triangle != triangle_of(corner)) open.push_back(corner);
+        if (next != findings.repeated.end() && next->triangle == triangle) return;
+        for (Corner corner = 3 * triangle; corner < 3 * triangle + 3; ++corner) {
+            if (tangents[corner].w == 0.0F) open.push_back(corner);
+        }
+    };
+    if (findings.all_settled) {
+        for (const std::uint32_t triangle : input.gradients.without)
+            look_at(triangle);
+    } else {
+        for (std::uint32_t triangle = 0; triangle < input.mesh.triangles.size(); ++triangle)
+            look_at(triangle);
     }
     return open;
 }
 
 }  // namespace
 
-std::vector<Corner> fill_open_corners(const GroupInput& input,
-                                      std::span<const GroupFindings::Repeated> repeated,
+std::vector<Corner> fill_open_corners(const GroupInput& input, const GroupFindings& findings,
                                       std::span<glm::vec4> tangents) {
-    const std::vector<Corner> open = open_corners(tangents, repeated);
+    const std::vector<Corner> open = open_corners(input, findings, tangents);
+    if (open.empty() && findings.repeated.empty()) return {};
     const Offers offers(input, open, tangents);
     std::vector<Corner> invented;
     for (const Corner corner : open) {
@@ -134,8 +143,8 @@ std::vector<Corner> fill_open_corners(const GroupInput& input,
         tangents[corner] =
             glm::vec4(found ? *found : perpendicular_to(input.mesh.normals[vertex]), sign);
     }
-    for (const GroupFindings::Repeated& triangle : repeated)
-        copy_twin(triangle, input.mesh.triangles, tangents);
+    for (const GroupFindings::Repeated& repeated : findings.repeated)
+        copy_twin(repeated, input.mesh.triangles, tangents);
     return invented;
 }
 

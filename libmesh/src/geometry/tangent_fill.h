@@ -26,8 +26,7 @@ namespace relief {
 /// implementation has there. A repeated triangle copies its twin.
 ///
 /// \return the corners that found none at their vertex; ascending
-std::vector<Corner> fill_open_corners(const GroupInput& input,
-                                      std::span<const GroupFindings::Repeated> repeated,
+std::vector<Corner> fill_open_corners(const GroupInput& input, const GroupFindings& findings,
                                       std::span<glm::vec4> tangents);
 
 }  // namespace relief

@@ -63,7 +63,7 @@ class GroupAverager {
         : input_(input),
           corners_(corners),
           findings_(findings),
-          linker_(input.mesh.triangles, input.kinds) {}
+          linker_(input.mesh.triangles, input.gradients.kinds) {}
 
     void average_at(std::size_t vertex) {
         const std::span<const Corner> around = input_.corners.at(vertex);
@@ -131,7 +131,8 @@ class GroupAverager {
             if (linker_.twin(place) != place) {
                 is_open_[place] = 0;
                 note_repeated(place);
-            } else if (votes_[place].side == 0 && has_gradient(input_.kinds[triangle(place)])) {
+            } else if (votes_[place].side == 0 &&
+                       has_gradient(input_.gradients.kinds[triangle(place)])) {
                 findings_.along_normal.push_back(around[place]);
             }
         }

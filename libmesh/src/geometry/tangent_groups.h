@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "geometry/corners.h"
+#include "geometry/tangent_signs.h"
 #include "geometry/tangent_votes.h"
 
 namespace relief {
@@ -26,8 +27,8 @@ enum class TangentGroups {
 struct GroupInput {
     TangentInput mesh;
     const CornersByVertex& corners;
-    std::span<const Gradient> kinds;
-    std::span<const std::int8_t> signs;  ///< tangent_signs.h
+    const TriangleGradients& gradients;
+    const TriangleSigns& signs;
     TangentGroups groups;
 };
 

@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cmath>
+#include <mutex>
 #include <numbers>
 
 #include "geometry/corner_angle.h"
@@ -267,13 +268,6 @@ void vote(const BlockCorners& block, BlockAxes& axes, std::array<BlockVotes, 3>&
     }
 }
 
-void store(const TriangleVotesAndKind& found, std::size_t triangle, std::span<glm::vec4> votes,
-           std::span<Gradient> kinds) {
-    kinds[triangle] = found.kind;
-    for (std::size_t k = 0; k < 3; ++k)
-        votes[3 * triangle + k] = std::bit_cast<glm::vec4>(found.votes[k]);
-}
-
 /// What is to be done, as the type of the weight fixes it.
 struct Job {
     const TangentInput& input;
@@ -281,8 +275,19 @@ struct Job {
     std::span<Gradient> kinds;
 };
 
+void vote_carefully(const Job& job, TangentWeight weight, std::size_t triangle,
+                    std::vector<std::uint32_t>& without) {
+    const TriangleVotesAndKind found =
+        careful_votes(job.input, weight, job.input.triangles[triangle]);
+    job.kinds[triangle] = found.kind;
+    if (!has_gradient(found.kind)) without.push_back(static_cast<std::uint32_t>(triangle));
+    for (std::size_t k = 0; k < 3; ++k)
+        job.votes[3 * triangle + k] = std::bit_cast<glm::vec4>(found.votes[k]);
+}
+
 template <TangentWeight weight>
-void cast_votes_of(const Job& job, std::size_t begin, std::size_t end) {
+void cast_votes_of(const Job& job, std::size_t begin, std::size_t end,
+                   std::vector<std::uint32_t>& without) {
     BlockCorners corners{};
     BlockAxes axes{};
     std::array<BlockVotes, 3> votes{};
@@ -292,8 +297,7 @@ void cast_votes_of(const Job& job, std::size_t begin, std::size_t end) {
         vote<weight>(corners, axes, votes);
         for (std::size_t i = 0; i < count; ++i) {
             if ((axes.odd[i] | votes[0].odd[i] | votes[1].odd[i] | votes[2].odd[i]) != 0) {
-                store(careful_votes(job.input, weight, job.input.triangles[first + i]), first + i,
-                      job.votes, job.kinds);
+                vote_carefully(job, weight, first + i, without);
                 continue;
             }
             job.kinds[first + i] = axes.side[i] > 0 ? Gradient::upright : Gradient::mirrored;
@@ -379,21 +383,30 @@ TriangleVotesAndKind careful_votes(const TangentInput& input, TangentWeight weig
     return result;
 }
 
-std::vector<Gradient> cast_votes(const TangentInput& input, TangentWeight weight,
-                                 std::span<glm::vec4> votes) {
-    std::vector<Gradient> kinds(input.triangles.size());
-    const Job job{input, votes, kinds};
+TriangleGradients cast_votes(const TangentInput& input, TangentWeight weight,
+                             std::span<glm::vec4> votes) {
+    TriangleGradients gradients{std::vector<Gradient>(input.triangles.size()), {}};
+    const Job job{input, votes, gradients.kinds};
+    std::mutex guard;
     parallel_for(input.triangles.size(), 4096, [&](std::size_t begin, std::size_t end) {
+        std::vector<std::uint32_t> without;
         switch (weight) {
             case TangentWeight::angle:
-                return cast_votes_of<TangentWeight::angle>(job, begin, end);
+                cast_votes_of<TangentWeight::angle>(job, begin, end, without);
+                break;
             case TangentWeight::area:
-                return cast_votes_of<TangentWeight::area>(job, begin, end);
+                cast_votes_of<TangentWeight::area>(job, begin, end, without);
+                break;
             case TangentWeight::stretch:
-                return cast_votes_of<TangentWeight::stretch>(job, begin, end);
+                cast_votes_of<TangentWeight::stretch>(job, begin, end, without);
+                break;
         }
+        if (without.empty()) return;
+        const std::scoped_lock lock(guard);
+        gradients.without.insert(gradients.without.end(), without.begin(), without.end());
     });
-    return kinds;
+    std::sort(gradients.without.begin(), gradients.without.end());
+    return gradients;
 }
 
 }  // namespace relief

@@ -59,13 +59,18 @@ struct TangentInput {
     std::span<const glm::uvec3> triangles;
 };
 
-/// The votes of all corners, into memory for one vec4 a corner, and the kinds of triangles. A
-/// triangle without a gradient has no votes; a direction that stands on the normal's plane by less
-/// than 1e-6 of its length is none.
+/// What triangles have to say about the textures on them.
+struct TriangleGradients {
+    std::vector<Gradient> kinds;
+    std::vector<std::uint32_t> without;  ///< Triangles without a gradient; ascending.
+};
+
+/// The votes of all corners, into memory for one vec4 a corner. A triangle without a gradient has
+/// no votes; a direction that stands on the normal's plane by less than 1e-6 of its length is none.
 ///
 /// In double from the floats of the input; the same bits with every compiler and instruction set.
-std::vector<Gradient> cast_votes(const TangentInput& input, TangentWeight weight,
-                                 std::span<glm::vec4> votes);
+TriangleGradients cast_votes(const TangentInput& input, TangentWeight weight,
+                             std::span<glm::vec4> votes);
 
 /// The votes of one triangle, whatever its numbers are: what cast_votes() does with triangles that
 /// are not ordinary. Any triangle has the same from both within 1e-8 of a vote's length.

@@ -23,6 +23,7 @@
 #include "geometry/tangent_votes.h"
 #include "geometry/weld.h"
 #include "large_memory.h"
+#include "parallel.h"
 #include "relief/mesh/error.h"
 
 namespace relief {
@@ -44,30 +45,33 @@ void check(const TangentInput& input) {
 }
 
 void report_normals(std::span<const glm::vec3> normals, Report& report) {
-    for (std::size_t v = 0; v < normals.size(); ++v) {
-        if (!is_finite(normals[v]) || normals[v] == glm::vec3(0.0F)) {
-            report.add("normal without direction", "vertex", v,
-                       "its tangents follow the texture alone");
-        }
-    }
+    parallel_for_reporting(normals.size(), 16384, report,
+                           [&](std::size_t begin, std::size_t end, Report& found) {
+                               for (std::size_t v = begin; v < end; ++v) {
+                                   if (!is_finite(normals[v]) || normals[v] == glm::vec3(0.0F)) {
+                                       found.add("normal without direction", "vertex", v,
+                                                 "its tangents follow the texture alone");
+                                   }
+                               }
+                           });
 }
 
-void report_triangles(std::span<const Gradient> kinds, Report& report) {
-    for (std::size_t t = 0; t < kinds.size(); ++t) {
-        switch (kinds[t]) {
+void report_triangles(const TriangleGradients& gradients, Report& report) {
+    for (const std::uint32_t triangle : gradients.without) {
+        switch (gradients.kinds[triangle]) {
             case Gradient::upright:
             case Gradient::mirrored:
                 break;
             case Gradient::none:
-                report.add("triangle without texture gradient", "triangle", t,
+                report.add("triangle without texture gradient", "triangle", triangle,
                            "takes its neighbours' tangents");
                 break;
             case Gradient::coinciding:
-                report.add("triangle with coinciding corners", "triangle", t,
+                report.add("triangle with coinciding corners", "triangle", triangle,
                            "takes the tangents of triangles at its vertices");
                 break;
             case Gradient::non_finite:
-                report.add("triangle with non-finite values", "triangle", t,
+                report.add("triangle with non-finite values", "triangle", triangle,
                            "takes the tangents of triangles at its vertices");
                 break;
         }
@@ -116,21 +120,19 @@ std::vector<glm::vec4> tangents_of(TangentInput input, TangentWeight weight, Tan
     std::vector<glm::vec4> tangents;
     reserve_to_fill(tangents, 3 * input.triangles.size());
     tangents.resize(3 * input.triangles.size());
-    const std::vector<Gradient> kinds = cast_votes(input, weight, tangents);
+    const TriangleGradients gradients = cast_votes(input, weight, tangents);
     const CornersByVertex corners(input.positions.size(), input.triangles,
-                                  [&](std::size_t t) { return takes_part(kinds[t]); });
-    const std::vector<std::int8_t> signs = triangle_signs(input.triangles, corners, kinds);
-    const GroupInput group_input{input, corners, kinds, signs, groups};
+                                  [&](std::size_t t) { return takes_part(gradients.kinds[t]); });
+    const TriangleSigns signs = triangle_signs(input.triangles, corners, gradients);
+    const GroupInput group_input{input, corners, gradients, signs, groups};
     const GroupFindings findings = average_groups(group_input, tangents);
 
     report_normals(input.normals, report);
-    report_triangles(kinds, report);
+    report_triangles(gradients, report);
     report_groups(findings, report);
-    if (!findings.all_settled || !std::all_of(kinds.begin(), kinds.end(), takes_part)) {
-        for (const Corner corner : fill_open_corners(group_input, findings.repeated, tangents)) {
-            report.add("corner without texture direction", "corner", corner,
-                       "gets a fixed tangent perpendicular to its normal");
-        }
+    for (const Corner corner : fill_open_corners(group_input, findings, tangents)) {
+        report.add("corner without texture direction", "corner", corner,
+                   "gets a fixed tangent perpendicular to its normal");
     }
     return tangents;
 }

@@ -12,6 +12,7 @@
 #include <numeric>
 #include <utility>
 
+#include "large_memory.h"
 #include "parallel.h"
 
 namespace relief {
@@ -52,8 +53,9 @@ class Buckets {
     explicit Buckets(std::span<const std::uint32_t> hashes)
         : shift_(32 -
                  std::min(most_bits, static_cast<int>(std::bit_width(hashes.size() / usual_size)))),
-          first_((std::size_t(1) << (32 - shift_)) + 1, 0),
-          entries_(hashes.size()) {
+          first_((std::size_t(1) << (32 - shift_)) + 1, 0) {
+        reserve_to_fill(entries_, hashes.size());
+        entries_.resize(hashes.size());
         for (const std::uint32_t hash : hashes)
             ++first_[bucket_of(hash) + 1];
         std::partial_sum(first_.begin(), first_.end(), first_.begin());
@@ -84,7 +86,9 @@ class Buckets {
 template <typename KeyOf>
 std::vector<std::uint32_t> weld(std::size_t count, const KeyOf& key_of) {
     constexpr std::size_t grain = 8192;
-    std::vector<std::uint32_t> hashes(count);
+    std::vector<std::uint32_t> hashes;
+    reserve_to_fill(hashes, count);
+    hashes.resize(count);
     parallel_for(count, grain, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             const auto key = key_of(i);
@@ -160,7 +164,9 @@ Groups groups_of(std::span<const std::uint32_t> representatives) {
 
 std::vector<glm::uvec3> welded_triangles(std::span<const glm::uvec3> triangles,
                                          std::span<const std::uint32_t> representatives) {
-    std::vector<glm::uvec3> welded(triangles.size());
+    std::vector<glm::uvec3> welded;
+    reserve_to_fill(welded, triangles.size());
+    welded.resize(triangles.size());
     parallel_for(triangles.size(), 16384, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             const glm::uvec3& triangle = triangles[i];

@@ -33,7 +33,7 @@ struct AllVotes {
 
 AllVotes votes_of(const Mesh& mesh, TangentWeight weight) {
     AllVotes votes{std::vector<glm::vec4>(3 * mesh.triangles.size()), {}};
-    votes.kinds = cast_votes(input_of(mesh), weight, votes.corners);
+    votes.kinds = cast_votes(input_of(mesh), weight, votes.corners).kinds;
     return votes;
 }
 
