@@ -10,7 +10,7 @@
 #pragma once
 
 #if defined(__x86_64__)
-#define RELIEF_TARGET_256 [[gnu::target("avx2,fma"), gnu::noinline]]
+#define RELIEF_TARGET_256 [[gnu::target("avx2,fma,bmi,bmi2"), gnu::noinline]]
 #define RELIEF_TARGET_512 \
     [[gnu::target("avx2,fma,avx512f,avx512dq,avx512bw,avx512vl"), gnu::noinline]]
 #else

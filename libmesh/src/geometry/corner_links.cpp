@@ -9,8 +9,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
-#include <cassert>
 #include <numeric>
 #include <tuple>
 
@@ -142,40 +140,6 @@ void CornerLinker::link(std::span<const Corner> around) {
         link_edge({first, last});
         first = last;
     }
-}
-
-// Every corner is compared with every other, without branches: for so few, and so often, that is
-// quicker than to look for the one that fits.
-bool is_single_fan(std::span<const std::uint32_t> next, std::span<const std::uint32_t> previous) {
-    constexpr std::size_t most = 16;
-    const auto count = static_cast<std::uint32_t>(next.size());
-    assert(count >= 1 && count <= most && previous.size() == count);
-    std::array<std::uint32_t, most> after;  // The corner across; `count` where there is none.
-    std::uint32_t followed = 0;             // A bit for each corner that follows another.
-    std::uint32_t links = 0;
-    bool crowded = false;
-    for (std::uint32_t i = 0; i < count; ++i) {
-        std::uint32_t found = count;
-        std::uint32_t matches = 0;
-        for (std::uint32_t k = 0; k < count; ++k) {
-            const bool match = previous[k] == next[i];
-            found = match ? k : found;
-            matches += match ? 1 : 0;
-        }
-        // Nobody may be followed by two, or follow two.
-        crowded |= matches > 1 || (matches & (followed >> found)) != 0;
-        after[i] = found;
-        followed |= matches << found;
-        links += matches;
-    }
-    if (crowded || links + 1 < count) return false;
-    // Now there is one chain, and otherwise only rings: from the chain's first, or any corner of a
-    // ring, all must be reached.
-    const auto first = links == count ? 0U : static_cast<std::uint32_t>(std::countr_one(followed));
-    std::uint32_t reached = 1;
-    for (std::uint32_t i = after[first]; i != count && i != first; i = after[i])
-        ++reached;
-    return reached == count;
 }
 
 }  // namespace relief

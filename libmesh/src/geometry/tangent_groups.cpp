@@ -119,7 +119,7 @@ class GroupAverager {
     }
 
     /// Any case: finds groups by walking from neighbour to neighbour.
-    void average_carefully(std::span<const Corner> around) {
+    [[gnu::noinline]] void average_carefully(std::span<const Corner> around) {
         around_ = around;
         linker_.link(around);
         votes_.clear();
@@ -287,6 +287,17 @@ class GroupAverager {
     std::vector<SidedTerm> axes_;
 };
 
+// The same loop with and without instructions that leave their operands alone.
+RELIEF_TARGET_256 [[gnu::flatten]] void average_256(GroupAverager& averager, std::size_t begin,
+                                                    std::size_t end) {
+    for (std::size_t vertex = begin; vertex < end; ++vertex)
+        averager.average_at(vertex);
+}
+[[gnu::noinline]] void average_any(GroupAverager& averager, std::size_t begin, std::size_t end) {
+    for (std::size_t vertex = begin; vertex < end; ++vertex)
+        averager.average_at(vertex);
+}
+
 template <typename T>
 void append(std::vector<T>& all, const std::vector<T>& more) {
     all.insert(all.end(), more.begin(), more.end());
@@ -300,8 +311,10 @@ GroupFindings average_groups(const GroupInput& input, std::span<glm::vec4> corne
     parallel_for(input.corners.vertex_count(), 2048, [&](std::size_t begin, std::size_t end) {
         GroupFindings findings;
         GroupAverager averager(input, corners, findings);
-        for (std::size_t vertex = begin; vertex < end; ++vertex)
-            averager.average_at(vertex);
+        if (best_vector_target() == VectorTarget::any)
+            average_any(averager, begin, end);
+        else
+            average_256(averager, begin, end);
         const std::scoped_lock lock(guard);
         append(all.cancelled, findings.cancelled);
         append(all.along_normal, findings.along_normal);
