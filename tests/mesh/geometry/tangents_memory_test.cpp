@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+// How much memory tangents take at most: a program of its own, whose operator new counts.
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cstdlib>
+#include <new>
+
+#include "relief/mesh/tangents.h"
+#include "relief/mesh/threads.h"
+#include "support/shapes.h"
+
+namespace {
+
+std::atomic<std::size_t> in_use{0};
+std::atomic<std::size_t> most_in_use{0};
+
+// Before every block, its size; as much as keeps what follows aligned.
+constexpr std::size_t header = 64;
+
+void* counted_new(std::size_t size) {
+    void* block = std::aligned_alloc(header, (size + 2 * header - 1) / header * header);
+    if (block == nullptr) throw std::bad_alloc();
+    *static_cast<std::size_t*>(block) = size;
+    const std::size_t now = in_use += size;
+    std::size_t most = most_in_use;
+    while (now > most && !most_in_use.compare_exchange_weak(most, now)) {
+    }
+    return static_cast<std::byte*>(block) + header;
+}
+
+void counted_delete(void* memory) noexcept {
+    if (memory == nullptr) return;
+    void* block = static_cast<std::byte*>(memory) - header;
+    in_use -= *static_cast<std::size_t*>(block);
+    std::free(block);
+}
+
+}  // namespace
+
+void* operator new(std::size_t size) {
+    return counted_new(size);
+}
+void operator delete(void* memory) noexcept {
+    counted_delete(memory);
+}
+void operator delete(void* memory, std::size_t) noexcept {
+    counted_delete(memory);
+}
+
+namespace relief {
+namespace {
+
+std::size_t bytes_of(const Mesh& mesh) {
+    return mesh.positions.size() * (2 * sizeof(glm::vec3) + sizeof(glm::vec2)) +
+           mesh.triangles.size() * sizeof(glm::uvec3);
+}
+
+/// Peak of input, output and all between, over input and output.
+double peak_ratio(const Mesh& mesh) {
+    const std::size_t before = in_use;
+    most_in_use = before;
+    Report report;
+    const auto tangents =
+        mikktspace_tangents(mesh.positions, mesh.normals, mesh.texcoords, mesh.triangles, report);
+    const std::size_t needed = bytes_of(mesh) + tangents.size() * sizeof(glm::vec4);
+    return static_cast<double>(bytes_of(mesh) + most_in_use - before) / static_cast<double>(needed);
+}
+
+/// Every triangle with vertices of its own.
+Mesh soup(const Mesh& mesh) {
+    Mesh result;
+    for (const glm::uvec3& triangle : mesh.triangles) {
+        const auto first = static_cast<std::uint32_t>(result.positions.size());
+        for (int i = 0; i < 3; ++i) {
+            result.positions.push_back(mesh.positions[triangle[i]]);
+            result.normals.push_back(mesh.normals[triangle[i]]);
+            result.texcoords.push_back(mesh.texcoords[triangle[i]]);
+        }
+        result.triangles.emplace_back(first, first + 1, first + 2);
+    }
+    return result;
+}
+
+TEST(TangentMemory, IsAtMostHalfAsMuchAgainAsInputAndOutput) {
+    Mesh welded = test::grid(320);
+    // One vertex stored twice is enough for triangles over welded vertices to be needed.
+    welded.positions.push_back(welded.positions[0]);
+    welded.normals.push_back(welded.normals[0]);
+    welded.texcoords.push_back(welded.texcoords[0]);
+    for (const unsigned threads : {1U, 2U}) {
+        set_thread_limit(threads);
+        // By hand, bytes a triangle: input 28, output 48; at the peak 34 more: 12 for welded
+        // triangles, 12 for corners by vertex, 1 for kinds, 2 for where vertices' corners begin, 2
+        // more for each thread's counts.
+        EXPECT_LT(peak_ratio(welded), 1.45);
+        EXPECT_GT(peak_ratio(welded), 1.3) << "the count counts";
+        EXPECT_LT(peak_ratio(soup(test::grid(320))), 1.5);
+    }
+    set_thread_limit(0);
+}
+
+}  // namespace
+}  // namespace relief
