@@ -94,7 +94,7 @@ TEST(CheckTangents, OfRealModels) {
         return workplace.run("relief-mesh check " + (models / file).string()).out;
     };
     EXPECT_THAT(said_of("MultiUVTest/glTF-Binary/MultiUVTest.glb"),
-                HasSubstr("mikktspace, of texture coordinate set 1: 36 of 36 corners within 0.5 "
+                HasSubstr("mikktspace, of texture coordinate set 1: 36 of 36 corners within 0.1 "
                           "degrees"));
     EXPECT_THAT(said_of("TwoSidedPlane/glTF/TwoSidedPlane.gltf"),
                 HasSubstr("mikktspace, w negated: 6 of 6 corners"));

@@ -119,10 +119,12 @@ Command add_compare_command(CLI::App& tool) {
     add_file(app, "A", options->request.a, "Model to read: .glb .gltf .obj .ply .stl .off");
     add_file(app, "B", options->request.b, "Model to compare with it; formats may differ.");
     add_number(app, "--max-angle", "DEG", options->max_angle, {0.0, 180.0, "degrees"},
-               "Exit with 1 if a normal or tangent differs by more, or a tangent's sign does.");
+               "Exit with 1 if a normal or tangent differs by more, or a tangent's sign does.")
+        ->group("Verdict");
     add_switch(app, "--strict", options->strict,
                "Exit with 3 if a triangle has no partner or no certain one, or a direction is "
-               "zero or not finite.");
+               "zero or not finite.")
+        ->group("Verdict");
     add_matching_options(app, options->request);
     add_switch(app, "--json", options->json,
                "Print one JSON object: tool, version, a, b, world_space, by_texture_coordinate, "

@@ -66,7 +66,8 @@ constexpr std::array methods = {
     Method{TangentBasis::triangle, "triangle", triangle_tangents},
 };
 
-/// 8 or 16 if all values are multiples of what signed integers of so many bits hold; else 0.
+/// 8 or 16 if all values are multiples of what signed integers of so many bits hold; 0 if not, or
+/// if they are 0 and 1 alone.
 int stored_bits(std::span<const glm::vec4> tangents) {
     const auto are_multiples = [&](double steps) {
         return std::all_of(tangents.begin(), tangents.end(), [&](const glm::vec4& tangent) {
@@ -77,6 +78,7 @@ int stored_bits(std::span<const glm::vec4> tangents) {
             return true;
         });
     };
+    if (are_multiples(1.0)) return 0;  // Along axes: that says nothing.
     if (are_multiples(127.0)) return 8;
     return are_multiples(32767.0) ? 16 : 0;
 }

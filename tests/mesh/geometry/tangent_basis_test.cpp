@@ -231,6 +231,7 @@ TEST(TangentBasis, OnAPlaneAllAreTheSame) {
     EXPECT_EQ(sniffed.basis, TangentBasis::mikktspace) << "the usual one";
     EXPECT_THAT(sniffed.same_here, ElementsAre(TangentBasis::area_weighted, TangentBasis::lengyel,
                                                TangentBasis::triangle));
+    EXPECT_EQ(sniffed.stored_bits, 0) << "whole numbers are no sign of few bits";
 }
 
 TEST(TangentBasis, LeaningTangentsAreJudgedInThePlaneOfTheNormal) {

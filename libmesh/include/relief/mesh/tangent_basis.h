@@ -69,7 +69,7 @@ struct SniffedTangents {
     std::size_t left_out = 0;   ///< On triangles too degenerate to have a certain direction.
     std::size_t undefined = 0;  ///< Whose stored tangent is no direction.
     double tolerance = 0.0;     ///< Degrees.
-    int stored_bits = 0;        ///< 8 or 16: all values are multiples of that; 0: floats.
+    int stored_bits = 0;  ///< 8 or 16: all values are multiples of what that holds; 0: floats.
 
     /// That of `basis`, or of the best if it is absent; null where there are none.
     [[nodiscard]] const BasisAgreement* best() const;
