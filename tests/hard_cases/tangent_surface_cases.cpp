@@ -29,7 +29,7 @@ std::string depends_on_order(const Mesh& mesh) {
     for (const TangentMethod& method : all_tangent_methods()) {
         const auto expected = tangents_of(mesh, method);
         for (std::uint32_t seed = 0; seed < 12; ++seed) {
-            set_thread_limit(static_cast<int>(seed % 4));
+            set_thread_limit(seed % 4);
             const auto order = shuffled(mesh.triangles.size(), seed);
             const auto found = tangents_of(with_triangle_order(mesh, order), method);
             if (!same_bits(found, corners_in_order(expected, order)))

@@ -12,9 +12,9 @@
 #include <set>
 
 #include "conformance_judge.h"
-#include "kit_files.h"
 #include "relief/mesh/tangents.h"
 #include "support/shared_data.h"
+#include "tools/run_program.h"
 #include "tools/tangent_definition.h"
 
 namespace relief::tools {
@@ -64,26 +64,24 @@ bool is_beyond_the_definition(const KitMesh& mesh) {
 
 TEST(ConformanceKit, IsWhatItsProgramWrites) {
     const test::TemporaryDirectory folder;
-    const auto meshes = conformance::kit_meshes();
-    conformance::write_list(folder / "kit.json", meshes);
-    std::set<std::string> written = {"kit.json"};
-    for (const conformance::KitMesh& mesh : meshes) {
-        conformance::write_glb(folder / (mesh.name + ".glb"), mesh);
-        written.insert(mesh.name + ".glb");
-        if (mesh.quads.empty()) continue;
-        conformance::write_obj(folder / (mesh.name + ".obj"), mesh);
-        written.insert(mesh.name + ".obj");
-    }
+    const test::ProgramResult result =
+        test::run_program({"relief-make-conformance-kit", "again"}, folder.path());
+    ASSERT_EQ(result.exit_code, 0) << result.error;
+    std::set<std::string> written;
+    for (const auto& entry : fs::directory_iterator(folder / "again"))
+        written.insert(entry.path().filename().string());
+    EXPECT_EQ(written.size(), 41U) << "39 meshes, one of them as quads too, and the list";
     std::uintmax_t bytes = 0;
     for (const auto& entry : fs::directory_iterator(kit_folder)) {
         bytes += entry.file_size();
         const std::string name = entry.path().filename().string();
         if (entry.path().extension() == ".f32") continue;
         EXPECT_EQ(written.erase(name), 1U) << name;
-        EXPECT_TRUE(bytes_of(entry.path()) == bytes_of(folder / name)) << name;
+        EXPECT_TRUE(bytes_of(entry.path()) == bytes_of(folder / "again" / name)) << name;
     }
     EXPECT_THAT(written, testing::IsEmpty()) << "not in the kit";
-    EXPECT_LT(bytes, 1'500'000U);
+    EXPECT_LT(bytes, 500'000U) << "small enough to keep anywhere";
+    EXPECT_EQ(test::run_program({"relief-make-conformance-kit"}, folder.path()).exit_code, 2);
 }
 
 TEST(ConformanceKit, JudgesNearlyAllCornersOfItsMeshes) {

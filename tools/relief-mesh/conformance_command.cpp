@@ -224,18 +224,18 @@ Command add_conformance_command(CLI::App& tool) {
     add_file(app, "OUTPUT_DIR", options->results,
              "Folder with what the program made of conformance/kit: NAME.glb or NAME.gltf with "
              "TANGENT for each NAME.glb there");
-    add_path(app, "--kit", options->kit,
-             "Folder of the kit. Default: conformance/kit, as seen from relief's sources.");
+    add_value(app, "--kit", "FOLDER",
+              "Folder of the kit. Default: conformance/kit, as seen from relief's sources.",
+              [options](const std::string&, const std::string& text) { options->kit = text; });
     add_switch(app, "--json", options->json,
                "Print one JSON object: tool, version, conforms, stable, meshes [name, group, "
                "passed, error "
                "or: corners, judged, missing, left_out, extra, not_finite, not_unit, "
                "not_perpendicular, unhanded, mixed_handedness and, against the reference, "
                "other_sign, too_far, degrees {mean, p99, max}, worst_corner].");
-    add_switch(
-        app, "--strict", options->strict,
-        "Exit with 3 if tangents conform, but are unusable on meshes of the stability group, "
-        "on which the reference fails.");
+    add_switch(app, "--strict", options->strict,
+               "Exit with 3 if tangents conform, but are unusable on hard meshes: those of the "
+               "stability group.");
     add_switch(app, "--quiet", options->quiet, "Print nothing but errors; the exit code tells.");
     set_examples(app,
                  {"relief-mesh process conformance/kit/*.glb -o out/kit/ --tangents mikktspace",
