@@ -108,7 +108,7 @@ TEST(ConformanceKit, AgreesWithThePlainDefinitionInDoublePrecision) {
             judge(mesh, loose(mesh.mesh, test::tangents_by_definition(mesh.mesh)));
         EXPECT_TRUE(judgement.passes(mesh.group))
             << mesh.name << ": " << judgement.other_sign << " signs, " << judgement.too_far
-            << " directions, at most " << judgement.max_degrees << " degrees";
+            << " directions, at most " << judgement.degrees.max << " degrees";
         checked += judgement.judged;
     }
     EXPECT_EQ(checked, 7855U);
@@ -118,7 +118,7 @@ TEST(ConformanceKit, IsPassedByReliefOnEveryMesh) {
     for (const KitMesh& mesh : kit()) {
         const Judgement judgement = judge(mesh, loose(mesh.mesh, relief_tangents(mesh.mesh)));
         EXPECT_TRUE(judgement.passes(mesh.group)) << mesh.name;
-        EXPECT_LE(judgement.max_degrees, 1e-4) << mesh.name;
+        EXPECT_LE(judgement.degrees.max, 1e-4) << mesh.name;
     }
 }
 

@@ -44,7 +44,7 @@ TEST(ConformanceJudge, PassesWhatIsExpected) {
     EXPECT_TRUE(judgement.passes(kit.group));
     EXPECT_EQ(judgement.corners, 6U);
     EXPECT_EQ(judgement.judged, 6U);
-    EXPECT_EQ(judgement.max_degrees, 0.0);
+    EXPECT_EQ(judgement.degrees.max, 0.0);
 }
 
 TEST(ConformanceJudge, FindsTrianglesInAnyOrderBegunAnywhereWithMinusZeros) {
@@ -116,8 +116,8 @@ TEST(ConformanceJudge, CountsEveryFault) {
     EXPECT_EQ(judged({1, 0, 0, -1}).mixed, 3U) << "all corners of its triangle";
     const Judgement off = judged({std::cos(0.0002F), std::sin(0.0002F), 0, 1});
     EXPECT_EQ(off.too_far, 1U) << "0.0115 degrees";
-    EXPECT_NEAR(off.max_degrees, 0.01146, 1e-4);
-    EXPECT_NEAR(off.mean_degrees, 0.01146 / 6, 1e-4);
+    EXPECT_NEAR(off.degrees.max, 0.01146, 1e-4);
+    EXPECT_NEAR(off.degrees.mean, 0.01146 / 6, 1e-4);
     EXPECT_EQ(off.worst_corner, 1U);
     Mesh near = answer_to(kit);
     near.tangents[1] = {std::cos(0.00017F), std::sin(0.00017F), 0, 1};

@@ -89,7 +89,7 @@ std::string in_words(const Result& result) {
         fmt::format("{}: {} of {} judged", verdict(result), j.judged, counted(j.corners, "corner"));
     if (result.group != KitGroup::stability) {
         text += fmt::format(", degrees off {:.2g} mean, {:.2g} for 99 %, {:.2g} at most",
-                            j.mean_degrees, j.p99_degrees, j.max_degrees);
+                            j.degrees.mean, j.degrees.p99, j.degrees.max);
     }
     return text + faults(j);
 }
@@ -172,7 +172,7 @@ nlohmann::ordered_json json_of(const Result& result) {
     json.update(
         {{"other_sign", j.other_sign},
          {"too_far", j.too_far},
-         {"degrees", {{"mean", j.mean_degrees}, {"p99", j.p99_degrees}, {"max", j.max_degrees}}},
+         {"degrees", {{"mean", j.degrees.mean}, {"p99", j.degrees.p99}, {"max", j.degrees.max}}},
          {"worst_corner", j.worst_corner}});
     return json;
 }

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "conformance_kit.h"
+#include "relief/mesh/angle_distribution.h"
 
 namespace relief::tools {
 
@@ -30,9 +31,7 @@ struct Judgement {
     // Against the expected, outside of the stability group.
     std::size_t other_sign = 0;
     std::size_t too_far = 0;
-    double mean_degrees = 0.0;
-    double p99_degrees = 0.0;  ///< 99 of 100 corners are no further off.
-    double max_degrees = 0.0;
+    AngleDistribution degrees;
     std::size_t worst_corner = 0;  ///< Of the kit's mesh: 3 * triangle + 0, 1 or 2.
 
     [[nodiscard]] bool passes(KitGroup group) const;
@@ -46,9 +45,8 @@ constexpr double conforming_degrees = 0.01;
 /// How far a length or a cosine may be off, by group.
 double tolerance_of(KitGroup group);
 
-/// \param theirs  what read_triangles() made of the program's file. Triangles are found by the
-///                positions and texture coordinates of their corners, as numbers, beginning at any
-///                corner; where several are alike, by the normals
+/// \param theirs  what read_triangles() made of the program's file; triangles are found by
+///                match_corners() without tolerance
 Judgement judge(const KitMesh& kit, const Mesh& theirs);
 
 }  // namespace relief::tools
