@@ -101,7 +101,7 @@ TEST(CheckTangents, OfRealModels) {
     EXPECT_THAT(said_of("AnimatedMorphCube/glTF-Binary/AnimatedMorphCube.glb"),
                 HasSubstr("of unknown basis: without texture coordinates none can be told"));
     EXPECT_THAT(said_of("BoomBox/glTF/BoomBox.gltf"),
-                HasSubstr("of unknown basis; nearest is mikktspace: "));
+                HasSubstr("of unknown basis; nearest by far is mikktspace: "));
 }
 
 }  // namespace

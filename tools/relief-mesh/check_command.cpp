@@ -107,7 +107,8 @@ Command add_check_command(CLI::App& tool) {
         "Print one JSON object: tool, version, sound, with_trouble and unreadable (numbers "
         "of files), words, files [file, sound, error or: format, trouble and remarks (of reading), "
         "primitives [name, sound, triangles, vertices, size, spacing, overlap_raster, tangents "
-        "{basis, variant, same_here, texcoord_set, texcoord_set_of_material, corners, left_out, "
+        "{basis, variant, nearest, nearest_by_far, same_here, texcoord_set, "
+        "texcoord_set_of_material, corners, left_out, "
         "without_direction, stored_bits, tolerance, agreements} or null, "
         "trouble and remarks [kind, element, count, first, outcome]]].");
     add_switch(app, "--strict", options->strict,

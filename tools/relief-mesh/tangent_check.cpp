@@ -100,9 +100,10 @@ std::string in_words(const CheckedTangents& tangents) {
             sniffed.left_out, sniffed.undefined);
     }
     const std::string variant = variant_of(*best);
-    return fmt::format("of unknown basis; nearest is {}{}: {} of {} within {:.2g} degrees ({})",
-                       word_of(best->basis), variant.empty() ? "" : ", " + variant,
-                       best->agreeing(), counted(sniffed.corners, "corner"), sniffed.tolerance,
+    return fmt::format("of unknown basis; nearest{} is {}{}: {} of {} within {:.2g} degrees ({})",
+                       sniffed.is_best_by_far() ? " by far" : "", word_of(best->basis),
+                       variant.empty() ? "" : ", " + variant, best->agreeing(),
+                       counted(sniffed.corners, "corner"), sniffed.tolerance,
                        angles_in_words(best->angles));
 }
 
@@ -133,6 +134,8 @@ nlohmann::ordered_json json_of(const CheckedTangents& tangents) {
     const BasisAgreement* best = sniffed.best();
     return {{"basis", sniffed.basis ? std::string(word_of(*sniffed.basis)) : "unknown"},
             {"variant", best == nullptr ? "" : variant_of(*best)},
+            {"nearest", best == nullptr ? "" : std::string(word_of(best->basis))},
+            {"nearest_by_far", sniffed.is_best_by_far()},
             {"same_here", std::move(same_here)},
             {"texcoord_set", tangents.texcoord_set},
             {"texcoord_set_of_material", tangents.usual_set},

@@ -255,6 +255,15 @@ const BasisAgreement* SniffedTangents::best() const {
                               });
 }
 
+bool SniffedTangents::is_best_by_far() const {
+    constexpr double factor = 1.5;
+    const BasisAgreement* nearest = best();
+    return nearest != nullptr &&
+           std::all_of(agreements.begin(), agreements.end(), [&](const BasisAgreement& other) {
+               return &other == nearest || other.angles.mean >= factor * nearest->angles.mean;
+           });
+}
+
 SniffedTangents sniff_tangents(const Mesh& mesh) {
     validate(mesh);
     SniffedTangents result;

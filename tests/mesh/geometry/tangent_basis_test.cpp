@@ -116,6 +116,18 @@ TEST_P(TangentBasisTest, IsToldThroughNoise) {
     EXPECT_NEAR(sniffed.best()->angles.rms, 0.03, 0.003);
 }
 
+TEST_P(TangentBasisTest, IsStillTheNearestWhereNoiseIsLarge) {
+    Mesh mesh = made_by(GetParam());
+    std::mt19937 random(3);
+    std::normal_distribution<double> noise(0.0, 0.3);
+    for (std::size_t v = 0; v < mesh.tangents.size(); ++v)
+        mesh.tangents[v] = turned(mesh, v, noise(random));
+    const SniffedTangents sniffed = sniff_tangents(mesh);
+    EXPECT_FALSE(sniffed.basis);
+    EXPECT_EQ(sniffed.best()->basis, GetParam());
+    EXPECT_TRUE(sniffed.is_best_by_far());
+}
+
 TEST_P(TangentBasisTest, IsToldThroughStorageInFewBits) {
     for (const int bits : {8, 16}) {
         Mesh mesh = made_by(GetParam());
@@ -213,6 +225,7 @@ TEST(TangentBasis, RandomTangentsAreOfNone) {
     EXPECT_FALSE(sniffed.basis);
     ASSERT_NE(sniffed.best(), nullptr);
     EXPECT_LT(sniffed.best()->share(), 0.01);
+    EXPECT_FALSE(sniffed.is_best_by_far());
 }
 
 TEST(TangentBasis, OtherTextureCoordinatesAreOfNone) {

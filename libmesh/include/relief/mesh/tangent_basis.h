@@ -71,8 +71,13 @@ struct SniffedTangents {
     double tolerance = 0.0;     ///< Degrees.
     int stored_bits = 0;  ///< 8 or 16: all values are multiples of what that holds; 0: floats.
 
-    /// That of `basis`, or of the best if it is absent; null where there are none.
+    /// That of `basis`, or, if it is absent, the one with the smallest mean; null where there are
+    /// none.
     [[nodiscard]] const BasisAgreement* best() const;
+    /// All others have a mean at least half as large again: where no basis agrees, tangents that
+    /// were made by this one from other numbers (positions before rounding, other normals), or
+    /// stored coarsely.
+    [[nodiscard]] bool is_best_by_far() const;
 };
 
 /// Holds the tangents of a mesh against every method that is known.
