@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "geometry/corners.h"
-#include "geometry/tangent_votes.h"
+#include "geometry/tangent_vote_blocks.h"
 
 namespace relief {
 

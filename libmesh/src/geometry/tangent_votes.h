@@ -28,6 +28,16 @@ enum class TangentWeight {
     stretch,  ///< How far it stretches a unit of u, as the normal sees it [Lengyel 2001].
 };
 
+// What is left of a vector in the plane of the normal when it is less than this part of the vector
+// is rounding of the normal's floats, not a direction.
+constexpr double out_of_plane = 1e-6;
+
+// The square of the cosine from which u and v count as skewed: 42 degrees from the right angle.
+constexpr double skewed_cosine_squared = 0.448;
+
+// Bits of a vote's largest number.
+constexpr int vote_bits = 30;
+
 /// One triangle's vote at one corner: (x, y, z) * 2^exponent. The largest of the three numbers has
 /// 30 bits, which leaves 2e-9 radians.
 struct CornerVote {
@@ -58,19 +68,6 @@ struct TangentInput {
     std::span<const glm::vec2> texcoords;
     std::span<const glm::uvec3> triangles;
 };
-
-/// What triangles have to say about the textures on them.
-struct TriangleGradients {
-    std::vector<Gradient> kinds;
-    std::vector<std::uint32_t> without;  ///< Triangles without a gradient; ascending.
-};
-
-/// The votes of all corners, into memory for one vec4 a corner. A triangle without a gradient has
-/// no votes; a direction that stands on the normal's plane by less than 1e-6 of its length is none.
-///
-/// In double from the floats of the input; the same bits with every compiler and instruction set.
-TriangleGradients cast_votes(const TangentInput& input, TangentWeight weight,
-                             std::span<glm::vec4> votes);
 
 /// The votes of one triangle, whatever its numbers are: what cast_votes() does with triangles that
 /// are not ordinary. Any triangle has the same from both within 1e-8 of a vote's length.

@@ -20,7 +20,7 @@
 #include "geometry/tangent_fill.h"
 #include "geometry/tangent_groups.h"
 #include "geometry/tangent_signs.h"
-#include "geometry/tangent_votes.h"
+#include "geometry/tangent_vote_blocks.h"
 #include "geometry/weld.h"
 #include "large_memory.h"
 #include "parallel.h"

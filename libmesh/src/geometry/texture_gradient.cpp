@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Solves position = origin + u * along_u + v * along_v over one triangle, whatever its floats are.
-// tangent_votes.cpp does the same for many ordinary triangles at once.
+// tangent_vote_blocks.cpp does the same for many ordinary triangles at once.
 // Tests: tests/mesh/geometry/texture_gradient_test.cpp.
 #include "geometry/texture_gradient.h"
 

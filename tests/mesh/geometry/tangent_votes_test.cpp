@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <numbers>
 
+#include "geometry/tangent_vote_blocks.h"
 #include "hard_meshes.h"
 #include "support/angle.h"
 #include "support/shapes.h"
