@@ -157,12 +157,14 @@ float turn_of(const glm::vec4& stored, const glm::vec4& computed, const glm::vec
     const double x = glm::dot(s, t);
     const double y = glm::dot(s, b);
     if (x == 0.0 && y == 0.0) return std::numeric_limits<float>::quiet_NaN();
-    return static_cast<float>(std::atan2(y, x) * 180.0 / std::numbers::pi);
+    constexpr float degrees = 180.0F / std::numbers::pi_v<float>;
+    return std::atan2(static_cast<float>(y), static_cast<float>(x)) * degrees;
 }
 
-/// Degrees from a direction so many quarter turns on.
+/// Degrees from a direction so many quarter turns on, 0 to 180.
 float degrees_off(float turn, int quarter_turns) {
-    return std::abs(std::remainder(turn - 90.0F * static_cast<float>(quarter_turns), 360.0F));
+    const float apart = std::abs(turn - 90.0F * static_cast<float>(quarter_turns));
+    return apart > 180.0F ? std::abs(360.0F - apart) : apart;
 }
 
 /// How the stored tangents of all corners that can be judged lie to a method's.
