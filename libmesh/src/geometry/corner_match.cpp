@@ -248,28 +248,20 @@ void match_exactly(const Mesh& a, const Mesh& b, CornerMatch& match) {
     }
 }
 
-/// Takes what has found a partner out of a sorted list.
-void drop(std::vector<std::uint32_t>& triangles, std::vector<std::uint32_t> matched) {
-    std::sort(matched.begin(), matched.end());
-    std::erase_if(triangles, [&](std::uint32_t t) {
-        return std::binary_search(matched.begin(), matched.end(), t);
-    });
-}
-
 void match_nearly(const Mesh& a, const Mesh& b, const MatchOptions& options, CornerMatch& match) {
     MatchOptions how = options;
     how.by_texcoord = match.by_texcoord;
-    std::vector<std::uint32_t> matched_a;
-    std::vector<std::uint32_t> matched_b;
+    std::vector<bool> is_matched_a(a.triangles.size(), false);
+    std::vector<bool> is_matched_b(b.triangles.size(), false);
     for (const NearPair& pair : pair_near(a, b, match.only_a, match.only_b, how)) {
         match_triangle(match, pair.a, pair.b, pair.turn);
-        matched_a.push_back(pair.a);
-        matched_b.push_back(pair.b);
+        is_matched_a[pair.a] = true;
+        is_matched_b[pair.b] = true;
         ++match.near;
         match.ambiguous += pair.is_ambiguous ? 1 : 0;
     }
-    drop(match.only_a, std::move(matched_a));
-    drop(match.only_b, std::move(matched_b));
+    std::erase_if(match.only_a, [&](std::uint32_t t) { return is_matched_a[t]; });
+    std::erase_if(match.only_b, [&](std::uint32_t t) { return is_matched_b[t]; });
 }
 
 }  // namespace

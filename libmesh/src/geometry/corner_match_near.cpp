@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Triangles within a tolerance of each other, found by their centroids in a hashed grid. Where all
-// corners are within the tolerance, so are the centroids: with cells twice as wide, eight of them
-// hold every candidate. Each triangle of b asks for its nearest of a; of several that ask for the
-// same one the nearest gets it, and the others ask again. Object space, computed in double.
+// corners are within the tolerance, so are the centroids: with cells that are wider, eight of them
+// at most, and two on average, hold every candidate. Each triangle of b asks for its nearest of a;
+// of several that ask for the same one the nearest gets it, and the others ask again. Object space,
+// computed in double.
 // Tests: tests/mesh/geometry/compare_test.cpp.
 #include "geometry/corner_match_near.h"
 
@@ -18,7 +19,8 @@ namespace {
 
 constexpr std::size_t grain = 1024;
 constexpr std::uint32_t nobody = std::numeric_limits<std::uint32_t>::max();
-constexpr std::size_t most_in_a_cell = 64;
+constexpr std::size_t most_in_a_cell = 256;
+constexpr double radii_in_a_cell = 8.0;
 constexpr int most_rounds = 32;  // Few are left after three, but for crowds.
 
 using Cell = glm::dvec3;  // Whole numbers, which may be larger than integers hold.
@@ -49,18 +51,18 @@ class Grid {
         : cell_size_(cell_size),
           heads_(std::bit_ceil(2 * triangles.size() + 1), nobody),
           next_(triangles.size(), nobody),
-          cells_(triangles.size()) {
+          hashes_(triangles.size()) {
         for (std::size_t i = triangles.size(); i-- > 0;) {
             const glm::dvec3 at = centroid(mesh, triangles[i]);
             if (!is_finite(at)) continue;
-            cells_[i] = glm::floor(at / cell_size);
-            std::uint32_t& head = heads_[slot(cells_[i])];
+            hashes_[i] = hash_of(glm::floor(at / cell_size));
+            std::uint32_t& head = heads_[slot(hashes_[i])];
             next_[i] = head;
             head = static_cast<std::uint32_t>(i);
         }
     }
 
-    /// Calls visit(i) for the triangles in the cells that a box of half this cell size touches.
+    /// Calls visit(i) for the triangles in the cells that a box touches, and for some others.
     template <typename Visit>
     void near(const glm::dvec3& at, double radius, const Visit& visit) const {
         const Cell low = glm::floor((at - radius) / cell_size_);
@@ -73,20 +75,18 @@ class Grid {
                 is_new = is_new && high[i] != low[i];
                 cell[i] = high[i];
             }
-            if (is_new) visit_cell(cell, visit);
+            if (is_new) visit_cell(hash_of(cell), visit);
         }
     }
 
   private:
-    [[nodiscard]] std::size_t slot(const Cell& cell) const {
-        return hash_of(cell) & (heads_.size() - 1);
-    }
+    [[nodiscard]] std::size_t slot(std::size_t hash) const { return hash & (heads_.size() - 1); }
 
     template <typename Visit>
-    void visit_cell(const Cell& cell, const Visit& visit) const {
+    void visit_cell(std::size_t hash, const Visit& visit) const {
         std::size_t seen = 0;
-        for (std::uint32_t i = heads_[slot(cell)]; i != nobody; i = next_[i]) {
-            if (cells_[i] != cell) continue;
+        for (std::uint32_t i = heads_[slot(hash)]; i != nobody; i = next_[i]) {
+            if (hashes_[i] != hash) continue;
             visit(i);
             if (++seen == most_in_a_cell) return;
         }
@@ -95,7 +95,7 @@ class Grid {
     double cell_size_;
     std::vector<std::uint32_t> heads_;
     std::vector<std::uint32_t> next_;
-    std::vector<Cell> cells_;
+    std::vector<std::size_t> hashes_;  ///< Of their cells.
 };
 
 /// How far two triangles are apart, in tolerances; infinite if they do not match.
@@ -143,7 +143,7 @@ class NearPairing {
           left_b_(left_b),
           options_(options),
           radius_(std::max(options.position_tolerance, rounding())),
-          grid_(a, left_a, 2.0 * radius_),
+          grid_(a, left_a, radii_in_a_cell * radius_),
           is_taken_(left_a.size(), 0) {}
 
     std::vector<NearPair> run() {
@@ -152,8 +152,6 @@ class NearPairing {
             asking[i] = i;
         for (int i = 0; i < most_rounds && !asking.empty(); ++i)
             asking = round(asking);
-        std::sort(pairs_.begin(), pairs_.end(),
-                  [](const NearPair& p, const NearPair& q) { return p.b < q.b; });
         return std::move(pairs_);
     }
 
@@ -200,17 +198,17 @@ class NearPairing {
             for (std::size_t i = begin; i < end; ++i)
                 wishes[i] = wish_of(left_b_[asking[i]]);
         });
-        std::vector<std::uint32_t> order;
+        std::vector<std::uint32_t> nearest(left_a_.size(), nobody);
         for (std::uint32_t i = 0; i < wishes.size(); ++i) {
-            if (wishes[i].a != nobody) order.push_back(i);
+            if (wishes[i].a == nobody) continue;
+            std::uint32_t& first = nearest[wishes[i].a];
+            if (first == nobody || wishes[i].cost < wishes[first].cost) first = i;
         }
-        std::stable_sort(order.begin(), order.end(), [&](std::uint32_t p, std::uint32_t q) {
-            return wishes[p].cost < wishes[q].cost;
-        });
         std::vector<std::uint32_t> again;
-        for (const std::uint32_t i : order) {
+        for (std::uint32_t i = 0; i < wishes.size(); ++i) {
             const Wish& wish = wishes[i];
-            if (is_taken_[wish.a] != 0) {
+            if (wish.a == nobody) continue;
+            if (nearest[wish.a] != i) {
                 again.push_back(asking[i]);
                 continue;
             }

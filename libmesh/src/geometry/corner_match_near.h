@@ -23,7 +23,6 @@ struct NearPair {
 /// Nearest first, each triangle once; those with a non-finite corner match nothing.
 ///
 /// \param left_a, left_b  the triangles to pair
-/// \return pairs in ascending order of b
 std::vector<NearPair> pair_near(const Mesh& a, const Mesh& b, std::span<const std::uint32_t> left_a,
                                 std::span<const std::uint32_t> left_b, const MatchOptions& options);
 

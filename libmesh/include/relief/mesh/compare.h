@@ -50,8 +50,8 @@ struct CornerMatch {
 ///         those in material ranges of the same number go together, then those first by their
 ///         normals and tangents; that is counted. Triangles with a non-finite corner match nothing
 ///
-/// Expected linear time; where more than 64 triangles crowd within a tolerance of each other, more
-/// than that many are not looked at for a near match.
+/// Expected linear time; where more than 256 triangles crowd within a few tolerances of each other,
+/// no more than that many are looked at for a near match.
 CornerMatch match_corners(const Mesh& a, const Mesh& b, const MatchOptions& options = {});
 
 /// What differs at each corner of mesh a.
