@@ -19,7 +19,8 @@ namespace relief {
 
 namespace {
 
-/// A primitive with the texture coordinates at which its material looks its images up.
+/// A primitive with the texture coordinates at which its material looks its images up, and its own
+/// tangents, which belong to the coordinates as stored, turned as these are.
 Mesh mesh_from(const GltfDocument& document, GltfPrimitiveId id,
                const std::vector<GltfMaterial>& materials) {
     Mesh mesh = document.mesh(id);
@@ -30,6 +31,9 @@ Mesh mesh_from(const GltfDocument& document, GltfPrimitiveId id,
     if (source.transform == GltfTextureTransform{}) return mesh;
     for (glm::vec2& texcoord : mesh.texcoords)
         texcoord = transformed(source.transform, texcoord);
+    if (mesh.normals.empty()) return mesh;  // Its tangents do not count.
+    for (std::size_t v = 0; v < mesh.tangents.size(); ++v)
+        mesh.tangents[v] = transformed(source.transform, mesh.tangents[v], mesh.normals[v]);
     return mesh;
 }
 

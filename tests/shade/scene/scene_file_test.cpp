@@ -6,9 +6,12 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
+#include <nlohmann/json.hpp>
 
 #include "relief/mesh/error.h"
+#include "relief/mesh/gltf_document.h"
 #include "relief/mesh/image_file.h"
+#include "relief/mesh/shapes.h"
 #include "support/shared_data.h"
 
 namespace relief {
@@ -169,6 +172,38 @@ TEST(LoadScene, PlacesWhatAGltfFileHolds) {
     EXPECT_EQ(scene.camera->near, 0.25F);
     EXPECT_GT(scene.camera->far, 7.0F);  // None in the file: to the end of the scene.
     EXPECT_LT(scene.camera->far, 10.0F);
+}
+
+TEST(LoadScene, TurnsStoredTangentsWithTheTexture) {
+    // A square whose tangents, along x, belong to the coordinates as stored; the transform turns
+    // the image clockwise by a quarter and mirrors it.
+    MeshFile square;
+    square.mesh = make_quad();
+    square.mesh.tangents.assign(4, glm::vec4(1, 0, 0, 1));
+    const test::TemporaryDirectory folder;
+    GltfDocument document = GltfDocument::from_mesh(square);
+    FramedMesh framed;
+    framed.mesh = square.mesh;
+    framed.source_vertex = {0, 1, 2, 3};
+    document.set_frames(document.triangle_primitives().front(), framed);
+    document.write(folder / "square.gltf");
+    std::ifstream stream(folder / "square.gltf");
+    nlohmann::json root = nlohmann::json::parse(stream);
+    root["images"] = nlohmann::json::parse(R"([{"uri": "data:image/png;base64,AAAA"}])");
+    root["textures"] = nlohmann::json::parse(R"([{"source": 0}])");
+    root["materials"] = nlohmann::json::parse(R"([{"normalTexture": {"index": 0, "extensions":
+        {"KHR_texture_transform": {"rotation": 1.5707963267948966, "scale": [1, -1]}}}}])");
+    root["meshes"][0]["primitives"][0]["material"] = 0;
+    write_text(folder / "square.gltf", root.dump());
+    Report report;
+    const Scene scene = load_scene(folder / "square.gltf", report);
+    ASSERT_EQ(scene.meshes[0].tangents.size(), 4U);
+    for (const glm::vec4& tangent : scene.meshes[0].tangents) {
+        // The image's u now grows along the old bitangent, its v upwards along -w * cross(n, y).
+        EXPECT_NEAR(tangent.x, 0.0F, 1e-6F);
+        EXPECT_NEAR(tangent.y, 1.0F, 1e-6F);
+        EXPECT_EQ(tangent.w, -1.0F);
+    }
 }
 
 TEST(LoadScene, GivesGltfsMaterialsAsTheirAuthorsMeant) {

@@ -47,6 +47,17 @@ struct GltfTextureTransform {
 /// The coordinates at which the image is looked up. Both have v downwards.
 glm::vec2 transformed(const GltfTextureTransform& transform, const glm::vec2& texcoord);
 
+/// The tangent of the coordinates after a transform, from that of those before: both of the frames
+/// in which a renderer reads a normal map whose coordinates it transforms.
+///
+/// \param tangent  unit, w = +1 or -1, with its normal, unit, as in mesh.h
+/// \return turned in the plane of the normal, w negated where the transform mirrors; exact where
+/// the
+///         image lies on the surface undistorted, or where axes are only scaled and mirrored. A
+///         transform that shows a line or a point of the image changes nothing
+glm::vec4 transformed(const GltfTextureTransform& transform, const glm::vec4& tangent,
+                      const glm::vec3& normal);
+
 /// A use of an image as a texture.
 struct GltfTexture {
     std::size_t image = 0;  ///< Index into GltfView::images.

@@ -321,6 +321,22 @@ glm::vec2 transformed(const GltfTextureTransform& transform, const glm::vec2& te
             cosine * scaled.y - sine * scaled.x + transform.offset.y};
 }
 
+glm::vec4 transformed(const GltfTextureTransform& transform, const glm::vec4& tangent,
+                      const glm::vec3& normal) {
+    const glm::dvec2 scale(transform.scale);
+    if (scale.x == 0.0 || scale.y == 0.0) return tangent;
+    const glm::dvec3 t(tangent);
+    const glm::dvec3 b = glm::cross(glm::dvec3(normal), t) * static_cast<double>(tangent.w);
+    const auto rotation = static_cast<double>(transform.rotation);
+    // The inverse of the transform, with v upwards, applied to how position changes with u and v.
+    const glm::dvec3 turned =
+        t * (std::cos(rotation) / scale.x) - b * (std::sin(rotation) / scale.y);
+    const double length = glm::length(turned);
+    if (!(length > 0.0) || !std::isfinite(length)) return tangent;
+    return {glm::vec3(turned / length),
+            (scale.x < 0.0) == (scale.y < 0.0) ? tangent.w : -tangent.w};
+}
+
 std::vector<GltfPrimitiveId> triangle_primitives_of(const GltfContents& contents) {
     std::vector<GltfPrimitiveId> result;
     const Json& meshes = array_in(contents.root, "meshes");

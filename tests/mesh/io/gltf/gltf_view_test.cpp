@@ -8,6 +8,7 @@
 #include "gltf_semantics.h"
 #include "relief/mesh/error.h"
 #include "relief/mesh/gltf_document.h"
+#include "relief/mesh/shapes.h"
 #include "support/angle.h"
 #include "support/shapes.h"
 #include "support/shared_data.h"
@@ -89,6 +90,37 @@ TEST_F(GltfViewTest, TextureTransformsScaleThenTurnThenShift) {
     // (0.5, 1.5), turned by a quarter: counter-clockwise as seen with v down, so to (1.5, -0.5).
     EXPECT_NEAR(at.x, 2.0F, 1e-6F);
     EXPECT_NEAR(at.y, -0.25F, 1e-6F);
+}
+
+TEST_F(GltfViewTest, TextureTransformsTurnTangentsAsTheyTurnTheImage) {
+    const auto framed = [](Mesh mesh) {
+        Report report;
+        mesh.tangents.clear();
+        return with_frames(std::move(mesh), {.tangents = TangentMode::mikktspace}, report).mesh;
+    };
+    const std::vector<std::pair<Mesh, GltfTextureTransform>> cases = {
+        // Where the image lies undistorted any turn will do, elsewhere scales and mirrors.
+        {make_quad(2), {{0.5F, 0.25F}, 0.7F, {2.0F, 2.0F}}},
+        {make_quad(2), {{0.0F, 0.0F}, -2.0F, {-3.0F, 3.0F}}},
+        {make_quad(2), {{0.0F, 0.0F}, 1.5707963F, {0.5F, -0.5F}}},
+        {make_torus(0.4F, 24, 12), {{0.0F, 0.0F}, 0.0F, {-1.0F, 4.0F}}},
+        {make_torus(0.4F, 24, 12), {{0.0F, 0.0F}, 3.1415927F, {2.0F, 3.0F}}}};
+    for (const auto& [shape, transform] : cases) {
+        const Mesh before = framed(shape);
+        Mesh after = before;
+        for (glm::vec2& texcoord : after.texcoords)
+            texcoord = transformed(transform, texcoord);
+        after = framed(after);
+        ASSERT_EQ(after.tangents.size(), before.tangents.size());
+        for (std::size_t v = 0; v < before.tangents.size(); ++v) {
+            const glm::vec4 turned = transformed(transform, before.tangents[v], before.normals[v]);
+            EXPECT_LT(test::degrees_between(glm::vec3(turned), glm::vec3(after.tangents[v])), 1e-3);
+            EXPECT_EQ(turned.w, after.tangents[v].w);
+        }
+    }
+    const glm::vec4 tangent(1, 0, 0, -1);
+    EXPECT_EQ(transformed({{0, 0}, 1.0F, {0.0F, 1.0F}}, tangent, {0, 0, 1}), tangent)
+        << "a line of the image";
 }
 
 TEST_F(GltfViewTest, LightsAndCamerasStandWhereTheirNodesAre) {
