@@ -215,6 +215,28 @@ std::string depends_on_first_corner(const Mesh& sheet) {
     return "";
 }
 
+/// Two triangles on an edge, one folded back over the other under one normal: seen along that, u is
+/// 14 degrees to the left of x on the first, 9 to the right on the second, and v opposite.
+Mesh folded_over() {
+    Mesh mesh = mesh_of({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 1, 0.5F}}, {{0, 1, 2}, {1, 0, 3}});
+    mesh.normals.assign(4, {0, 0, 1});
+    mesh.texcoords = {{0, 0}, {1, 0.25F}, {0, -1}, {0, 1.5F}};
+    return mesh;
+}
+
+std::string averaged_over_the_fold(const Mesh& mesh) {
+    for (const TangentMethod& method : all_tangent_methods()) {
+        if (method.name == "lengyel") continue;
+        const auto tangents = tangents_of(mesh, method);
+        for (std::size_t corner = 0; corner < tangents.size(); ++corner) {
+            const glm::dvec3 own = corner < 3 ? glm::dvec3(4, 1, 0) : glm::dvec3(6, -1, 0);
+            const double off = degrees_between(glm::dvec3(tangents[corner]), own);
+            if (!(off < 1e-5)) return fmt::format("{}: {} degrees off", method.name, off);
+        }
+    }
+    return "";
+}
+
 }  // namespace
 
 std::vector<HardCase> tangent_surface_cases() {
@@ -237,6 +259,13 @@ std::vector<HardCase> tangent_surface_cases() {
                 {{"triangle with coinciding corners", 24}, {"corner without texture direction", 2}})
             .tangents_near(1e-4, "each triangle's own east at the poles", east_at_poles)
             .tangents_near(15.001, "east elsewhere: half a slice, at the seam", east_beside_poles),
+        MeshCase("texture folded over",
+                 "Two triangles on an edge, one over the other under one normal: it sees the back "
+                 "of one, and their v opposite.",
+                 "the limit of 180 degrees of MikkTSpace; meshoptimizer has none", folded_over)
+            .tangents()
+            .expect("tangents, mikktspace and area-weighted", "each triangle's own",
+                    averaged_over_the_fold),
         MeshCase("thin bevel",
                  "A floor and a wall, and between them a bevel of a hundredth of their size with a "
                  "sheared texture.",

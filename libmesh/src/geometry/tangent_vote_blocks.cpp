@@ -199,7 +199,9 @@ RELIEF_INLINE void vote_at_corner(const BlockCorners& block, const BlockAxes& ax
         votes.vector[1][i] = to_vote_bits(y * scale);
         votes.vector[2][i] = to_vote_bits(z * scale);
         votes.exponent[i] = static_cast<std::int32_t>(exponent >> 52) - 1023 - (vote_bits - 1);
-        votes.skewed[i] = pq * pq < skewed_cosine_squared * (pp * qq) ? 0 : 1;
+        votes.skewed[i] =
+            pq * pq < skewed_cosine_squared * (pp * qq) && cx * nx + cy * ny + cz * nz > 0.0 ? 0
+                                                                                             : 1;
         sound &= (largest > 1e-250 && largest < 1e250) ? 1U : 0U;
         votes.odd[i] = 1U - sound;
     }

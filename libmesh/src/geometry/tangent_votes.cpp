@@ -77,8 +77,9 @@ TriangleVotesAndKind careful_votes(const TangentInput& input, TangentWeight weig
                 break;
         }
         const double cosine = glm::dot(along_u, along_v);
+        const bool faces = glm::dot(glm::cross(next - here, previous - here), normal) > 0.0;
         const bool skewed =
-            !(cosine * cosine < skewed_cosine_squared) || along_v == glm::dvec3(0.0);
+            !(cosine * cosine < skewed_cosine_squared) || !faces || along_v == glm::dvec3(0.0);
         result.votes[static_cast<std::size_t>(k)] =
             vote_of(std::max(length, least_weight) * along_u, side, skewed);
     }

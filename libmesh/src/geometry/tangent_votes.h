@@ -47,7 +47,8 @@ struct CornerVote {
     std::int16_t exponent = 0;
     std::int8_t side = 0;  ///< +1 where the texture is upright, -1 where mirrored; 0: no vote.
     /// 1 where u and v are more than 42 degrees away from being perpendicular, seen along the
-    /// normal.
+    /// normal, or the normal sees the triangle's back. Where 0, votes of one side whose u are near
+    /// each other cannot have opposite v.
     std::uint8_t skewed = 0;
 };
 
