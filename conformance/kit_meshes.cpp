@@ -217,6 +217,21 @@ Mesh folded_back() {
     });
 }
 
+/// The same, but folded the other way, with a texture that is sheared by another amount in every
+/// triangle: v turns back exactly, u only a little. Half of the triangles show the normal their
+/// back.
+Mesh folded_over() {
+    constexpr double places[] = {0, 1, 2, 1, 0, 1, 2};
+    Random random(21);
+    return patch(3, 6, [&](double x, double y) {
+        const auto step = static_cast<std::size_t>(std::lround(6.0 * y));
+        const double v = 1.0 - (static_cast<double>(step) + 0.6 * random.unit()) / 8.0;
+        return Point{{std::round(3.0 * x), places[step], 0.5 * static_cast<double>(step)},
+                     {0, 0, 1},
+                     {std::round(3.0 * x) / 4.0, v}};
+    });
+}
+
 /// Quads whose shorter diagonal in the image is now the one, now the other.
 KitMesh quads() {
     const int cells = 8;
@@ -347,6 +362,11 @@ std::vector<KitMesh> conformance_meshes() {
          judged,
          "A strip that turns back on itself under one normal: the limit of 180 degrees.",
          folded_back(),
+         {}},
+        {"folded-over",
+         judged,
+         "A strip that turns back under one normal in v, with a texture sheared at random.",
+         folded_over(),
          {}},
         {"unsorted-bucket",
          Group::defect,

@@ -59,7 +59,8 @@ std::vector<glm::vec4> relief_tangents(const Mesh& mesh) {
 
 /// The plain definition does not cover these (tangent_definition.h).
 bool is_beyond_the_definition(const KitMesh& mesh) {
-    return mesh.name == "degenerate" || mesh.name == "non-manifold" || mesh.name == "folded-back";
+    return mesh.name == "degenerate" || mesh.name == "non-manifold" || mesh.name == "folded-back" ||
+           mesh.name == "folded-over";
 }
 
 TEST(ConformanceKit, IsWhatItsProgramWrites) {
@@ -70,7 +71,7 @@ TEST(ConformanceKit, IsWhatItsProgramWrites) {
     std::set<std::string> written;
     for (const auto& entry : fs::directory_iterator(folder / "again"))
         written.insert(entry.path().filename().string());
-    EXPECT_EQ(written.size(), 41U) << "39 meshes, one of them as quads too, and the list";
+    EXPECT_EQ(written.size(), 42U) << "40 meshes, one of them as quads too, and the list";
     std::uintmax_t bytes = 0;
     for (const auto& entry : fs::directory_iterator(kit_folder)) {
         bytes += entry.file_size();
@@ -93,7 +94,7 @@ TEST(ConformanceKit, JudgesNearlyAllCornersOfItsMeshes) {
             if (expected.w == 0.0F) ++not_judged[mesh.name];
         }
     }
-    EXPECT_EQ(judged, 8745U);
+    EXPECT_EQ(judged, 8853U);
     // Only where the reference contradicts itself.
     EXPECT_THAT(not_judged, testing::ElementsAre(testing::Pair("degenerate", 40),
                                                  testing::Pair("non-manifold", 90),

@@ -162,17 +162,17 @@ TEST(ConformanceCommand, SaysThatReliefConforms) {
                 HasSubstr("sphere                  conforms: 672 of 672 corners judged, "
                           "degrees off "));
     EXPECT_THAT(result.out, HasSubstr("unsorted-bucket         defect mended: "));
-    EXPECT_THAT(result.out, HasSubstr("verdict   conforms: 22 of 22 meshes; usable tangents on 16 "
+    EXPECT_THAT(result.out, HasSubstr("verdict   conforms: 23 of 23 meshes; usable tangents on 16 "
                                       "of 16 hard ones\n"));
     const json report = json::parse(workplace.run("relief-mesh conformance out/kit --json").out);
     EXPECT_EQ(report["conforms"], true);
     EXPECT_EQ(report["stable"], true);
-    EXPECT_EQ(report["meshes"].size(), 39U);
+    EXPECT_EQ(report["meshes"].size(), 40U);
     EXPECT_EQ(report["meshes"][1]["name"], "sphere");
     EXPECT_EQ(report["meshes"][1]["group"], "conformance");
     EXPECT_EQ(report["meshes"][1]["judged"], 672);
     EXPECT_LT(report["meshes"][1]["degrees"]["max"], 1e-4);
-    EXPECT_FALSE(report["meshes"][38].contains("degrees")) << "nothing to compare with";
+    EXPECT_FALSE(report["meshes"][39].contains("degrees")) << "nothing to compare with";
 }
 
 TEST(ConformanceCommand, JudgesWhatBecameOfQuads) {
@@ -206,7 +206,7 @@ TEST(ConformanceCommand, ExitsWith1WhereTangentsDiffer) {
         result.out,
         HasSubstr("soup                    NOT JUDGED: there is no soup.glb or soup.gltf\n"));
     EXPECT_THAT(result.out, HasSubstr("quads                   NOT JUDGED: out/kit/quads.glb: "));
-    EXPECT_THAT(result.out, HasSubstr("verdict   DIFFERS: 18 of 22 meshes;"));
+    EXPECT_THAT(result.out, HasSubstr("verdict   DIFFERS: 19 of 23 meshes;"));
     const json report = json::parse(workplace.run("relief-mesh conformance out/kit --json").out);
     EXPECT_EQ(report["conforms"], false);
     EXPECT_EQ(report["meshes"][1]["error"], "has no tangents");
