@@ -163,6 +163,22 @@ TEST(CompareCommand, FarMeshesAreComparedWhereTheyAre) {
     EXPECT_TRUE(result["world_space"].get<bool>());
 }
 
+TEST(CompareCommand, ThreadsChangeNothing) {
+    const Workplace workplace;
+    for (const std::string method : {"mikktspace", "lengyel"}) {
+        ASSERT_EQ(workplace
+                      .run("relief-mesh process data/vase.obj out/" + method + ".glb --tangents " +
+                           method)
+                      .exit_code,
+                  0);
+    }
+    const std::string files = "out/mikktspace.glb out/lengyel.glb";
+    const json one = compared(workplace, files + " --threads 1");
+    EXPECT_GT(one["tangents"]["max"].get<double>(), 0.01);
+    EXPECT_EQ(one["normals"]["max"], 0.0);
+    EXPECT_EQ(compared(workplace, files + " --threads 4"), one);
+}
+
 TEST(CompareCommand, PrimitivesAreListed) {
     const Workplace workplace;
     const ProgramResult result = workplace.run(
