@@ -25,4 +25,18 @@ Mesh cube() {
     return mesh;
 }
 
+Mesh soup(const Mesh& mesh) {
+    Mesh result;
+    for (const glm::uvec3& triangle : mesh.triangles) {
+        const auto first = static_cast<std::uint32_t>(result.positions.size());
+        for (int i = 0; i < 3; ++i) {
+            result.positions.push_back(mesh.positions[triangle[i]]);
+            result.normals.push_back(mesh.normals[triangle[i]]);
+            result.texcoords.push_back(mesh.texcoords[triangle[i]]);
+        }
+        result.triangles.emplace_back(first, first + 1, first + 2);
+    }
+    return result;
+}
+
 }  // namespace relief::test

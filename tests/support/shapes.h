@@ -19,4 +19,7 @@ Mesh sphere(int slices, int stacks);
 /// the whole texture upright on it.
 Mesh cube();
 
+/// The same triangles, each with vertices of its own; positions, normals and texture coordinates.
+Mesh soup(const Mesh& mesh);
+
 }  // namespace relief::test

@@ -13,6 +13,7 @@
 
 #include "conformance_judge.h"
 #include "relief/mesh/tangents.h"
+#include "support/shapes.h"
 #include "support/shared_data.h"
 #include "tools/run_program.h"
 #include "tools/tangent_definition.h"
@@ -37,17 +38,8 @@ std::string bytes_of(const fs::path& file) {
 
 /// Three vertices for every triangle, with a tangent each.
 Mesh loose(const Mesh& mesh, const std::vector<glm::vec4>& tangents) {
-    Mesh result;
+    Mesh result = test::soup(mesh);
     result.tangents = tangents;
-    for (const glm::uvec3& triangle : mesh.triangles) {
-        const auto first = static_cast<std::uint32_t>(result.positions.size());
-        for (int i = 0; i < 3; ++i) {
-            result.positions.push_back(mesh.positions[triangle[i]]);
-            result.normals.push_back(mesh.normals[triangle[i]]);
-            result.texcoords.push_back(mesh.texcoords[triangle[i]]);
-        }
-        result.triangles.emplace_back(first, first + 1, first + 2);
-    }
     return result;
 }
 

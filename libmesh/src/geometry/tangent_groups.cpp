@@ -82,7 +82,8 @@ class GroupAverager {
         for (std::size_t i = 0; i < around.size(); ++i) {
             const CornerVote vote = vote_at(corners_, around[i]);
             fan_votes_[i] = vote;
-            usual &= vote.side != 0 && vote.side == fan_votes_[0].side && vote.skewed == 0;
+            usual &= vote.side != 0 && vote.side == fan_votes_[0].side &&
+                     vote.seen == fan_votes_[0].seen && (vote.seen & seen_skewed) == 0;
             highest = std::max(highest, int(vote.exponent));
             const glm::uvec3& triangle = input_.mesh.triangles[triangle_of(around[i])];
             const Corner place = around[i] % 3;

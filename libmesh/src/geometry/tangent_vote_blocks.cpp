@@ -47,7 +47,7 @@ struct BlockAxes {
 struct BlockVotes {
     Vectors<std::int32_t, 3> vector;
     PerTriangle<std::int32_t> exponent;
-    PerTriangle<std::int32_t> skewed;
+    PerTriangle<std::int32_t> seen;
     PerTriangle<std::uint32_t> odd;
 };
 
@@ -199,9 +199,9 @@ RELIEF_INLINE void vote_at_corner(const BlockCorners& block, const BlockAxes& ax
         votes.vector[1][i] = to_vote_bits(y * scale);
         votes.vector[2][i] = to_vote_bits(z * scale);
         votes.exponent[i] = static_cast<std::int32_t>(exponent >> 52) - 1023 - (vote_bits - 1);
-        votes.skewed[i] =
-            pq * pq < skewed_cosine_squared * (pp * qq) && cx * nx + cy * ny + cz * nz > 0.0 ? 0
-                                                                                             : 1;
+        const std::int32_t skewed = pq * pq < skewed_cosine_squared * (pp * qq) ? 0 : seen_skewed;
+        const std::int32_t behind = cx * nx + cy * ny + cz * nz > 0.0 ? 0 : seen_from_behind;
+        votes.seen[i] = skewed | behind;
         sound &= (largest > 1e-250 && largest < 1e250) ? 1U : 0U;
         votes.odd[i] = 1U - sound;
     }
@@ -296,7 +296,7 @@ void cast_votes_of(const Job& job, std::size_t begin, std::size_t end,
                                       votes[k].vector[2][i],
                                       static_cast<std::int16_t>(votes[k].exponent[i]),
                                       static_cast<std::int8_t>(axes.side[i]),
-                                      static_cast<std::uint8_t>(votes[k].skewed[i])};
+                                      static_cast<std::uint8_t>(votes[k].seen[i])};
                 job.votes[3 * (first + i) + k] = std::bit_cast<glm::vec4>(vote);
             }
         }

@@ -35,7 +35,7 @@ glm::dvec3 direction_in_plane(const glm::dvec3& vector, const glm::dvec3& normal
                : glm::dvec3(0.0);
 }
 
-CornerVote vote_of(const glm::dvec3& vector, std::int8_t side, bool skewed) {
+CornerVote vote_of(const glm::dvec3& vector, std::int8_t side, std::uint8_t seen) {
     const double largest = std::max({std::abs(vector.x), std::abs(vector.y), std::abs(vector.z)});
     if (!(largest > 0.0) || !std::isfinite(largest)) return {};
     const int exponent = std::ilogb(largest) - (vote_bits - 1);
@@ -47,7 +47,7 @@ CornerVote vote_of(const glm::dvec3& vector, std::int8_t side, bool skewed) {
             scaled(vector.z),
             static_cast<std::int16_t>(exponent),
             side,
-            static_cast<std::uint8_t>(skewed)};
+            seen};
 }
 
 TriangleVotesAndKind careful_votes(const TangentInput& input, TangentWeight weight,
@@ -79,9 +79,10 @@ TriangleVotesAndKind careful_votes(const TangentInput& input, TangentWeight weig
         const double cosine = glm::dot(along_u, along_v);
         const bool faces = glm::dot(glm::cross(next - here, previous - here), normal) > 0.0;
         const bool skewed =
-            !(cosine * cosine < skewed_cosine_squared) || !faces || along_v == glm::dvec3(0.0);
-        result.votes[static_cast<std::size_t>(k)] =
-            vote_of(std::max(length, least_weight) * along_u, side, skewed);
+            !(cosine * cosine < skewed_cosine_squared) || along_v == glm::dvec3(0.0);
+        const int seen = (skewed ? seen_skewed : 0) | (faces ? 0 : seen_from_behind);
+        result.votes[static_cast<std::size_t>(k)] = vote_of(
+            std::max(length, least_weight) * along_u, side, static_cast<std::uint8_t>(seen));
     }
     return result;
 }

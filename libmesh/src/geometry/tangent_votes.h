@@ -46,10 +46,10 @@ struct CornerVote {
     std::int32_t z = 0;
     std::int16_t exponent = 0;
     std::int8_t side = 0;  ///< +1 where the texture is upright, -1 where mirrored; 0: no vote.
-    /// 1 where u and v are more than 42 degrees away from being perpendicular, seen along the
-    /// normal, or the normal sees the triangle's back. Where 0, votes of one side whose u are near
-    /// each other cannot have opposite v.
-    std::uint8_t skewed = 0;
+    /// Bit 0: u and v are more than 42 degrees away from being perpendicular, seen along the
+    /// normal. Bit 1: the normal sees the triangle's back. Votes of one side that are all seen
+    /// alike, and not skewed, cannot have opposite v where their u are near each other.
+    std::uint8_t seen = 0;
 };
 
 // Votes are kept where the tangents will be.
@@ -60,7 +60,7 @@ static_assert(sizeof(CornerVote) == sizeof(glm::vec4));
 glm::dvec3 direction_in_plane(const glm::dvec3& vector, const glm::dvec3& normal);
 
 /// \return as long as no direction is: with side 0 where `vector` is zero or not finite
-CornerVote vote_of(const glm::dvec3& vector, std::int8_t side, bool skewed);
+CornerVote vote_of(const glm::dvec3& vector, std::int8_t side, std::uint8_t seen);
 
 /// What tangents are made from. Equally long by vertex; values of any kind.
 struct TangentInput {
@@ -78,6 +78,9 @@ struct TriangleVotesAndKind {
 };
 TriangleVotesAndKind careful_votes(const TangentInput& input, TangentWeight weight,
                                    const glm::uvec3& triangle);
+
+constexpr std::uint8_t seen_skewed = 1;
+constexpr std::uint8_t seen_from_behind = 2;
 
 inline CornerVote vote_at(std::span<const glm::vec4> votes, Corner corner) {
     return std::bit_cast<CornerVote>(votes[corner]);

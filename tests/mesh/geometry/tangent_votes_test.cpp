@@ -58,7 +58,7 @@ TEST(TangentVotes, AreAsLongAsTheirWeights) {
         for (Corner corner = 0; corner < 3; ++corner) {
             const CornerVote vote = vote_at(votes.corners, corner);
             EXPECT_EQ(vote.side, 1);
-            EXPECT_EQ(vote.skewed, 0);
+            EXPECT_EQ(vote.seen, 0);
             double expected = 2.0;  // Area and stretch.
             if (weight == TangentWeight::angle) expected = corner == 0 ? 2.0 * quarter : quarter;
             EXPECT_NEAR(vector_of(vote).x, expected, 4e-9);
@@ -88,7 +88,11 @@ TEST(TangentVotes, ASkewedTextureIsKnownAsSuch) {
         const double angle = degrees / 180.0 * std::numbers::pi;
         mesh.positions[2] = {2.0 * std::cos(angle), 2.0 * std::sin(angle), 0.0};
         const CornerVote vote = vote_at(votes_of(mesh, TangentWeight::angle).corners, 0);
-        EXPECT_EQ(vote.skewed, degrees < 48.0 || degrees > 132.0 ? 1 : 0);
+        EXPECT_EQ(vote.seen, degrees < 48.0 || degrees > 132.0 ? seen_skewed : 0);
+        for (glm::vec3& normal : mesh.normals)
+            normal = -normal;
+        const CornerVote behind = vote_at(votes_of(mesh, TangentWeight::angle).corners, 0);
+        EXPECT_EQ(behind.seen, vote.seen | seen_from_behind);
     }
 }
 
@@ -136,7 +140,7 @@ TEST(TangentVotes, SumsAreExactInAnyOrder) {
     for (int i = 0; i < 300; ++i) {
         const double length = std::ldexp(1.0, -(i % 40));
         votes.push_back(
-            vote_of(length * glm::dvec3(std::cos(i), std::sin(i), std::cos(3 * i)), 1, false));
+            vote_of(length * glm::dvec3(std::cos(i), std::sin(i), std::cos(3 * i)), 1, 0));
     }
     int highest = votes[0].exponent;
     for (const CornerVote& vote : votes)

@@ -67,21 +67,6 @@ double peak_ratio(const Mesh& mesh) {
     return static_cast<double>(bytes_of(mesh) + most_in_use - before) / static_cast<double>(needed);
 }
 
-/// Every triangle with vertices of its own.
-Mesh soup(const Mesh& mesh) {
-    Mesh result;
-    for (const glm::uvec3& triangle : mesh.triangles) {
-        const auto first = static_cast<std::uint32_t>(result.positions.size());
-        for (int i = 0; i < 3; ++i) {
-            result.positions.push_back(mesh.positions[triangle[i]]);
-            result.normals.push_back(mesh.normals[triangle[i]]);
-            result.texcoords.push_back(mesh.texcoords[triangle[i]]);
-        }
-        result.triangles.emplace_back(first, first + 1, first + 2);
-    }
-    return result;
-}
-
 TEST(TangentMemory, IsAtMostHalfAsMuchAgainAsInputAndOutput) {
     Mesh welded = test::grid(320);
     // One vertex stored twice is enough for triangles over welded vertices to be needed.
@@ -95,7 +80,7 @@ TEST(TangentMemory, IsAtMostHalfAsMuchAgainAsInputAndOutput) {
         // more for each thread's counts.
         EXPECT_LT(peak_ratio(welded), 1.45);
         EXPECT_GT(peak_ratio(welded), 1.3) << "the count counts";
-        EXPECT_LT(peak_ratio(soup(test::grid(320))), 1.5);
+        EXPECT_LT(peak_ratio(test::soup(test::grid(320))), 1.5);
     }
     set_thread_limit(0);
 }
