@@ -110,18 +110,58 @@ TEST(BumpCommand, AConstantMapIsExactlyFlatInEveryDepth) {
     }
 }
 
-TEST(BumpCommand, BothKernelsGiveTheSameDepth) {
+TEST(BumpCommand, EveryKernelGivesTheSameDepth) {
     const Workplace workplace;
     write_ramp(workplace, "ramp.png", false, 257);
-    for (const std::string kernel : {"central3", "sobel3"}) {
-        ASSERT_EQ(workplace
-                      .run("relief-bake bump ramp.png out/" + kernel +
-                           ".png --strength 100 --kernel " + kernel)
-                      .exit_code,
-                  0);
+    for (const std::string kernel :
+         {"forward", "central3", "prewitt3", "sobel3", "scharr3", "sobel5", "scharr5", "central5",
+          "central7", "gaussian", "gaussian --kernel-radius 4"}) {
+        const ProgramResult result = workplace.run(
+            "relief-bake bump ramp.png out/n.png --strength 255 --wrap clamp --kernel " + kernel);
+        ASSERT_EQ(result.exit_code, 0) << result.error;
+        EXPECT_LT(degrees_between(middle_normal(workplace / "out/n.png", Green::up), {-1, 0, 1}),
+                  degrees_of_16_bit)
+            << kernel;
     }
-    EXPECT_EQ(middle_normal(workplace / "out/central3.png", Green::up),
-              middle_normal(workplace / "out/sobel3.png", Green::up));
+}
+
+TEST(BumpCommand, HeightAndTexelSizeAreInOneUnitAndPerAxis) {
+    const Workplace workplace;
+    write_ramp(workplace, "ramp.png", false, 257);
+    // 1/255 of 0.51 m a texel is 2 mm; over texels 4 mm wide a slope of a half.
+    const ProgramResult result = workplace.run(
+        "relief-bake bump ramp.png out/n.png --height 0.51 --texel-size 0.004x0.5 --wrap clamp "
+        "--report out/report.json");
+    ASSERT_EQ(result.exit_code, 0) << result.error;
+    EXPECT_THAT(result.out, HasSubstr("slopes    sobel3, height 0.51 over texels of 0.004 x 0.5, "
+                                      "clamp at the border\n"));
+    EXPECT_LT(degrees_between(middle_normal(workplace / "out/n.png", Green::up), {-0.5, 0, 1}),
+              degrees_of_16_bit);
+    const json report = json::parse(workplace.read("out/report.json"));
+    EXPECT_EQ(report["strength"], 0.51);
+    EXPECT_EQ(report["texel_size"], json({0.004, 0.5}));
+    EXPECT_EQ(report["kernel_radius"], nullptr);
+}
+
+TEST(BumpCommand, EachAxisHasItsOwnBorder) {
+    const Workplace workplace;
+    write_ramp(workplace, "ramp.png", false, 257);
+    const auto left_normal = [&](const std::string& wrap) {
+        const ProgramResult result = workplace.run(
+            "relief-bake bump ramp.png out/n.png --strength 255 --kernel central3 --report "
+            "out/report.json --wrap " +
+            wrap);
+        EXPECT_EQ(result.exit_code, 0) << result.error;
+        EXPECT_EQ(json::parse(workplace.read("out/report.json"))["wrap"], wrap);
+        Report report;
+        const Image map = decode_normal_map(read_image(workplace / "out/n.png", ImageUse::data),
+                                            Green::up, FlatCode::middle, report);
+        return glm::dvec3(map.as<float>()[0], map.as<float>()[1], map.as<float>()[2]);
+    };
+    // The ramp rises by one a texel; around the seam it falls by 15 over 2 texels less the step.
+    EXPECT_LT(degrees_between(left_normal("clamp,repeat"), {-1, 0, 1}), degrees_of_16_bit);
+    EXPECT_LT(degrees_between(left_normal("repeat,clamp"), {7, 0, 1}), degrees_of_16_bit);
+    EXPECT_LT(degrees_between(left_normal("mirror,clamp"), {-0.5, 0, 1}), degrees_of_16_bit);
 }
 
 TEST(BumpCommand, NegativeStrengthTurnsBumpsIntoDents) {
@@ -207,7 +247,23 @@ INSTANTIATE_TEST_SUITE_P(
         Refused{"relief-bake bump flat.png out/n.png --strength abc", 2,
                 "--strength abc: not a number"},
         Refused{"relief-bake bump flat.png out/n.png --kernel sobel", 2,
-                "--kernel sobel: not one of central3, sobel3"},
+                "--kernel sobel: not one of forward, central3, prewitt3, sobel3, scharr3, sobel5, "
+                "scharr5, central5, central7, gaussian"},
+        Refused{"relief-bake bump flat.png out/n.png --kernel-radius 3", 2,
+                "--kernel-radius: is for --kernel gaussian"},
+        Refused{"relief-bake bump flat.png out/n.png --kernel gaussian --kernel-radius 65", 2,
+                "--kernel-radius 65: "},
+        Refused{"relief-bake bump flat.png out/n.png --wrap repeat,tile", 2,
+                "--wrap repeat,tile: not one of repeat, clamp, mirror"},
+        Refused{"relief-bake bump flat.png out/n.png --height 1", 2,
+                "--height: needs the size of a texel in the same unit (give --texel-size, or "
+                "--strength instead)"},
+        Refused{"relief-bake bump flat.png out/n.png --texel-size 1", 2,
+                "--texel-size: says in which unit --height is (give --height)"},
+        Refused{"relief-bake bump flat.png out/n.png --height 1 --texel-size 0x1", 2,
+                "--texel-size 0x1: "},
+        Refused{"relief-bake bump flat.png out/n.png --height 1 --strength 2 --texel-size 1", 2,
+                "--strength, --height: both say how deep the map is"},
         Refused{"relief-bake bump flat.png out/n.png --report flat.png", 2,
                 "--report flat.png: is also the input or the output"},
         Refused{"relief-bake bump flat.png", 2, "OUT is missing (see relief-bake bump --help)"},

@@ -10,11 +10,15 @@
 namespace relief::tools {
 
 inline Choices<Kernel> kernel_choices() {
-    return {{"central3", Kernel::central3}, {"sobel3", Kernel::sobel3}};
+    return {{"forward", Kernel::forward},   {"central3", Kernel::central3},
+            {"prewitt3", Kernel::prewitt3}, {"sobel3", Kernel::sobel3},
+            {"scharr3", Kernel::scharr3},   {"sobel5", Kernel::sobel5},
+            {"scharr5", Kernel::scharr5},   {"central5", Kernel::central5},
+            {"central7", Kernel::central7}, {"gaussian", Kernel::gaussian}};
 }
 
 inline Choices<Wrap> wrap_choices() {
-    return {{"repeat", Wrap::repeat}, {"clamp", Wrap::clamp}};
+    return {{"repeat", Wrap::repeat}, {"clamp", Wrap::clamp}, {"mirror", Wrap::mirror}};
 }
 
 inline Choices<Green> green_choices() {

@@ -23,6 +23,10 @@ struct BakeBumpOptions {
     std::filesystem::path input;
     std::filesystem::path output;
     BumpOptions bump;
+    std::optional<double> strength;
+    std::optional<double> height;
+    std::optional<glm::dvec2> texel;
+    std::optional<int> gaussian_radius;
     std::optional<int> bits;
     Green green = Green::up;
     std::optional<FlatCode> flat;
@@ -59,6 +63,45 @@ NormalMapFormat format_of(const BakeBumpOptions& options) {
             .flat = options.flat.value_or(NormalMapFormat{}.flat)};
 }
 
+/// The options of the library; throws UsageError where some contradict each other.
+BumpOptions bump_of(const BakeBumpOptions& options) {
+    if (options.strength && options.height)
+        throw UsageError("--strength, --height: both say how deep the map is");
+    if (options.height && !options.texel)
+        throw UsageError("--height: needs the size of a texel in the same unit",
+                         "give --texel-size, or --strength instead");
+    if (options.texel && !options.height)
+        throw UsageError("--texel-size: says in which unit --height is", "give --height");
+    if (options.gaussian_radius && options.bump.kernel != Kernel::gaussian)
+        throw UsageError("--kernel-radius: is for --kernel gaussian");
+    BumpOptions bump = options.bump;
+    bump.strength = options.height ? *options.height : options.strength.value_or(bump.strength);
+    bump.texel = options.texel.value_or(bump.texel);
+    bump.gaussian_radius = options.gaussian_radius.value_or(bump.gaussian_radius);
+    return bump;
+}
+
+/// "repeat", or "repeat,clamp" where the axes differ.
+std::string wrap_words(const Wraps& wrap) {
+    const std::string x = name_of(wrap.x, wrap_choices());
+    return wrap.x == wrap.y ? x : x + "," + name_of(wrap.y, wrap_choices());
+}
+
+/// "gaussian of radius 2", or the plain name.
+std::string kernel_words(const BumpOptions& bump) {
+    const std::string name = name_of(bump.kernel, kernel_choices());
+    return bump.kernel == Kernel::gaussian
+               ? fmt::format("{} of radius {}", name, bump.gaussian_radius)
+               : name;
+}
+
+/// How deep the map is taken to be.
+std::string depth_words(const BakeBumpOptions& options, const BumpOptions& bump) {
+    if (!options.height) return fmt::format("strength {:g} texels", bump.strength);
+    return fmt::format("height {:g} over texels of {:g} x {:g}", bump.strength, bump.texel.x,
+                       bump.texel.y);
+}
+
 /// What was made of which image, for the summary.
 struct Baked {
     int width = 0;
@@ -69,7 +112,7 @@ struct Baked {
     Findings findings;
 };
 
-Baked bake(const BakeBumpOptions& options, Stages& stages) {
+Baked bake(const BakeBumpOptions& options, const BumpOptions& bump, Stages& stages) {
     Baked baked;
     baked.format = format_of(options);
     const Image source =
@@ -81,11 +124,12 @@ Baked bake(const BakeBumpOptions& options, Stages& stages) {
 
     Report report;
     const Image coded = about(options.input, [&] {
-        const Image normals = stages.run("convert", [&] {
-            return normals_from_height(height_field(source), options.bump, report);
+        return stages.run("convert", [&] {
+            const auto converted = [&](const Image& height) {
+                return normal_map_from_height(height, bump, baked.format, report);
+            };
+            return source.channels == 1 ? converted(source) : converted(height_field(source));
         });
-        return stages.run("encode",
-                          [&] { return encode_normal_map(normals, baked.format, report); });
     });
     stages.run("write",
                [&] { write_image(options.output, coded, normal_map_metadata(baked.format)); });
@@ -95,21 +139,20 @@ Baked bake(const BakeBumpOptions& options, Stages& stages) {
 
 /// Millions of pixels a second through the conversion itself, reading and writing left out.
 double megapixels_per_second(const Baked& baked, const Stages& stages) {
-    const double milliseconds = stages.milliseconds("convert") + stages.milliseconds("encode");
+    const double milliseconds = stages.milliseconds("convert");
     const double pixels = static_cast<double>(baked.width) * baked.height;
     return milliseconds > 0 ? pixels / milliseconds / 1000 : 0;
 }
 
-void print_summary(const BakeBumpOptions& options, const Baked& baked, const Stages& stages) {
+void print_summary(const BakeBumpOptions& options, const BumpOptions& bump, const Baked& baked,
+                   const Stages& stages) {
     const bool is_float = baked.format.bits == 32;
     print_entry(
         "read",
         fmt::format("{}: {} x {}, {}, {} bit", options.input.string(), baked.width, baked.height,
                     counted(static_cast<std::size_t>(baked.channels), "channel"), baked.bits_read));
-    print_entry("slopes",
-                fmt::format("{}, strength {:g} texels, {} at the border",
-                            name_of(options.bump.kernel, kernel_choices()), options.bump.strength,
-                            name_of(options.bump.wrap, wrap_choices())));
+    print_entry("slopes", fmt::format("{}, {}, {} at the border", kernel_words(bump),
+                                      depth_words(options, bump), wrap_words(bump.wrap)));
     print_entry("coded", fmt::format("{} bit{}, green {}", baked.format.bits,
                                      is_float ? " float"
                                               : ", flat is " + std::string(baked.format.flat ==
@@ -125,17 +168,20 @@ void print_summary(const BakeBumpOptions& options, const Baked& baked, const Sta
     print_entry("wrote", file_and_size(options.output));
 }
 
-nlohmann::ordered_json bake_json(const BakeBumpOptions& options, const Baked& baked,
-                                 const Stages& stages) {
+nlohmann::ordered_json bake_json(const BakeBumpOptions& options, const BumpOptions& bump,
+                                 const Baked& baked, const Stages& stages) {
+    const bool has_radius = bump.kernel == Kernel::gaussian;
     return {{"tool", "relief-bake bump"},
             {"version", version()},
             {"input", options.input.string()},
             {"output", options.output.string()},
             {"width", baked.width},
             {"height", baked.height},
-            {"kernel", name_of(options.bump.kernel, kernel_choices())},
-            {"strength", options.bump.strength},
-            {"wrap", name_of(options.bump.wrap, wrap_choices())},
+            {"kernel", name_of(bump.kernel, kernel_choices())},
+            {"kernel_radius", has_radius ? nlohmann::ordered_json(bump.gaussian_radius) : nullptr},
+            {"strength", bump.strength},
+            {"texel_size", {bump.texel.x, bump.texel.y}},
+            {"wrap", wrap_words(bump.wrap)},
             {"bits", baked.format.bits},
             {"green", name_of(baked.format.green, green_choices())},
             {"flat", name_of(baked.format.flat, flat_choices())},
@@ -146,30 +192,73 @@ nlohmann::ordered_json bake_json(const BakeBumpOptions& options, const Baked& ba
 
 ExitCode run(const CLI::App& app, const BakeBumpOptions& options) {
     format_of(options);
+    const BumpOptions bump = bump_of(options);
     check(options.report, {options.input, options.output});
     require_folder_of(options.output);
     set_thread_limit(options.general.threads);
     Stages stages(options.general.quiet);
-    const Baked baked = bake(options, stages);
-    if (!options.general.quiet) print_summary(options, baked, stages);
+    const Baked baked = bake(options, bump, stages);
+    if (!options.general.quiet) print_summary(options, bump, baked, stages);
     return finish(app, options.report, options.input, baked.findings,
-                  bake_json(options, baked, stages));
+                  bake_json(options, bump, baked, stages));
+}
+
+/// "W" or "WxH".
+glm::dvec2 parse_texel(const std::string& subject, const std::string& text) {
+    const Range sizes{1e-30, 1e30, ""};
+    const std::size_t cross = text.find('x');
+    const double width = parse_number(subject, text.substr(0, cross), sizes);
+    if (cross == std::string::npos) return {width, width};
+    return {width, parse_number(subject, text.substr(cross + 1), sizes)};
+}
+
+/// "W" for both axes, or "W,W" for x and y.
+Wraps parse_wraps(const std::string& subject, const std::string& text) {
+    const std::size_t comma = text.find(',');
+    const Wrap x = parse_choice(subject, text.substr(0, comma), wrap_choices());
+    if (comma == std::string::npos) return x;
+    return {x, parse_choice(subject, text.substr(comma + 1), wrap_choices())};
+}
+
+void add_depth_options(CLI::App& app, BakeBumpOptions& options) {
+    const std::string group = "Slopes";
+    add_number(app, "--strength", "S", options.strength, {},
+               "Height in texels that the value 1.0 (white) stands for; negative turns bumps into "
+               "dents. Default: 16.")
+        ->group(group);
+    add_number(app, "--height", "H", options.height, {},
+               "Instead of --strength: the height of white in a unit of length; with "
+               "--texel-size.")
+        ->group(group);
+    add_value(app, "--texel-size", "W[xH]",
+              "Width (and height, where texels are not square) of a texel in the unit of --height.",
+              [&](const std::string& subject, const std::string& text) {
+                  options.texel = parse_texel(subject, text);
+              })
+        ->group(group);
 }
 
 void add_slope_options(CLI::App& app, BakeBumpOptions& options) {
     const std::string group = "Slopes";
-    add_number(app, "--strength", "S", options.bump.strength, {},
-               "Height in texels that the value 1.0 (white) stands for; negative turns bumps into "
-               "dents. Default: 16.")
-        ->group(group);
     add_choice(app, "--kernel", options.bump.kernel, kernel_choices(),
-               "How the slope is taken from neighbouring heights: half the difference of two "
-               "(central3, sharpest), or of three rows weighted 1 2 1 (sobel3, less noise). Both "
-               "give the same depth. Default: sobel3.")
+               "How the slope is taken from neighbouring heights; all give the same depth. "
+               "central5 and central7 are the truest on smooth maps of 16 bits or float; sobel5, "
+               "scharr5 and gaussian smooth steps and noise; forward is half a texel off. "
+               "Default: sobel3.")
         ->group(group);
-    add_choice(app, "--wrap", options.bump.wrap, wrap_choices(),
-               "What lies beyond the border: the opposite edge, for maps that tile (repeat), or "
-               "the border texel again (clamp). Default: repeat.")
+    add_value(app, "--kernel-radius", "R",
+              "Texels that --kernel gaussian reaches, 1 to 64. Default: 2.",
+              [&](const std::string& subject, const std::string& text) {
+                  options.gaussian_radius = parse_integer(subject, text, 1, largest_kernel_radius);
+              })
+        ->group(group);
+    add_value(app, "--wrap", "WORD[,WORD]",
+              "What lies beyond the border: the opposite edge, for maps that tile (repeat), "
+              "nothing, so that slopes there are one-sided (clamp), or the map mirrored (mirror). "
+              "Two words: left and right, then top and bottom. Default: repeat.",
+              [&](const std::string& subject, const std::string& text) {
+                  options.bump.wrap = parse_wraps(subject, text);
+              })
         ->group(group);
 }
 
@@ -201,14 +290,18 @@ Command add_bump_command(CLI::App& tool) {
         app, "HEIGHT", options->input,
         "Height map: grey, or colour of which the mean counts; PNG, TIFF, EXR, HDR, JPEG, ...");
     add_file(app, "OUT", options->output, "Normal map to write: .png .tif .exr");
+    add_depth_options(app, *options);
     add_slope_options(app, *options);
     add_coding_options(app, *options);
     add_report_options(app, options->report);
     add_general_options(app, options->general);
-    set_examples(app,
-                 {"relief-bake bump data/bricks-height.png out/bricks-normal.png --strength 12",
-                  "relief-bake bump data/bricks-height.png out/bricks-dx.png --green down --bits 8",
-                  "relief-bake bump data/bricks-height.png out/bricks.exr --kernel central3"});
+    set_examples(
+        app,
+        {"relief-bake bump data/bricks-height.png out/bricks-normal.png --strength 12",
+         "relief-bake bump data/bricks-height.png out/bricks-dx.png --green down --bits 8",
+         "relief-bake bump data/bricks-height.png out/bricks.exr --kernel central5 --wrap clamp",
+         "relief-bake bump data/bricks-height.png out/wall.png --height 0.02 --texel-size "
+         "0.001"});
     return {&app, [&app, options] { return run(app, *options); }};
 }
 

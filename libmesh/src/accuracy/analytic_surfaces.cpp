@@ -13,30 +13,13 @@
 #include <numbers>
 #include <utility>
 
+#include "accuracy/random.h"
 #include "relief/mesh/error.h"
 
 namespace relief {
 namespace {
 
 constexpr double full_turn = 2.0 * std::numbers::pi;
-
-/// [Steele et al. 2014]: each call gives the next number.
-class Random {
-  public:
-    explicit Random(std::uint32_t seed) : state_(seed) {}
-
-    double between(double low, double high) {
-        state_ += 0x9e3779b97f4a7c15ULL;
-        std::uint64_t bits = state_;
-        bits = (bits ^ (bits >> 30)) * 0xbf58476d1ce4e5b9ULL;
-        bits = (bits ^ (bits >> 27)) * 0x94d049bb133111ebULL;
-        bits ^= bits >> 31;
-        return low + (high - low) * (static_cast<double>(bits >> 11) * 0x1p-53);
-    }
-
-  private:
-    std::uint64_t state_;
-};
 
 struct SurfacePoint {
     glm::dvec3 position;

@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-// Normals of a height field by finite differences [Blinn 1978], kernels after [Sobel and Feldman
-// 1968] scaled to unit gain. Tangent space: x right, y up in the image, z out; heights times
-// strength are in texels, and so slopes are plain numbers. All sums in double, rounded once.
-// Non-finite heights are filled first (height_field.cpp) and counted; a bad image or strength
-// throws. Tests: tests/mesh/image/bump_test.cpp.
+// Normals, codes and slopes of a height field [Blinn 1978], its rows shared out among threads (the
+// rows themselves: bump_rows.cpp). Non-finite heights show in the slopes that they touch; only then
+// are they looked for, filled (height_field.cpp) and counted, and all is done again. A bad image,
+// strength or texel throws. Tests: tests/mesh/image/bump_test.cpp.
 #include "relief/mesh/bump.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 
+#include "image/bump_rows.h"
 #include "image/height_field.h"
 #include "parallel.h"
 #include "relief/mesh/error.h"
@@ -18,139 +19,109 @@
 namespace relief {
 namespace {
 
-constexpr std::size_t texels_per_piece = 1 << 14;
-// Differences of floats reach 7e38; with this, slopes and their squares stay in double's range.
+constexpr std::size_t texels_per_piece = 1 << 16;
+// Differences of floats reach 7e38; with these, slopes and their squares stay in double's range.
 constexpr double largest_strength = 1e30;
-
-/// The two neighbours of a place along one axis, and how many steps lie between them.
-struct Neighbours {
-    int before = 0;
-    int after = 0;
-    double inverse_distance = 0.5;
-};
-
-Neighbours neighbours_of(int place, int count, Wrap wrap) {
-    if (wrap == Wrap::repeat)
-        return {place == 0 ? count - 1 : place - 1, place == count - 1 ? 0 : place + 1, 0.5};
-    const int before = std::max(place - 1, 0);
-    const int after = std::min(place + 1, count - 1);
-    // At the border the difference is one-sided, over one step; a single texel has no slope.
-    return {before, after, after - before == 2 ? 0.5 : 1.0};
-}
-
-/// The three rows that the kernels read, and the row's own scale across them.
-struct Rows {
-    const float* above;
-    const float* here;
-    const float* below;
-    double inverse_distance;
-};
-
-struct Slope {
-    double right;
-    double up;
-};
-
-/// Half the difference of the two neighbours.
-struct Central3 {
-    static Slope slope(const Rows& rows, int left, int column, int right) {
-        const auto c = static_cast<std::size_t>(column);
-        return {static_cast<double>(rows.here[right]) - static_cast<double>(rows.here[left]),
-                static_cast<double>(rows.above[c]) - static_cast<double>(rows.below[c])};
-    }
-};
-
-/// Differences of three lines, weighted 1 2 1 and divided by 4. The outer two are added first, so
-/// that a mirrored map gives mirrored bits.
-struct Sobel3 {
-    static Slope slope(const Rows& rows, int left, int column, int right) {
-        const auto across = [&](const float* row) {
-            return static_cast<double>(row[right]) - static_cast<double>(row[left]);
-        };
-        const auto along = [&](int at) {
-            return static_cast<double>(rows.above[at]) - static_cast<double>(rows.below[at]);
-        };
-        return {((across(rows.above) + across(rows.below)) + 2.0 * across(rows.here)) * 0.25,
-                ((along(left) + along(right)) + 2.0 * along(column)) * 0.25};
-    }
-};
-
-/// normalize(-slope, 1); adding zero turns -0 into 0, so that flat is (0,0,1) to the bit.
-void store_normal(float* normal, double right, double up) {
-    const double scale = 1.0 / std::sqrt(right * right + up * up + 1.0);
-    normal[0] = static_cast<float>(0.0 - right * scale);
-    normal[1] = static_cast<float>(0.0 - up * scale);
-    normal[2] = static_cast<float>(scale);
-}
-
-template <typename Difference>
-void row_of_normals(const Rows& rows, int width, const BumpOptions& options, float* normals) {
-    const double up_scale = rows.inverse_distance * options.strength;
-    const auto texel = [&](int left, int column, int right, double right_scale) {
-        const Slope slope = Difference::slope(rows, left, column, right);
-        store_normal(normals + static_cast<std::ptrdiff_t>(column) * 3, slope.right * right_scale,
-                     slope.up * up_scale);
-    };
-    const auto border = [&](int column) {
-        const Neighbours beside = neighbours_of(column, width, options.wrap);
-        texel(beside.before, column, beside.after, beside.inverse_distance * options.strength);
-    };
-    border(0);
-    const double right_scale = 0.5 * options.strength;
-    for (int column = 1; column < width - 1; ++column)
-        texel(column - 1, column, column + 1, right_scale);
-    if (width > 1) border(width - 1);
-}
-
-template <typename Difference>
-void all_normals(const float* heights, const BumpOptions& options, Image& result) {
-    const int width = result.width;
-    const int height = result.height;
-    float* normals = result.as<float>().data();
-    const std::size_t rows_per_piece =
-        std::max<std::size_t>(1, texels_per_piece / static_cast<std::size_t>(width));
-    const auto rows = static_cast<std::size_t>(height);
-    parallel_for(rows, rows_per_piece, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t row = begin; row < end; ++row) {
-            const Neighbours beside = neighbours_of(static_cast<int>(row), height, options.wrap);
-            const auto line = [&](std::size_t r) {
-                return heights + r * static_cast<std::size_t>(width);
-            };
-            const Rows three{line(static_cast<std::size_t>(beside.before)), line(row),
-                             line(static_cast<std::size_t>(beside.after)), beside.inverse_distance};
-            row_of_normals<Difference>(three, width, options,
-                                       normals + row * static_cast<std::size_t>(width) * 3);
-        }
-    });
-}
+constexpr double largest_texel = 1e30;
 
 void check(const Image& height, const BumpOptions& options) {
     if (height.empty()) throw InvalidInput("an empty height field has no normals");
-    if (height.channels != 1 || height.bits() != 32) {
-        throw InvalidInput(fmt::format("a height field has one float channel, not {} of {} bits",
-                                       height.channels, height.bits()));
-    }
+    if (height.channels != 1)
+        throw InvalidInput(fmt::format("a height field has one channel, not {}", height.channels));
     if (!(std::abs(options.strength) <= largest_strength)) {
         throw InvalidInput(
             fmt::format("the strength {} is not within +-{}", options.strength, largest_strength));
     }
+    for (const double size : {options.texel.x, options.texel.y}) {
+        if (!(size >= 1.0 / largest_texel && size <= largest_texel)) {
+            throw InvalidInput(fmt::format("the texel size {} is not within {} and {}", size,
+                                           1.0 / largest_texel, largest_texel));
+        }
+    }
+    gradient_kernel(options.kernel, options.gaussian_radius);
+}
+
+/// All rows, on all threads. False where a height is not finite.
+bool make_all_rows(const HeightRows& heights, const BumpOptions& options,
+                   const BumpTarget& target) {
+    const std::size_t grain =
+        std::max<std::size_t>(1, texels_per_piece / static_cast<std::size_t>(heights.width));
+    std::atomic<bool> finite = true;
+    parallel_for(static_cast<std::size_t>(heights.height), grain,
+                 [&](std::size_t begin, std::size_t end) {
+                     if (!make_bump_rows(heights, options, target, static_cast<int>(begin),
+                                         static_cast<int>(end)))
+                         finite = false;
+                 });
+    return finite;
+}
+
+template <typename Sample>
+std::function<const void*(int)> rows_of(std::span<const Sample> samples, int width) {
+    return [=](int row) { return samples.data() + static_cast<std::ptrdiff_t>(row) * width; };
+}
+
+/// From the image as it is; where that has holes, from a copy without.
+void make_image_rows(const Image& height, const BumpOptions& options, const BumpTarget& target,
+                     Report& report) {
+    check(height, options);
+    HeightRows heights{height.width, height.height, height.bits(), {}};
+    std::visit(
+        [&](const auto& samples) { heights.row = rows_of(std::span(samples), height.width); },
+        height.samples);
+    if (make_all_rows(heights, options, target)) return;
+    const std::vector<float> whole = filled_holes(height, options.wrap, report);
+    heights.row = rows_of(std::span(whole), height.width);
+    make_all_rows(heights, options, target);
+}
+
+/// Where the rows of an image are written to.
+template <typename Sample>
+std::function<void*(int)> target_rows(Image& image) {
+    Sample* const first = image.as<Sample>().data();
+    const std::ptrdiff_t row_size = static_cast<std::ptrdiff_t>(image.width) * image.channels;
+    return [=](int row) { return first + row * row_size; };
+}
+
+Image floats_from_height(const Image& height, int channels, BumpResult result,
+                         const BumpOptions& options, Report& report) {
+    check(height, options);
+    Image image = make_image(height.width, height.height, channels, 32, ColorSpace::data);
+    make_image_rows(height, options, {result, {}, target_rows<float>(image)}, report);
+    return image;
 }
 
 }  // namespace
 
 Image normals_from_height(const Image& height, const BumpOptions& options, Report& report) {
+    return floats_from_height(height, 3, BumpResult::normals, options, report);
+}
+
+Image slopes_from_height(const Image& height, const BumpOptions& options, Report& report) {
+    return floats_from_height(height, 2, BumpResult::slopes, options, report);
+}
+
+void normal_map_from_height(const Image& height, const BumpOptions& options,
+                            const NormalMapFormat& format, Image& result, Report& report) {
     check(height, options);
-    Image result = make_image(height.width, height.height, 3, 32, ColorSpace::data);
-    const std::vector<float> whole = filled_holes(height, options.wrap, report);
-    const float* heights = whole.empty() ? height.as<float>().data() : whole.data();
-    switch (options.kernel) {
-        case Kernel::central3:
-            all_normals<Central3>(heights, options, result);
-            break;
-        case Kernel::sobel3:
-            all_normals<Sobel3>(heights, options, result);
-            break;
-    }
+    const bool fits = result.width == height.width && result.height == height.height &&
+                      result.channels == 3 && result.bits() == format.bits;
+    if (!fits) result = make_image(height.width, height.height, 3, format.bits, ColorSpace::data);
+    result.color_space = ColorSpace::data;
+    BumpTarget target{BumpResult::codes, format, {}};
+    if (format.bits == 8)
+        target.row = target_rows<std::uint8_t>(result);
+    else if (format.bits == 16)
+        target.row = target_rows<std::uint16_t>(result);
+    else
+        target.row = target_rows<float>(result);
+    make_image_rows(height, options, target, report);
+}
+
+Image normal_map_from_height(const Image& height, const BumpOptions& options,
+                             const NormalMapFormat& format, Report& report) {
+    Image result;
+    normal_map_from_height(height, options, format, result, report);
     return result;
 }
 

@@ -12,6 +12,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "image/border.h"
 #include "parallel.h"
 #include "relief/mesh/error.h"
 
@@ -24,7 +25,7 @@ constexpr std::size_t texels_per_piece = 1 << 14;
 struct Lattice {
     int width = 0;
     int height = 0;
-    Wrap wrap = Wrap::repeat;
+    Wraps wrap;
 
     [[nodiscard]] std::size_t size() const {
         return static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
@@ -32,12 +33,12 @@ struct Lattice {
 
     /// The texel at a place, or -1 where there is nothing.
     [[nodiscard]] std::ptrdiff_t at(int column, int row) const {
-        if (wrap == Wrap::repeat) {
-            column = (column % width + width) % width;
-            row = (row % height + height) % height;
-        } else if (column < 0 || row < 0 || column >= width || row >= height) {
-            return -1;
-        }
+        const auto is_beyond = [](int place, int count, Wrap rule) {
+            return rule == Wrap::clamp && (place < 0 || place >= count);
+        };
+        if (is_beyond(column, width, wrap.x) || is_beyond(row, height, wrap.y)) return -1;
+        column = place_within(column, width, wrap.x);
+        row = place_within(row, height, wrap.y);
         return static_cast<std::ptrdiff_t>(row) * width + column;
     }
 };
@@ -160,7 +161,7 @@ Image height_field(const Image& image) {
     return result;
 }
 
-std::vector<float> filled_holes(const Image& height, Wrap wrap, Report& report) {
+std::vector<float> filled_holes(const Image& height, const Wraps& wrap, Report& report) {
     const std::span<const float> heights = height.as<float>();
     if (all_finite(heights)) return {};
     const Lattice lattice{height.width, height.height, wrap};

@@ -18,6 +18,6 @@ namespace relief {
 ///         copy in which each non-finite height is the mean of the finite ones in the smallest
 ///         square around it that has any (beyond the border by `wrap`: the tiled plane, or
 ///         nothing), or 0 where no height of the image is finite
-std::vector<float> filled_holes(const Image& height, Wrap wrap, Report& report);
+std::vector<float> filled_holes(const Image& height, const Wraps& wrap, Report& report);
 
 }  // namespace relief

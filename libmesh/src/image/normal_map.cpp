@@ -11,6 +11,7 @@
 #include <cmath>
 #include <limits>
 
+#include "image/normal_coding.h"
 #include "parallel.h"
 #include "relief/mesh/error.h"
 
@@ -48,45 +49,11 @@ void for_each_texel(std::size_t count, Report& report, Each each) {
                            });
 }
 
-/// Codes of 8 or 16 bits under one of the two meanings of zero.
-template <typename Code>
-struct Coding {
-    static constexpr double largest = std::numeric_limits<Code>::max();
-    static constexpr double middle = (largest + 1.0) / 2.0;
-    FlatCode flat;
-
-    [[nodiscard]] Code encoded(double component) const {
-        // `half` has its zero between two codes, so that only a sum can be rounded; there and here
-        // the cast cuts off, which is a nearest code after adding a half.
-        if (flat == FlatCode::half)
-            return static_cast<Code>(largest / 2.0 + largest / 2.0 * component + 0.5);
-        const double steps = (middle - 1.0) * component;
-        return static_cast<Code>(static_cast<int>(middle) +
-                                 static_cast<int>(steps + std::copysign(0.5, steps)));
-    }
-
-    [[nodiscard]] double decoded(Code code) const {
-        if (flat == FlatCode::middle) return std::max((code - middle) / (middle - 1.0), -1.0);
-        return 2.0 * code / largest - 1.0;
-    }
-};
-
-/// Float samples are scaled to [0,1], where zero is exactly 0.5 and no question of codes arises.
-template <>
-struct Coding<float> {
-    FlatCode flat;
-
-    [[nodiscard]] static float encoded(double component) {
-        return static_cast<float>((component + 1.0) / 2.0);
-    }
-    [[nodiscard]] static double decoded(float sample) { return 2.0 * sample - 1.0; }
-};
-
 template <typename Sample>
 void encode(std::span<const float> normals, const NormalMapFormat& format, Image& result,
             Report& report) {
     const std::span<Sample> samples = result.as<Sample>();
-    const Coding<Sample> coding{format.flat};
+    const NormalCoding<Sample> coding{format.flat};
     const double green = format.green == Green::up ? 1.0 : -1.0;
     for_each_texel(normals.size() / 3, report, [&](std::size_t texel, Report& found) {
         const float* normal = &normals[texel * 3];
@@ -104,7 +71,7 @@ void decode(const Image& map, Green green, FlatCode flat, std::span<float> norma
             Report& report) {
     const std::span<const Sample> samples = map.as<Sample>();
     const auto channels = static_cast<std::size_t>(map.channels);
-    const Coding<Sample> coding{flat};
+    const NormalCoding<Sample> coding{flat};
     const double up = green == Green::up ? 1.0 : -1.0;
     for_each_texel(normals.size() / 3, report, [&](std::size_t texel, Report& found) {
         const Sample* sample = &samples[texel * channels];

@@ -23,8 +23,11 @@ using testing::ElementsAre;
 using testing::ElementsAreArray;
 using testing::HasSubstr;
 
-constexpr Kernel all_kernels[] = {Kernel::central3, Kernel::sobel3};
-constexpr Wrap all_wraps[] = {Wrap::repeat, Wrap::clamp};
+// The symmetric ones; Kernel::forward is in bump_kernels_test.cpp.
+constexpr Kernel all_kernels[] = {Kernel::central3, Kernel::prewitt3, Kernel::sobel3,
+                                  Kernel::scharr3,  Kernel::sobel5,   Kernel::scharr5,
+                                  Kernel::central5, Kernel::central7, Kernel::gaussian};
+constexpr Wrap all_wraps[] = {Wrap::repeat, Wrap::clamp, Wrap::mirror};
 constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 constexpr float infinity = std::numeric_limits<float>::infinity();
 
@@ -282,8 +285,6 @@ TEST(Bump, WhatIsNoHeightFieldIsRefused) {
     EXPECT_THROW(normals_from_height(Image{}, {}, report), InvalidInput);
     EXPECT_THROW(normals_from_height(make_image(2, 2, 3, 32, ColorSpace::data), {}, report),
                  InvalidInput);
-    EXPECT_THROW(normals_from_height(make_image(2, 2, 1, 8, ColorSpace::data), {}, report),
-                 InvalidInput);
     for (const double strength : {1e31, -1e31, std::nan(""), HUGE_VAL}) {
         BumpOptions options;
         options.strength = strength;
@@ -377,8 +378,8 @@ double error_of(Kernel kernel, int wavelength) {
     return std::sqrt(squares / (wavelength * wavelength));
 }
 
-TEST(BumpConvergence, BothKernelsAreOfSecondOrder) {
-    for (const Kernel kernel : all_kernels) {
+TEST(BumpConvergence, SmallKernelsAreOfSecondOrder) {
+    for (const Kernel kernel : {Kernel::central3, Kernel::sobel3}) {
         for (const int wavelength : {16, 32, 64, 128}) {
             const double order =
                 std::log2(error_of(kernel, wavelength) / error_of(kernel, 2 * wavelength));
@@ -401,7 +402,7 @@ TEST(BumpConvergence, OnASineTheErrorsAreThePredictedOnes) {
     }
     const double predicted = std::sqrt(squares / wavelength) * 180.0 / std::numbers::pi;
     const Image height = heights_of(wavelength, 4, [&](int x, int) { return std::sin(k * x) / k; });
-    for (const Kernel kernel : all_kernels) {
+    for (const Kernel kernel : {Kernel::central3, Kernel::prewitt3, Kernel::sobel3}) {
         const Image normals = normals_of(height, {kernel, Wrap::repeat, 1.0});
         double found = 0.0;
         for (int x = 0; x < wavelength; ++x) {

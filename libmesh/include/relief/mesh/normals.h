@@ -13,6 +13,7 @@
 #include <span>
 #include <vector>
 
+#include "relief/mesh/arithmetic.h"
 #include "relief/mesh/report.h"
 
 namespace relief {
@@ -28,16 +29,11 @@ enum class NormalWeight {
     area_angle,   ///< a times its area.
 };
 
-/// What votes are computed in. Their sums are rounded to the same bits in any order in both.
-enum class Arithmetic {
-    float64,  ///< The normal that exact arithmetic on the float positions would give.
-    /// Edges and weights in float; triangles narrower than 1e-5 of their edges in double all the
-    /// same.
-    float32,
-};
-
 struct NormalOptions {
     NormalWeight weight = NormalWeight::angle;
+    /// What votes are computed in. float64: the result is the normal that exact arithmetic on the
+    /// float positions would give. float32: edges and weights in float; triangles narrower than
+    /// 1e-5 of their edges in double all the same. Sums are rounded to the same bits in any order.
     Arithmetic arithmetic = Arithmetic::float64;
     /// Vertices no further apart than this, also by way of others, share their normal, so that
     /// texture seams do not show. 0: those at equal positions (+0 equals -0). Absent: none do.

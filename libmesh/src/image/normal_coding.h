@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// One component of a unit normal as a stored sample, and back: the only home of these formulas.
+/// Tests: tests/mesh/image/normal_map_test.cpp.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+
+#include "relief/mesh/normal_map.h"
+#include "vector_targets.h"
+
+namespace relief {
+
+/// Codes of 8 or 16 bits under one of the two meanings of zero. Real: what to compute in.
+template <typename Code, typename Real = double>
+struct NormalCoding {
+    static constexpr Real largest = std::numeric_limits<Code>::max();
+    static constexpr Real middle = (largest + 1) / 2;
+    FlatCode flat;
+
+    // The cast cuts off, which is a nearest code after adding a half. Without branches, so that
+    // loops become vector instructions.
+    RELIEF_INLINE static Code to_half(Real component) {
+        // Its zero lies between two codes, so that only a sum can be rounded.
+        return static_cast<Code>(static_cast<std::int32_t>(largest / 2 + largest / 2 * component +
+                                                           static_cast<Real>(0.5)));
+    }
+    RELIEF_INLINE static Code to_middle(Real component) {
+        const Real steps = (middle - 1) * component;
+        return static_cast<Code>(
+            static_cast<std::int32_t>(middle) +
+            static_cast<std::int32_t>(steps + std::copysign(static_cast<Real>(0.5), steps)));
+    }
+
+    [[nodiscard]] Code encoded(Real component) const {
+        return flat == FlatCode::half ? to_half(component) : to_middle(component);
+    }
+
+    [[nodiscard]] Real decoded(Code code) const {
+        if (flat == FlatCode::middle) return std::max((code - middle) / (middle - 1), Real{-1});
+        return 2 * code / largest - 1;
+    }
+};
+
+/// Float samples are scaled to [0,1], where zero is exactly 0.5 and no question of codes arises.
+template <typename Real>
+struct NormalCoding<float, Real> {
+    FlatCode flat;
+
+    RELIEF_INLINE static float encoded(Real component) {
+        return static_cast<float>((component + 1) / 2);
+    }
+    [[nodiscard]] static Real decoded(float sample) {
+        return Real{2} * static_cast<Real>(sample) - 1;
+    }
+};
+
+}  // namespace relief
