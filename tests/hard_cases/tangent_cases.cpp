@@ -132,7 +132,7 @@ Mesh between_handednesses() {
 
 HardCase texture_scale_case(float scale) {
     return MeshCase(fmt::format("texture of size {:g}", scale),
-                    "A textured_torus, all its texture coordinates multiplied.",
+                    "A torus with texture, all its texture coordinates multiplied.",
                     scale < 1e-20F
                         ? "MikkTSpace and meshoptimizer: five in six tangents lean, measured"
                         : "MikkTSpace: five in six tangents lean, measured",

@@ -85,8 +85,9 @@ TEST_P(HelpPage, ShowsExamplesThatRun) {
 INSTANTIATE_TEST_SUITE_P(Tools, HelpPage,
                          testing::Values("relief-mesh", "relief-mesh process", "relief-mesh info",
                                          "relief-mesh decimate", "relief-mesh subdivide",
-                                         "relief-mesh check", "relief-mesh conformance",
-                                         "relief-bake", "relief-bake bump", "relief-view"));
+                                         "relief-mesh check", "relief-mesh compare",
+                                         "relief-mesh conformance", "relief-bake",
+                                         "relief-bake bump", "relief-view"));
 
 }  // namespace
 }  // namespace relief::tools

@@ -47,15 +47,41 @@ TEST(CompareCommand, FormatsOrderAndSplitsDoNotMatter) {
          {"data/vase.obj out/vase.glb", "out/vase.glb data/vase.obj", "out/vase.glb out/vase.ply",
           "out/vase.ply data/vase.obj", "out/vase.glb out/vase.glb"}) {
         SCOPED_TRACE(pair);
-        const json result = compared(workplace, pair + " --strict --max-angle 0.01");
+        const json result = compared(workplace, pair);
         EXPECT_GT(result["triangles"]["equal"].get<int>(), 0);
         EXPECT_EQ(result["triangles"]["only_in_a"], 0);
         EXPECT_EQ(result["triangles"]["only_in_b"], 0);
         EXPECT_LT(result["normals"]["max"].get<double>(), 0.01);
         EXPECT_TRUE(result["by_texture_coordinate"].get<bool>());
-        EXPECT_TRUE(result["within"].get<bool>());
-        EXPECT_TRUE(result["complete"].get<bool>());
     }
+    const json same = compared(workplace, "out/vase.glb out/vase.glb --strict --max-angle 0.01");
+    EXPECT_EQ(same["normals"]["corners"], 17280);
+    EXPECT_TRUE(same["within"].get<bool>());
+    EXPECT_TRUE(same["complete"].get<bool>());
+}
+
+TEST(CompareCommand, WhatOneFileLacksDoesNotPassUnnoticed) {
+    const Workplace workplace;
+    ASSERT_EQ(workplace.run("relief-mesh process data/vase.obj out/vase.glb --tangents mikktspace")
+                  .exit_code,
+              0);
+    ASSERT_EQ(
+        workplace.run("relief-mesh process out/vase.glb out/lost.glb --tangents none").exit_code,
+        0);
+    // Tangents were lost on the way: the normals are within any angle.
+    EXPECT_EQ(
+        workplace.run("relief-mesh compare out/vase.glb out/lost.glb --max-angle 0").exit_code, 0);
+    const ProgramResult strict =
+        workplace.run("relief-mesh compare out/vase.glb out/lost.glb --max-angle 0 --strict");
+    EXPECT_EQ(strict.exit_code, 3);
+    EXPECT_THAT(strict.out, HasSubstr("tangents  only in A\n"));
+    EXPECT_FALSE(compared(workplace, "out/lost.glb out/vase.glb")["complete"].get<bool>());
+
+    const ProgramResult nothing =
+        workplace.run("relief-mesh compare data/vase.obj out/vase.glb --max-angle 180 --quiet");
+    EXPECT_EQ(nothing.exit_code, 1);
+    EXPECT_THAT(nothing.error, HasSubstr("out/vase.glb: has neither normals nor tangents in common "
+                                         "with data/vase.obj, so that --max-angle says nothing"));
 }
 
 TEST(CompareCommand, SaysWhereAndByHowMuchNormalsDiffer) {
@@ -69,8 +95,9 @@ TEST(CompareCommand, SaysWhereAndByHowMuchNormalsDiffer) {
     EXPECT_THAT(result.out,
                 HasSubstr("matched   2 triangles by position and texture coordinate\n"));
     EXPECT_THAT(result.out, Not(HasSubstr("unmatched")));
-    EXPECT_THAT(result.out, HasSubstr("largest 30 degrees at 6 corners\n"));
-    EXPECT_THAT(result.out, HasSubstr("5 to 0.01, 1 to 45 degrees\n"));
+    EXPECT_THAT(result.out, HasSubstr("normals   6 corners: rms "));
+    EXPECT_THAT(result.out,
+                HasSubstr("largest 30 degrees\n          5 up to 0.01, 1 up to 45 degrees\n"));
     EXPECT_THAT(result.out, HasSubstr("worst     normal: 30 degrees at (1, -1, 0), corner "));
 
     const json all = compared(workplace, "square.obj other.obj --ignore-uv");

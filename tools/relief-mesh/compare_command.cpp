@@ -49,6 +49,12 @@ ExitCode judge(const CLI::App& app, const CompareOptions& options, const Compare
             fmt::format("has no triangle in common with {} (try --world, --tolerance, --ignore-uv)",
                         options.request.a.string()));
     }
+    if (options.max_angle && !compared.has_any()) {
+        return fail(fmt::format(
+            "has neither normals nor tangents in common with {}, so that --max-angle says nothing "
+            "(relief-mesh process gives both files theirs)",
+            options.request.a.string()));
+    }
     if (options.max_angle && !compared.is_within(*options.max_angle)) {
         return fail(fmt::format("differs from {} by more than {} degrees: {}",
                                 options.request.a.string(), *options.max_angle,
@@ -118,12 +124,15 @@ Command add_compare_command(CLI::App& tool) {
     const auto options = std::make_shared<CompareOptions>();
     add_file(app, "A", options->request.a, "Model to read: .glb .gltf .obj .ply .stl .off");
     add_file(app, "B", options->request.b, "Model to compare with it; formats may differ.");
-    add_number(app, "--max-angle", "DEG", options->max_angle, {0.0, 180.0, "degrees"},
-               "Exit with 1 if a normal or tangent differs by more, or a tangent's sign does.")
+    add_number(
+        app, "--max-angle", "DEG", options->max_angle, {0.0, 180.0, "degrees"},
+        "Exit with 1 if a normal or tangent differs by more, or a tangent's sign does, or if "
+        "there is none to compare.")
         ->group("Verdict");
-    add_switch(app, "--strict", options->strict,
-               "Exit with 3 if a triangle has no partner or no certain one, or a direction is "
-               "zero or not finite.")
+    add_switch(
+        app, "--strict", options->strict,
+        "Exit with 3 if a triangle has no partner or no certain one, normals or tangents are "
+        "in one file alone, or a direction is zero or not finite.")
         ->group("Verdict");
     add_matching_options(app, options->request);
     add_switch(app, "--json", options->json,
@@ -135,9 +144,12 @@ Command add_compare_command(CLI::App& tool) {
                "primitives [name, triangles, only_in_a, and the same again], max_angle, within, "
                "complete.");
     add_general_options(app, options->general);
-    set_examples(app, {"relief-mesh compare data/vase.obj out/vase.glb",
-                       "relief-mesh compare data/vase.obj out/vase.glb --max-angle 0.01 --strict",
-                       "relief-mesh compare out/vase.glb out/vase-flat.glb --ignore-uv --json"});
+    set_examples(app,
+                 {"relief-mesh process data/vase.obj out/vase.glb --tangents mikktspace",
+                  "relief-mesh process data/vase.obj out/vase-area.glb --tangents area-weighted",
+                  "relief-mesh compare out/vase.glb out/vase-area.glb",
+                  "relief-mesh compare out/vase.glb out/vase-area.glb --max-angle 5 --strict",
+                  "relief-mesh compare out/vase.glb data/vase.obj --ignore-uv --json"});
     return {&app, [&app, options] { return run(app, *options); }};
 }
 

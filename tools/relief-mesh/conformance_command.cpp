@@ -87,7 +87,7 @@ std::string in_words(const Result& result) {
     const Judgement& j = result.judgement;
     std::string text =
         fmt::format("{}: {} of {} judged", verdict(result), j.judged, counted(j.corners, "corner"));
-    if (result.group != KitGroup::stability) {
+    if (result.group != KitGroup::stability && j.judged != 0) {
         text += fmt::format(", degrees off {:.2g} mean, {:.2g} for 99 %, {:.2g} at most",
                             j.degrees.mean, j.degrees.p99, j.degrees.max);
     }
@@ -132,10 +132,13 @@ void show_text(const std::vector<Result>& results) {
         lines.push_back(fmt::format("{:<{}}  {}", result.name, longest, in_words(result)));
     print_entry("meshes", lines);
     const Scores scores(results);
-    print_entry("verdict",
-                fmt::format("{}: {} of {} meshes; usable tangents on {} of {} hard ones",
-                            scores.conforms() ? "conforms" : "DIFFERS", scores.conforming.passed,
-                            scores.conforming.meshes, scores.usable.passed, scores.usable.meshes));
+    const Score& conforming = scores.conforming;
+    print_entry(
+        "verdict",
+        fmt::format("{} on {} of {} meshes; usable tangents on {} of {} hard ones",
+                    scores.conforms() ? "conforms" : "DIFFERS",
+                    scores.conforms() ? conforming.passed : conforming.meshes - conforming.passed,
+                    conforming.meshes, scores.usable.passed, scores.usable.meshes));
 }
 
 const char* word(KitGroup group) {
@@ -182,7 +185,7 @@ void show_json(const std::vector<Result>& results) {
     nlohmann::ordered_json meshes = nlohmann::ordered_json::array();
     for (const Result& result : results)
         meshes.push_back(json_of(result));
-    print_json(nlohmann::ordered_json{{"tool", "relief-mesh"},
+    print_json(nlohmann::ordered_json{{"tool", "relief-mesh conformance"},
                                       {"version", version()},
                                       {"conforms", scores.conforms()},
                                       {"stable", scores.is_stable()},

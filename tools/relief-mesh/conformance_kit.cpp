@@ -62,6 +62,7 @@ std::vector<KitMesh> read_kit(const std::filesystem::path& folder) {
         std::vector<KitMesh> kit;
         for (const nlohmann::json& entry : list.at("meshes"))
             kit.push_back(read_entry(entry, folder));
+        if (kit.empty()) throw FileError(file, "names no meshes");
         return kit;
     } catch (const nlohmann::json::exception& error) {
         throw FileError(file, error.what());

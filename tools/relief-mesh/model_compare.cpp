@@ -151,8 +151,8 @@ std::vector<const ComparedPart*> parts_of(const ComparedModel& model) {
     return parts;
 }
 
-/// Corners of primitives that lack an attribute are not compared.
-void leave_out_absent(const ComparedModels& models, CornerDifferences& differences) {
+/// Corners of primitives that lack an attribute are not compared, but counted where only one does.
+void leave_out_absent(ComparedModels& models, CornerDifferences& differences) {
     constexpr float not_compared = -1.0F;
     const auto of_a = parts_of(models.a);
     const auto of_b = parts_of(models.b);
@@ -161,6 +161,8 @@ void leave_out_absent(const ComparedModels& models, CornerDifferences& differenc
         if (partner == no_corner_matched) continue;
         const ComparedPart& a = *of_a[corner / 3];
         const ComparedPart& b = *of_b[partner / 3];
+        models.normals_in_one += a.has_normals != b.has_normals ? 1 : 0;
+        models.tangents_in_one += a.has_tangents != b.has_tangents ? 1 : 0;
         if (!differences.normals.empty() && !(a.has_normals && b.has_normals))
             differences.normals[corner] = not_compared;
         if (!differences.tangents.empty() && !(a.has_tangents && b.has_tangents)) {
@@ -181,8 +183,8 @@ void count_unmatched(std::vector<ComparedPart>& parts, const std::vector<std::ui
 
 std::string degrees_in_words(const AngleDistribution& angles) {
     return fmt::format(
-        "rms {:.4g}, mean {:.4g}, 99 of 100 within {:.4g}, largest {:.4g} degrees at {}",
-        angles.rms, angles.mean, angles.p99, angles.max, counted(angles.count, "corner"));
+        "{}: rms {:.4g}, mean {:.4g}, 99 of 100 within {:.4g}, largest {:.4g} degrees",
+        counted(angles.count, "corner"), angles.rms, angles.mean, angles.p99, angles.max);
 }
 
 std::string histogram_in_words(const AngleDistribution& angles) {
@@ -190,7 +192,7 @@ std::string histogram_in_words(const AngleDistribution& angles) {
     for (std::size_t i = 0; i < angles.histogram.size(); ++i) {
         if (angles.histogram[i] != 0)
             bins.push_back(
-                fmt::format("{} to {}", angles.histogram[i], AngleDistribution::bounds[i]));
+                fmt::format("{} up to {}", angles.histogram[i], AngleDistribution::bounds[i]));
     }
     return fmt::format("{} degrees", fmt::join(bins, ", "));
 }
@@ -200,7 +202,8 @@ std::string absence(bool in_a, bool in_b) {
     return in_a ? "only in A" : in_b ? "only in B" : "in neither";
 }
 
-std::vector<std::string> attribute_lines(const AngleDistribution& angles, bool in_a, bool in_b) {
+std::vector<std::string> attribute_lines(const AngleDistribution& angles, bool in_a, bool in_b,
+                                         std::size_t in_one) {
     if (!in_a || !in_b) return {absence(in_a, in_b)};
     std::vector<std::string> lines;
     if (angles.count != 0) lines = {degrees_in_words(angles), histogram_in_words(angles)};
@@ -208,6 +211,8 @@ std::vector<std::string> attribute_lines(const AngleDistribution& angles, bool i
         lines.push_back(
             fmt::format("{} where one is zero or not finite", counted(angles.undefined, "corner")));
     }
+    if (in_one != 0)
+        lines.push_back(fmt::format("{} with them in one file alone", counted(in_one, "corner")));
     if (lines.empty()) lines.emplace_back("no corner with both");
     return lines;
 }
@@ -377,7 +382,14 @@ bool ComparedModels::is_within(double degrees) const {
 
 bool ComparedModels::is_complete() const {
     return match.only_a.empty() && match.only_b.empty() && match.ambiguous == 0 &&
-           all.normals.undefined + all.tangents.undefined == 0;
+           all.normals.undefined + all.tangents.undefined == 0 &&
+           normals_in_one + tangents_in_one == 0;
+}
+
+bool ComparedModels::has_any() const {
+    return all.normals.count + all.normals.undefined + all.tangents.count +
+               all.tangents.undefined !=
+           0;
 }
 
 ComparedModels compare_models(const CompareRequest& request) {
@@ -414,12 +426,14 @@ void print_text(const ComparedModels& compared) {
         print_entry("ambiguous", fmt::format("{} paired with one of several at the same place",
                                              counted(compared.match.ambiguous, "triangle")));
     }
-    print_entry("normals", attribute_lines(compared.all.normals,
-                                           any_has(compared.a, &ComparedPart::has_normals),
-                                           any_has(compared.b, &ComparedPart::has_normals)));
+    print_entry(
+        "normals",
+        attribute_lines(compared.all.normals, any_has(compared.a, &ComparedPart::has_normals),
+                        any_has(compared.b, &ComparedPart::has_normals), compared.normals_in_one));
     print_entry("tangents", attribute_lines(compared.all.tangents,
                                             any_has(compared.a, &ComparedPart::has_tangents),
-                                            any_has(compared.b, &ComparedPart::has_tangents)));
+                                            any_has(compared.b, &ComparedPart::has_tangents),
+                                            compared.tangents_in_one));
     if (compared.all.sign_differences != 0) {
         print_entry("signs", fmt::format("{} of other handedness",
                                          counted(compared.all.sign_differences, "tangent")));

@@ -50,11 +50,17 @@ struct ComparedModels {
     bool in_world_space = false;
     CornerMatch match;
     FrameComparison all;
+    /// Matched corners that have normals, or tangents, in one of the files alone.
+    std::size_t normals_in_one = 0;
+    std::size_t tangents_in_one = 0;
 
     /// Whether all matched corners are within some degrees, and no sign differs.
     [[nodiscard]] bool is_within(double degrees) const;
-    /// Whether all triangles have one certain partner, and all directions are some.
+    /// Whether all triangles have one certain partner, and all directions that one of the files has
+    /// could be compared.
     [[nodiscard]] bool is_complete() const;
+    /// Whether any normals or tangents were compared.
+    [[nodiscard]] bool has_any() const;
 };
 
 /// Two glTF files are compared in the object space of each primitive, unless they are to be in

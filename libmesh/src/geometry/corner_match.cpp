@@ -6,6 +6,8 @@
 // Tests: tests/mesh/geometry/compare_test.cpp.
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <limits>
 #include <numeric>
 #include <tuple>
 
@@ -127,7 +129,8 @@ class ExactPairing {
         return is_of_a(i) ? ranges_a_[i] : ranges_b_[i - all_.count_a];
     }
 
-    /// The normals and tangents at its corners, the corner that is first in the key first.
+    /// The normals and tangents at its corners, the corner that is first in the key first; with
+    /// infinity for NaN, which has no place in an order.
     [[nodiscard]] std::array<float, 21> values_of(std::uint32_t i) const {
         const Mesh& mesh = is_of_a(i) ? a_ : b_;
         const glm::uvec3& t = mesh.triangles[is_of_a(i) ? i : i - all_.count_a];
@@ -138,6 +141,9 @@ class ExactPairing {
                 values[static_cast<std::size_t>(7 * k + n)] = mesh.normals[v][n];
             for (int n = 0; n < 4 && !mesh.tangents.empty(); ++n)
                 values[static_cast<std::size_t>(7 * k + 3 + n)] = mesh.tangents[v][n];
+        }
+        for (float& value : values) {
+            if (std::isnan(value)) value = std::numeric_limits<float>::infinity();
         }
         return values;
     }

@@ -22,6 +22,8 @@ constexpr std::uint32_t nobody = std::numeric_limits<std::uint32_t>::max();
 constexpr std::size_t most_in_a_cell = 256;
 constexpr double radii_in_a_cell = 8.0;
 constexpr int most_rounds = 32;  // Few are left after three, but for crowds.
+constexpr double narrowing = 8.0;
+constexpr std::size_t most_tolerances = 10;
 
 using Cell = glm::dvec3;  // Whole numbers, which may be larger than integers hold.
 
@@ -52,6 +54,7 @@ class Grid {
           heads_(std::bit_ceil(2 * triangles.size() + 1), nobody),
           next_(triangles.size(), nobody),
           hashes_(triangles.size()) {
+        std::vector<std::uint32_t> sizes(heads_.size(), 0);
         for (std::size_t i = triangles.size(); i-- > 0;) {
             const glm::dvec3 at = centroid(mesh, triangles[i]);
             if (!is_finite(at)) continue;
@@ -59,8 +62,12 @@ class Grid {
             std::uint32_t& head = heads_[slot(hashes_[i])];
             next_[i] = head;
             head = static_cast<std::uint32_t>(i);
+            is_crowded_ = ++sizes[slot(hashes_[i])] > most_in_a_cell || is_crowded_;
         }
     }
+
+    /// Not all triangles of some cell are looked at.
+    [[nodiscard]] bool is_crowded() const { return is_crowded_; }
 
     /// Calls visit(i) for the triangles in the cells that a box touches, and for some others.
     template <typename Visit>
@@ -96,6 +103,7 @@ class Grid {
     std::vector<std::uint32_t> heads_;
     std::vector<std::uint32_t> next_;
     std::vector<std::size_t> hashes_;  ///< Of their cells.
+    bool is_crowded_ = false;
 };
 
 /// How far two triangles are apart, in tolerances; infinite if they do not match.
@@ -145,6 +153,8 @@ class NearPairing {
           radius_(std::max(options.position_tolerance, rounding())),
           grid_(a, left_a, radii_in_a_cell * radius_),
           is_taken_(left_a.size(), 0) {}
+
+    [[nodiscard]] bool is_crowded() const { return grid_.is_crowded(); }
 
     std::vector<NearPair> run() {
         std::vector<std::uint32_t> asking(left_b_.size());
@@ -229,13 +239,54 @@ class NearPairing {
     std::vector<NearPair> pairs_;
 };
 
+/// The tolerance of positions, and before it, where triangles crowd within it, narrower ones until
+/// they do not: whoever has a partner near by then is paired before cells are too full to look at
+/// all that is in them. Where they crowd however narrow it is, that would be of no use.
+std::vector<double> rising_tolerances(const Mesh& a, const Mesh& b,
+                                      std::span<const std::uint32_t> left_a,
+                                      std::span<const std::uint32_t> left_b, MatchOptions options) {
+    std::vector<double> tolerances = {options.position_tolerance};
+    while (NearPairing(a, b, left_a, left_b, options).is_crowded()) {
+        if (tolerances.size() == most_tolerances) return {tolerances.front()};
+        options.position_tolerance /= narrowing;
+        tolerances.push_back(options.position_tolerance);
+    }
+    std::reverse(tolerances.begin(), tolerances.end());
+    return tolerances;
+}
+
+/// Takes out those that have been paired.
+void drop_paired(std::vector<std::uint32_t>& left, const std::vector<NearPair>& pairs,
+                 std::uint32_t NearPair::*triangle) {
+    std::vector<std::uint32_t> paired;
+    for (const NearPair& pair : pairs)
+        paired.push_back(pair.*triangle);
+    std::sort(paired.begin(), paired.end());
+    std::erase_if(
+        left, [&](std::uint32_t t) { return std::binary_search(paired.begin(), paired.end(), t); });
+}
+
 }  // namespace
 
 std::vector<NearPair> pair_near(const Mesh& a, const Mesh& b, std::span<const std::uint32_t> left_a,
                                 std::span<const std::uint32_t> left_b,
                                 const MatchOptions& options) {
     if (left_a.empty() || left_b.empty()) return {};
-    return NearPairing(a, b, left_a, left_b, options).run();
+    NearPairing whole(a, b, left_a, left_b, options);
+    if (!whole.is_crowded()) return whole.run();
+    std::vector<std::uint32_t> rest_a(left_a.begin(), left_a.end());
+    std::vector<std::uint32_t> rest_b(left_b.begin(), left_b.end());
+    std::vector<NearPair> all;
+    MatchOptions within = options;
+    for (const double tolerance : rising_tolerances(a, b, left_a, left_b, options)) {
+        if (rest_a.empty() || rest_b.empty()) break;
+        within.position_tolerance = tolerance;
+        const std::vector<NearPair> pairs = NearPairing(a, b, rest_a, rest_b, within).run();
+        all.insert(all.end(), pairs.begin(), pairs.end());
+        drop_paired(rest_a, pairs, &NearPair::a);
+        drop_paired(rest_b, pairs, &NearPair::b);
+    }
+    return all;
 }
 
 }  // namespace relief

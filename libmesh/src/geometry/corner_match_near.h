@@ -17,7 +17,7 @@ struct NearPair {
     std::uint32_t a = 0;
     std::uint32_t b = 0;
     int turn = 0;
-    bool is_ambiguous = false;  ///< b's triangle was within the tolerances of several.
+    bool is_ambiguous = false;  ///< b's triangle was within a tolerance of several.
 };
 
 /// Nearest first, each triangle once; those with a non-finite corner match nothing.

@@ -251,10 +251,13 @@ const BasisAgreement* SniffedTangents::best() const {
         return &*std::find_if(agreements.begin(), agreements.end(),
                               [&](const BasisAgreement& a) { return a.basis == *basis; });
     }
-    return &*std::min_element(agreements.begin(), agreements.end(),
-                              [](const BasisAgreement& a, const BasisAgreement& b) {
-                                  return a.angles.mean < b.angles.mean;
-                              });
+    // A method whose tangents all run along the normals has no angles, whose mean would be 0.
+    const auto mean_of = [](const BasisAgreement& a) {
+        return a.angles.count != 0 ? a.angles.mean : std::numeric_limits<double>::infinity();
+    };
+    return &*std::min_element(
+        agreements.begin(), agreements.end(),
+        [&](const BasisAgreement& a, const BasisAgreement& b) { return mean_of(a) < mean_of(b); });
 }
 
 bool SniffedTangents::is_best_by_far() const {
@@ -262,7 +265,8 @@ bool SniffedTangents::is_best_by_far() const {
     const BasisAgreement* nearest = best();
     return nearest != nullptr &&
            std::all_of(agreements.begin(), agreements.end(), [&](const BasisAgreement& other) {
-               return &other == nearest || other.angles.mean >= factor * nearest->angles.mean;
+               return &other == nearest || other.angles.count == 0 ||
+                      other.angles.mean >= factor * nearest->angles.mean;
            });
 }
 

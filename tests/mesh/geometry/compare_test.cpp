@@ -230,6 +230,39 @@ TEST(Compare, NearCornersMatchWithinTheTolerances) {
     EXPECT_LT(match_corners(torus, moved, options).near, 10U);
 }
 
+/// A tolerance far beyond the size of triangles: everything is a candidate for everything.
+TEST(Compare, WideTolerancesFindTheNearestToo) {
+    const Mesh torus = make_torus();
+    Mesh moved = shuffled(torus, 7);
+    std::mt19937 random(8);
+    std::uniform_real_distribution<float> by(-1e-4F, 1e-4F);
+    for (glm::vec3& position : moved.positions)
+        position += glm::vec3(by(random), by(random), by(random));
+    MatchOptions options;
+    options.by_texcoord = false;
+    for (const double tolerance : {0.05, 0.5, 5.0, 1000.0}) {
+        SCOPED_TRACE(tolerance);
+        options.position_tolerance = tolerance;
+        EXPECT_EQ(match_corners(torus, moved, options).near, torus.triangles.size());
+        EXPECT_EQ(comparison(torus, moved, options).normals.max, 0.0);
+    }
+}
+
+/// NaN must not upset the order by which triangles with the same corners find each other.
+TEST(Compare, RepeatedTrianglesWithUndefinedNormalsMeetTheirEquals) {
+    Mesh repeated;
+    for (std::uint32_t i = 0; i < 200; ++i) {
+        repeated.positions.insert(repeated.positions.end(), {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}});
+        const float x =
+            i % 3 == 0 ? std::numeric_limits<float>::quiet_NaN() : static_cast<float>(i * 37 % 200);
+        repeated.normals.insert(repeated.normals.end(), 3, glm::vec3(x, 0.0F, 100.0F));
+        repeated.triangles.emplace_back(3 * i, 3 * i + 1, 3 * i + 2);
+    }
+    const FrameComparison result = comparison(repeated, shuffled(repeated, 4));
+    EXPECT_EQ(result.normals.undefined, 3U * 67U);
+    EXPECT_EQ(result.normals.max, 0.0);
+}
+
 TEST(Compare, TheNearestIsTaken) {
     Mesh a = make_quad();
     a.texcoords.clear();

@@ -254,6 +254,18 @@ TEST(TangentBasis, LeaningTangentsAreJudgedInThePlaneOfTheNormal) {
     EXPECT_EQ(sniff_tangents(mesh).basis, TangentBasis::mikktspace);
 }
 
+/// Each triangle's own direction of u then has no part in the plane of the normal: no angle of 0.
+TEST(TangentBasis, MethodsWithoutAnyDirectionAreNotTheNearest) {
+    Mesh quad = make_quad();
+    quad.normals.assign(4, {1.0F, 0.0F, 0.0F});
+    quad.tangents.assign(4, {0.0F, 0.8F, 0.6F, 1.0F});
+    const SniffedTangents found = sniff_tangents(quad);
+    EXPECT_FALSE(found.basis);
+    ASSERT_NE(found.best(), nullptr);
+    EXPECT_NE(found.best()->basis, TangentBasis::triangle);
+    EXPECT_EQ(found.best()->angles.count, 6U);
+}
+
 TEST(TangentBasis, UncertainCornersAreLeftOut) {
     Mesh mesh = made_by(TangentBasis::mikktspace);
     const SniffedTangents before = sniff_tangents(mesh);

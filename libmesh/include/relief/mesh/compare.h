@@ -51,6 +51,7 @@ struct CornerMatch {
 ///         normals and tangents; that is counted. Triangles with a non-finite corner match nothing
 ///
 /// Expected linear time; where more than 256 triangles crowd within a few tolerances of each other,
+/// those with a partner nearer by are paired first, as if the tolerance were so narrow; of the rest
 /// no more than that many are looked at for a near match.
 CornerMatch match_corners(const Mesh& a, const Mesh& b, const MatchOptions& options = {});
 

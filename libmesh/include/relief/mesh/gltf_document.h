@@ -259,8 +259,8 @@ class GltfDocument {
     /// Where there is no normal texture, the set of the clearcoat's normal texture or of the
     /// anisotropy texture, which are looked up in the same frame; else the first set. Scales,
     /// turns and shifts of KHR_texture_transform have no say in tangents: they can be animated, and
-    /// other textures of the material share the tangents without sharing the transform. hrows
-    /// InvalidInput if there is no such primitive
+    /// other textures of the material share the tangents without sharing the transform.
+    /// \throws InvalidInput if there is no such primitive
     [[nodiscard]] GltfTangentTexcoords tangent_texcoords(GltfPrimitiveId id) const;
 
     /// Replaces a primitive's NORMAL and TANGENT by those of `framed`, which with_frames() or
