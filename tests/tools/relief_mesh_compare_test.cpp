@@ -258,6 +258,8 @@ INSTANTIATE_TEST_SUITE_P(
                             "square.png: .png is not a format that can be read"},
                     Refused{"relief-mesh compare square.obj square.obj --max-angle 181", 2,
                             "--max-angle 181: not between 0 and 180 degrees"},
+                    Refused{"relief-mesh compare square.obj square.obj --tolerance -1", 2,
+                            "--tolerance -1: not at least 0 units"},
                     Refused{"relief-mesh compare square.obj square.obj --json --quiet", 2,
                             "--json and --quiet contradict each other"},
                     Refused{

@@ -45,9 +45,10 @@ ExitCode judge(const CLI::App& app, const CompareOptions& options, const Compare
         return ExitCode::failed;
     };
     if (compared.all.corners == 0) {
-        return fail(
-            fmt::format("has no triangle in common with {} (try --world, --tolerance, --ignore-uv)",
-                        options.request.a.string()));
+        return fail(fmt::format(
+            "has no triangle in common with {} (try --world, --tolerance, --uv-tolerance, "
+            "--ignore-uv)",
+            options.request.a.string()));
     }
     if (options.max_angle && !compared.has_any()) {
         return fail(fmt::format(
@@ -96,7 +97,7 @@ ExitCode run(const CLI::App& app, const CompareOptions& options) {
 
 void add_matching_options(CLI::App& app, CompareRequest& request) {
     const char* group = "Matching";
-    const Range distance{0.0, std::numeric_limits<float>::max(), "units"};
+    const Range distance{0.0, std::numeric_limits<double>::max(), "units"};
     add_number(app, "--tolerance", "DISTANCE", request.tolerance, distance,
                "Positions no further apart than this, in the models' unit, are the same; equal "
                "ones go first, then the nearest. Default: 1e-5 of the model's size, which is what "
