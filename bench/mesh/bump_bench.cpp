@@ -1,51 +1,149 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "relief/mesh/bump.h"
+// Heights to 16-bit normal maps, in turns with the plainest loop that makes one, with OpenCV where
+// it is installed, and with a triad over memory: `relief-bump-bench [SIDE [ROUNDS]]` prints a table
+// in Markdown. All write into memory that is there already.
+#include <fmt/format.h>
 
-#include <benchmark/benchmark.h>
-
+#include <chrono>
 #include <cmath>
+#include <cstdlib>
+#include <functional>
+#include <string>
+#include <vector>
 
+#include "mesh/bump_peers.h"
+#include "mesh/triad.h"
+#include "relief/mesh/analytic_heights.h"
+#include "relief/mesh/bump.h"
 #include "relief/mesh/threads.h"
+#include "relief/mesh/timing.h"
 
 namespace relief::bench {
 namespace {
 
-/// A tiling field of a few waves in both directions.
-Image waves(int size) {
-    Image field = make_image(size, size, 1, 32, ColorSpace::data);
-    const auto heights = field.as<float>();
-    const double step = 6.283185307179586 / size;
-    for (int row = 0; row < size; ++row) {
-        for (int column = 0; column < size; ++column) {
-            heights[static_cast<std::size_t>(row) * static_cast<std::size_t>(size) +
-                    static_cast<std::size_t>(column)] =
-                static_cast<float>(0.5 + 0.25 * std::sin(9 * step * column) +
-                                   0.25 * std::cos(7 * step * row));
+/// What a first version looks like: Sobel in float, no care for borders, green up.
+void plain_loop(const Image& heights, float strength, Image& map) {
+    const auto width = static_cast<std::size_t>(heights.width);
+    const float* const in = heights.as<float>().data();
+    std::uint16_t* const out = map.as<std::uint16_t>().data();
+    const float scale = strength / 8.0F;
+    for (std::size_t row = 1; row + 1 < static_cast<std::size_t>(heights.height); ++row) {
+        const float* const a = in + (row - 1) * width;
+        const float* const h = a + width;
+        const float* const b = h + width;
+        std::uint16_t* const to = out + row * width * 3;
+        for (std::size_t i = 1; i + 1 < width; ++i) {
+            const float right =
+                (a[i + 1] + 2.0F * h[i + 1] + b[i + 1] - a[i - 1] - 2.0F * h[i - 1] - b[i - 1]) *
+                scale;
+            const float up =
+                (a[i - 1] + 2.0F * a[i] + a[i + 1] - b[i - 1] - 2.0F * b[i] - b[i + 1]) * scale;
+            const float length = 1.0F / std::sqrt(right * right + up * up + 1.0F);
+            to[3 * i] = static_cast<std::uint16_t>(32768.5F - 32767.0F * right * length);
+            to[3 * i + 1] = static_cast<std::uint16_t>(32768.5F - 32767.0F * up * length);
+            to[3 * i + 2] = static_cast<std::uint16_t>(32768.5F + 32767.0F * length);
         }
     }
-    return field;
 }
 
-void bump_normals(benchmark::State& state, Kernel kernel) {
-    const Image field = waves(static_cast<int>(state.range(0)));
-    set_thread_limit(static_cast<unsigned>(state.range(1)));
-    for (auto _ : state) {
-        Report report;
-        benchmark::DoNotOptimize(normals_from_height(field, {.kernel = kernel}, report));
-    }
-    set_thread_limit(0);
-    state.SetItemsProcessed(state.iterations() * state.range(0) * state.range(0));
+struct Contender {
+    std::string name;
+    double bytes = 0;  ///< Moved at least, for each texel: heights read and codes written once.
+    std::function<void()> run;
+    std::vector<double> nanoseconds;
+};
+
+struct Fields {
+    Image floats, codes;
+    double strength = 1.0;
+};
+
+Fields fields(int side) {
+    const std::vector<HeightWave> waves = tiling_waves(side, side, 6, 32.0, 0.2, 5);
+    AnalyticHeights field = wave_heights(side, side, waves);
+    CodedHeights coded = coded_heights(field.heights, 16);
+    return {std::move(field.heights), std::move(coded.codes), coded.strength};
 }
-BENCHMARK_CAPTURE(bump_normals, central3, Kernel::central3)
-    ->ArgNames({"size", "threads"})
-    ->ArgsProduct({{4096}, {1, 2}})
-    ->UseRealTime()
-    ->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(bump_normals, sobel3, Kernel::sobel3)
-    ->ArgNames({"size", "threads"})
-    ->ArgsProduct({{4096}, {1, 2}})
-    ->UseRealTime()
-    ->Unit(benchmark::kMillisecond);
+
+Contender ours(const Image& heights, std::string name, BumpOptions options, unsigned threads,
+               Image& map) {
+    return {fmt::format("relief, {}{}", name, threads == 1 ? "" : ", 2 threads"),
+            heights.bits() / 8.0 + 6.0,
+            [&heights, options, threads, &map] {
+                set_thread_limit(threads);
+                Report report;
+                normal_map_from_height(heights, options, {}, map, report);
+            },
+            {}};
+}
+
+BumpOptions options_of(Kernel kernel, double strength,
+                       std::optional<Arithmetic> arithmetic = std::nullopt) {
+    BumpOptions options{kernel, Wrap::repeat, strength};
+    options.arithmetic = arithmetic;
+    return options;
+}
+
+std::vector<Contender> contenders(const Fields& in, Triad& triad, Image& map) {
+    std::vector<Contender> all;
+    all.push_back({"plain loop, sobel3, float in",
+                   10.0,
+                   [&in, &map] { plain_loop(in.floats, 1.0F, map); },
+                   {}});
+    for (const unsigned threads : {1U, 2U}) {
+        all.push_back(
+            ours(in.floats, "sobel3, float in", options_of(Kernel::sobel3, 1.0), threads, map));
+        all.push_back(ours(in.codes, "sobel3, 16 bit in", options_of(Kernel::sobel3, in.strength),
+                           threads, map));
+    }
+    for (const auto& [name, kernel] :
+         {std::pair{"central3", Kernel::central3}, std::pair{"scharr3", Kernel::scharr3},
+          std::pair{"central5", Kernel::central5}, std::pair{"sobel5", Kernel::sobel5},
+          std::pair{"central7", Kernel::central7},
+          std::pair{"gaussian, radius 2", Kernel::gaussian}})
+        all.push_back(
+            ours(in.floats, fmt::format("{}, float in", name), options_of(kernel, 1.0), 1, map));
+    all.push_back(ours(in.floats, "sobel3, float in, in double",
+                       options_of(Kernel::sobel3, 1.0, Arithmetic::float64), 1, map));
+    for (BumpPeer& peer : bump_peers(in.floats, map))
+        all.push_back({std::move(peer.name), 10.0, std::move(peer.run), {}});
+    all.push_back({"triad", 0.0, [&triad] { triad.run(); }, {}});
+    return all;
+}
+
+int run(int argc, char** argv) {
+    const int side = argc > 1 ? std::atoi(argv[1]) : 4096;
+    const std::size_t rounds = argc > 2 ? std::strtoul(argv[2], nullptr, 10) : 15;
+    const Fields in = fields(side);
+    Image map = make_image(side, side, 3, 16, ColorSpace::data);
+    Triad triad;
+    std::vector<Contender> all = contenders(in, triad, map);
+    interleave(all.size(), {rounds, 2}, [&](std::size_t i, bool counted) {
+        const auto begin = std::chrono::steady_clock::now();
+        all[i].run();
+        const std::chrono::duration<double, std::nano> taken =
+            std::chrono::steady_clock::now() - begin;
+        if (counted) all[i].nanoseconds.push_back(taken.count());
+    });
+
+    const double bandwidth = Triad::bytes / spread_of(all.back().nanoseconds).median;
+    const double texels = static_cast<double>(side) * side;
+    fmt::print("{0} x {0} texels; median of {1} rounds in turns; triad {2:.1f} GB/s\n\n", side,
+               rounds, bandwidth);
+    fmt::print("| who | MPixel/s | p10 to p90 | of the triad |\n|---|---|---|---|\n");
+    for (std::size_t i = 0; i + 1 < all.size(); ++i) {
+        const Spread spread = spread_of(all[i].nanoseconds);
+        fmt::print("| {} | {:.0f} | {:.0f} to {:.0f} | {:.0f} % |\n", all[i].name,
+                   1e3 * texels / spread.median, 1e3 * texels / spread.p90,
+                   1e3 * texels / spread.p10,
+                   100.0 * all[i].bytes * texels / spread.median / bandwidth);
+    }
+    return 0;
+}
 
 }  // namespace
 }  // namespace relief::bench
+
+int main(int argc, char** argv) {
+    return relief::bench::run(argc, argv);
+}

@@ -164,6 +164,26 @@ TEST(BumpCommand, EachAxisHasItsOwnBorder) {
     EXPECT_LT(degrees_between(left_normal("mirror,clamp"), {-0.5, 0, 1}), degrees_of_16_bit);
 }
 
+TEST(BumpCommand, WrapAutoSaysWhatTheSeamsShow) {
+    const Workplace workplace;
+    write_ramp(workplace, "ramp.png", false, 257);
+    const ProgramResult ramp =
+        workplace.run("relief-bake bump ramp.png out/n.png --wrap auto --report out/report.json");
+    ASSERT_EQ(ramp.exit_code, 0) << ramp.error;
+    EXPECT_THAT(ramp.out, HasSubstr("clamp,repeat at the border (across the seams it changes 15 "
+                                    "and 0 times as much as inside)\n"));
+    const json report = json::parse(workplace.read("out/report.json"));
+    EXPECT_EQ(report["wrap"], "clamp,repeat");
+    EXPECT_NEAR(report["seams"][0].get<double>(), 15.0, 1e-9);
+    EXPECT_EQ(report["seams"][1], 0.0);
+    const ProgramResult bricks =
+        workplace.run("relief-bake bump data/bricks-height.png out/b.png --wrap auto");
+    EXPECT_THAT(bricks.out, HasSubstr(" repeat at the border (across"));
+    const ProgramResult half =
+        workplace.run("relief-bake bump ramp.png out/n.png --wrap mirror,auto");
+    EXPECT_THAT(half.out, HasSubstr(" mirror,repeat at the border (across"));
+}
+
 TEST(BumpCommand, NegativeStrengthTurnsBumpsIntoDents) {
     const Workplace workplace;
     write_ramp(workplace, "ramp.png", false, 257);
@@ -254,7 +274,7 @@ INSTANTIATE_TEST_SUITE_P(
         Refused{"relief-bake bump flat.png out/n.png --kernel gaussian --kernel-radius 65", 2,
                 "--kernel-radius 65: "},
         Refused{"relief-bake bump flat.png out/n.png --wrap repeat,tile", 2,
-                "--wrap repeat,tile: not one of repeat, clamp, mirror"},
+                "--wrap repeat,tile: not one of repeat, clamp, mirror, auto"},
         Refused{"relief-bake bump flat.png out/n.png --height 1", 2,
                 "--height: needs the size of a texel in the same unit (give --texel-size, or "
                 "--strength instead)"},

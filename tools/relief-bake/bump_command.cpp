@@ -13,11 +13,23 @@
 #include "common/options.h"
 #include "common/report_options.h"
 #include "common/text.h"
+#include "relief/mesh/height_statistics.h"
 #include "relief/mesh/image_file.h"
 #include "relief/mesh/threads.h"
 
 namespace relief::tools {
 namespace {
+
+/// Absent: by what the map itself shows.
+using WrapChoice = std::optional<Wrap>;
+
+Choices<WrapChoice> wrap_or_auto() {
+    Choices<WrapChoice> choices;
+    for (const auto& [name, wrap] : wrap_choices())
+        choices.emplace_back(name, wrap);
+    choices.emplace_back("auto", std::nullopt);
+    return choices;
+}
 
 struct BakeBumpOptions {
     std::filesystem::path input;
@@ -27,6 +39,8 @@ struct BakeBumpOptions {
     std::optional<double> height;
     std::optional<glm::dvec2> texel;
     std::optional<int> gaussian_radius;
+    WrapChoice wrap_x = Wrap::repeat;
+    WrapChoice wrap_y = Wrap::repeat;
     std::optional<int> bits;
     Green green = Green::up;
     std::optional<FlatCode> flat;
@@ -108,12 +122,22 @@ struct Baked {
     int height = 0;
     int channels = 0;
     int bits_read = 0;
+    BumpOptions bump;              ///< With what was found out from the map.
+    std::optional<Tiling> tiling;  ///< If it was looked at.
     NormalMapFormat format;
     Findings findings;
 };
 
+/// The options for a map, whose seams are looked at where that is asked for.
+void settle_wraps(const BakeBumpOptions& options, const Image& height, Baked& baked) {
+    if (!options.wrap_x || !options.wrap_y) baked.tiling = detect_tiling(height);
+    const Wraps found = baked.tiling.value_or(Tiling{}).wraps();
+    baked.bump.wrap = {options.wrap_x.value_or(found.x), options.wrap_y.value_or(found.y)};
+}
+
 Baked bake(const BakeBumpOptions& options, const BumpOptions& bump, Stages& stages) {
     Baked baked;
+    baked.bump = bump;
     baked.format = format_of(options);
     const Image source =
         stages.run("read", [&] { return read_image(options.input, ImageUse::data); });
@@ -126,7 +150,8 @@ Baked bake(const BakeBumpOptions& options, const BumpOptions& bump, Stages& stag
     const Image coded = about(options.input, [&] {
         return stages.run("convert", [&] {
             const auto converted = [&](const Image& height) {
-                return normal_map_from_height(height, bump, baked.format, report);
+                settle_wraps(options, height, baked);
+                return normal_map_from_height(height, baked.bump, baked.format, report);
             };
             return source.channels == 1 ? converted(source) : converted(height_field(source));
         });
@@ -144,15 +169,22 @@ double megapixels_per_second(const Baked& baked, const Stages& stages) {
     return milliseconds > 0 ? pixels / milliseconds / 1000 : 0;
 }
 
-void print_summary(const BakeBumpOptions& options, const BumpOptions& bump, const Baked& baked,
-                   const Stages& stages) {
+/// "clamp", and what the map shows where it decided.
+std::string border_words(const Baked& baked) {
+    const std::string words = wrap_words(baked.bump.wrap) + " at the border";
+    if (!baked.tiling) return words;
+    return fmt::format("{} (across the seams it changes {:.2g} and {:.2g} times as much as inside)",
+                       words, baked.tiling->seam_x, baked.tiling->seam_y);
+}
+
+void print_summary(const BakeBumpOptions& options, const Baked& baked, const Stages& stages) {
     const bool is_float = baked.format.bits == 32;
     print_entry(
         "read",
         fmt::format("{}: {} x {}, {}, {} bit", options.input.string(), baked.width, baked.height,
                     counted(static_cast<std::size_t>(baked.channels), "channel"), baked.bits_read));
-    print_entry("slopes", fmt::format("{}, {}, {} at the border", kernel_words(bump),
-                                      depth_words(options, bump), wrap_words(bump.wrap)));
+    print_entry("slopes", fmt::format("{}, {}, {}", kernel_words(baked.bump),
+                                      depth_words(options, baked.bump), border_words(baked)));
     print_entry("coded", fmt::format("{} bit{}, green {}", baked.format.bits,
                                      is_float ? " float"
                                               : ", flat is " + std::string(baked.format.flat ==
@@ -168,8 +200,14 @@ void print_summary(const BakeBumpOptions& options, const BumpOptions& bump, cons
     print_entry("wrote", file_and_size(options.output));
 }
 
-nlohmann::ordered_json bake_json(const BakeBumpOptions& options, const BumpOptions& bump,
-                                 const Baked& baked, const Stages& stages) {
+nlohmann::ordered_json seams_json(const std::optional<Tiling>& tiling) {
+    if (!tiling) return nullptr;
+    return {tiling->seam_x, tiling->seam_y};
+}
+
+nlohmann::ordered_json bake_json(const BakeBumpOptions& options, const Baked& baked,
+                                 const Stages& stages) {
+    const BumpOptions& bump = baked.bump;
     const bool has_radius = bump.kernel == Kernel::gaussian;
     return {{"tool", "relief-bake bump"},
             {"version", version()},
@@ -182,6 +220,7 @@ nlohmann::ordered_json bake_json(const BakeBumpOptions& options, const BumpOptio
             {"strength", bump.strength},
             {"texel_size", {bump.texel.x, bump.texel.y}},
             {"wrap", wrap_words(bump.wrap)},
+            {"seams", seams_json(baked.tiling)},
             {"bits", baked.format.bits},
             {"green", name_of(baked.format.green, green_choices())},
             {"flat", name_of(baked.format.flat, flat_choices())},
@@ -198,9 +237,9 @@ ExitCode run(const CLI::App& app, const BakeBumpOptions& options) {
     set_thread_limit(options.general.threads);
     Stages stages(options.general.quiet);
     const Baked baked = bake(options, bump, stages);
-    if (!options.general.quiet) print_summary(options, bump, baked, stages);
+    if (!options.general.quiet) print_summary(options, baked, stages);
     return finish(app, options.report, options.input, baked.findings,
-                  bake_json(options, bump, baked, stages));
+                  bake_json(options, baked, stages));
 }
 
 /// "W" or "WxH".
@@ -213,11 +252,12 @@ glm::dvec2 parse_texel(const std::string& subject, const std::string& text) {
 }
 
 /// "W" for both axes, or "W,W" for x and y.
-Wraps parse_wraps(const std::string& subject, const std::string& text) {
+void parse_wraps(const std::string& subject, const std::string& text, BakeBumpOptions& options) {
     const std::size_t comma = text.find(',');
-    const Wrap x = parse_choice(subject, text.substr(0, comma), wrap_choices());
-    if (comma == std::string::npos) return x;
-    return {x, parse_choice(subject, text.substr(comma + 1), wrap_choices())};
+    options.wrap_x = parse_choice(subject, text.substr(0, comma), wrap_or_auto());
+    options.wrap_y = comma == std::string::npos
+                         ? options.wrap_x
+                         : parse_choice(subject, text.substr(comma + 1), wrap_or_auto());
 }
 
 void add_depth_options(CLI::App& app, BakeBumpOptions& options) {
@@ -252,13 +292,15 @@ void add_slope_options(CLI::App& app, BakeBumpOptions& options) {
                   options.gaussian_radius = parse_integer(subject, text, 1, largest_kernel_radius);
               })
         ->group(group);
-    add_value(app, "--wrap", "WORD[,WORD]",
-              "What lies beyond the border: the opposite edge, for maps that tile (repeat), "
-              "nothing, so that slopes there are one-sided (clamp), or the map mirrored (mirror). "
-              "Two words: left and right, then top and bottom. Default: repeat.",
-              [&](const std::string& subject, const std::string& text) {
-                  options.bump.wrap = parse_wraps(subject, text);
-              })
+    add_value(
+        app, "--wrap", "WORD[,WORD]",
+        "What lies beyond the border: the opposite edge, for maps that tile (repeat), "
+        "nothing, so that slopes there are one-sided (clamp), the map mirrored (mirror); or by "
+        "whether it goes on smoothly across the seam, repeat or clamp (auto). Two words: left "
+        "and right, then top and bottom. Default: repeat.",
+        [&](const std::string& subject, const std::string& text) {
+            parse_wraps(subject, text, options);
+        })
         ->group(group);
 }
 

@@ -9,9 +9,12 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <memory>
 #include <optional>
+#include <type_traits>
 
 #include "image/border.h"
+#include "image/codes_3x3.h"
 #include "image/normal_loops.h"
 #include "image/slope_loops.h"
 
@@ -23,9 +26,13 @@ struct SlopeScales {
     double right, up;
 };
 
-SlopeScales scales_of(const GradientKernel& kernel, const BumpOptions& options, int bits) {
-    const double largest = bits == 8 ? 255.0 : bits == 16 ? 65535.0 : 1.0;
-    const double divisor = kernel.divisor * largest;
+GradientKernel kernel_of(const BumpOptions& options) {
+    return gradient_kernel(options.kernel, options.gaussian_radius);
+}
+
+SlopeScales scales_of(const HeightRows& heights, const BumpOptions& options) {
+    const double largest = heights.bits == 8 ? 255.0 : heights.bits == 16 ? 65535.0 : 1.0;
+    const double divisor = kernel_of(options).divisor * largest;
     return {options.strength / (divisor * options.texel.x),
             options.strength / (divisor * options.texel.y)};
 }
@@ -104,16 +111,15 @@ class RowFinder {
 template <typename Sample, typename Real>
 class SlopePieces {
   public:
-    SlopePieces(VectorTarget vectors, const HeightRows& heights, const GradientKernel& kernel,
-                const SlopeScales& scales, Wraps wrap)
+    SlopePieces(VectorTarget vectors, const HeightRows& heights, const BumpOptions& options)
         : vectors_(vectors),
           width_(heights.width),
-          wrap_(wrap.x),
-          weights_(kernel),
-          rows_(heights, wrap.y, kernel.radius),
-          right_scale_(static_cast<Real>(scales.right)),
-          up_scale_(static_cast<Real>(scales.up)),
-          smoothed_(columns_at_once + 2 * static_cast<std::size_t>(kernel.radius)),
+          wrap_(options.wrap.x),
+          weights_(kernel_of(options)),
+          rows_(heights, options.wrap.y, static_cast<int>(weights_.radius)),
+          right_scale_(static_cast<Real>(scales_of(heights, options).right)),
+          up_scale_(static_cast<Real>(scales_of(heights, options).up)),
+          smoothed_(columns_at_once + 2 * static_cast<std::size_t>(weights_.radius)),
           rise_(smoothed_.size()) {}
 
     void begin_row(int row) { are_copied_ = rows_.find(row); }
@@ -134,6 +140,11 @@ class SlopePieces {
         combine_columns(vectors_, weights_, &smoothed_[at(first)], &rise_[at(first)],
                         static_cast<std::size_t>(count), right_scale_, up_scale_, right_.data(),
                         up_.data());
+    }
+    /// The scaled weights, if the kernel is one of 3x3.
+    [[nodiscard]] std::optional<Weights3x3> weights_3x3()
+        const requires std::is_same_v<Real, float> {
+        return relief::weights_3x3(weights_, right_scale_, up_scale_);
     }
     [[nodiscard]] const Real* right() const { return right_.data(); }
     [[nodiscard]] const Real* up() const { return up_.data(); }
@@ -179,68 +190,175 @@ void store_slopes(const Real* right, const Real* up, std::size_t count, float* s
     }
 }
 
-/// Stores what is asked of slopes of columns from `first` on.
-template <typename Real>
-void store(VectorTarget vectors, const BumpTarget& target, int row, std::size_t first,
-           std::size_t count, const Real* right, const Real* up) {
+/// Calls with_codes(pointer to the first sample of a texel), of the type that the format has.
+template <typename WithCodes>
+void at_codes(const BumpTarget& target, int row, int column, const WithCodes& with_codes) {
     void* const samples = target.row(row);
-    if (target.result == BumpResult::slopes)
-        return store_slopes(right, up, count, static_cast<float*>(samples) + 2 * first);
-    if (target.result == BumpResult::normals)
-        return store_normals(vectors, right, up, count, static_cast<float*>(samples) + 3 * first);
-    const auto as_codes = [&]<typename Code>(Code* codes) {
-        store_codes(vectors, right, up, count, target.format, codes + 3 * first);
-    };
+    const std::ptrdiff_t offset = std::ptrdiff_t{3} * column;
     if (target.format.bits == 8)
-        as_codes(static_cast<std::uint8_t*>(samples));
+        with_codes(static_cast<std::uint8_t*>(samples) + offset);
     else if (target.format.bits == 16)
-        as_codes(static_cast<std::uint16_t*>(samples));
+        with_codes(static_cast<std::uint16_t*>(samples) + offset);
     else
-        as_codes(static_cast<float*>(samples));
+        with_codes(static_cast<float*>(samples) + offset);
 }
 
-template <typename Sample, typename Real>
-bool make_rows(const HeightRows& heights, const BumpOptions& options, const BumpTarget& target,
-               int first_row, int last_row) {
-    const VectorTarget vectors = best_vector_target();
-    const GradientKernel kernel = gradient_kernel(options.kernel, options.gaussian_radius);
-    const SlopeScales scales = scales_of(kernel, options, heights.bits);
-    SlopePieces<Sample, Real> pieces(vectors, heights, kernel, scales, options.wrap);
-    std::optional<SlopePieces<Sample, double>> careful;
+/// Stores what is asked of slopes of columns from `first` on.
+template <typename Real>
+void store(VectorTarget vectors, const BumpTarget& target, int row, int first, std::size_t count,
+           const Real* right, const Real* up) {
+    const auto floats = [&](int channels) {
+        return static_cast<float*>(target.row(row)) + std::ptrdiff_t{channels} * first;
+    };
+    switch (target.result) {
+        case BumpResult::slopes:
+            return store_slopes(right, up, count, floats(2));
+        case BumpResult::normals:
+            return store_normals(vectors, right, up, count, floats(3));
+        case BumpResult::codes:
+            return at_codes(target, row, first, [&](auto* codes) {
+                store_codes(vectors, right, up, count, target.format, codes);
+            });
+    }
+}
+
+/// Calls make(first, count) for the pieces of a row until one returns false.
+template <typename Make>
+bool all_pieces(int width, const Make& make) {
     const int step = static_cast<int>(columns_at_once);
-    for (int row = first_row; row < last_row; ++row) {
-        pieces.begin_row(row);
-        for (int first = 0; first < heights.width; first += step) {
-            const int count = std::min(step, heights.width - first);
-            const auto begin = static_cast<std::size_t>(first);
-            const auto size = static_cast<std::size_t>(count);
-            pieces.make(first, count);
-            if (!any_too_steep(vectors, pieces.right(), pieces.up(), size)) {
-                store(vectors, target, row, begin, size, pieces.right(), pieces.up());
-                continue;
-            }
-            if constexpr (std::is_same_v<Real, double>) return false;
-            if (!careful) careful.emplace(vectors, heights, kernel, scales, options.wrap);
-            careful->begin_row(row);
-            careful->make(first, count);
-            if (any_too_steep(vectors, careful->right(), careful->up(), size)) return false;
-            store(vectors, target, row, begin, size, careful->right(), careful->up());
+    for (int first = 0; first < width; first += step) {
+        if (!make(first, std::min(step, width - first))) return false;
+    }
+    return true;
+}
+
+/// Makes rows with any kernel. Each function returns false where a height is not finite.
+template <typename Sample, typename Real>
+class RowMaker {
+  public:
+    RowMaker(VectorTarget vectors, const HeightRows& heights, const BumpOptions& options,
+             const BumpTarget& target)
+        : vectors_(vectors),
+          heights_(heights),
+          options_(options),
+          target_(target),
+          slopes_(vectors, heights, options) {}
+
+    bool make_row(int row) {
+        begin_row(row);
+        return all_pieces(heights_.width,
+                          [&](int first, int count) { return make_piece(first, count); });
+    }
+    void begin_row(int row) {
+        row_ = row;
+        slopes_.begin_row(row);
+    }
+    bool make_piece(int first, int count) {
+        const auto size = static_cast<std::size_t>(count);
+        slopes_.make(first, count);
+        if (!any_too_steep(vectors_, slopes_.right(), slopes_.up(), size)) {
+            store(vectors_, target_, row_, first, size, slopes_.right(), slopes_.up());
+            return true;
         }
+        if constexpr (std::is_same_v<Real, double>)
+            return false;
+        else
+            return make_carefully(row_, first, count);
+    }
+    /// In double.
+    bool make_carefully(int row, int first, int count) {
+        if (!careful_) {
+            careful_ =
+                std::make_unique<RowMaker<Sample, double>>(vectors_, heights_, options_, target_);
+        }
+        careful_->begin_row(row);
+        return careful_->make_piece(first, count);
+    }
+    [[nodiscard]] const SlopePieces<Sample, Real>& slopes() const { return slopes_; }
+
+  private:
+    VectorTarget vectors_;
+    const HeightRows& heights_;
+    const BumpOptions& options_;
+    const BumpTarget& target_;
+    int row_ = 0;
+    SlopePieces<Sample, Real> slopes_;
+    std::unique_ptr<RowMaker<Sample, double>> careful_;
+};
+
+/// Makes rows of codes with kernels of 3x3: clamped borders by a RowMaker, all else in one loop.
+template <typename Sample>
+class DirectRowMaker {
+  public:
+    DirectRowMaker(VectorTarget vectors, const HeightRows& heights, const Wraps& wrap,
+                   const Weights3x3& weights, const BumpTarget& target,
+                   RowMaker<Sample, float>& general)
+        : vectors_(vectors),
+          heights_(heights),
+          wrap_(wrap),
+          weights_(weights),
+          target_(target),
+          general_(general),
+          rows_(heights, wrap.x) {}
+
+    bool make_row(int row) {
+        const bool at_border = row == 0 || row == heights_.height - 1;
+        if (wrap_.y == Wrap::clamp && at_border) return general_.make_row(row);
+        const auto rows = rows_.around(row, wrap_.y);
+        const bool finite = all_pieces(heights_.width, [&](int first, int count) {
+            return make_piece(rows, row, first, count);
+        });
+        if (!finite || wrap_.x != Wrap::clamp) return finite;
+        general_.begin_row(row);
+        return general_.make_piece(0, 1) && general_.make_piece(heights_.width - 1, 1);
+    }
+
+  private:
+    bool make_piece(const std::array<const float*, 3>& rows, int row, int first, int count) {
+        bool too_steep = false;
+        at_codes(target_, row, first, [&]<typename Code>(Code* codes) {
+            if constexpr (!std::is_same_v<Code, float>) {
+                too_steep =
+                    codes_3x3(vectors_, {rows[0] + first, rows[1] + first, rows[2] + first},
+                              weights_, static_cast<std::size_t>(count), target_.format, codes);
+            }
+        });
+        return !too_steep || general_.make_carefully(row, first, count);
+    }
+
+    VectorTarget vectors_;
+    const HeightRows& heights_;
+    Wraps wrap_;
+    Weights3x3 weights_;
+    const BumpTarget& target_;
+    RowMaker<Sample, float>& general_;
+    PaddedRows<Sample> rows_;
+};
+
+template <typename Maker>
+bool make_with(Maker& maker, int first, int last) {
+    for (int row = first; row < last; ++row) {
+        if (!maker.make_row(row)) return false;
     }
     return true;
 }
 
 template <typename Sample>
-bool make_rows_of(const HeightRows& heights, const BumpOptions& options, const BumpTarget& target,
-                  int first, int last) {
-    const bool is_coarse = target.result == BumpResult::codes && target.format.bits < 32;
+bool make_rows(const HeightRows& heights, const BumpOptions& options, const BumpTarget& target,
+               int first, int last) {
+    const VectorTarget vectors = best_vector_target();
+    const bool has_few_bits = target.result == BumpResult::codes && target.format.bits < 32;
     const Arithmetic arithmetic =
-        options.arithmetic.value_or(is_coarse ? Arithmetic::float32 : Arithmetic::float64);
-    const GradientKernel kernel = gradient_kernel(options.kernel, options.gaussian_radius);
-    if (arithmetic == Arithmetic::float32 &&
-        are_for_float(scales_of(kernel, options, heights.bits)))
-        return make_rows<Sample, float>(heights, options, target, first, last);
-    return make_rows<Sample, double>(heights, options, target, first, last);
+        options.arithmetic.value_or(has_few_bits ? Arithmetic::float32 : Arithmetic::float64);
+    if (arithmetic == Arithmetic::float64 || !are_for_float(scales_of(heights, options))) {
+        RowMaker<Sample, double> maker(vectors, heights, options, target);
+        return make_with(maker, first, last);
+    }
+    RowMaker<Sample, float> maker(vectors, heights, options, target);
+    const std::optional<Weights3x3> weights = maker.slopes().weights_3x3();
+    if (!weights || !has_few_bits) return make_with(maker, first, last);
+    DirectRowMaker<Sample> direct(vectors, heights, options.wrap, *weights, target, maker);
+    return make_with(direct, first, last);
 }
 
 }  // namespace
@@ -249,11 +367,11 @@ bool make_bump_rows(const HeightRows& heights, const BumpOptions& options, const
                     int first, int last) {
     switch (heights.bits) {
         case 8:
-            return make_rows_of<std::uint8_t>(heights, options, target, first, last);
+            return make_rows<std::uint8_t>(heights, options, target, first, last);
         case 16:
-            return make_rows_of<std::uint16_t>(heights, options, target, first, last);
+            return make_rows<std::uint16_t>(heights, options, target, first, last);
         default:
-            return make_rows_of<float>(heights, options, target, first, last);
+            return make_rows<float>(heights, options, target, first, last);
     }
 }
 

@@ -5,12 +5,10 @@
 #include "image/normal_loops.h"
 
 #include <array>
-#include <bit>
 #include <cmath>
 #include <cstdint>
-#include <type_traits>
 
-#include "image/normal_coding.h"
+#include "image/normal_store.h"
 #include "image/slope_loops.h"
 
 namespace relief {
@@ -19,15 +17,9 @@ namespace {
 template <typename Real>
 RELIEF_INLINE bool steep_loop(const Real* __restrict right, const Real* __restrict up,
                               std::size_t count) {
-    // On the bits, which grow with the value: NaN and infinity stand above every limit.
-    using Bits = std::conditional_t<sizeof(Real) == 4, std::uint32_t, std::uint64_t>;
-    constexpr Bits limit = std::bit_cast<Bits>(sizeof(Real) == 4 ? Real(1e30F) : Real(1e300));
-    Bits found = 0;
-    for (std::size_t i = 0; i < count; ++i) {
-        const auto bits = std::bit_cast<Bits>(right[i] * right[i] + up[i] * up[i]);
-        // The sign bit of a NaN is anyone's guess, but it makes the number greater still.
-        found |= static_cast<Bits>(bits > limit);
-    }
+    BitsOf<Real> found = 0;
+    for (std::size_t i = 0; i < count; ++i)
+        found |= is_too_steep(right[i] * right[i] + up[i] * up[i]);
     return found != 0;
 }
 
@@ -54,17 +46,6 @@ template <typename Sample>
 using Coordinate = std::array<Sample, columns_at_once>;
 
 template <FlatCode flat, typename Sample, typename Real>
-RELIEF_INLINE Sample encoded(Real component) {
-    using Coding = NormalCoding<Sample, Real>;
-    if constexpr (std::is_same_v<Sample, float>)
-        return Coding::encoded(component);
-    else if constexpr (flat == FlatCode::half)
-        return Coding::to_half(component);
-    else
-        return Coding::to_middle(component);
-}
-
-template <FlatCode flat, typename Sample, typename Real>
 RELIEF_INLINE void coordinates_loop(const Real* __restrict right, const Real* __restrict up,
                                     std::size_t count, Real green, Sample* __restrict x,
                                     Sample* __restrict y, Sample* __restrict z) {
@@ -76,23 +57,12 @@ RELIEF_INLINE void coordinates_loop(const Real* __restrict right, const Real* __
     }
 }
 
-template <typename Sample>
-RELIEF_INLINE void interleave_loop(const Sample* __restrict x, const Sample* __restrict y,
-                                   const Sample* __restrict z, std::size_t count,
-                                   Sample* __restrict codes) {
-    for (std::size_t i = 0; i < count; ++i) {
-        codes[3 * i] = x[i];
-        codes[3 * i + 1] = y[i];
-        codes[3 * i + 2] = z[i];
-    }
-}
-
 template <FlatCode flat, typename Sample, typename Real>
 RELIEF_INLINE void codes_of(const Real* right, const Real* up, std::size_t count, Real green,
                             Sample* codes) {
     alignas(64) Coordinate<Sample> x, y, z;
     coordinates_loop<flat>(right, up, count, green, x.data(), y.data(), z.data());
-    interleave_loop(x.data(), y.data(), z.data(), count, codes);
+    interleave(x.data(), y.data(), z.data(), count, codes);
 }
 
 template <typename Real>

@@ -439,6 +439,33 @@ TEST(BumpCodes, AreThoseOfTheNormalsInEveryFormat) {
     }
 }
 
+TEST(BumpCodes, InFloatTheyAreThoseInDoubleAtEveryBorderAndSize) {
+    const glm::ivec2 sizes[] = {{1, 1}, {1, 4}, {5, 1}, {2, 2}, {3, 3}, {17, 6}, {1025, 3}};
+    for (const glm::ivec2 size : sizes) {
+        const CodedHeights wide = coded_heights(rough(size.x, size.y), 16);
+        const CodedHeights narrow = coded_heights(rough(size.x, size.y), 8);
+        const Image floats = rough(size.x, size.y);
+        for (const Image* image :
+             std::initializer_list<const Image*>{&floats, &wide.codes, &narrow.codes}) {
+            for (const Kernel kernel : all_kernels) {
+                for (const Wrap x : all_wraps) {
+                    for (const Wrap y : all_wraps) {
+                        BumpOptions options = options_of(kernel, {x, y}, 3.0);
+                        options.texel = {1.0, 0.5};
+                        options.arithmetic = Arithmetic::float32;
+                        const Image found = map_of(*image, options, {});
+                        options.arithmetic = Arithmetic::float64;
+                        const auto [greatest, count] =
+                            code_difference<std::uint16_t>(found, map_of(*image, options, {}));
+                        ASSERT_LE(greatest, 1) << static_cast<int>(kernel) << size.x << size.y;
+                        ASSERT_LE(count, 2U + found.sample_count() / 50);
+                    }
+                }
+            }
+        }
+    }
+}
+
 TEST(BumpCodes, AConstantMapIsExactlyTheFlatCode) {
     const Image image = heights_of(1030, 3, [](int, int) { return 0.7; });
     const Image map = map_of(image, {}, {});
