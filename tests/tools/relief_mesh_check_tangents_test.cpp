@@ -87,6 +87,17 @@ TEST(CheckTangents, FilesWithoutHaveNoLine) {
     EXPECT_EQ(tangents_of(workplace, "data/vase.obj"), json());
 }
 
+TEST(CheckTangents, PrimitivesOfWhichTheSameIsSaidShareALine) {
+    const Workplace workplace;
+    write_vase(workplace, "mikktspace");
+    json document = json::parse(workplace.read("out/vase.gltf"));
+    document["meshes"][0]["primitives"].push_back(document["meshes"][0]["primitives"][0]);
+    workplace.write("out/vase.gltf", document.dump());
+    const std::string text = workplace.run("relief-mesh check out/vase.gltf").out;
+    EXPECT_THAT(text, HasSubstr("primitive 0 and 1 more alike: mikktspace: "));
+    EXPECT_THAT(text, Not(HasSubstr("primitive 1")));
+}
+
 TEST(CheckTangents, OfRealModels) {
     RELIEF_NEEDS_SHARED(models, "data/models/gltf");
     const Workplace workplace;

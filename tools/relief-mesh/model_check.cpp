@@ -153,20 +153,38 @@ std::string remarks_in_words(const CheckedModel& model) {
     return fmt::format("{}", fmt::join(words, ", "));
 }
 
-/// What the tangents of each primitive are.
+/// What the tangents of each primitive are; those of which the same is to be said share a line.
 std::vector<std::string> tangents_in_words(const CheckedModel& model) {
-    constexpr std::size_t listed_at_most = 12;
-    std::vector<std::string> lines;
-    std::size_t more = 0;
+    struct Alike {
+        std::string words;
+        const CheckedPart* first;
+        std::size_t parts;
+    };
+    std::vector<Alike> groups;
     for (const CheckedPart& part : model.parts) {
         if (!part.tangents) continue;
-        if (lines.size() == listed_at_most) {
-            ++more;
-            continue;
-        }
-        lines.push_back((part.name.empty() ? "" : part.name + ": ") + in_words(*part.tangents));
+        std::string words = in_words(*part.tangents);
+        const auto group = std::find_if(groups.begin(), groups.end(),
+                                        [&](const Alike& other) { return other.words == words; });
+        if (group == groups.end())
+            groups.push_back({std::move(words), &part, 1});
+        else
+            ++group->parts;
     }
-    if (more != 0) lines.push_back(fmt::format("... and {} more (--json lists all)", more));
+    constexpr std::size_t listed_at_most = 12;
+    std::vector<std::string> lines;
+    for (const Alike& group : groups) {
+        if (lines.size() == listed_at_most) {
+            lines.push_back(
+                fmt::format("... and {} more (--json lists all)", groups.size() - listed_at_most));
+            break;
+        }
+        const std::string others =
+            group.parts == 1 ? "" : fmt::format(" and {} more alike", group.parts - 1);
+        const std::string place =
+            group.first->name.empty() ? "" : group.first->name + others + ": ";
+        lines.push_back(place + group.words);
+    }
     return lines;
 }
 

@@ -6,6 +6,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdint>
+#include <limits>
 
 #include "relief/mesh/error.h"
 
@@ -24,6 +26,11 @@ std::optional<std::size_t> corner_beyond(std::span<const glm::uvec3> triangles,
 }
 
 void check_triangles(std::span<const glm::uvec3> triangles, std::size_t vertex_count) {
+    constexpr std::size_t most = std::numeric_limits<std::uint32_t>::max() / 3;
+    if (triangles.size() > most) {
+        throw InvalidInput(fmt::format(
+            "there are {} triangles, but no more than {} can be numbered", triangles.size(), most));
+    }
     const std::optional<std::size_t> corner = corner_beyond(triangles, vertex_count);
     if (!corner) return;
     throw InvalidInput(

@@ -15,8 +15,8 @@ namespace relief {
 std::optional<std::size_t> corner_beyond(std::span<const glm::uvec3> triangles,
                                          std::size_t vertex_count);
 
-/// \throws InvalidInput naming the first offence: "triangle 7 names vertex 12, but there are only
-/// 8"
+/// \throws InvalidInput if corners are too many for 32-bit numbers, or naming the first offence:
+/// "triangle 7 names vertex 12, but there are only 8"
 void check_triangles(std::span<const glm::uvec3> triangles, std::size_t vertex_count);
 
 }  // namespace relief

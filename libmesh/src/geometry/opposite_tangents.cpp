@@ -10,6 +10,7 @@
 #include <numeric>
 #include <tuple>
 
+#include "geometry/corner_angle.h"
 #include "geometry/direction.h"
 
 namespace relief {
@@ -37,7 +38,8 @@ class TurnSteps {
         const double x = glm::dot(direction, x_axis_);
         const double y = glm::dot(direction, y_axis_);
         if (x == 0.0 && y == 0.0) return -1;
-        const double turn = (std::atan2(y, x) + offset) / (2.0 * std::numbers::pi);
+        const double angle = y < 0.0 ? -upper_angle(-y, x) : upper_angle(y, x);
+        const double turn = (angle + offset) / (2.0 * std::numbers::pi);
         return static_cast<std::int32_t>((turn - std::floor(turn)) * steps) % steps;
     }
 

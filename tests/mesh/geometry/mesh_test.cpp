@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "geometry/check_triangles.h"
 #include "relief/mesh/error.h"
 #include "support/shapes.h"
 
@@ -53,6 +54,16 @@ TEST(Mesh, MaterialRangesCoverAllTrianglesWithoutGapOrOverlap) {
     expect_invalid(mesh, "a material range starts at triangle 4 instead of 3");
     mesh.material_ranges = {{0, 3, 1}};
     expect_invalid(mesh, "material ranges cover 3 triangles, but there are 8");
+}
+
+TEST(Mesh, CornersThatCannotBeNumberedAreRefused) {
+    // Such a mesh takes 17 GB, so there is only one triangle of it to look at; nobody may.
+    const glm::uvec3 triangle(0, 0, 0);
+    const std::span<const glm::uvec3> too_many(&triangle, 1'431'655'766);
+    EXPECT_THAT([&] { check_triangles(too_many, 1); },
+                testing::ThrowsMessage<InvalidInput>(
+                    StrEq("there are 1431655766 triangles, but no more than 1431655765 can be "
+                          "numbered")));
 }
 
 TEST(Mesh, BoundsLeaveOutWhatIsNotFinite) {
