@@ -306,7 +306,8 @@ class DirectRowMaker {
         if (wrap_.y == Wrap::clamp && at_border) return general_.make_row(row);
         const auto rows = rows_.around(row, wrap_.y);
         const bool finite = all_pieces(heights_.width, [&](int first, int count) {
-            return make_piece(rows, row, first, count);
+            return make_piece({rows[0] + first, rows[1] + first, rows[2] + first}, row, first,
+                              count);
         });
         if (!finite || wrap_.x != Wrap::clamp) return finite;
         general_.begin_row(row);
@@ -315,12 +316,15 @@ class DirectRowMaker {
 
   private:
     bool make_piece(const std::array<const float*, 3>& rows, int row, int first, int count) {
+        // The row after the one below, if rows lie one behind the other.
+        const auto* const below = static_cast<const Sample*>(
+            heights_.row(place_within(row + 1, heights_.height, wrap_.y)));
+        const Sample* const next = below + heights_.width + first;
         bool too_steep = false;
         at_codes(target_, row, first, [&]<typename Code>(Code* codes) {
             if constexpr (!std::is_same_v<Code, float>) {
-                too_steep =
-                    codes_3x3(vectors_, {rows[0] + first, rows[1] + first, rows[2] + first},
-                              weights_, static_cast<std::size_t>(count), target_.format, codes);
+                too_steep = codes_3x3(vectors_, rows, weights_, static_cast<std::size_t>(count),
+                                      target_.format, codes, next, sizeof(Sample));
             }
         });
         return !too_steep || general_.make_carefully(row, first, count);

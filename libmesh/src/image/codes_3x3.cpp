@@ -43,8 +43,11 @@ typename PaddedRows<Sample>::Slot& PaddedRows<Sample>::load(int row,
     const auto* samples = static_cast<const Sample*>(heights_.row(row));
     const auto width = static_cast<std::size_t>(heights_.width);
     float* const to = slot.samples.data() + 1;
-    for (std::size_t i = 0; i < width; ++i)
-        to[i] = static_cast<float>(samples[i]);
+    if constexpr (std::is_same_v<Sample, float>)
+        std::copy_n(samples, width, to);
+    else
+        std::transform(samples, samples + width, to,
+                       [](Sample sample) { return static_cast<float>(sample); });
     slot.samples.front() = to[place_within(-1, heights_.width, wrap_)];
     slot.samples.back() = to[place_within(heights_.width, heights_.width, wrap_)];
     slot.row = row;
@@ -66,12 +69,6 @@ template class PaddedRows<std::uint16_t>;
 template class PaddedRows<float>;
 
 namespace {
-
-/// Coordinates of a piece of a row, each by itself.
-template <typename Code>
-struct Coordinates {
-    alignas(64) std::array<Code, columns_at_once> x, y, z;
-};
 
 template <FlatCode flat, typename Code>
 RELIEF_INLINE bool coordinates_loop(const float* __restrict above, const float* __restrict here,
@@ -100,44 +97,76 @@ RELIEF_INLINE bool coordinates_loop(const float* __restrict above, const float* 
     return too_steep != 0;
 }
 
+/// Asks for memory ahead of its use, so that it comes while something else is computed: where rows
+/// end, pages do, or all is stored at once, the processor does not see by itself what comes next.
+template <int for_writing>
+RELIEF_INLINE void ask_for(const void* begin, std::size_t bytes) {
+    for (std::size_t at = 0; at < bytes; at += 64)
+        __builtin_prefetch(static_cast<const char*>(begin) + at, for_writing);
+}
+
+/// What is worked on before memory for the next is asked for.
+constexpr std::size_t texels_per_block = 256;
+
+/// Coordinates of a block, each by itself.
+template <typename Code>
+struct Coordinates {
+    alignas(64) std::array<Code, texels_per_block> x, y, z;
+};
+
+/// Where heights come next.
+struct Ahead {
+    const char* begin;
+    std::size_t size;  ///< Bytes for each texel.
+};
+
 template <FlatCode flat, typename Code>
 RELIEF_INLINE bool codes_of(const std::array<const float*, 3>& rows, const Weights3x3& weights,
-                            std::size_t count, float green, Code* codes) {
+                            std::size_t count, float green, Code* codes, const Ahead& ahead) {
     Coordinates<Code> at;
-    const bool too_steep = coordinates_loop<flat>(rows[0], rows[1], rows[2], weights, count, green,
-                                                  at.x.data(), at.y.data(), at.z.data());
-    interleave(at.x.data(), at.y.data(), at.z.data(), count, codes);
+    bool too_steep = false;
+    for (std::size_t first = 0; first < count; first += texels_per_block) {
+        const std::size_t size = std::min(texels_per_block, count - first);
+        Code* const to = codes + 3 * first;
+        ask_for<1>(to + 3 * size, 3 * size * sizeof(Code));
+        ask_for<0>(ahead.begin + first * ahead.size, size * ahead.size);
+        too_steep |=
+            coordinates_loop<flat>(rows[0] + first, rows[1] + first, rows[2] + first, weights, size,
+                                   green, at.x.data(), at.y.data(), at.z.data());
+        interleave(at.x.data(), at.y.data(), at.z.data(), size, to);
+    }
     return too_steep;
 }
 
 template <FlatCode flat, typename Code>
 RELIEF_TARGET_512 bool codes_512(const std::array<const float*, 3>& rows, const Weights3x3& weights,
-                                 std::size_t count, float green, Code* codes) {
-    return codes_of<flat>(rows, weights, count, green, codes);
+                                 std::size_t count, float green, Code* codes, const Ahead& ahead) {
+    return codes_of<flat>(rows, weights, count, green, codes, ahead);
 }
 template <FlatCode flat, typename Code>
 RELIEF_TARGET_256 bool codes_256(const std::array<const float*, 3>& rows, const Weights3x3& weights,
-                                 std::size_t count, float green, Code* codes) {
-    return codes_of<flat>(rows, weights, count, green, codes);
+                                 std::size_t count, float green, Code* codes, const Ahead& ahead) {
+    return codes_of<flat>(rows, weights, count, green, codes, ahead);
 }
 template <FlatCode flat, typename Code>
 [[gnu::noinline]] bool codes_any(const std::array<const float*, 3>& rows, const Weights3x3& weights,
-                                 std::size_t count, float green, Code* codes) {
-    return codes_of<flat>(rows, weights, count, green, codes);
+                                 std::size_t count, float green, Code* codes, const Ahead& ahead) {
+    return codes_of<flat>(rows, weights, count, green, codes, ahead);
 }
 
 template <FlatCode flat, typename Code>
 bool codes_with(VectorTarget target, const std::array<const float*, 3>& rows,
-                const Weights3x3& weights, std::size_t count, float green, Code* codes) {
+                const Weights3x3& weights, std::size_t count, float green, Code* codes,
+                const Ahead& ahead) {
     switch (target) {
         case VectorTarget::widest:
-            return codes_512<flat>(rows, weights, count, green, codes);
+            return codes_512<flat>(rows, weights, count, green, codes, ahead);
         case VectorTarget::wide:
-            return codes_256<flat>(rows, weights, count, green, codes);
+            return codes_256<flat>(rows, weights, count, green, codes, ahead);
         case VectorTarget::any:
             break;
     }
-    return codes_any<flat>(rows, weights, count, green, codes);
+    return codes_any<flat>(rows, weights, count, green, codes, ahead);
 }
 
 }  // namespace
@@ -145,16 +174,19 @@ bool codes_with(VectorTarget target, const std::array<const float*, 3>& rows,
 template <typename Code>
 bool codes_3x3(VectorTarget target, const std::array<const float*, 3>& rows,
                const Weights3x3& weights, std::size_t count, const NormalMapFormat& format,
-               Code* codes) {
+               Code* codes, const void* next, std::size_t next_size) {
+    const Ahead ahead{static_cast<const char*>(next), next_size};
     const float green = format.green == Green::up ? 1.0F : -1.0F;
     if (format.flat == FlatCode::half)
-        return codes_with<FlatCode::half>(target, rows, weights, count, green, codes);
-    return codes_with<FlatCode::middle>(target, rows, weights, count, green, codes);
+        return codes_with<FlatCode::half>(target, rows, weights, count, green, codes, ahead);
+    return codes_with<FlatCode::middle>(target, rows, weights, count, green, codes, ahead);
 }
 
 template bool codes_3x3(VectorTarget, const std::array<const float*, 3>&, const Weights3x3&,
-                        std::size_t, const NormalMapFormat&, std::uint8_t*);
+                        std::size_t, const NormalMapFormat&, std::uint8_t*, const void*,
+                        std::size_t);
 template bool codes_3x3(VectorTarget, const std::array<const float*, 3>&, const Weights3x3&,
-                        std::size_t, const NormalMapFormat&, std::uint16_t*);
+                        std::size_t, const NormalMapFormat&, std::uint16_t*, const void*,
+                        std::size_t);
 
 }  // namespace relief

@@ -26,7 +26,8 @@ struct Weights3x3 {
 std::optional<Weights3x3> weights_3x3(const KernelWeights<float>& weights, float right_scale,
                                       float up_scale);
 
-/// Rows of heights as floats, with one more at each end by the wrap rule: three at a time.
+/// Rows of heights as floats, with one more at each end by the wrap rule: three at a time, each
+/// read once.
 template <typename Sample>
 class PaddedRows {
   public:
@@ -51,10 +52,12 @@ class PaddedRows {
 /// Codes of at most `columns_at_once` texels.
 ///
 /// \param rows  point at the column before the first
+/// \param next  heights that will be wanted soon, `next_size` bytes for each texel: only asked for
+///              in advance, so it matters to nothing but time whether they are there
 /// \return whether a slope is too steep for float (any_too_steep): then the codes are of no meaning
 template <typename Code>
 bool codes_3x3(VectorTarget target, const std::array<const float*, 3>& rows,
                const Weights3x3& weights, std::size_t count, const NormalMapFormat& format,
-               Code* codes);
+               Code* codes, const void* next, std::size_t next_size);
 
 }  // namespace relief
