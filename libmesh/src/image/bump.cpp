@@ -13,6 +13,7 @@
 
 #include "image/bump_rows.h"
 #include "image/height_field.h"
+#include "large_memory.h"
 #include "parallel.h"
 #include "relief/mesh/error.h"
 
@@ -91,6 +92,24 @@ Image floats_from_height(const Image& height, int channels, BumpResult result,
     return image;
 }
 
+/// An image whose memory is asked for in large pages, since all of it will be written.
+template <typename Sample>
+Image image_to_fill(int width, int height, int channels) {
+    Image image{width, height, channels, ColorSpace::data, {}};
+    std::vector<Sample> samples;
+    reserve_to_fill(samples, image.sample_count());
+    samples.resize(image.sample_count());
+    image.samples = std::move(samples);
+    return image;
+}
+
+Image image_to_fill(int width, int height, int channels, int bits) {
+    if (bits == 8) return image_to_fill<std::uint8_t>(width, height, channels);
+    if (bits == 16) return image_to_fill<std::uint16_t>(width, height, channels);
+    if (bits == 32) return image_to_fill<float>(width, height, channels);
+    return make_image(width, height, channels, bits, ColorSpace::data);  // Which refuses.
+}
+
 }  // namespace
 
 Image normals_from_height(const Image& height, const BumpOptions& options, Report& report) {
@@ -106,7 +125,7 @@ void normal_map_from_height(const Image& height, const BumpOptions& options,
     check(height, options);
     const bool fits = result.width == height.width && result.height == height.height &&
                       result.channels == 3 && result.bits() == format.bits;
-    if (!fits) result = make_image(height.width, height.height, 3, format.bits, ColorSpace::data);
+    if (!fits) result = image_to_fill(height.width, height.height, 3, format.bits);
     result.color_space = ColorSpace::data;
     BumpTarget target{BumpResult::codes, format, {}};
     if (format.bits == 8)

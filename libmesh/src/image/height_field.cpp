@@ -13,6 +13,7 @@
 #include <cstdint>
 
 #include "image/border.h"
+#include "large_memory.h"
 #include "parallel.h"
 #include "relief/mesh/error.h"
 
@@ -125,21 +126,40 @@ bool all_finite(std::span<const float> heights) {
     return finite;
 }
 
-template <typename Sample>
-std::vector<float> mean_of_colors(const Image& image, std::span<const Sample> samples,
-                                  double largest) {
-    const auto channels = static_cast<std::size_t>(image.channels);
-    const std::size_t colors = channels < 3 ? 1 : 3;
-    std::vector<float> heights(samples.size() / channels);
+/// The number of channels is a constant, for the loop to become vector instructions.
+template <std::size_t channels, typename Sample>
+std::vector<float> mean_of_channels(std::span<const Sample> samples, double largest) {
+    constexpr std::size_t colors = channels < 3 ? 1 : 3;
+    std::vector<float> heights;
+    reserve_to_fill(heights, samples.size() / channels);
+    heights.resize(samples.size() / channels);
     parallel_for(heights.size(), texels_per_piece, [&](std::size_t begin, std::size_t end) {
+        const Sample* const from = samples.data();
+        float* const to = heights.data();
+        const double divisor = largest * static_cast<double>(colors);
         for (std::size_t texel = begin; texel < end; ++texel) {
             double sum = 0.0;
             for (std::size_t color = 0; color < colors; ++color)
-                sum += static_cast<double>(samples[texel * channels + color]);
-            heights[texel] = static_cast<float>(sum / (largest * static_cast<double>(colors)));
+                sum += static_cast<double>(from[texel * channels + color]);
+            to[texel] = static_cast<float>(sum / divisor);
         }
     });
     return heights;
+}
+
+template <typename Sample>
+std::vector<float> mean_of_colors(const Image& image, std::span<const Sample> samples,
+                                  double largest) {
+    switch (image.channels) {
+        case 1:
+            return mean_of_channels<1>(samples, largest);
+        case 2:
+            return mean_of_channels<2>(samples, largest);
+        case 3:
+            return mean_of_channels<3>(samples, largest);
+        default:
+            return mean_of_channels<4>(samples, largest);
+    }
 }
 
 }  // namespace
