@@ -70,29 +70,43 @@ template class PaddedRows<float>;
 
 namespace {
 
+/// The weights with their scales, and the sign of green.
+struct Scaled3x3 {
+    float own_right, beside_right, own_up, beside_up;
+};
+
+/// Minus a component that has been multiplied by the greatest code's value, as a code. Rounding is
+/// symmetric, so that the sign can wait until the end.
+template <FlatCode flat, typename Code>
+RELIEF_INLINE Code code_of_negative(float steps) {
+    if constexpr (flat == FlatCode::half)
+        return NormalCoding<Code, float>::from_half_steps(-steps);
+    else
+        return NormalCoding<Code, float>::from_middle_steps(-steps);
+}
+
 template <FlatCode flat, typename Code>
 RELIEF_INLINE bool coordinates_loop(const float* __restrict above, const float* __restrict here,
-                                    const float* __restrict below, const Weights3x3& weights,
-                                    std::size_t count, float green, Code* __restrict x,
-                                    Code* __restrict y, Code* __restrict z) {
-    const float own = weights.own;
-    const float beside = weights.beside;
-    const float right_scale = weights.right_scale;
-    const float up_scale = weights.up_scale;
+                                    const float* __restrict below, const Scaled3x3& weights,
+                                    std::size_t count, Code* __restrict x, Code* __restrict y,
+                                    Code* __restrict z) {
+    const Scaled3x3 w = weights;
+    constexpr float steps = NormalCoding<Code, float>::steps(flat);
     std::uint32_t too_steep = 0;
     for (std::size_t i = 0; i < count; ++i) {
-        const float left_line = own * here[i] + beside * (above[i] + below[i]);
-        const float right_line = own * here[i + 2] + beside * (above[i + 2] + below[i + 2]);
-        const float right = (right_line - left_line) * right_scale;
-        const float up = (own * (above[i + 1] - below[i + 1]) +
-                          beside * ((above[i] - below[i]) + (above[i + 2] - below[i + 2]))) *
-                         up_scale;
+        // What the corners add to both slopes are the sum and the difference of the diagonals.
+        const float rising = above[i + 2] - below[i];
+        const float falling = below[i + 2] - above[i];
+        const float right =
+            w.own_right * (here[i + 2] - here[i]) + w.beside_right * (rising + falling);
+        const float up =
+            w.own_up * (above[i + 1] - below[i + 1]) + w.beside_up * (rising - falling);
         const float square = right * right + up * up;
         too_steep |= is_too_steep(square);
-        const float scale = 1 / std::sqrt(square + 1);
-        x[i] = encoded<flat, Code>(0 - right * scale);
-        y[i] = encoded<flat, Code>(0 - green * up * scale);
-        z[i] = encoded<flat, Code>(scale);
+        const float scale = steps / std::sqrt(square + 1);
+        x[i] = code_of_negative<flat, Code>(right * scale);
+        y[i] = code_of_negative<flat, Code>(up * scale);
+        z[i] = code_of_negative<flat, Code>(-scale);
     }
     return too_steep != 0;
 }
@@ -121,8 +135,8 @@ struct Ahead {
 };
 
 template <FlatCode flat, typename Code>
-RELIEF_INLINE bool codes_of(const std::array<const float*, 3>& rows, const Weights3x3& weights,
-                            std::size_t count, float green, Code* codes, const Ahead& ahead) {
+RELIEF_INLINE bool codes_of(const std::array<const float*, 3>& rows, const Scaled3x3& weights,
+                            std::size_t count, Code* codes, const Ahead& ahead) {
     Coordinates<Code> at;
     bool too_steep = false;
     for (std::size_t first = 0; first < count; first += texels_per_block) {
@@ -130,43 +144,41 @@ RELIEF_INLINE bool codes_of(const std::array<const float*, 3>& rows, const Weigh
         Code* const to = codes + 3 * first;
         ask_for<1>(to + 3 * size, 3 * size * sizeof(Code));
         ask_for<0>(ahead.begin + first * ahead.size, size * ahead.size);
-        too_steep |=
-            coordinates_loop<flat>(rows[0] + first, rows[1] + first, rows[2] + first, weights, size,
-                                   green, at.x.data(), at.y.data(), at.z.data());
+        too_steep |= coordinates_loop<flat>(rows[0] + first, rows[1] + first, rows[2] + first,
+                                            weights, size, at.x.data(), at.y.data(), at.z.data());
         interleave(at.x.data(), at.y.data(), at.z.data(), size, to);
     }
     return too_steep;
 }
 
 template <FlatCode flat, typename Code>
-RELIEF_TARGET_512 bool codes_512(const std::array<const float*, 3>& rows, const Weights3x3& weights,
-                                 std::size_t count, float green, Code* codes, const Ahead& ahead) {
-    return codes_of<flat>(rows, weights, count, green, codes, ahead);
+RELIEF_TARGET_512 bool codes_512(const std::array<const float*, 3>& rows, const Scaled3x3& weights,
+                                 std::size_t count, Code* codes, const Ahead& ahead) {
+    return codes_of<flat>(rows, weights, count, codes, ahead);
 }
 template <FlatCode flat, typename Code>
-RELIEF_TARGET_256 bool codes_256(const std::array<const float*, 3>& rows, const Weights3x3& weights,
-                                 std::size_t count, float green, Code* codes, const Ahead& ahead) {
-    return codes_of<flat>(rows, weights, count, green, codes, ahead);
+RELIEF_TARGET_256 bool codes_256(const std::array<const float*, 3>& rows, const Scaled3x3& weights,
+                                 std::size_t count, Code* codes, const Ahead& ahead) {
+    return codes_of<flat>(rows, weights, count, codes, ahead);
 }
 template <FlatCode flat, typename Code>
-[[gnu::noinline]] bool codes_any(const std::array<const float*, 3>& rows, const Weights3x3& weights,
-                                 std::size_t count, float green, Code* codes, const Ahead& ahead) {
-    return codes_of<flat>(rows, weights, count, green, codes, ahead);
+[[gnu::noinline]] bool codes_any(const std::array<const float*, 3>& rows, const Scaled3x3& weights,
+                                 std::size_t count, Code* codes, const Ahead& ahead) {
+    return codes_of<flat>(rows, weights, count, codes, ahead);
 }
 
 template <FlatCode flat, typename Code>
 bool codes_with(VectorTarget target, const std::array<const float*, 3>& rows,
-                const Weights3x3& weights, std::size_t count, float green, Code* codes,
-                const Ahead& ahead) {
+                const Scaled3x3& weights, std::size_t count, Code* codes, const Ahead& ahead) {
     switch (target) {
         case VectorTarget::widest:
-            return codes_512<flat>(rows, weights, count, green, codes, ahead);
+            return codes_512<flat>(rows, weights, count, codes, ahead);
         case VectorTarget::wide:
-            return codes_256<flat>(rows, weights, count, green, codes, ahead);
+            return codes_256<flat>(rows, weights, count, codes, ahead);
         case VectorTarget::any:
             break;
     }
-    return codes_any<flat>(rows, weights, count, green, codes, ahead);
+    return codes_any<flat>(rows, weights, count, codes, ahead);
 }
 
 }  // namespace
@@ -176,10 +188,12 @@ bool codes_3x3(VectorTarget target, const std::array<const float*, 3>& rows,
                const Weights3x3& weights, std::size_t count, const NormalMapFormat& format,
                Code* codes, const void* next, std::size_t next_size) {
     const Ahead ahead{static_cast<const char*>(next), next_size};
-    const float green = format.green == Green::up ? 1.0F : -1.0F;
+    const float up_scale = format.green == Green::up ? weights.up_scale : -weights.up_scale;
+    const Scaled3x3 scaled{weights.own * weights.right_scale, weights.beside * weights.right_scale,
+                           weights.own * up_scale, weights.beside * up_scale};
     if (format.flat == FlatCode::half)
-        return codes_with<FlatCode::half>(target, rows, weights, count, green, codes, ahead);
-    return codes_with<FlatCode::middle>(target, rows, weights, count, green, codes, ahead);
+        return codes_with<FlatCode::half>(target, rows, scaled, count, codes, ahead);
+    return codes_with<FlatCode::middle>(target, rows, scaled, count, codes, ahead);
 }
 
 template bool codes_3x3(VectorTarget, const std::array<const float*, 3>&, const Weights3x3&,

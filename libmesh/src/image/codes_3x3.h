@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// The common case in one loop: kernels of 3x3 in float, heights to codes, nothing stored in
-/// between. The bits are those of slope_loops.h and normal_loops.h one after the other.
+/// between. Sums are in another order than in slope_loops.h, with fewer operations; the bits are
+/// the same on every processor here too.
 /// Tests: tests/mesh/image/bump_kernels_test.cpp.
 #pragma once
 

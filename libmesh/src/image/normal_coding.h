@@ -21,18 +21,28 @@ struct NormalCoding {
     static constexpr Real middle = (largest + 1) / 2;
     FlatCode flat;
 
+    /// What a component is multiplied by to count in codes.
+    static constexpr Real steps(FlatCode flat) {
+        return flat == FlatCode::half ? largest / 2 : middle - 1;
+    }
+
     // The cast cuts off, which is a nearest code after adding a half. Without branches, so that
     // loops become vector instructions.
-    RELIEF_INLINE static Code to_half(Real component) {
+    RELIEF_INLINE static Code from_half_steps(Real steps) {
         // Its zero lies between two codes, so that only a sum can be rounded.
-        return static_cast<Code>(static_cast<std::int32_t>(largest / 2 + largest / 2 * component +
-                                                           static_cast<Real>(0.5)));
+        return static_cast<Code>(
+            static_cast<std::int32_t>(largest / 2 + steps + static_cast<Real>(0.5)));
     }
-    RELIEF_INLINE static Code to_middle(Real component) {
-        const Real steps = (middle - 1) * component;
+    RELIEF_INLINE static Code from_middle_steps(Real steps) {
         return static_cast<Code>(
             static_cast<std::int32_t>(middle) +
             static_cast<std::int32_t>(steps + std::copysign(static_cast<Real>(0.5), steps)));
+    }
+    RELIEF_INLINE static Code to_half(Real component) {
+        return from_half_steps(largest / 2 * component);
+    }
+    RELIEF_INLINE static Code to_middle(Real component) {
+        return from_middle_steps((middle - 1) * component);
     }
 
     [[nodiscard]] Code encoded(Real component) const {
