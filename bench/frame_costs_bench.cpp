@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 
 #include <array>
-#include <chrono>
 #include <cstdlib>
 #include <cstring>
 #include <functional>
@@ -14,6 +13,7 @@
 #include <vector>
 
 #include "mesh/bumpy_sphere.h"
+#include "mesh/contenders.h"
 #include "relief/mesh/frame_encoding.h"
 #include "relief/mesh/split.h"
 #include "relief/mesh/tangents.h"
@@ -24,22 +24,6 @@
 
 namespace relief::bench {
 namespace {
-
-struct Contender {
-    std::string name;
-    std::function<void()> run;
-    std::vector<double> nanoseconds{};
-};
-
-void measure(std::vector<Contender>& all, std::size_t rounds) {
-    interleave(all.size(), {rounds, 2}, [&](std::size_t i, bool counted) {
-        const auto begin = std::chrono::steady_clock::now();
-        all[i].run();
-        const std::chrono::duration<double, std::nano> taken =
-            std::chrono::steady_clock::now() - begin;
-        if (counted) all[i].nanoseconds.push_back(taken.count());
-    });
-}
 
 double median(const Contender& contender, std::size_t elements) {
     return spread_of(contender.nanoseconds).median / static_cast<double>(elements);
@@ -90,19 +74,6 @@ void compare_methods(const Mesh& mesh, std::size_t rounds) {
     }
 }
 
-struct NamedEncoding {
-    const char* name;
-    FrameEncoding encoding;
-};
-constexpr std::array encodings = {NamedEncoding{"float32", FrameEncoding::float32},
-                                  NamedEncoding{"octahedral8", FrameEncoding::octahedral8},
-                                  NamedEncoding{"quaternion8", FrameEncoding::quaternion8},
-                                  NamedEncoding{"angle10", FrameEncoding::angle10},
-                                  NamedEncoding{"octahedral10", FrameEncoding::octahedral10},
-                                  NamedEncoding{"octahedral16", FrameEncoding::octahedral16},
-                                  NamedEncoding{"quaternion16", FrameEncoding::quaternion16},
-                                  NamedEncoding{"angle16", FrameEncoding::angle16}};
-
 /// Frames of every vertex, one tangent each.
 struct VertexFrames {
     std::vector<glm::vec3> normals;
@@ -126,19 +97,19 @@ void compare_encodings(const Mesh& mesh, std::size_t rounds) {
     std::vector<std::vector<std::uint32_t>> codes;
     std::vector<Contender> all;
     Report report;
-    for (const NamedEncoding& one : encodings) {
-        codes.push_back(encode_frames(frames.normals, frames.tangents, one.encoding,
+    for (const FrameEncoding encoding : all_frame_encodings) {
+        codes.push_back(encode_frames(frames.normals, frames.tangents, encoding,
                                       FrameRounding::nearest, report));
     }
-    for (std::size_t i = 0; i < encodings.size(); ++i) {
-        const FrameEncoding encoding = encodings[i].encoding;
+    for (std::size_t i = 0; i < all_frame_encodings.size(); ++i) {
+        const FrameEncoding encoding = all_frame_encodings[i];
         for (const FrameRounding rounding : {FrameRounding::nearest, FrameRounding::best}) {
-            all.push_back({encodings[i].name, [&frames, &report, encoding, rounding] {
+            all.push_back({std::string(word_of(encoding)), [&frames, &report, encoding, rounding] {
                                encode_frames(frames.normals, frames.tangents, encoding, rounding,
                                              report);
                            }});
         }
-        all.push_back({encodings[i].name, [&codes, &report, encoding, i] {
+        all.push_back({std::string(word_of(encoding)), [&codes, &report, encoding, i] {
                            decode_frames(codes[i], encoding, report);
                        }});
     }
@@ -149,12 +120,12 @@ void compare_encodings(const Mesh& mesh, std::size_t rounds) {
         "\nStoring, {} frames, one thread\n\n| | bytes | encode nearest, ns/frame | encode "
         "best | decode |\n|---|---|---|---|---|\n",
         frames.normals.size());
-    for (std::size_t i = 0; i < encodings.size(); ++i) {
+    for (std::size_t i = 0; i < all_frame_encodings.size(); ++i) {
         const auto taken = [&](std::size_t what) {
             return median(all[3 * i + what], frames.normals.size());
         };
-        fmt::print("| `{}` | {} | {:.0f} | {:.0f} | {:.0f} |\n", encodings[i].name,
-                   4 * words_per_frame(encodings[i].encoding), taken(0), taken(1), taken(2));
+        fmt::print("| `{}` | {} | {:.0f} | {:.0f} | {:.0f} |\n", word_of(all_frame_encodings[i]),
+                   4 * words_per_frame(all_frame_encodings[i]), taken(0), taken(1), taken(2));
     }
 }
 

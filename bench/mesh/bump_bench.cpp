@@ -4,7 +4,6 @@
 // in Markdown. All write into memory that is there already.
 #include <fmt/format.h>
 
-#include <chrono>
 #include <cmath>
 #include <cstdlib>
 #include <functional>
@@ -12,6 +11,7 @@
 #include <vector>
 
 #include "mesh/bump_peers.h"
+#include "mesh/contenders.h"
 #include "mesh/triad.h"
 #include "relief/mesh/analytic_heights.h"
 #include "relief/mesh/bump.h"
@@ -46,13 +46,6 @@ void plain_loop(const Image& heights, float strength, Image& map) {
     }
 }
 
-struct Contender {
-    std::string name;
-    double bytes = 0;  ///< Moved at least, for each texel: heights read and codes written once.
-    std::function<void()> run;
-    std::vector<double> nanoseconds;
-};
-
 struct Fields {
     Image floats, codes;
     double strength = 1.0;
@@ -65,16 +58,21 @@ Fields fields(int side) {
     return {std::move(field.heights), std::move(coded.codes), coded.strength};
 }
 
+/// Moved at least: heights read and codes written once.
+double bytes_a_texel(const Image& heights) {
+    return heights.bits() / 8.0 + 6.0;
+}
+
 Contender ours(const Image& heights, std::string name, BumpOptions options, unsigned threads,
                Image& map) {
     return {fmt::format("relief, {}{}", name, threads == 1 ? "" : ", 2 threads"),
-            heights.bits() / 8.0 + 6.0,
             [&heights, options, threads, &map] {
                 set_thread_limit(threads);
                 Report report;
                 normal_map_from_height(heights, options, {}, map, report);
             },
-            {}};
+            {},
+            bytes_a_texel(heights)};
 }
 
 BumpOptions options_of(Kernel kernel, double strength,
@@ -87,9 +85,9 @@ BumpOptions options_of(Kernel kernel, double strength,
 std::vector<Contender> contenders(const Fields& in, Triad& triad, Image& map) {
     std::vector<Contender> all;
     all.push_back({"plain loop, sobel3, float in",
-                   10.0,
                    [&in, &map] { plain_loop(in.floats, 1.0F, map); },
-                   {}});
+                   {},
+                   bytes_a_texel(in.floats)});
     for (const unsigned threads : {1U, 2U}) {
         all.push_back(
             ours(in.floats, "sobel3, float in", options_of(Kernel::sobel3, 1.0), threads, map));
@@ -106,8 +104,8 @@ std::vector<Contender> contenders(const Fields& in, Triad& triad, Image& map) {
     all.push_back(ours(in.floats, "sobel3, float in, in double",
                        options_of(Kernel::sobel3, 1.0, Arithmetic::float64), 1, map));
     for (BumpPeer& peer : bump_peers(in.floats, map))
-        all.push_back({std::move(peer.name), 10.0, std::move(peer.run), {}});
-    all.push_back({"triad", 0.0, [&triad] { triad.run(); }, {}});
+        all.push_back({std::move(peer.name), std::move(peer.run), {}, bytes_a_texel(in.floats)});
+    all.push_back({"triad", [&triad] { triad.run(); }});
     return all;
 }
 
@@ -118,13 +116,7 @@ int run(int argc, char** argv) {
     Image map = make_image(side, side, 3, 16, ColorSpace::data);
     Triad triad;
     std::vector<Contender> all = contenders(in, triad, map);
-    interleave(all.size(), {rounds, 2}, [&](std::size_t i, bool counted) {
-        const auto begin = std::chrono::steady_clock::now();
-        all[i].run();
-        const std::chrono::duration<double, std::nano> taken =
-            std::chrono::steady_clock::now() - begin;
-        if (counted) all[i].nanoseconds.push_back(taken.count());
-    });
+    measure(all, rounds);
 
     const double bandwidth = Triad::bytes / spread_of(all.back().nanoseconds).median;
     const double texels = static_cast<double>(side) * side;

@@ -4,13 +4,13 @@
 // Markdown.
 #include <fmt/format.h>
 
-#include <chrono>
 #include <cstdlib>
 #include <functional>
 #include <string>
 #include <vector>
 
 #include "mesh/bumpy_sphere.h"
+#include "mesh/contenders.h"
 #include "mesh/normal_peers.h"
 #include "mesh/triad.h"
 #include "relief/mesh/normals.h"
@@ -35,12 +35,6 @@ std::vector<glm::vec3> naive_area_normals(const Mesh& mesh) {
         normal = glm::normalize(normal);
     return normals;
 }
-
-struct Contender {
-    std::string name;
-    std::function<void()> run;
-    std::vector<double> nanoseconds;
-};
 
 volatile float sink = 0.0F;
 
@@ -90,13 +84,7 @@ int run(int argc, char** argv) {
     const Mesh mesh = bumpy_sphere(triangles);
     Triad triad;
     std::vector<Contender> all = contenders(mesh, triad);
-    interleave(all.size(), {rounds, 2}, [&](std::size_t i, bool counted) {
-        const auto begin = std::chrono::steady_clock::now();
-        all[i].run();
-        const std::chrono::duration<double, std::nano> taken =
-            std::chrono::steady_clock::now() - begin;
-        if (counted) all[i].nanoseconds.push_back(taken.count());
-    });
+    measure(all, rounds);
 
     fmt::print("{} triangles, {} vertices; median of {} rounds in turns\n\n", mesh.triangles.size(),
                mesh.positions.size(), rounds);

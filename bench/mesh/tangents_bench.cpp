@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "mesh/bumpy_sphere.h"
+#include "mesh/contenders.h"
 #include "mesh/tangent_shapes.h"
 #include "mesh/triad.h"
 #include "relief/mesh/tangents.h"
@@ -59,12 +60,6 @@ std::vector<glm::vec4> naive_tangents(const Mesh& mesh) {
     return tangents;
 }
 
-struct Contender {
-    std::string name;
-    std::function<void()> run;
-    std::vector<double> nanoseconds;
-};
-
 Contender ours(const Mesh& mesh, const std::string& name, Method method, unsigned threads) {
     return {fmt::format("{}{}", name, threads == 1 ? "" : ", 2 threads"),
             [&mesh, method, threads] {
@@ -111,10 +106,7 @@ void print_table(const std::string& title, const Mesh& mesh, std::size_t rounds)
     }
     const double peak = peak_mib(all[1].run);
     all.push_back({"triad", [&] { triad.run(); }, {}});
-    interleave(all.size(), {rounds, 1}, [&](std::size_t i, bool counted) {
-        const double taken = timed(all[i].run);
-        if (counted) all[i].nanoseconds.push_back(taken);
-    });
+    measure(all, rounds, 1);
 
     const auto count = static_cast<double>(mesh.triangles.size());
     const double plain = spread_of(all[0].nanoseconds).median;

@@ -270,19 +270,6 @@ std::string mismatch_tables() {
            mismatch_table("On the plate with thin bevels", bevelled_plate(0.02)) + "\n";
 }
 
-struct NamedEncoding {
-    const char* name;
-    FrameEncoding encoding;
-};
-constexpr std::array encodings = {NamedEncoding{"`float32`", FrameEncoding::float32},
-                                  NamedEncoding{"`octahedral8`", FrameEncoding::octahedral8},
-                                  NamedEncoding{"`quaternion8`", FrameEncoding::quaternion8},
-                                  NamedEncoding{"`angle10`", FrameEncoding::angle10},
-                                  NamedEncoding{"`octahedral10`", FrameEncoding::octahedral10},
-                                  NamedEncoding{"`octahedral16`", FrameEncoding::octahedral16},
-                                  NamedEncoding{"`quaternion16`", FrameEncoding::quaternion16},
-                                  NamedEncoding{"`angle16`", FrameEncoding::angle16}};
-
 /// Of a normal, a tangent and tilted texels that went through an encoding.
 struct EncodingErrors {
     Errors normal;
@@ -323,19 +310,19 @@ std::string encoding_tables() {
     const auto mean_and_max = [](const Errors& errors) {
         return fmt::format("{:.2g} / {:.2g}", errors.mean(), errors.max());
     };
-    for (const NamedEncoding& named : encodings) {
+    for (const FrameEncoding encoding : all_frame_encodings) {
         for (const FrameRounding rounding : {FrameRounding::nearest, FrameRounding::best}) {
-            if (named.encoding == FrameEncoding::float32 && rounding == FrameRounding::best)
-                continue;
-            const EncodingErrors errors = encoding_errors(truth, named.encoding, rounding);
+            if (encoding == FrameEncoding::float32 && rounding == FrameRounding::best) continue;
+            const EncodingErrors errors = encoding_errors(truth, encoding, rounding);
             const std::vector<std::string> cells = {
                 rounding == FrameRounding::nearest ? "nearest" : "best",
-                fmt::format("{}", 4 * words_per_frame(named.encoding)),
+                fmt::format("{}", 4 * words_per_frame(encoding)),
                 mean_and_max(errors.normal),
                 mean_and_max(errors.tangent),
                 mean_and_max(errors.texel),
                 fmt::format("{}", errors.lost_hands)};
-            text += table_row(named.name, std::vector(cells.size(), not_compared), cells);
+            text += table_row(fmt::format("`{}`", word_of(encoding)),
+                              std::vector(cells.size(), not_compared), cells);
         }
     }
     return text + "\n";

@@ -257,7 +257,7 @@ void vote(const BlockCorners& block, BlockAxes& axes, std::array<BlockVotes, 3>&
     }
 }
 
-/// What is to be done, as the type of the weight fixes it.
+/// What is voted on, and where votes and kinds go.
 struct Job {
     const TangentInput& input;
     std::span<glm::vec4> votes;

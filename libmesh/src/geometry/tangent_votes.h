@@ -59,7 +59,7 @@ static_assert(sizeof(CornerVote) == sizeof(glm::vec4));
 /// zero where it has none.
 glm::dvec3 direction_in_plane(const glm::dvec3& vector, const glm::dvec3& normal);
 
-/// \return as long as no direction is: with side 0 where `vector` is zero or not finite
+/// \return no vote where `vector` is zero or not finite
 CornerVote vote_of(const glm::dvec3& vector, std::int8_t side, std::uint8_t seen);
 
 /// What tangents are made from. Equally long by vertex; values of any kind.
@@ -71,7 +71,8 @@ struct TangentInput {
 };
 
 /// The votes of one triangle, whatever its numbers are: what cast_votes() does with triangles that
-/// are not ordinary. Any triangle has the same from both within 1e-8 of a vote's length.
+/// are not ordinary. Others have the same from both within 3e-7 of a vote's length: here, gradients
+/// are unit vectors of floats first.
 struct TriangleVotesAndKind {
     Gradient kind = Gradient::none;
     std::array<CornerVote, 3> votes;

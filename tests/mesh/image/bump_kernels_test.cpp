@@ -12,9 +12,13 @@
 #include "relief/mesh/bump.h"
 #include "relief/mesh/error.h"
 #include "relief/mesh/threads.h"
+#include "support/height_fields.h"
 
 namespace relief {
 namespace {
+
+using test::heights_of;
+using test::rough;
 
 constexpr double pi = std::numbers::pi;
 
@@ -22,25 +26,6 @@ constexpr Kernel all_kernels[] = {
     Kernel::forward, Kernel::central3, Kernel::prewitt3, Kernel::sobel3,   Kernel::scharr3,
     Kernel::sobel5,  Kernel::scharr5,  Kernel::central5, Kernel::central7, Kernel::gaussian};
 constexpr Wrap all_wraps[] = {Wrap::repeat, Wrap::clamp, Wrap::mirror};
-
-Image heights_of(int width, int height, const std::function<double(int, int)>& at) {
-    Image image = make_image(width, height, 1, 32, ColorSpace::data);
-    for (int row = 0; row < height; ++row) {
-        for (int column = 0; column < width; ++column)
-            image.as<float>()[static_cast<std::size_t>(row * width + column)] =
-                static_cast<float>(at(column, row));
-    }
-    return image;
-}
-
-/// Noise between 0 and 1, the same in every run.
-Image rough(int width, int height) {
-    std::uint32_t state = 4321;
-    return heights_of(width, height, [&](int, int) {
-        state = state * 1664525U + 1013904223U;
-        return static_cast<double>(state >> 8) / 16777216.0;
-    });
-}
 
 BumpOptions options_of(Kernel kernel, Wraps wrap, double strength = 1.0) {
     BumpOptions options{kernel, wrap, strength};
@@ -120,7 +105,7 @@ glm::dvec2 plain_slope(const Image& image, const GradientKernel& kernel, const W
 TEST(BumpKernels, SlopesAreThePlainSumsAtEveryBorderAndSize) {
     const glm::ivec2 sizes[] = {{1, 1}, {1, 5}, {6, 1}, {2, 2}, {3, 4}, {7, 2}, {13, 9}};
     for (const glm::ivec2 size : sizes) {
-        const Image image = rough(size.x, size.y);
+        const Image image = rough(size.x, size.y, 4321);
         for (const Kernel kernel : all_kernels) {
             const GradientKernel weights = gradient_kernel(kernel, 3);
             for (const Wrap x : all_wraps) {
@@ -225,7 +210,7 @@ TEST(BumpKernels, ConstantMapsAreFlatToTheBitInEveryKernelAndArithmetic) {
 // Borders
 
 TEST(BumpBorders, AMirroredMapIsTheMiddleOfItsMirroredSelvesBitForBit) {
-    const Image image = rough(12, 7);
+    const Image image = rough(12, 7, 4321);
     for (const Kernel kernel : all_kernels) {
         if (kernel == Kernel::forward) continue;
         const Image mirrored = slopes_of(image, options_of(kernel, Wrap::mirror));
@@ -243,7 +228,7 @@ TEST(BumpBorders, AMirroredMapIsTheMiddleOfItsMirroredSelvesBitForBit) {
 }
 
 TEST(BumpBorders, EachAxisHasItsOwnRule) {
-    const Image image = rough(16, 16);
+    const Image image = rough(16, 16, 4321);
     const auto slope = [&](Wraps wrap, int x, int y) {
         return slope_at(slopes_of(image, options_of(Kernel::central3, wrap)), x, y);
     };
@@ -270,7 +255,7 @@ TEST(BumpBorders, HolesAreFilledByTheRuleOfTheirAxis) {
 }
 
 TEST(BumpBorders, TexelsThatAreNotSquareScaleEachAxis) {
-    const Image image = rough(9, 9);
+    const Image image = rough(9, 9, 4321);
     BumpOptions options = options_of(Kernel::sobel3, Wrap::repeat, 3.0);
     const Image square = slopes_of(image, options);
     options.texel = {2.0, 0.25};
@@ -360,7 +345,7 @@ TEST(BumpAccuracy, EveryKernelHasTheOrderItSays) {
 
 TEST(BumpAccuracy, NoiseInTheHeightsComesThroughByTheKernelsGain) {
     // Uniform noise of deviation sqrt(1/12), over 250,000 texels: 0.3 % of statistics.
-    const Image noise = rough(500, 500);
+    const Image noise = rough(500, 500, 4321);
     for (const Kernel kernel : all_kernels) {
         const Image slopes = slopes_of(noise, options_of(kernel, Wrap::repeat));
         double squares = 0.0;
@@ -410,7 +395,7 @@ std::pair<int, std::size_t> code_difference(const Image& a, const Image& b) {
 }
 
 TEST(BumpCodes, AreThoseOfTheNormalsInEveryFormat) {
-    const Image image = rough(1500, 40);  // More than one piece of a row.
+    const Image image = rough(1500, 40, 4321);  // More than one piece of a row.
     for (const Arithmetic arithmetic : {Arithmetic::float64, Arithmetic::float32}) {
         for (const FlatCode flat : {FlatCode::middle, FlatCode::half}) {
             for (const Green green : {Green::up, Green::down}) {
@@ -442,9 +427,9 @@ TEST(BumpCodes, AreThoseOfTheNormalsInEveryFormat) {
 TEST(BumpCodes, InFloatTheyAreThoseInDoubleAtEveryBorderAndSize) {
     const glm::ivec2 sizes[] = {{1, 1}, {1, 4}, {5, 1}, {2, 2}, {3, 3}, {17, 6}, {1025, 3}};
     for (const glm::ivec2 size : sizes) {
-        const CodedHeights wide = coded_heights(rough(size.x, size.y), 16);
-        const CodedHeights narrow = coded_heights(rough(size.x, size.y), 8);
-        const Image floats = rough(size.x, size.y);
+        const CodedHeights wide = coded_heights(rough(size.x, size.y, 4321), 16);
+        const CodedHeights narrow = coded_heights(rough(size.x, size.y, 4321), 8);
+        const Image floats = rough(size.x, size.y, 4321);
         for (const Image* image :
              std::initializer_list<const Image*>{&floats, &wide.codes, &narrow.codes}) {
             for (const Kernel kernel : all_kernels) {
@@ -474,7 +459,7 @@ TEST(BumpCodes, AConstantMapIsExactlyTheFlatCode) {
 }
 
 TEST(BumpCodes, MemoryOfTheRightShapeIsUsedAgain) {
-    const Image image = rough(20, 10);
+    const Image image = rough(20, 10, 4321);
     Report report;
     Image map;
     normal_map_from_height(image, {}, {}, map, report);
@@ -486,7 +471,7 @@ TEST(BumpCodes, MemoryOfTheRightShapeIsUsedAgain) {
 }
 
 TEST(BumpCodes, HolesAreFilledAndCountedOnTheWayToCodesToo) {
-    Image image = rough(30, 20);
+    Image image = rough(30, 20, 4321);
     image.as<float>()[77] = std::numeric_limits<float>::infinity();
     Report report;
     const Image map = normal_map_from_height(image, {}, {}, report);
@@ -522,7 +507,7 @@ TEST(BumpCodes, StrengthsBeyondFloatAreDoneInDouble) {
 }
 
 TEST(BumpBits, AreTheSameForEveryWidthOfRegistersAndNumberOfThreads) {
-    const Image floats = rough(2500, 60);
+    const Image floats = rough(2500, 60, 4321);
     Image codes = make_image(2500, 60, 1, 16, ColorSpace::data);
     for (std::size_t i = 0; i < codes.sample_count(); ++i)
         codes.as<std::uint16_t>()[i] = static_cast<std::uint16_t>(floats.as<float>()[i] * 65535.0F);
@@ -550,7 +535,7 @@ TEST(BumpBits, AreTheSameForEveryWidthOfRegistersAndNumberOfThreads) {
 
 TEST(BumpBits, HeightsOf8And16BitsAreThoseOfTheirFloats) {
     for (const int bits : {8, 16}) {
-        const CodedHeights coded = coded_heights(rough(40, 30), bits);
+        const CodedHeights coded = coded_heights(rough(40, 30, 4321), bits);
         for (const Kernel kernel : all_kernels) {
             const BumpOptions options = options_of(kernel, Wrap::repeat, 3.0);
             const Image direct = slopes_of(coded.codes, options);

@@ -13,11 +13,14 @@
 #include "relief/mesh/error.h"
 #include "relief/mesh/threads.h"
 #include "support/angle.h"
+#include "support/height_fields.h"
 #include "support/samples.h"
 
 namespace relief {
 namespace {
 
+using test::heights_of;
+using test::rough;
 using test::samples_of;
 using testing::ElementsAre;
 using testing::ElementsAreArray;
@@ -31,30 +34,11 @@ constexpr Wrap all_wraps[] = {Wrap::repeat, Wrap::clamp, Wrap::mirror};
 constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 constexpr float infinity = std::numeric_limits<float>::infinity();
 
-Image heights_of(int width, int height, const std::function<double(int, int)>& at) {
-    Image image = make_image(width, height, 1, 32, ColorSpace::data);
-    for (int row = 0; row < height; ++row) {
-        for (int column = 0; column < width; ++column)
-            image.as<float>()[static_cast<std::size_t>(row * width + column)] =
-                static_cast<float>(at(column, row));
-    }
-    return image;
-}
-
 Image heights_of(int width, std::vector<float> samples) {
     const int height = static_cast<int>(samples.size()) / width;
     Image image = make_image(width, height, 1, 32, ColorSpace::data);
     image.samples = std::move(samples);
     return image;
-}
-
-/// Noise without any symmetry, the same in every run.
-Image rough(int width, int height) {
-    std::uint32_t state = 12345;
-    return heights_of(width, height, [&](int, int) {
-        state = state * 1664525U + 1013904223U;
-        return static_cast<double>(state >> 8) / 16777216.0;
-    });
 }
 
 Image normals_of(const Image& height, const BumpOptions& options) {

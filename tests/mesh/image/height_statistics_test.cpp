@@ -11,20 +11,13 @@
 #include "relief/mesh/analytic_heights.h"
 #include "relief/mesh/error.h"
 #include "relief/mesh/image_file.h"
+#include "support/height_fields.h"
 #include "support/shared_data.h"
 
 namespace relief {
 namespace {
 
-Image heights_of(int width, int height, const std::function<double(int, int)>& at) {
-    Image image = make_image(width, height, 1, 32, ColorSpace::data);
-    for (int row = 0; row < height; ++row) {
-        for (int column = 0; column < width; ++column)
-            image.as<float>()[static_cast<std::size_t>(row * width + column)] =
-                static_cast<float>(at(column, row));
-    }
-    return image;
-}
+using test::heights_of;
 
 /// The same codes, each times `factor` plus `offset`, in 16 bits.
 Image widened(const Image& codes, int factor, int offset) {

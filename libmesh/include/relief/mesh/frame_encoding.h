@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "relief/mesh/direction_error.h"
@@ -66,6 +67,9 @@ enum class FrameRounding {
     /// quaternions the best of 32 lengths: decoders must divide by the length.
     best,
 };
+
+/// "float32", "octahedral8", ...: as in docs/tangents.md.
+std::string_view word_of(FrameEncoding encoding);
 
 /// How many words a frame takes.
 std::size_t words_per_frame(FrameEncoding encoding);

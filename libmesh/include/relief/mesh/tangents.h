@@ -39,11 +39,11 @@ namespace relief {
 /// Corners of one vertex may differ (mirrored texture, hard texture seams): use split.h to turn the
 /// corners into vertices again. Feeding the result to the index list as it is would be wrong.
 ///
-/// Agrees with the reference implementation on every corner on which that agrees with itself
-/// whatever the order of triangles, but where the promises above forbid it: mixed w within a
-/// degenerate triangle, tangents along their normals. Its order of neighbours at crowded edges, and
-/// the last bucket that its sorting of edges leaves out, depend on that order: here, a fixed rule
-/// stands instead (corner_links.cpp).
+/// On sound meshes this agrees with the reference implementation at every corner at which that
+/// agrees with itself whatever the order of triangles. It departs where the promises above forbid
+/// to follow: mixed w within a degenerate triangle, tangents along their normals; and at edges of
+/// three triangles and more, and around the last bucket that its sorting of edges leaves out, where
+/// its answer depends on that order and a fixed rule stands here (corner_links.cpp).
 ///
 /// Source: [Mikkelsen 2008]; deviations from the reference implementation are marked in the code.
 std::vector<glm::vec4> mikktspace_tangents(std::span<const glm::vec3> positions,
