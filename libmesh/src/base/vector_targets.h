@@ -6,7 +6,7 @@
 /// A loop over plain arrays is written once, as a RELIEF_INLINE function. Three functions that only
 /// call it, marked with the targets below, get it in three forms, as the compiler vectorises it for
 /// each; `best_vector_target()` says which to call. Whoever does that answers for the results being
-/// the same from all three. Tests: tests/mesh/geometry/normals_test.cpp.
+/// the same from all three. Tests: tests/mesh/geometry/normals/normals_test.cpp.
 #pragma once
 
 #if defined(__x86_64__)

@@ -4,7 +4,7 @@
 ///
 /// Corners are matched by position and texture coordinate, so that neither the order of vertices
 /// and triangles nor where vertices are split makes a difference.
-/// Tests: tests/mesh/geometry/compare_test.cpp.
+/// Tests: tests/mesh/geometry/compare/compare_test.cpp.
 #pragma once
 
 #include <cstdint>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// Fewer triangles for nearly the same surface and the same texture.
-/// Tests: tests/mesh/geometry/decimate_test.cpp.
+/// Tests: tests/mesh/geometry/topology/decimate_test.cpp.
 #pragma once
 
 #include <cstddef>

@@ -3,7 +3,7 @@
 /// The health of a mesh: what is wrong with it, or worth knowing, before anything is computed.
 ///
 /// The words are those of docs/hard-cases.md, which says what each comes to in every step.
-/// Tests: tests/mesh/geometry/diagnose_test.cpp, tests/hard_cases/hard_cases_test.cpp.
+/// Tests: tests/mesh/geometry/health/diagnose_test.cpp, tests/hard_cases/hard_cases_test.cpp.
 #pragma once
 
 #include <cstddef>

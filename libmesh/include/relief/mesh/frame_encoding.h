@@ -2,7 +2,8 @@
 /// \file
 /// Tangent frames in few bits, for vertex buffers and files, and back. docs/tangents.md has what
 /// each encoding costs and errs, and shaders that decode them.
-/// Tests: tests/mesh/geometry/frame_encoding_test.cpp, tests/shade/gl/frame_decoding_test.cpp.
+/// Tests: tests/mesh/geometry/encoding/frame_encoding_test.cpp,
+/// tests/shade/gl/frame_decoding_test.cpp.
 #pragma once
 
 #include <array>

@@ -3,7 +3,7 @@
 /// Normals of vertices, of corners and of triangles, from positions alone.
 ///
 /// What each weighting costs and how far from the truth it is: docs/normals.md.
-/// Tests: tests/mesh/geometry/normals_test.cpp, corner_normals_test.cpp.
+/// Tests: tests/mesh/geometry/normals/normals_test.cpp, corner_normals_test.cpp.
 #pragma once
 
 #include <cstddef>

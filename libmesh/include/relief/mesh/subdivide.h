@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// A finer, smoother surface from a coarse one. Tests: tests/mesh/geometry/subdivide_test.cpp.
+/// A finer, smoother surface from a coarse one.
+/// Tests: tests/mesh/geometry/topology/subdivide_test.cpp.
 #pragma once
 
 #include "relief/mesh/frames.h"

@@ -4,7 +4,7 @@
 ///
 /// A normal map is right only in the frame that its baker assumed, and files do not say which that
 /// was. Here the methods in use are computed anew and held against what is stored.
-/// Tests: tests/mesh/geometry/tangent_basis_test.cpp.
+/// Tests: tests/mesh/geometry/tangents/tangent_basis_test.cpp.
 #pragma once
 
 #include <array>

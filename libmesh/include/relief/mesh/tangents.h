@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Tangent frames from texture coordinates. Tests: tests/mesh/geometry/tangents_test.cpp.
+/// Tangent frames from texture coordinates. Tests: tests/mesh/geometry/tangents/tangents_test.cpp.
 #pragma once
 
 #include <glm/glm.hpp>

@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: Apache-2.0
+// From triangles to a manifold: which take part, who is whose neighbour, which corners are one
+// vertex. Where cutting edges alone leaves two edges between the same two vertices (sheets that
+// meet in a ring around both), the triangles at the later edges are cut off all around, and
+// vertices found anew. Tests: tests/mesh/geometry/topology/topology_test.cpp.
+#include "geometry/topology/topology.h"
+
+#include <algorithm>
+#include <tuple>
+
+#include "geometry/direction.h"
+
+namespace relief {
+namespace {
+
+/// An edge of a triangle, seen from the edge's smaller vertex.
+struct EdgeUse {
+    std::uint32_t other_vertex;  ///< The edge's larger vertex.
+    bool arrives;                ///< The triangle runs towards the smaller vertex.
+    Corner corner;               ///< Where the triangle's edge begins.
+
+    friend bool operator<(const EdgeUse& a, const EdgeUse& b) {
+        return std::tuple(a.other_vertex, a.arrives, a.corner) <
+               std::tuple(b.other_vertex, b.arrives, b.corner);
+    }
+};
+
+/// Calls visit(uses) for the uses of every edge, sorted, edge by edge.
+template <typename Visit>
+void for_each_edge(std::size_t vertex_count, std::span<const glm::uvec3> triangles,
+                   const Visit& visit) {
+    const CornersByVertex corners(vertex_count, triangles);
+    std::vector<EdgeUse> uses;
+    for (std::uint32_t v = 0; v < vertex_count; ++v) {
+        uses.clear();
+        for (const Corner corner : corners.at(v)) {
+            const Corner previous = previous_in_triangle(corner);
+            const std::uint32_t next_vertex = vertex_of(next_in_triangle(corner), triangles);
+            const std::uint32_t previous_vertex = vertex_of(previous, triangles);
+            if (next_vertex > v) uses.push_back({next_vertex, false, corner});
+            if (previous_vertex > v) uses.push_back({previous_vertex, true, previous});
+        }
+        std::sort(uses.begin(), uses.end());
+        for (auto first = uses.begin(); first != uses.end();) {
+            const auto last = std::find_if(first, uses.end(), [&](const EdgeUse& use) {
+                return use.other_vertex != first->other_vertex;
+            });
+            visit(std::span<const EdgeUse>(first, last));
+            first = last;
+        }
+    }
+}
+
+class TopologyMaker {
+  public:
+    TopologyMaker(const Mesh& mesh, std::span<const std::uint32_t> classes, Report& report)
+        : mesh_(mesh), classes_(classes), report_(report) {}
+
+    Topology make();
+
+  private:
+    void choose_triangles();
+    void find_neighbours();
+    void find_vertices();
+    void give_vertex(Corner first);
+    bool cut_off_double_edges();
+    void mark_cut();
+
+    const Mesh& mesh_;
+    std::span<const std::uint32_t> classes_;
+    Report& report_;
+    Topology result_;
+    std::vector<glm::uvec3> welded_;  ///< The result's triangles over position classes.
+    std::vector<bool> is_cut_class_;  ///< By position class.
+    bool has_non_manifold_edges_ = false;
+};
+
+void TopologyMaker::choose_triangles() {
+    for (std::uint32_t t = 0; t < mesh_.triangles.size(); ++t) {
+        const glm::uvec3& triangle = mesh_.triangles[t];
+        const bool finite = is_finite(mesh_.positions[triangle.x]) &&
+                            is_finite(mesh_.positions[triangle.y]) &&
+                            is_finite(mesh_.positions[triangle.z]);
+        if (!finite) {
+            report_.add("triangle with a non-finite position", "triangle", t, "is kept as it is");
+            result_.set_aside.push_back(t);
+            continue;
+        }
+        const glm::uvec3 welded{classes_[triangle.x], classes_[triangle.y], classes_[triangle.z]};
+        if (welded.x == welded.y || welded.y == welded.z || welded.z == welded.x) {
+            report_.add("collapsed triangle", "triangle", t, "is left out: it has no area");
+            continue;
+        }
+        welded_.push_back(welded);
+        result_.source_triangle.push_back(t);
+    }
+}
+
+void TopologyMaker::find_neighbours() {
+    result_.opposite.assign(3 * welded_.size(), no_corner);
+    is_cut_class_.assign(mesh_.positions.size(), false);
+    for_each_edge(mesh_.positions.size(), welded_, [&](std::span<const EdgeUse> uses) {
+        if (uses.size() == 1) return;
+        if (uses.size() == 2 && uses[0].arrives != uses[1].arrives) {
+            result_.opposite[uses[0].corner] = uses[1].corner;
+            result_.opposite[uses[1].corner] = uses[0].corner;
+            return;
+        }
+        has_non_manifold_edges_ = true;
+        const Corner corner = uses[0].corner;
+        report_.add("non-manifold edge", "edge of triangle",
+                    result_.source_triangle[triangle_of(corner)],
+                    "is an edge of each of its triangles by itself; its ends stay together");
+        is_cut_class_[vertex_of(corner, welded_)] = true;
+        is_cut_class_[vertex_of(next_in_triangle(corner), welded_)] = true;
+    });
+}
+
+/// A new vertex for all corners that are reached from this one across edges at its position.
+void TopologyMaker::give_vertex(Corner first) {
+    // Back to where the fan begins, or once around.
+    Corner start = first;
+    for (;;) {
+        const Corner before = result_.opposite[previous_in_triangle(start)];
+        if (before == no_corner || before == first) break;
+        start = before;
+    }
+    const auto vertex = static_cast<std::uint32_t>(result_.position_vertex.size());
+    result_.position_vertex.push_back(vertex_of(first, welded_));
+    for (Corner corner = start;;) {
+        result_.triangles[triangle_of(corner)][static_cast<int>(corner % 3)] = vertex;
+        const Corner beyond = result_.opposite[corner];
+        if (beyond == no_corner) break;
+        corner = next_in_triangle(beyond);
+        if (corner == start) break;
+    }
+}
+
+void TopologyMaker::find_vertices() {
+    constexpr std::uint32_t none = no_corner;
+    result_.position_vertex.clear();
+    result_.triangles.assign(welded_.size(), glm::uvec3(none));
+    for (Corner corner = 0; corner < 3 * welded_.size(); ++corner) {
+        if (vertex_of(corner, result_.triangles) == none) give_vertex(corner);
+    }
+}
+
+/// \return whether there were any
+bool TopologyMaker::cut_off_double_edges() {
+    if (!has_non_manifold_edges_) return false;
+    std::vector<std::uint32_t> wanted;
+    for_each_edge(
+        result_.position_vertex.size(), result_.triangles, [&](std::span<const EdgeUse> uses) {
+            for (const EdgeUse& use : uses) {
+                const bool is_first =
+                    use.corner == uses[0].corner || use.corner == result_.opposite[uses[0].corner];
+                if (!is_first) wanted.push_back(triangle_of(use.corner));
+            }
+        });
+    for (const std::uint32_t triangle : wanted) {
+        for (Corner corner = 3 * triangle; corner < 3 * triangle + 3; ++corner) {
+            Corner& beyond = result_.opposite[corner];
+            if (beyond != no_corner) result_.opposite[beyond] = no_corner;
+            beyond = no_corner;
+            is_cut_class_[vertex_of(corner, welded_)] = true;
+        }
+    }
+    return !wanted.empty();
+}
+
+void TopologyMaker::mark_cut() {
+    std::vector<bool> is_taken(mesh_.positions.size(), false);
+    for (const std::uint32_t position : result_.position_vertex) {
+        if (is_taken[position]) is_cut_class_[position] = true;
+        is_taken[position] = true;
+    }
+    for (const std::uint32_t position : result_.position_vertex)
+        result_.is_cut.push_back(is_cut_class_[position]);
+}
+
+Topology TopologyMaker::make() {
+    choose_triangles();
+    find_neighbours();
+    do {
+        find_vertices();
+    } while (cut_off_double_edges());
+    mark_cut();
+    return std::move(result_);
+}
+
+}  // namespace
+
+Topology topology_of(const Mesh& mesh, std::span<const std::uint32_t> classes, Report& report) {
+    return TopologyMaker(mesh, classes, report).make();
+}
+
+}  // namespace relief

@@ -1,0 +1,248 @@
+// SPDX-License-Identifier: Apache-2.0
+// Loop subdivision: where points go, by hand and in the limit; what becomes of seams, borders and
+// hard cases.
+#include "relief/mesh/subdivide.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "geometry/topology/topology.h"
+#include "geometry/weld.h"
+#include "relief/mesh/error.h"
+#include "support/angle.h"
+#include "support/message_of.h"
+#include "support/shapes.h"
+
+namespace relief {
+namespace {
+
+using test::message_of;
+
+constexpr double rounding = 1e-6;
+
+std::size_t boundary_edges(const Mesh& mesh) {
+    Report report;
+    const Topology surface = topology_of(mesh, weld_positions(mesh.positions), report);
+    return static_cast<std::size_t>(
+        std::count(surface.opposite.begin(), surface.opposite.end(), no_corner));
+}
+
+TEST(Subdivide, ATetrahedronByHand) {
+    Mesh tetrahedron;
+    tetrahedron.positions = {{1, 1, 1}, {1, -1, -1}, {-1, 1, -1}, {-1, -1, 1}};
+    tetrahedron.triangles = {{0, 1, 2}, {0, 3, 1}, {0, 2, 3}, {1, 3, 2}};
+    Report report;
+    const Mesh fine = subdivided(tetrahedron, 1, {}, report);
+    ASSERT_EQ(fine.positions.size(), 10U);
+    ASSERT_EQ(fine.triangles.size(), 16U);
+    EXPECT_TRUE(fine.normals.empty()) << "there were none";
+    // Three neighbours weigh 3/16 each; their sum is minus the vertex: 7/16 - 3/16.
+    for (int v = 0; v < 4; ++v)
+        EXPECT_LT(glm::length(fine.positions[v] - tetrahedron.positions[v] * 0.25F), rounding);
+    // 3/8 of both ends, 1/8 of the two others, whose sum is minus theirs: 1/4 of the ends' sum.
+    EXPECT_EQ(boundary_edges(fine), 0U);
+    std::size_t found = 0;
+    for (std::size_t v = 4; v < 10; ++v) {
+        for (int a = 0; a < 4; ++a) {
+            for (int b = 0; b < a; ++b) {
+                const glm::vec3 middle =
+                    (tetrahedron.positions[a] + tetrahedron.positions[b]) * 0.25F;
+                found += glm::length(fine.positions[v] - middle) < rounding ? 1 : 0;
+            }
+        }
+    }
+    EXPECT_EQ(found, 6U);
+    EXPECT_TRUE(report.empty());
+}
+
+TEST(Subdivide, TheInsideOfAPlaneKeepsItsTextureAndItsPlace) {
+    const Mesh grid = test::grid(8);
+    Report report;
+    const Mesh fine = subdivided(grid, 2, {}, report);
+    EXPECT_EQ(fine.triangles.size(), 16 * grid.triangles.size());
+    for (std::size_t v = 0; v < fine.positions.size(); ++v) {
+        const glm::vec3& p = fine.positions[v];
+        EXPECT_EQ(p.z, 0.0F);
+        // Only the corners are rounded off.
+        const bool is_near_a_corner =
+            std::min(p.x, 1 - p.x) < 0.3F && std::min(p.y, 1 - p.y) < 0.3F;
+        if (is_near_a_corner) continue;
+        EXPECT_NEAR(p.x, fine.texcoords[v].x, 1e-6);
+        EXPECT_NEAR(p.y, 1.0F - fine.texcoords[v].y, 1e-6);
+    }
+}
+
+TEST(Subdivide, ConvergesToItsLimitSurfaceByAQuarterALevel) {
+    // Positions of the first vertices approach the limit surface; each level takes about a quarter
+    // of the way that is left (the square of the subdominant eigenvalue at valence 6, 1/4).
+    const Mesh sphere = test::sphere(16, 8);
+    Report report;
+    std::vector<Mesh> levels;
+    for (int level = 1; level <= 5; ++level)
+        levels.push_back(subdivided(sphere, level, {}, report));
+    double before = 0.0;
+    for (std::size_t level = 1; level < levels.size(); ++level) {
+        double step = 0.0;
+        for (std::size_t v = 0; v < sphere.positions.size(); ++v) {
+            step = std::max(step, double(glm::length(levels[level].positions[v] -
+                                                     levels[level - 1].positions[v])));
+        }
+        if (level > 1) {
+            EXPECT_LT(step, before * 0.45);
+            EXPECT_GT(step, before * 0.15);
+        }
+        before = step;
+    }
+}
+
+TEST(Subdivide, AFinerSphereIsNearerToTheSphereByTheSecondOrder) {
+    // Loop's surface of a net on the unit sphere lies within it by a distance that falls with the
+    // square of the net's width.
+    std::vector<double> errors;
+    for (const int slices : {12, 24, 48}) {
+        Report report;
+        const Mesh fine = subdivided(test::sphere(slices, slices / 2), 2, {}, report);
+        double most = 0.0;
+        for (const glm::vec3& p : fine.positions) {
+            if (std::abs(p.y) > 0.7F) continue;  // Poles have as many neighbours as slices.
+            most = std::max(most, std::abs(1.0 - glm::length(glm::dvec3(p))));
+        }
+        errors.push_back(most);
+    }
+    EXPECT_NEAR(std::log2(errors[0] / errors[1]), 2.0, 0.3);
+    EXPECT_NEAR(std::log2(errors[1] / errors[2]), 2.0, 0.2);
+}
+
+TEST(Subdivide, ASeamIsSmoothInPlaceAndExactInTheTexture) {
+    const Mesh sphere = test::sphere(24, 12);
+    Report report;
+    const Mesh fine = subdivided(sphere, 1, {.normals = NormalMode::angle}, report);
+    EXPECT_EQ(boundary_edges(fine), 0U) << "not torn";
+    // Every triangle's texture is a quarter of the one that it was cut from.
+    for (std::size_t t = 0; t < fine.triangles.size(); ++t) {
+        glm::vec2 low(2.0F);
+        glm::vec2 high(-2.0F);
+        for (int i = 0; i < 3; ++i) {
+            low = glm::min(low, fine.texcoords[fine.triangles[t][i]]);
+            high = glm::max(high, fine.texcoords[fine.triangles[t][i]]);
+        }
+        EXPECT_NEAR(high.x - low.x, 0.5 / 24, 0.5 / 24 + 1e-6) << "smeared across the seam";
+        EXPECT_NEAR(high.y - low.y, 0.5 / 12, 1e-6);
+    }
+    // At the seam the normal is that of the sphere, as anywhere else.
+    for (std::size_t v = 0; v < fine.positions.size(); ++v) {
+        if (std::abs(fine.positions[v].y) > 0.8F) continue;
+        EXPECT_LT(test::degrees_between(fine.normals[v], fine.positions[v]), 1.5);
+    }
+}
+
+TEST(Subdivide, AHubOfManySpokesReadsNoWeightsBeyondTheTable) {
+    // OpenMesh's own table ends at 50 neighbours.
+    constexpr unsigned spokes = 200;
+    Mesh hub;
+    hub.positions.emplace_back(0.0F, 1.0F, 0.0F);
+    for (unsigned i = 0; i < spokes; ++i) {
+        const double angle = 2.0 * std::numbers::pi * i / spokes;
+        hub.positions.emplace_back(std::cos(angle), 0.0, std::sin(angle));
+        hub.triangles.emplace_back(0, 1 + (i + 1) % spokes, 1 + i);
+    }
+    Report report;
+    const Mesh fine = subdivided(hub, 1, {}, report);
+    // alpha = (40 - (3 + 2 cos(2 pi / n))^2) / 64, n neighbours at height 0 around the axis.
+    const double turn = 3.0 + 2.0 * std::cos(2.0 * std::numbers::pi / spokes);
+    EXPECT_NEAR(fine.positions[0].y, 1.0 - (40.0 - turn * turn) / 64.0, rounding);
+    EXPECT_NEAR(fine.positions[0].x, 0.0, rounding);
+}
+
+TEST(Subdivide, SheetsThatMeetInAnEdgeStayTogether) {
+    Mesh mesh;
+    mesh.positions = {{0, 0, 0}, {0, 0, 1}, {1, 0, 0}, {-1, 0.2F, 0}, {0.3F, 1, 0}};
+    mesh.triangles = {{0, 1, 2}, {1, 0, 3}, {0, 1, 4}};
+    Report report;
+    const Mesh fine = subdivided(mesh, 2, {}, report);
+    EXPECT_EQ(fine.triangles.size(), 48U);
+    EXPECT_EQ(report.count("non-manifold edge"), 1U);
+    Report after;
+    topology_of(fine, weld_positions(fine.positions), after);
+    EXPECT_EQ(after.count("non-manifold edge"), 4U) << "all four quarters of the edge";
+}
+
+TEST(Subdivide, NonFiniteTrianglesStayAndCollapsedOnesGo) {
+    Mesh grid = test::grid(2);
+    const auto bad = static_cast<std::uint32_t>(grid.positions.size());
+    grid.positions.emplace_back(std::numeric_limits<float>::infinity());
+    grid.normals.emplace_back(0, 0, 1);
+    grid.texcoords.emplace_back(0.0F);
+    grid.tangents.clear();
+    const auto whole = static_cast<std::uint32_t>(grid.triangles.size());
+    grid.triangles.emplace_back(0, 1, bad);
+    grid.triangles.emplace_back(2, 2, 3);
+    grid.material_ranges = {{0, whole, 0U}, {whole, 2, 1U}};
+    Report report;
+    const Mesh fine = subdivided(grid, 2, {}, report);
+    EXPECT_EQ(fine.triangles.size(), 16U * whole + 1);
+    EXPECT_EQ(fine.triangles.back(), glm::uvec3(0, 1, bad));
+    ASSERT_EQ(fine.material_ranges.size(), 2U);
+    EXPECT_EQ(fine.material_ranges[0].triangle_count, 16 * whole);
+    EXPECT_EQ(fine.material_ranges[1].triangle_count, 1U);
+    EXPECT_EQ(report.count("triangle with a non-finite position"), 1U);
+    EXPECT_EQ(report.count("collapsed triangle"), 1U);
+}
+
+TEST(Subdivide, ColoursAreMixedAndFarFromTheOriginNothingIsLost) {
+    Mesh grid = test::grid(1);
+    grid.tangents.clear();
+    for (const glm::vec3& p : grid.positions)
+        grid.colors.emplace_back(p.x, p.y, 0.0F, 1.0F);
+    Report report;
+    const Mesh near = subdivided(grid, 3, {}, report);
+    for (std::size_t v = 0; v < near.positions.size(); ++v)
+        EXPECT_EQ(near.colors[v].r, near.texcoords[v].x);
+    Mesh moved = grid;
+    for (glm::vec3& p : moved.positions)
+        p += glm::vec3(0x1p20F, 0, 0);
+    const Mesh far = subdivided(moved, 3, {}, report);
+    EXPECT_EQ(far.triangles, near.triangles);
+    for (std::size_t v = 0; v < far.positions.size(); ++v)
+        EXPECT_NEAR(far.positions[v].x - 0x1p20F, near.positions[v].x, 0.0626) << "half an ulp";
+}
+
+TEST(Subdivide, SmoothingGroupsGoWithTheirTriangles) {
+    Mesh sheet = test::grid(2);
+    sheet.smoothing_groups = {1, 1, 1, 1, 0, 7, 7, 7};
+    Report report;
+    const Mesh fine = subdivided(sheet, 2, {}, report);
+    ASSERT_EQ(fine.smoothing_groups.size(), 8U * 16U);
+    for (std::size_t t = 0; t < fine.triangles.size(); ++t)
+        EXPECT_EQ(fine.smoothing_groups[t], sheet.smoothing_groups[t / 16]) << t;
+}
+
+TEST(Subdivide, EmptyAndOneTriangle) {
+    Report report;
+    EXPECT_TRUE(subdivided({}, 3, {}, report).triangles.empty());
+    Mesh one;
+    one.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+    one.triangles = {{0, 1, 2}};
+    const Mesh fine = subdivided(one, 1, {}, report);
+    EXPECT_EQ(fine.triangles.size(), 4U);
+    // The boundary's rule: 1/8, 6/8, 1/8.
+    EXPECT_LT(glm::length(fine.positions[0] - glm::vec3(0.125F, 0.125F, 0.0F)), rounding);
+    EXPECT_TRUE(report.empty());
+}
+
+TEST(Subdivide, RefusesLevelsThatAreNoneOrTooMany) {
+    Report report;
+    const auto refusal = [&](int levels) {
+        return message_of<InvalidInput>([&] { subdivided(test::grid(1), levels, {}, report); });
+    };
+    EXPECT_EQ(refusal(0), "0 levels of subdivision, but the least is 1");
+    EXPECT_EQ(refusal(20),
+              "2 triangles make 2147483648 after 15 levels, but 1431655765 are the most");
+}
+
+}  // namespace
+}  // namespace relief
