@@ -25,6 +25,7 @@ constexpr int largest_uv_set = 1000;
 
 struct ProcessOptions {
     FileWords words;
+    std::optional<ModelFormat> format;  ///< Of what is written to a folder.
     ProcessRequest request;  ///< What to do to each model; its files are filled in per model.
     ReportOptions report;
     GeneralOptions general;
@@ -100,14 +101,15 @@ ExitCode process_one(const CLI::App& app, const ProcessRequest& request,
 }
 
 ExitCode run(const CLI::App& app, const ProcessOptions& options) {
-    const JobList list = jobs_of(options.words);
+    const JobList list = model_jobs_of(options.words, options.format);
     const std::vector<ProcessRequest> requests = requests_of(options, list);
     set_thread_limit(options.general.threads);
-    if (list.folder) return process_all(app, requests, options.report, options.general);
+    if (!list.is_single()) return process_all(app, requests, options.report, options.general);
     return process_one(app, requests.front(), options);
 }
 
-void add_file_options(CLI::App& app, FileWords& words) {
+void add_file_options(CLI::App& app, ProcessOptions& options) {
+    FileWords& words = options.words;
     add_files(app, "FILE...", words.files,
               "IN OUT: the model to read (.glb .gltf .obj .ply .stl .off) and the file to write "
               "(.glb .gltf .obj .ply), which may be IN itself: it is replaced only once the new "
@@ -118,7 +120,7 @@ void add_file_options(CLI::App& app, FileWords& words) {
               "folder each model keeps its name. One that fails does not stop the others.",
               [&words](const std::string&, const std::string& text) { words.output = text; })
         ->group("Output");
-    add_choice(app, "--format", words.format, writable_choices(),
+    add_choice(app, "--format", options.format, writable_choices(),
                "The format of what is written to a folder. Default: that of the input, or glb for "
                ".stl and .off, which cannot be written.")
         ->group("Output");
@@ -173,7 +175,7 @@ void add_tangent_options(CLI::App& app, ProcessRequest& request) {
 }
 
 void add_options(CLI::App& app, ProcessOptions& options) {
-    add_file_options(app, options.words);
+    add_file_options(app, options);
     add_normal_options(app, options.request);
     add_tangent_options(app, options.request);
     add_report_options(app, options.report);

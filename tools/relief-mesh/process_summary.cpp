@@ -156,14 +156,6 @@ nlohmann::ordered_json parts_json(const Processed& done) {
     return parts;
 }
 
-void add_results(nlohmann::ordered_json& json, const Processed& done, const Stages& stages) {
-    json["primitives"] = parts_json(done);
-    json["findings"] = done.findings.json();
-    json["decompressed"] = done.decompressed;
-    json["left_behind"] = done.left_behind;
-    json["milliseconds"] = durations_json(stages.finished());
-}
-
 }  // namespace
 
 std::string word_of(NormalMode mode) {
@@ -202,13 +194,13 @@ void print_summary(const ProcessRequest& request, const Processed& done, const S
                              (has_companions ? ", its buffer and images beside it" : ""));
 }
 
-void print_line(const ProcessRequest& request, const Processed& done, const Stages& stages) {
+std::string line_of(const ProcessRequest& request, const Processed& done, const Stages& stages) {
     const Totals totals = totals_of(done);
     double sum = 0;
     for (const Stage& stage : stages.finished())
         sum += stage.milliseconds;
-    fmt::print(
-        "{}: {}, {}, normals {}, tangents {}, {}{}, {}\n", request.output.string(),
+    return fmt::format(
+        "{}: {}, {}, normals {}, tangents {}, {}{}, {}", request.output.string(),
         counted(totals.triangles, "triangle"),
         counted(totals.vertices_written, "vertex", "vertices"),
         summed_up(done.parts, normals_in_words), summed_up(done.parts, tangents_in_words),
@@ -227,17 +219,12 @@ nlohmann::ordered_json options_json(const ProcessRequest& request) {
     return json;
 }
 
-nlohmann::ordered_json file_json(const ProcessRequest& request, const Processed& done,
-                                 const Stages& stages) {
-    nlohmann::ordered_json json = {{"input", request.input.string()},
-                                   {"output", request.output.string()}};
-    add_results(json, done, stages);
-    return json;
-}
-
-nlohmann::ordered_json failed_file_json(const ProcessRequest& request, const std::string& error) {
-    return {
-        {"input", request.input.string()}, {"output", request.output.string()}, {"error", error}};
+nlohmann::ordered_json results_json(const Processed& done, const Stages& stages) {
+    return {{"primitives", parts_json(done)},
+            {"findings", done.findings.json()},
+            {"decompressed", done.decompressed},
+            {"left_behind", done.left_behind},
+            {"milliseconds", durations_json(stages.finished())}};
 }
 
 nlohmann::ordered_json process_json(const ProcessRequest& request, const Processed& done,
@@ -247,7 +234,7 @@ nlohmann::ordered_json process_json(const ProcessRequest& request, const Process
                                    {"input", request.input.string()},
                                    {"output", request.output.string()},
                                    {"options", options_json(request)}};
-    add_results(json, done, stages);
+    json.update(results_json(done, stages));
     return json;
 }
 

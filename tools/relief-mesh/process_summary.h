@@ -14,15 +14,13 @@ namespace relief::tools {
 void print_summary(const ProcessRequest& request, const Processed& done, const Stages& stages);
 
 /// The same in one line, for one file of many.
-void print_line(const ProcessRequest& request, const Processed& done, const Stages& stages);
+std::string line_of(const ProcessRequest& request, const Processed& done, const Stages& stages);
 
-/// What the --report file says: about one model, about one of many, about one that failed, and
-/// about the options.
+/// What the --report file says: about one model, about what became of one of many, and about the
+/// options.
 nlohmann::ordered_json process_json(const ProcessRequest& request, const Processed& done,
                                     const Stages& stages);
-nlohmann::ordered_json file_json(const ProcessRequest& request, const Processed& done,
-                                 const Stages& stages);
-nlohmann::ordered_json failed_file_json(const ProcessRequest& request, const std::string& error);
+nlohmann::ordered_json results_json(const Processed& done, const Stages& stages);
 nlohmann::ordered_json options_json(const ProcessRequest& request);
 
 /// The words of the command line.

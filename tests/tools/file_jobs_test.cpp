@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which files a command line names: what every form comes to, and what is refused.
+#include "common/file_jobs.h"
+
+#include <gtest/gtest.h>
+
+#include "common/command.h"
+#include "support/message_of.h"
+#include "support/shared_data.h"
+#include "tools/file_jobs_words.h"
+
+namespace relief::tools {
+namespace {
+
+using test::jobs_in_words;
+using test::message_of;
+using test::TemporaryDirectory;
+using test::touch;
+
+std::filesystem::path same_name(const std::filesystem::path& input) {
+    return input.filename();
+}
+
+JobList jobs(const FileWords& words) {
+    return jobs_of(words, "map", same_name);
+}
+
+std::string refusal(const FileWords& words) {
+    return message_of<UsageError>([&] { jobs(words); });
+}
+
+TEST(FileJobs, TwoFilesAreInAndOut) {
+    const JobList list = jobs({{"a.png", "b.exr"}, {}});
+    EXPECT_EQ(jobs_in_words(list), "a.png -> b.exr");
+    EXPECT_TRUE(list.is_single());
+}
+
+TEST(FileJobs, OutputMayBeAFileForOneInput) {
+    EXPECT_EQ(jobs_in_words(jobs({{"a.png"}, "b.exr"})), "a.png -> b.exr");
+    EXPECT_TRUE(jobs({{"a.png"}, "b.exr"}).is_single());
+}
+
+TEST(FileJobs, InAFolderEachHasTheNameThatTheCallerGives) {
+    const JobList list = jobs_of({{"x/a.png", "b.tif"}, "out/"}, "map", [](const auto& input) {
+        return input.stem().string() + "-normal.png";
+    });
+    EXPECT_EQ(jobs_in_words(list), "x/a.png -> out/a-normal.png, b.tif -> out/b-normal.png");
+    EXPECT_EQ(list.folder, "out/");
+    EXPECT_FALSE(jobs({{"a.png"}, "out/"}).is_single()) << "in a folder one is a batch of one";
+}
+
+TEST(FileJobs, WhatExistsAsAFolderNeedsNoSlash) {
+    const TemporaryDirectory folder;
+    EXPECT_EQ(jobs_in_words(jobs({{"a.png"}, folder.path().string()})),
+              "a.png -> " + (folder / "a.png").string());
+}
+
+TEST(FileJobs, AFileMayReplaceItselfButNoOther) {
+    const TemporaryDirectory folder;
+    const std::string here = folder.path().string() + "/";
+    EXPECT_EQ(jobs({{here + "a.png", here + "b.png"}, here}).jobs.size(), 2U);
+    // The same folder by two names.
+    std::filesystem::create_directory(folder / "x");
+    EXPECT_EQ(refusal({{here + "a.png", here + "x/../a.png"}, here}),
+              here + "x/../a.png: named twice");
+    EXPECT_EQ(refusal({{here + "x/a.png", here + "a.png"}, here + "x/"}),
+              here + "x/a.png and " + here + "a.png: would both become " + here + "x/a.png");
+}
+
+TEST(FileJobs, RefusesWhatCouldBeReadInTwoWays) {
+    EXPECT_EQ(refusal({{}, {}}), "IN is missing");
+    EXPECT_EQ(refusal({{}, "out/"}), "IN is missing");
+    EXPECT_EQ(refusal({{"a.png"}, {}}), "OUT is missing");
+    EXPECT_EQ(refusal({{"a.png", "b.png", "c.png"}, {}}),
+              "3 files: which are to be read, and which to be written?");
+    EXPECT_EQ(refusal({{"a.png", "b.png"}, "c.exr"}),
+              "-o c.exr: is one file for 2 maps, and no folder");
+    EXPECT_EQ(refusal({{"a.png"}, "nothing"}), "-o nothing: no extension says what format this is");
+    EXPECT_EQ(refusal({{"a.png", "x/../a.png"}, "out/"}), "x/../a.png: named twice");
+    EXPECT_EQ(refusal({{"a.png", "x/a.png"}, "out/"}),
+              "a.png and x/a.png: would both become out/a.png");
+}
+
+TEST(FileJobs, AUdimNameStandsForItsTilesInOrder) {
+    const TemporaryDirectory folder;
+    // The last three are no tiles: a number too small, a letter, five digits.
+    for (const char* name : {"w.1012.png", "w.1001.png", "w.1002.exr", "v.1003.png", "w.1000.png",
+                             "w.10x1.png", "w.10011.png"})
+        touch(folder / name);
+    const std::string here = folder.path().string() + "/";
+    const JobList list = jobs({{here + "w.<UDIM>.png", "n_<UDIM>.exr"}, {}});
+    EXPECT_EQ(jobs_in_words(list),
+              here + "w.1001.png -> n_1001.exr, " + here + "w.1012.png -> n_1012.exr");
+    EXPECT_FALSE(list.is_single());
+    EXPECT_FALSE(list.folder);
+    EXPECT_EQ(jobs_in_words(jobs({{here + "w.<UDIM>.png", here + "v.<UDIM>.png"}, "out/"})),
+              here + "w.1001.png -> out/w.1001.png, " + here + "w.1012.png -> out/w.1012.png, " +
+                  here + "v.1003.png -> out/v.1003.png");
+}
+
+TEST(FileJobs, UdimNamesComeInPairsAndHaveTiles) {
+    const TemporaryDirectory folder;
+    const std::string name = (folder / "w.<UDIM>.png").string();
+    EXPECT_EQ(refusal({{name, "n.png"}, {}}),
+              name + ", n.png: <UDIM> must be in both names or in none");
+    EXPECT_EQ(refusal({{"n.png", name}, {}}),
+              "n.png, " + name + ": <UDIM> must be in both names or in none");
+    EXPECT_EQ(message_of<FileError>([&] {
+                  jobs({{name, "n.<UDIM>.png"}, {}});
+              }),
+              name + ": there is no such tile (tiles are numbered 1001 and on)");
+}
+
+}  // namespace
+}  // namespace relief::tools

@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: Apache-2.0
+// From file arguments to pairs of input and output, all checks made before any file is opened.
+// Tests: tests/tools/file_jobs_test.cpp.
+#include "common/file_jobs.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <map>
+#include <set>
+
+#include "common/command.h"
+
+namespace relief::tools {
+namespace {
+
+namespace fs = std::filesystem;
+using NameInFolder = std::function<fs::path(const fs::path&)>;
+
+constexpr std::string_view tile_word = "<UDIM>";
+constexpr std::string_view first_tile = "1001";
+
+/// A path by which the same file has the same name, whether it exists or not.
+fs::path identity_of(const fs::path& file) {
+    return fs::weakly_canonical(fs::absolute(file));
+}
+
+bool is_folder(const std::string& output) {
+    return output.ends_with('/') || fs::is_directory(output);
+}
+
+bool names_tiles(const fs::path& file) {
+    return file.filename().string().find(tile_word) != std::string::npos;
+}
+
+/// The name of one tile.
+fs::path with_tile(const fs::path& file, const std::string& tile) {
+    std::string name = file.filename().string();
+    name.replace(name.find(tile_word), tile_word.size(), tile);
+    return file.parent_path() / name;
+}
+
+/// The four digits that stand for "<UDIM>" in a name, or nothing where the name is another.
+std::optional<std::string> tile_of(const std::string& pattern, const std::string& name) {
+    const std::size_t place = pattern.find(tile_word);
+    const std::string_view after = std::string_view(pattern).substr(place + tile_word.size());
+    if (name.size() != place + first_tile.size() + after.size()) return std::nullopt;
+    std::string tile = name.substr(place, first_tile.size());
+    const bool is_number = std::all_of(
+        tile.begin(), tile.end(), [](unsigned char letter) { return std::isdigit(letter) != 0; });
+    if (!is_number || tile < first_tile || !name.starts_with(pattern.substr(0, place)) ||
+        !name.ends_with(after))
+        return std::nullopt;
+    return tile;
+}
+
+/// The tiles of a name that exist, in ascending order.
+std::vector<std::string> tiles_of(const fs::path& file) {
+    const std::string pattern = file.filename().string();
+    const fs::path folder = file.parent_path().empty() ? "." : file.parent_path();
+    std::vector<std::string> tiles;
+    std::error_code error;
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) {
+        if (std::optional<std::string> tile = tile_of(pattern, entry.path().filename().string()))
+            tiles.push_back(std::move(*tile));
+    }
+    if (tiles.empty())
+        throw failure(file, "there is no such tile", "tiles are numbered 1001 and on");
+    std::sort(tiles.begin(), tiles.end());
+    return tiles;
+}
+
+/// A job for each tile, if the names have tiles.
+JobList in_tiles(const Job& job) {
+    const bool has_tiles = names_tiles(job.input);
+    if (has_tiles != names_tiles(job.output)) {
+        throw UsageError(fmt::format("{}, {}: <UDIM> must be in both names or in none",
+                                     job.input.string(), job.output.string()));
+    }
+    if (!has_tiles) return {{job}, std::nullopt, false};
+    JobList list{{}, std::nullopt, true};
+    for (const std::string& tile : tiles_of(job.input))
+        list.jobs.push_back({with_tile(job.input, tile), with_tile(job.output, tile)});
+    return list;
+}
+
+/// IN OUT
+JobList pair_of(const FileWords& words) {
+    if (words.files.empty()) throw UsageError("IN is missing");
+    if (words.files.size() == 1) throw UsageError("OUT is missing");
+    if (words.files.size() > 2) {
+        throw UsageError(fmt::format("{} files: which are to be read, and which to be written?",
+                                     words.files.size()),
+                         "read all and write to a folder: -o out/");
+    }
+    return in_tiles({words.files[0], words.files[1]});
+}
+
+/// IN -o OUT
+JobList single(const FileWords& words, const std::string& kind) {
+    const fs::path output = *words.output;
+    if (words.files.size() > 1) {
+        throw UsageError(fmt::format("-o {}: is one file for {} {}s, and no folder",
+                                     output.string(), words.files.size(), kind),
+                         "the name of a folder ends in /");
+    }
+    if (output.extension().empty())
+        throw UsageError(fmt::format("-o {}: no extension says what format this is", *words.output),
+                         "the name of a folder ends in /");
+    return in_tiles({words.files[0], output});
+}
+
+/// Refuses results that would replace each other. None can replace another's input: what keeps its
+/// name in the input's folder is the input's own result.
+void check_clashes(const std::vector<Job>& jobs) {
+    std::set<fs::path> inputs;
+    for (const Job& job : jobs) {
+        if (!inputs.insert(identity_of(job.input)).second)
+            throw UsageError(job.input.string() + ": named twice", "name it once");
+    }
+    std::map<fs::path, fs::path> input_of;
+    for (const Job& job : jobs) {
+        const auto [known, is_new] = input_of.emplace(identity_of(job.output), job.input);
+        if (is_new) continue;
+        throw UsageError(fmt::format("{} and {}: would both become {}", known->second.string(),
+                                     job.input.string(), job.output.string()),
+                         "process them by separate calls, to different folders");
+    }
+}
+
+/// IN... -o DIR/
+JobList into_folder(const FileWords& words, const NameInFolder& name_in_folder) {
+    JobList list{{}, fs::path(*words.output), false};
+    for (const fs::path& input : words.files) {
+        const JobList tiles = in_tiles({input, *list.folder / name_in_folder(input)});
+        list.jobs.insert(list.jobs.end(), tiles.jobs.begin(), tiles.jobs.end());
+        list.has_tiles |= tiles.has_tiles;
+    }
+    check_clashes(list.jobs);
+    return list;
+}
+
+}  // namespace
+
+JobList jobs_of(const FileWords& words, const std::string& kind,
+                const NameInFolder& name_in_folder) {
+    if (!words.output) return pair_of(words);
+    if (words.files.empty()) throw UsageError("IN is missing");
+    return is_folder(*words.output) ? into_folder(words, name_in_folder) : single(words, kind);
+}
+
+}  // namespace relief::tools
