@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "relief/mesh/image.h"
+#include "relief/mesh/report.h"
 
 namespace relief {
 
@@ -57,6 +58,22 @@ Image read_image(std::span<const std::byte> bytes, const std::string& name, Imag
 /// What a file's header says; throws as read_image does, as far as headers tell.
 ImageInfo read_image_info(const std::filesystem::path& file);
 
+/// What writing may cost.
+enum class WriteEffort {
+    fast,    ///< The least time.
+    normal,  ///< Little more time for most of what can be saved.
+    small,   ///< The smallest file, at many times the time.
+};
+
+/// How an image file is written. No choice but `half` changes what is read back.
+struct ImageWriteOptions {
+    WriteEffort effort = WriteEffort::normal;
+    /// EXR: samples are rounded to the nearest half float (11 significant bits). What lies beyond
+    /// the range of half becomes +-65504, its largest number, and is reported as "texel beyond
+    /// half's range"; infinities and NaN stay what they are.
+    bool half = false;
+};
+
 /// Writes a whole image; the format is decided by the extension: .png .tif .tiff .exr .hdr .jpg.
 ///
 /// \param metadata  text entries, kept where the format can hold them: PNG (tEXt), EXR, TIFF (lines
@@ -65,13 +82,19 @@ ImageInfo read_image_info(const std::filesystem::path& file);
 /// \throws FileError if it cannot be written, or if the extension is another
 /// \throws InvalidInput if the format cannot hold these samples: float in PNG, anything but 8 bits
 ///         of 1 or 3 channels in JPEG, anything but float in EXR and HDR, anything but 3 channels
-///         in HDR; or if they would read back as something else: linear colour in integers (encode
-///         it with to_srgb first), sRGB colour in float
+///         in HDR, half in anything but EXR; or if they would read back as something else: linear
+///         colour in integers (encode it with to_srgb first), sRGB colour in float
 ///
 /// Written beside and renamed: a failure leaves no half file and the old one unharmed. The same
 /// image gives the same bytes. PNG, TIFF and EXR keep every sample (EXR and TIFF as float); HDR
 /// keeps 8 bits of precision and no negative values; JPEG is written at quality 95.
 void write_image(const std::filesystem::path& file, const Image& image,
-                 const std::map<std::string, std::string>& metadata = {});
+                 const std::map<std::string, std::string>& metadata = {},
+                 const ImageWriteOptions& options = {});
+
+/// The same; what had to be changed about the samples is added to `report`.
+void write_image(const std::filesystem::path& file, const Image& image,
+                 const std::map<std::string, std::string>& metadata,
+                 const ImageWriteOptions& options, Report& report);
 
 }  // namespace relief

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reading and writing image files: bytes -> container checks -> a decoder -> Image. The usual PNG
+// Reading whole image files: bytes -> container checks -> a decoder -> Image. The usual PNG
 // and JPEG files have a direct way; all else goes through the image module.
 // Samples arrive as stored and from the top row; memory is taken as rows decode, so that a header
 // that lies costs nothing. Damaged, truncated, empty or oversized files are a FileError.
@@ -16,11 +16,9 @@
 #include <utility>
 
 #include "file_bytes.h"
-#include "file_replacement.h"
 #include "io/image/image_file_container.h"
 #include "io/image/image_file_direct.h"
 #include "io/image/image_file_module.h"
-#include "io/image/png_encoder.h"
 #include "relief/mesh/error.h"
 
 namespace relief {
@@ -93,13 +91,6 @@ void unfold_description(Metadata& metadata) {
         if (line.starts_with("relief:") && equals != std::string_view::npos)
             metadata.emplace(line.substr(0, equals), line.substr(equals + 1));
     }
-}
-
-std::string folded_description(const Metadata& metadata) {
-    std::string description;
-    for (const auto& [key, value] : metadata)
-        description += fmt::format("{}={}\n", key, value);
-    return description;
 }
 
 /// What a decoder is given: PNG and JPEG without what does not define their samples.
@@ -209,64 +200,6 @@ Image read_encoded(std::span<const std::byte> bytes, const std::filesystem::path
     }
 }
 
-// ---------------------------------------------------------------------------------------------
-// Writing
-
-std::string_view format_by_extension(const std::filesystem::path& file) {
-    const std::string extension = lower_extension(file);
-    if (extension == ".png") return "png";
-    if (extension == ".tif" || extension == ".tiff") return "tiff";
-    if (extension == ".exr") return "openexr";
-    if (extension == ".hdr") return "hdr";
-    if (extension == ".jpg" || extension == ".jpeg") return "jpeg";
-    throw FileError(file, fmt::format("relief writes no '{}' images; it writes .png, .tif, .exr, "
-                                      ".hdr and .jpg",
-                                      extension));
-}
-
-/// Refuses what would be lost, or would read back as something else.
-void check_writable(std::string_view format, const Image& image) {
-    const int bits = image.bits();
-    const std::size_t held = std::visit([](const auto& all) { return all.size(); }, image.samples);
-    if (image.empty() || held != image.sample_count()) {
-        throw InvalidInput(fmt::format("an image of {} x {} x {} samples holds {}", image.width,
-                                       image.height, image.channels, held));
-    }
-    if (image.channels < 1 || image.channels > 4)
-        throw InvalidInput(fmt::format("an image has 1 to 4 channels, not {}", image.channels));
-    const bool holds_float_only = format == "openexr" || format == "hdr";
-    if (holds_float_only && bits != 32)
-        throw InvalidInput(fmt::format("EXR and HDR hold float samples, not {} bits", bits));
-    if (format == "png" && bits == 32) throw InvalidInput("PNG holds 8 or 16 bits, not float");
-    if (format == "jpeg" && bits != 8)
-        throw InvalidInput(fmt::format("JPEG holds 8 bits, not {}", bits));
-    if (format == "jpeg" && image.channels % 2 == 0) throw InvalidInput("JPEG holds no alpha");
-    if (format == "hdr" && image.channels != 3)
-        throw InvalidInput(fmt::format("HDR holds 3 channels, not {}", image.channels));
-    if (image.color_space == ColorSpace::linear && bits != 32)
-        throw InvalidInput("linear colour is stored as float; encode it with to_srgb first");
-    if (image.color_space == ColorSpace::srgb && bits == 32)
-        throw InvalidInput("sRGB-coded colour is stored in 8 or 16 bits; decode it with to_linear");
-}
-
-void check_metadata(const Metadata& metadata) {
-    constexpr std::size_t longest_png_key = 79;
-    for (const auto& [key, value] : metadata) {
-        if (key.empty() || key.size() > longest_png_key) {
-            throw InvalidInput(fmt::format("the metadata key '{}' has {} letters, not 1 to {}", key,
-                                           key.size(), longest_png_key));
-        }
-    }
-}
-
-/// The metadata in the form that the format can hold.
-Metadata entries_for(std::string_view format, const Metadata& metadata) {
-    if (format == "openexr") return metadata;
-    if (format == "tiff" && !metadata.empty())
-        return {{"ImageDescription", folded_description(metadata)}};
-    return {};
-}
-
 }  // namespace
 
 Image read_image(const std::filesystem::path& file, ImageUse use) {
@@ -286,39 +219,6 @@ ImageInfo read_image_info(const std::filesystem::path& file) {
     const OpenImage open = open_image(std::move(container), bytes, file);
     return {static_cast<int>(open.header.width), static_cast<int>(open.header.height),
             static_cast<int>(open.header.channels), open.header.bits, open.metadata};
-}
-
-void write_image(const std::filesystem::path& file, const Image& image, const Metadata& metadata) {
-    const std::string_view format = format_by_extension(file);
-    check_writable(format, image);
-    check_metadata(metadata);
-    if (format == "png") {
-        const std::string encoded = encode_png(image, metadata);
-        replace_file(file, std::as_bytes(std::span(encoded)));
-        return;
-    }
-    const Metadata entries = entries_for(format, metadata);
-    std::vector<const char*> keys, values;
-    for (const auto& [key, value] : entries) {
-        keys.push_back(key.c_str());
-        values.push_back(value.c_str());
-    }
-    ImageModulePicture picture;
-    picture.header = {image.width, image.height, image.channels, image.bits()};
-    picture.samples = std::visit(
-        [](const auto& all) { return static_cast<const void*>(all.data()); }, image.samples);
-    picture.srgb = image.color_space == ColorSpace::srgb;
-    picture.keys = keys.data();
-    picture.values = values.data();
-    picture.text_count = entries.size();
-
-    FileReplacement replacement(file);
-    std::string reason;
-    if (!image_module(file).write(format.data(), replacement.temporary().c_str(), &picture,
-                                  into(reason))) {
-        throw FileError(file, "cannot be written: " + reason);
-    }
-    replacement.commit();
 }
 
 }  // namespace relief

@@ -24,6 +24,11 @@ struct ImageModuleReader {
     ImageModuleHeader header;
 };
 
+struct ImageModuleWriter {
+    std::unique_ptr<OIIO::ImageOutput> output;
+    ImageModuleHeader header;
+};
+
 namespace {
 
 void fail(const ImageModuleFailure& failure, const std::string& text) {
@@ -143,8 +148,10 @@ void close(ImageModuleReader* reader) {
 /// What every format of ours is written with.
 OIIO::ImageSpec spec_to_write(const std::string& format, const ImageModulePicture& picture) {
     const ImageModuleHeader& header = picture.header;
-    OIIO::ImageSpec spec(static_cast<int>(header.width), static_cast<int>(header.height),
-                         static_cast<int>(header.channels), sample_type(header.bits));
+    OIIO::ImageSpec spec(
+        static_cast<int>(header.width), static_cast<int>(header.height),
+        static_cast<int>(header.channels),
+        picture.half ? OIIO::TypeDesc(OIIO::TypeDesc::HALF) : sample_type(header.bits));
     spec.channelnames = header.channels < 3 ? std::vector<std::string>{"Y", "A"}
                                             : std::vector<std::string>{"R", "G", "B", "A"};
     spec.channelnames.resize(static_cast<std::size_t>(header.channels));
@@ -152,8 +159,7 @@ OIIO::ImageSpec spec_to_write(const std::string& format, const ImageModulePictur
     spec["oiio:UnassociatedAlpha"] = 1;
     if (picture.srgb) spec["oiio:ColorSpace"] = "sRGB";
     if (format == "tiff" || format == "openexr") spec["compression"] = "zip";
-    // Twice as fast as the default, and within 1 % of its size on 16-bit normal maps.
-    if (format == "tiff") spec["tiff:zipquality"] = 1;
+    if (format == "tiff") spec["tiff:zipquality"] = picture.zip_quality;
     // OpenImageIO 2.4 takes some of its own entries for Exif and then cannot write them.
     if (format == "tiff") spec["tiff:write_exif"] = 0;
     // Else the date would be written, and the same image would never give the same file.
@@ -167,22 +173,51 @@ OIIO::ImageSpec spec_to_write(const std::string& format, const ImageModulePictur
     return spec;
 }
 
-bool write(const char* format, const char* path, const ImageModulePicture* picture,
+ImageModuleWriter* create(const char* format, const char* path, const ImageModulePicture* picture,
+                          ImageModuleFailure failure) {
+    return guarded<ImageModuleWriter*>(failure, nullptr, [&]() -> ImageModuleWriter* {
+        auto writer = std::make_unique<ImageModuleWriter>();
+        writer->header = picture->header;
+        writer->output = OIIO::ImageOutput::create(format);
+        if (!writer->output) return fail(failure, OIIO::geterror()), nullptr;
+        if (writer->output->open(path, spec_to_write(format, *picture))) return writer.release();
+        fail(failure, pending_error(*writer->output));
+        return nullptr;
+    });
+}
+
+bool write(ImageModuleWriter* writer, std::int64_t first, std::int64_t end, const void* samples,
            ImageModuleFailure failure) {
     return guarded(failure, false, [&] {
-        const std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create(format);
-        if (!output) return fail(failure, OIIO::geterror()), false;
-        const bool written =
-            output->open(path, spec_to_write(format, *picture)) &&
-            output->write_image(sample_type(picture->header.bits), picture->samples) &&
-            output->close();
-        if (written && !output->has_error()) return true;
-        fail(failure, pending_error(*output));
+        OIIO::ImageOutput& output = *writer->output;
+        const bool written = output.write_scanlines(static_cast<int>(first), static_cast<int>(end),
+                                                    0, sample_type(writer->header.bits), samples);
+        if (written && !output.has_error()) return true;
+        fail(failure, pending_error(output));
         return false;
     });
 }
 
-constexpr ImageModule table{image_module_version, open, row_grain, read, close, write};
+bool finish(ImageModuleWriter* writer, ImageModuleFailure failure) {
+    return guarded(failure, false, [&] {
+        OIIO::ImageOutput& output = *writer->output;
+        if (output.close() && !output.has_error()) return true;
+        fail(failure, pending_error(output));
+        return false;
+    });
+}
+
+void release(ImageModuleWriter* writer) {
+    try {
+        delete writer;
+    } catch (...) {
+        // The file is complete, or nobody's.
+        return;
+    }
+}
+
+constexpr ImageModule table{
+    image_module_version, open, row_grain, read, close, create, write, finish, release};
 
 }  // namespace
 }  // namespace relief

@@ -14,7 +14,7 @@
 namespace relief {
 
 /// Changes whenever anything in this file does; a module of another version is refused.
-inline constexpr std::uint32_t image_module_version = 1;
+inline constexpr std::uint32_t image_module_version = 2;
 
 /// The name of the module's one exported function: `const ImageModule* relief_image_module()`.
 inline constexpr const char* image_module_entry = "relief_image_module";
@@ -41,11 +41,15 @@ struct ImageModuleHeader {
 /// An image being read; the module's own.
 struct ImageModuleReader;
 
-/// What to write: samples and how to label them.
+/// An image being written; the module's own.
+struct ImageModuleWriter;
+
+/// What to write, and how to label it.
 struct ImageModulePicture {
     ImageModuleHeader header;
-    const void* samples = nullptr;
-    bool srgb = false;  ///< Label as sRGB where the format can say so.
+    bool srgb = false;    ///< Label as sRGB where the format can say so.
+    bool half = false;    ///< Store float samples as half floats.
+    int zip_quality = 1;  ///< 1 (fast) to 9 (small), where the format deflates.
     const char* const* keys = nullptr;
     const char* const* values = nullptr;
     std::size_t text_count = 0;
@@ -70,9 +74,19 @@ struct ImageModule {
 
     void (*close)(ImageModuleReader* reader);
 
-    /// Writes a file, by OpenImageIO's name for its format.
-    bool (*write)(const char* format, const char* path, const ImageModulePicture* picture,
-                  ImageModuleFailure failure);
+    /// Begins a file, by OpenImageIO's name for its format. Null where it failed.
+    ImageModuleWriter* (*create)(const char* format, const char* path,
+                                 const ImageModulePicture* picture, ImageModuleFailure failure);
+
+    /// Takes rows [first, end), which follow those before.
+    bool (*write)(ImageModuleWriter* writer, std::int64_t first, std::int64_t end,
+                  const void* samples, ImageModuleFailure failure);
+
+    /// Ends a file of which all rows are written.
+    bool (*finish)(ImageModuleWriter* writer, ImageModuleFailure failure);
+
+    /// Frees the writer, whether it came to an end or not.
+    void (*release)(ImageModuleWriter* writer);
 };
 
 }  // namespace relief
