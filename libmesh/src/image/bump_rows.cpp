@@ -216,7 +216,15 @@ void store(VectorTarget vectors, const BumpTarget& target, int row, int first, s
         case BumpResult::normals:
             return store_normals(vectors, right, up, count, floats(3));
         case BumpResult::codes:
-            return at_codes(target, row, first, [&](auto* codes) {
+            return at_codes(target, row, first, [&]<typename Sample>(Sample* codes) {
+                if constexpr (!std::is_same_v<Sample, float>) {
+                    if (target.format.dither != Dither::none) {
+                        const DitherRow thresholds(target.format.dither, row);
+                        return store_dithered_codes(right, up, count, target.format,
+                                                    static_cast<std::size_t>(first), thresholds,
+                                                    codes);
+                    }
+                }
                 store_codes(vectors, right, up, count, target.format, codes);
             });
     }
@@ -360,7 +368,8 @@ bool make_rows(const HeightRows& heights, const BumpOptions& options, const Bump
     }
     RowMaker<Sample, float> maker(vectors, heights, options, target);
     const std::optional<Weights3x3> weights = maker.slopes().weights_3x3();
-    if (!weights || !has_few_bits) return make_with(maker, first, last);
+    const bool is_dithered = target.format.dither != Dither::none;
+    if (!weights || !has_few_bits || is_dithered) return make_with(maker, first, last);
     DirectRowMaker<Sample> direct(vectors, heights, options.wrap, *weights, target, maker);
     return make_with(direct, first, last);
 }

@@ -49,6 +49,20 @@ struct NormalCoding {
         return flat == FlatCode::half ? to_half(component) : to_middle(component);
     }
 
+    /// One of the two codes around the component: the one farther from zero (with FlatCode::half,
+    /// the upper one) where what is left exceeds the threshold, which lies in (0,1). Opposite
+    /// components have mirrored codes; what a code says exactly has that code.
+    [[nodiscard]] RELIEF_INLINE Code dithered(Real component, Real threshold) const {
+        const bool is_middle = flat == FlatCode::middle;
+        const Real place =
+            is_middle ? (middle - 1) * std::abs(component) : largest / 2 + largest / 2 * component;
+        const auto below = static_cast<std::int32_t>(place);
+        const std::int32_t code = below + (place - static_cast<Real>(below) > threshold ? 1 : 0);
+        if (!is_middle) return static_cast<Code>(code);
+        return static_cast<Code>(static_cast<std::int32_t>(middle) +
+                                 (component < 0 ? -code : code));
+    }
+
     [[nodiscard]] Real decoded(Code code) const {
         if (flat == FlatCode::middle) return std::max((code - middle) / (middle - 1), Real{-1});
         return 2 * code / largest - 1;
@@ -63,6 +77,7 @@ struct NormalCoding<float, Real> {
     RELIEF_INLINE static float encoded(Real component) {
         return static_cast<float>((component + 1) / 2);
     }
+    RELIEF_INLINE static float dithered(Real component, Real) { return encoded(component); }
     [[nodiscard]] static Real decoded(float sample) {
         return Real{2} * static_cast<Real>(sample) - 1;
     }

@@ -150,6 +150,22 @@ void store_codes(VectorTarget target, const Real* right, const Real* up, std::si
         codes_with<FlatCode::middle>(target, right, up, count, green, codes);
 }
 
+template <typename Sample, typename Real>
+void store_dithered_codes(const Real* right, const Real* up, std::size_t count,
+                          const NormalMapFormat& format, std::size_t first,
+                          const DitherRow& thresholds, Sample* codes) {
+    const NormalCoding<Sample> coding{format.flat};
+    const double green = format.green == Green::up ? 1 : -1;
+    for (std::size_t i = 0; i < count; ++i) {
+        const double x = right[i];
+        const double y = up[i];
+        const double scale = inverse_length(x, y);
+        codes[3 * i] = coding.dithered(-x * scale, thresholds.at(first + i, 0));
+        codes[3 * i + 1] = coding.dithered(-y * green * scale, thresholds.at(first + i, 1));
+        codes[3 * i + 2] = coding.dithered(scale, thresholds.at(first + i, 2));
+    }
+}
+
 #define RELIEF_INSTANTIATE(Real)                                                              \
     template bool any_too_steep(VectorTarget, const Real*, const Real*, std::size_t);         \
     template void store_normals(VectorTarget, const Real*, const Real*, std::size_t, float*); \
@@ -158,7 +174,13 @@ void store_codes(VectorTarget target, const Real* right, const Real* up, std::si
     template void store_codes(VectorTarget, const Real*, const Real*, std::size_t,            \
                               const NormalMapFormat&, std::uint16_t*);                        \
     template void store_codes(VectorTarget, const Real*, const Real*, std::size_t,            \
-                              const NormalMapFormat&, float*);
+                              const NormalMapFormat&, float*);                                \
+    template void store_dithered_codes(const Real*, const Real*, std::size_t,                 \
+                                       const NormalMapFormat&, std::size_t, const DitherRow&, \
+                                       std::uint8_t*);                                        \
+    template void store_dithered_codes(const Real*, const Real*, std::size_t,                 \
+                                       const NormalMapFormat&, std::size_t, const DitherRow&, \
+                                       std::uint16_t*);
 RELIEF_INSTANTIATE(float)
 RELIEF_INSTANTIATE(double)
 #undef RELIEF_INSTANTIATE

@@ -7,6 +7,7 @@
 
 #include <cstddef>
 
+#include "image/dither_tile.h"
 #include "relief/mesh/normal_map.h"
 #include "vector_targets.h"
 
@@ -27,5 +28,12 @@ void store_normals(VectorTarget target, const Real* right, const Real* up, std::
 template <typename Sample, typename Real>
 void store_codes(VectorTarget target, const Real* right, const Real* up, std::size_t count,
                  const NormalMapFormat& format, Sample* codes);
+
+/// The same dithered: texels of a row from column `first` on. In double, which tells fractions of
+/// 16-bit codes.
+template <typename Sample, typename Real>
+void store_dithered_codes(const Real* right, const Real* up, std::size_t count,
+                          const NormalMapFormat& format, std::size_t first,
+                          const DitherRow& thresholds, Sample* codes);
 
 }  // namespace relief

@@ -11,6 +11,7 @@
 #include <cmath>
 #include <limits>
 
+#include "image/dither_tile.h"
 #include "image/normal_coding.h"
 #include "parallel.h"
 #include "relief/mesh/error.h"
@@ -49,21 +50,57 @@ void for_each_texel(std::size_t count, Report& report, Each each) {
                            });
 }
 
-template <typename Sample>
-void encode(std::span<const float> normals, const NormalMapFormat& format, Image& result,
-            Report& report) {
-    const std::span<Sample> samples = result.as<Sample>();
-    const NormalCoding<Sample> coding{format.flat};
-    const double green = format.green == Green::up ? 1.0 : -1.0;
-    for_each_texel(normals.size() / 3, report, [&](std::size_t texel, Report& found) {
-        const float* normal = &normals[texel * 3];
+/// Unit normals as codes: to_codes(column, direction, samples) for each texel of a row.
+template <typename Sample, typename ToCodes>
+void encode_row(const float* normals, int width, std::size_t first_texel, double green,
+                Sample* samples, Report& found, const ToCodes& to_codes) {
+    for (std::size_t x = 0; x < static_cast<std::size_t>(width); ++x) {
+        const float* normal = normals + 3 * x;
         Direction direction{normal[0], normal[1] * green, normal[2]};
         if (!make_unit(direction))
-            found.add("normal without direction", "texel", texel, "stored as flat");
-        samples[texel * 3] = coding.encoded(direction.x);
-        samples[texel * 3 + 1] = coding.encoded(direction.y);
-        samples[texel * 3 + 2] = coding.encoded(direction.z);
-    });
+            found.add("normal without direction", "texel", first_texel + x, "stored as flat");
+        to_codes(x, direction, samples + 3 * x);
+    }
+}
+
+/// The same for a row in its place, which decides how it is dithered.
+template <typename Sample>
+void encode_row(const float* normals, int width, int row, const NormalMapFormat& format,
+                Sample* samples, Report& found) {
+    const NormalCoding<Sample> coding{format.flat};
+    const double green = format.green == Green::up ? 1.0 : -1.0;
+    const std::size_t first_texel = static_cast<std::size_t>(row) * static_cast<std::size_t>(width);
+    if (format.dither == Dither::none) {
+        encode_row(normals, width, first_texel, green, samples, found,
+                   [&](std::size_t, const Direction& direction, Sample* codes) {
+                       codes[0] = coding.encoded(direction.x);
+                       codes[1] = coding.encoded(direction.y);
+                       codes[2] = coding.encoded(direction.z);
+                   });
+    } else {
+        const DitherRow thresholds(format.dither, row);
+        encode_row(normals, width, first_texel, green, samples, found,
+                   [&](std::size_t x, const Direction& direction, Sample* codes) {
+                       codes[0] = coding.dithered(direction.x, thresholds.at(x, 0));
+                       codes[1] = coding.dithered(direction.y, thresholds.at(x, 1));
+                       codes[2] = coding.dithered(direction.z, thresholds.at(x, 2));
+                   });
+    }
+}
+
+template <typename Sample>
+void encode(const Image& normals, const NormalMapFormat& format, Image& result, Report& report) {
+    const float* const from = normals.as<float>().data();
+    Sample* const to = result.as<Sample>().data();
+    const auto width = static_cast<std::size_t>(normals.width);
+    parallel_for_reporting(static_cast<std::size_t>(normals.height), texels_per_piece / width + 1,
+                           report, [&](std::size_t begin, std::size_t end, Report& found) {
+                               for (std::size_t y = begin; y < end; ++y) {
+                                   encode_row(from + y * width * 3, normals.width,
+                                              static_cast<int>(y), format, to + y * width * 3,
+                                              found);
+                               }
+                           });
 }
 
 template <typename Sample>
@@ -128,16 +165,15 @@ Image encode_normal_map(const Image& normals, const NormalMapFormat& format, Rep
                                        normals.channels, normals.bits()));
     }
     Image result = make_image(normals.width, normals.height, 3, format.bits, ColorSpace::data);
-    const std::span<const float> all = normals.as<float>();
     switch (format.bits) {
         case 8:
-            encode<std::uint8_t>(all, format, result, report);
+            encode<std::uint8_t>(normals, format, result, report);
             break;
         case 16:
-            encode<std::uint16_t>(all, format, result, report);
+            encode<std::uint16_t>(normals, format, result, report);
             break;
         default:
-            encode<float>(all, format, result, report);
+            encode<float>(normals, format, result, report);
             break;
     }
     return result;

@@ -7,6 +7,7 @@
 #include <map>
 #include <string>
 
+#include "relief/mesh/dither.h"
 #include "relief/mesh/image.h"
 #include "relief/mesh/report.h"
 
@@ -31,15 +32,20 @@ struct NormalMapFormat {
     int bits = 16;
     Green green = Green::up;
     FlatCode flat = FlatCode::middle;
+    /// Of 8 and 16 bits. Any but `none` is less than one code off, instead of half a code at most,
+    /// but right in the mean over a few texels.
+    Dither dither = Dither::none;
 };
 
 /// Stores unit normals as a three-channel data image.
 ///
 /// \param normals  three float channels, y up; any length, only the direction counts
 /// \param report   counts normals that are not finite or zero: stored as flat
-/// \return round-to-nearest codes; with FlatCode::middle, (0,0,1) decodes to exactly (0,0,1) and n
-///         and -n get mirrored codes, so that mirrored texture seams cannot show; with
-///         FlatCode::half, 0 becomes the upper of its two codes
+/// \return codes rounded to the nearest, or as `dither` says; with FlatCode::middle, (0,0,1)
+/// decodes
+///         to exactly (0,0,1) and n and -n get mirrored codes, so that mirrored texture seams
+///         cannot show; with FlatCode::half, 0 becomes the upper of its two codes, or both in turns
+///         where dithered
 /// \throws InvalidInput if the image is empty or not three float channels, or bits is not 8, 16 or
 ///         32
 Image encode_normal_map(const Image& normals, const NormalMapFormat& format, Report& report);
