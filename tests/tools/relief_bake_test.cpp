@@ -235,6 +235,39 @@ TEST(BumpCommand, ConvertsARealFloatMap) {
     EXPECT_THAT(result.out, HasSubstr("coded     32 bit float, green up"));
 }
 
+TEST(BumpCommand, ConvertsManyMapsAndTilesInOneCall) {
+    const Workplace workplace;
+    write_ramp(workplace, "a.png", false, 257);
+    write_ramp(workplace, "b.1001.tif", true, 257);
+    write_ramp(workplace, "b.1002.tif", true, 514);
+    workplace.write("bad.png", "this is no image");
+    const ProgramResult result = workplace.run(
+        "relief-bake bump a.png bad.png 'b.<UDIM>.tif' -o out/maps/ --strength 255 --wrap clamp "
+        "--report out/r.json");
+    EXPECT_EQ(result.exit_code, 1);
+    EXPECT_THAT(result.error, testing::StartsWith("relief-bake: error: bad.png: "));
+    EXPECT_THAT(result.out,
+                testing::MatchesRegex("out/maps/a.png: 16 x 16, sobel3, no findings, [^\n]*\n"
+                                      "out/maps/b.1001.tif: [^\n]*\n"
+                                      "out/maps/b.1002.tif: [^\n]*\n"
+                                      "in all    4 files, 1 failed\n"));
+    const glm::dvec3 steep = middle_normal(workplace / "out/maps/b.1002.tif", Green::up);
+    EXPECT_LT(degrees_between(steep, glm::dvec3(0.0, -2.0, 1.0)), degrees_of_16_bit);
+    const json report = json::parse(workplace.read("out/r.json"));
+    EXPECT_EQ(report["tool"], "relief-bake bump");
+    EXPECT_EQ(report["failed"], 1);
+    ASSERT_EQ(report["files"].size(), 4U);
+    EXPECT_EQ(report["files"][0]["kernel"], "sobel3");
+    EXPECT_EQ(report["files"][2]["output"], "out/maps/b.1001.tif");
+}
+
+TEST(BumpCommand, AMapKeepsItsNameInAFolderButNotAFormatThatHoldsNoNormals) {
+    const Workplace workplace;
+    write_image(workplace / "a.jpg", make_image(4, 3, 1, 8, ColorSpace::data));
+    ASSERT_EQ(workplace.run("relief-bake bump a.jpg -o out/").exit_code, 0);
+    EXPECT_EQ(workplace.outputs(), "a.png");
+}
+
 class BakeRefusal : public testing::TestWithParam<Refused> {};
 
 TEST_P(BakeRefusal, SaysWhyAndLeavesNothingBehind) {
@@ -286,6 +319,12 @@ INSTANTIATE_TEST_SUITE_P(
                 "--strength, --height: both say how deep the map is"},
         Refused{"relief-bake bump flat.png out/n.png --report flat.png", 2,
                 "--report flat.png: is also the input or the output"},
+        Refused{"relief-bake bump flat.png flat.png", 2,
+                "flat.png: would replace the height map (write to another folder, or by another "
+                "name)"},
+        Refused{"relief-bake bump flat.png -o ./", 2, "./flat.png: would replace the height map"},
+        Refused{"relief-bake bump flat.png out/n.'<UDIM>'.png", 2,
+                "flat.png, out/n.<UDIM>.png: <UDIM> must be in both names or in none"},
         Refused{"relief-bake bump flat.png", 2, "OUT is missing (see relief-bake bump --help)"},
         Refused{"relief-bake", 2, "a command is missing: bump (see relief-bake --help)"}));
 

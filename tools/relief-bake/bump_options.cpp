@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+// Options in groups, as --help shows them, and what contradicts what.
+// Tests: tests/tools/relief_bake_test.cpp.
+#include "bump_options.h"
+
+#include "common/map_choices.h"
+
+namespace relief::tools {
+namespace {
+
+Choices<WrapChoice> wrap_or_auto() {
+    Choices<WrapChoice> choices;
+    for (const auto& [name, wrap] : wrap_choices())
+        choices.emplace_back(name, wrap);
+    choices.emplace_back("auto", std::nullopt);
+    return choices;
+}
+
+/// "W" or "WxH".
+glm::dvec2 parse_texel(const std::string& subject, const std::string& text) {
+    const Range sizes{1e-30, 1e30, ""};
+    const std::size_t cross = text.find('x');
+    const double width = parse_number(subject, text.substr(0, cross), sizes);
+    if (cross == std::string::npos) return {width, width};
+    return {width, parse_number(subject, text.substr(cross + 1), sizes)};
+}
+
+/// "W" for both axes, or "W,W" for x and y.
+void parse_wraps(const std::string& subject, const std::string& text, BumpRequest& request) {
+    const std::size_t comma = text.find(',');
+    request.wrap_x = parse_choice(subject, text.substr(0, comma), wrap_or_auto());
+    request.wrap_y = comma == std::string::npos
+                         ? request.wrap_x
+                         : parse_choice(subject, text.substr(comma + 1), wrap_or_auto());
+}
+
+void add_depth_options(CLI::App& app, BumpRequest& request) {
+    const std::string group = "Slopes";
+    add_number(app, "--strength", "S", request.strength, {},
+               "Height in texels that the value 1.0 (white) stands for; negative turns bumps into "
+               "dents. Default: 16.")
+        ->group(group);
+    add_number(app, "--height", "H", request.height, {},
+               "Instead of --strength: the height of white in a unit of length; with "
+               "--texel-size.")
+        ->group(group);
+    add_value(app, "--texel-size", "W[xH]",
+              "Width (and height, where texels are not square) of a texel in the unit of --height.",
+              [&](const std::string& subject, const std::string& text) {
+                  request.texel = parse_texel(subject, text);
+              })
+        ->group(group);
+}
+
+void add_slope_options(CLI::App& app, BumpRequest& request) {
+    const std::string group = "Slopes";
+    add_choice(app, "--kernel", request.bump.kernel, kernel_choices(),
+               "How the slope is taken from neighbouring heights; all give the same depth. "
+               "central5 and central7 are the truest on smooth maps of 16 bits or float; sobel5, "
+               "scharr5 and gaussian smooth steps and noise; forward is half a texel off. "
+               "Default: sobel3.")
+        ->group(group);
+    add_value(app, "--kernel-radius", "R",
+              "Texels that --kernel gaussian reaches, 1 to 64. Default: 2.",
+              [&](const std::string& subject, const std::string& text) {
+                  request.gaussian_radius = parse_integer(subject, text, 1, largest_kernel_radius);
+              })
+        ->group(group);
+    add_value(
+        app, "--wrap", "WORD[,WORD]",
+        "What lies beyond the border: the opposite edge, for maps that tile (repeat), "
+        "nothing, so that slopes there are one-sided (clamp), the map mirrored (mirror); or by "
+        "whether it goes on smoothly across the seam, repeat or clamp (auto). Two words: left "
+        "and right, then top and bottom. Default: repeat.",
+        [&](const std::string& subject, const std::string& text) {
+            parse_wraps(subject, text, request);
+        })
+        ->group(group);
+}
+
+}  // namespace
+
+void add_bump_options(CLI::App& app, BumpRequest& request) {
+    add_depth_options(app, request);
+    add_slope_options(app, request);
+}
+
+BumpOptions bump_of(const BumpRequest& request) {
+    if (request.strength && request.height)
+        throw UsageError("--strength, --height: both say how deep the map is");
+    if (request.height && !request.texel)
+        throw UsageError("--height: needs the size of a texel in the same unit",
+                         "give --texel-size, or --strength instead");
+    if (request.texel && !request.height)
+        throw UsageError("--texel-size: says in which unit --height is", "give --height");
+    if (request.gaussian_radius && request.bump.kernel != Kernel::gaussian)
+        throw UsageError("--kernel-radius: is for --kernel gaussian");
+    BumpOptions bump = request.bump;
+    bump.strength = request.height ? *request.height : request.strength.value_or(bump.strength);
+    bump.texel = request.texel.value_or(bump.texel);
+    bump.gaussian_radius = request.gaussian_radius.value_or(bump.gaussian_radius);
+    return bump;
+}
+
+}  // namespace relief::tools
