@@ -7,48 +7,15 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
 #include <limits>
 
 #include "image/dither_tile.h"
 #include "image/normal_coding.h"
-#include "parallel.h"
+#include "image/texel_loops.h"
 #include "relief/mesh/error.h"
 
 namespace relief {
 namespace {
-
-constexpr std::size_t texels_per_piece = 1 << 14;
-
-struct Direction {
-    double x, y, z;
-};
-
-/// A direction at length 1, or flat where there is none; says which.
-bool make_unit(Direction& direction) {
-    const double largest =
-        std::max({std::abs(direction.x), std::abs(direction.y), std::abs(direction.z)});
-    const bool usable = largest > 0.0 && std::isfinite(direction.x + direction.y + direction.z);
-    if (!usable) {
-        direction = {0.0, 0.0, 1.0};
-        return false;
-    }
-    const double length = std::sqrt(direction.x * direction.x + direction.y * direction.y +
-                                    direction.z * direction.z);
-    direction = {direction.x / length, direction.y / length, direction.z / length};
-    return true;
-}
-
-/// Calls each(texel, report) for every texel in parallel; the findings come together in `report`.
-template <typename Each>
-void for_each_texel(std::size_t count, Report& report, Each each) {
-    parallel_for_reporting(count, texels_per_piece, report,
-                           [&](std::size_t begin, std::size_t end, Report& found) {
-                               for (std::size_t texel = begin; texel < end; ++texel)
-                                   each(texel, found);
-                           });
-}
 
 /// Unit normals as codes: to_codes(column, direction, samples) for each texel of a row.
 template <typename Sample, typename ToCodes>
@@ -92,15 +59,11 @@ template <typename Sample>
 void encode(const Image& normals, const NormalMapFormat& format, Image& result, Report& report) {
     const float* const from = normals.as<float>().data();
     Sample* const to = result.as<Sample>().data();
-    const auto width = static_cast<std::size_t>(normals.width);
-    parallel_for_reporting(static_cast<std::size_t>(normals.height), texels_per_piece / width + 1,
-                           report, [&](std::size_t begin, std::size_t end, Report& found) {
-                               for (std::size_t y = begin; y < end; ++y) {
-                                   encode_row(from + y * width * 3, normals.width,
-                                              static_cast<int>(y), format, to + y * width * 3,
-                                              found);
-                               }
-                           });
+    const auto row_size = static_cast<std::size_t>(normals.width) * 3;
+    for_each_row(normals.width, normals.height, report, [&](std::size_t row, Report& found) {
+        encode_row(from + row * row_size, normals.width, static_cast<int>(row), format,
+                   to + row * row_size, found);
+    });
 }
 
 template <typename Sample>
@@ -116,10 +79,7 @@ void decode(const Image& map, Green green, FlatCode flat, std::span<float> norma
                             coding.decoded(sample[2])};
         if (!make_unit(direction))
             found.add("normal without direction", "texel", texel, "read as flat");
-        // Adding zero turns -0 into 0: flat is (0,0,1) to the bit.
-        normals[texel * 3] = static_cast<float>(direction.x + 0.0);
-        normals[texel * 3 + 1] = static_cast<float>(direction.y + 0.0);
-        normals[texel * 3 + 2] = static_cast<float>(direction.z + 0.0);
+        store(direction, &normals[texel * 3]);
     });
 }
 
@@ -159,11 +119,7 @@ void check_map(const Image& map) {
 }  // namespace
 
 Image encode_normal_map(const Image& normals, const NormalMapFormat& format, Report& report) {
-    if (normals.empty()) throw InvalidInput("an empty image holds no normals");
-    if (normals.channels != 3 || normals.bits() != 32) {
-        throw InvalidInput(fmt::format("normals have 3 float channels, not {} of {} bits",
-                                       normals.channels, normals.bits()));
-    }
+    check_floats(normals, 3, "normals");
     Image result = make_image(normals.width, normals.height, 3, format.bits, ColorSpace::data);
     switch (format.bits) {
         case 8:

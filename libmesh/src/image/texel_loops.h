@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// What is done texel by texel to normals, in parallel, and what a vector of any length is worth as
+/// a direction. Tests: tests/mesh/image/normal_map_test.cpp, normal_map_operations_test.cpp.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+
+#include "parallel.h"
+#include "relief/mesh/image.h"
+#include "relief/mesh/report.h"
+
+namespace relief {
+
+inline constexpr std::size_t texels_per_piece = 1 << 14;
+
+/// Calls each(texel, report) for every texel in parallel; the findings come together in `report`.
+template <typename Each>
+void for_each_texel(std::size_t count, Report& report, Each each) {
+    parallel_for_reporting(count, texels_per_piece, report,
+                           [&](std::size_t begin, std::size_t end, Report& found) {
+                               for (std::size_t texel = begin; texel < end; ++texel)
+                                   each(texel, found);
+                           });
+}
+
+/// Calls each(row, report) for every row in parallel, as many rows a piece as make it worth while.
+template <typename Each>
+void for_each_row(int width, int height, Report& report, Each each) {
+    const std::size_t rows_per_piece = texels_per_piece / static_cast<std::size_t>(width) + 1;
+    parallel_for_reporting(static_cast<std::size_t>(height), rows_per_piece, report,
+                           [&](std::size_t begin, std::size_t end, Report& found) {
+                               for (std::size_t row = begin; row < end; ++row)
+                                   each(row, found);
+                           });
+}
+
+/// Calls with(Sample{}) for the type of an image's samples.
+template <typename With>
+auto with_sample_type(const Image& image, const With& with) {
+    if (image.bits() == 8) return with(std::uint8_t{});
+    if (image.bits() == 16) return with(std::uint16_t{});
+    return with(float{});
+}
+
+/// \param what  in the plural, for messages: "normals"
+/// \throws InvalidInput if the image is empty or has not so many float channels
+void check_floats(const Image& image, int channels, const char* what);
+
+struct Direction {
+    double x, y, z;
+};
+
+/// A direction at length 1, or flat where there is none; says which.
+inline bool make_unit(Direction& direction) {
+    const double largest =
+        std::max({std::abs(direction.x), std::abs(direction.y), std::abs(direction.z)});
+    const bool usable = largest > 0.0 && std::isfinite(direction.x + direction.y + direction.z);
+    if (!usable) {
+        direction = {0.0, 0.0, 1.0};
+        return false;
+    }
+    const double length = std::sqrt(direction.x * direction.x + direction.y * direction.y +
+                                    direction.z * direction.z);
+    direction = {direction.x / length, direction.y / length, direction.z / length};
+    return true;
+}
+
+/// Three floats; adding zero turns -0 into 0, so that flat is (0,0,1) to the bit.
+inline void store(const Direction& direction, float* normal) {
+    normal[0] = static_cast<float>(direction.x + 0.0);
+    normal[1] = static_cast<float>(direction.y + 0.0);
+    normal[2] = static_cast<float>(direction.z + 0.0);
+}
+
+}  // namespace relief
