@@ -235,6 +235,59 @@ TEST(BumpCommand, ConvertsARealFloatMap) {
     EXPECT_THAT(result.out, HasSubstr("coded     32 bit float, green up"));
 }
 
+/// The mean of all normals of a map.
+glm::dvec3 mean_normal(const std::filesystem::path& file) {
+    Report report;
+    const Image normals =
+        decode_normal_map(read_image(file, ImageUse::data), Green::up, FlatCode::middle, report);
+    glm::dvec3 sum{};
+    for (std::size_t i = 0; i < normals.sample_count(); ++i)
+        sum[static_cast<int>(i % 3)] += static_cast<double>(normals.as<float>()[i]);
+    return sum;
+}
+
+TEST(BumpCommand, DitheredMapsAreRightInTheMean) {
+    const Workplace workplace;
+    write_ramp(workplace, "ramp.png", false, 257);
+    // A slope of 0.355 has no code of 8 bits.
+    const glm::dvec3 truth(-0.355, 0, 1);
+    const std::string line =
+        "relief-bake bump ramp.png out/n.png --strength 90.525 --wrap clamp --bits 8";
+    ASSERT_EQ(workplace.run(line).exit_code, 0);
+    EXPECT_GT(degrees_between(mean_normal(workplace / "out/n.png"), truth), 0.1);
+    for (const std::string dither : {"ordered", "blue-noise"}) {
+        const ProgramResult result = workplace.run(line + " --dither " + dither);
+        ASSERT_EQ(result.exit_code, 0) << result.error;
+        EXPECT_THAT(result.out, HasSubstr("coded     8 bit, flat is the middle code, green up, "
+                                          "dithered " +
+                                          dither + "\n"));
+        EXPECT_LT(degrees_between(mean_normal(workplace / "out/n.png"), truth), 0.02);
+    }
+}
+
+TEST(BumpCommand, HalfFloatsTakeLessRoomAndHoldElevenBits) {
+    const Workplace workplace;
+    const std::string line = "relief-bake bump data/bricks-height.png out/";
+    ASSERT_EQ(workplace.run(line + "float.exr").exit_code, 0);
+    ASSERT_EQ(workplace.run(line + "half.exr --half").exit_code, 0);
+    EXPECT_LT(std::filesystem::file_size(workplace / "out/half.exr"),
+              std::filesystem::file_size(workplace / "out/float.exr") * 6 / 10);
+    const Image exact = read_image(workplace / "out/float.exr", ImageUse::data);
+    const Image half = read_image(workplace / "out/half.exr", ImageUse::data);
+    for (std::size_t i = 0; i < exact.sample_count(); ++i)
+        ASSERT_NEAR(half.as<float>()[i], exact.as<float>()[i], 0x1p-12);
+}
+
+TEST(BumpCommand, EveryEffortWritesTheSameImage) {
+    const Workplace workplace;
+    const std::string line = "relief-bake bump data/bricks-height.png out/";
+    for (const std::string effort : {"normal.png", "fast.png --fast", "small.png --small"})
+        ASSERT_EQ(workplace.run(line + effort).exit_code, 0);
+    const Image normal = read_image(workplace / "out/normal.png", ImageUse::data);
+    for (const char* name : {"out/fast.png", "out/small.png"})
+        EXPECT_EQ(read_image(workplace / name, ImageUse::data).samples, normal.samples);
+}
+
 TEST(BumpCommand, ConvertsManyMapsAndTilesInOneCall) {
     const Workplace workplace;
     write_ramp(workplace, "a.png", false, 257);
@@ -297,6 +350,11 @@ INSTANTIATE_TEST_SUITE_P(
                 "--bits 12: not one of 8, 16, 32"},
         Refused{"relief-bake bump flat.png out/n.exr --flat half", 2,
                 "--flat: has no effect on 32-bit output, where flat is exact"},
+        Refused{"relief-bake bump flat.png out/n.exr --dither ordered", 2,
+                "--dither: has no effect on 32-bit output, which needs no codes"},
+        Refused{"relief-bake bump flat.png out/n.png --half", 2, "--half: is for .exr, not n.png"},
+        Refused{"relief-bake bump flat.png out/n.png --fast --small", 2,
+                "--fast, --small: contradict each other"},
         Refused{"relief-bake bump flat.png out/n.png --strength abc", 2,
                 "--strength abc: not a number"},
         Refused{"relief-bake bump flat.png out/n.png --kernel sobel", 2,

@@ -29,4 +29,9 @@ inline Choices<FlatCode> flat_choices() {
     return {{"middle", FlatCode::middle}, {"half", FlatCode::half}};
 }
 
+inline Choices<Dither> dither_choices() {
+    return {
+        {"none", Dither::none}, {"ordered", Dither::ordered}, {"blue-noise", Dither::blue_noise}};
+}
+
 }  // namespace relief::tools

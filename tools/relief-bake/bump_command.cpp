@@ -38,6 +38,7 @@ void check(const BumpCommand& command, const JobList& list) {
     std::vector<std::filesystem::path> files;
     for (const Job& job : list.jobs) {
         format_of(command.request.output, job.output);
+        write_options_of(command.request.output, job.output);
         std::error_code error;
         if (std::filesystem::equivalent(job.input, job.output, error)) {
             throw UsageError(job.output.string() + ": would replace the height map",

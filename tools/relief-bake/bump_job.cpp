@@ -36,7 +36,10 @@ Baked bake_bump(const Job& job, const BumpRequest& request, Stages& stages) {
             return source.channels == 1 ? converted(source) : converted(height_field(source));
         });
     });
-    stages.run("write", [&] { write_image(job.output, coded, normal_map_metadata(baked.format)); });
+    stages.run("write", [&] {
+        write_image(job.output, coded, normal_map_metadata(baked.format),
+                    write_options_of(request.output, job.output), report);
+    });
     baked.findings.add("", report);
     return baked;
 }

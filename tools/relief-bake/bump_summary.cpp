@@ -95,6 +95,7 @@ nlohmann::ordered_json results_json(const Baked& baked, const Stages& stages) {
             {"bits", baked.format.bits},
             {"green", name_of(baked.format.green, green_choices())},
             {"flat", name_of(baked.format.flat, flat_choices())},
+            {"dither", name_of(baked.format.dither, dither_choices())},
             {"findings", baked.findings.json()},
             {"milliseconds", durations_json(stages.finished())},
             {"megapixels_per_second", megapixels_per_second(baked, stages)}};

@@ -35,21 +35,38 @@ std::vector<int> depths_of(const std::filesystem::path& output) {
 
 }  // namespace
 
-void add_map_output_options(CLI::App& app, MapOutputOptions& options) {
+void add_map_output_options(CLI::App& app, MapOutputOptions& options, bool follows_input) {
     const std::string group = "Output";
+    const auto or_input = [&](const std::string& otherwise) {
+        return " Default: " + (follows_input ? std::string("that of the input.") : otherwise);
+    };
     const Choices<int> depths = {{"8", 8}, {"16", 16}, {"32", 32}};
     add_choice(app, "--green", options.green, green_choices(),
                "Where green is bright: on slopes that face up in the image, as OpenGL and glTF "
-               "want it (up), or down, as DirectX does (down). Default: up.")
+               "want it (up), or down, as DirectX does (down)." +
+                   or_input("up."))
         ->group(group);
     add_choice(app, "--bits", options.bits, depths,
-               "Bits per channel: 8 or 16 for .png, 8, 16 or 32 (float) for .tif, 32 for .exr. "
-               "Default: 16, and 32 for .exr.")
+               "Bits per channel: 8 or 16 for .png, 8, 16 or 32 (float) for .tif, 32 for .exr." +
+                   or_input("16, and 32 for .exr."))
         ->group(group);
     add_choice(app, "--flat", options.flat, flat_choices(),
                "Which code stands for zero in 8 and 16 bits: 128 of 255, so that flat is exactly "
-               "flat (middle), or 127.5, as glTF's formula has it and no code can say (half). "
-               "Default: middle.")
+               "flat (middle), or 127.5, as glTF's formula has it and no code can say (half)." +
+                   or_input("middle."))
+        ->group(group);
+    add_choice(app, "--dither", options.dither, dither_choices(),
+               "How normals between two codes are rounded: to the nearest (none), or so that the "
+               "mean over a few texels is right, by a short pattern (ordered) or one that the eye "
+               "sees least (blue-noise). Flat stays exactly flat. Default: none.")
+        ->group(group);
+    add_switch(app, "--half", options.half,
+               "Store .exr as half floats, 11 bits each: half the size.")
+        ->group(group);
+    add_switch(app, "--fast", options.fast, "Write as fast as possible, at a larger file.")
+        ->group(group);
+    add_switch(app, "--small", options.small,
+               "Write the smallest file, which takes many times as long.")
         ->group(group);
 }
 
@@ -57,27 +74,50 @@ bool can_hold_normals(const std::filesystem::path& file) {
     return !depths_of(file).empty();
 }
 
-NormalMapFormat format_of(const MapOutputOptions& options, const std::filesystem::path& output) {
+NormalMapFormat format_of(const MapOutputOptions& options, const std::filesystem::path& output,
+                          const MapOutputDefaults& defaults) {
     const std::vector<int> depths = depths_of(output);
     if (depths.empty()) refuse(output);
-    const int bits = options.bits.value_or(depths.front());
-    if (std::find(depths.begin(), depths.end(), bits) == depths.end()) {
+    const auto holds = [&](int bits) {
+        return std::find(depths.begin(), depths.end(), bits) != depths.end();
+    };
+    const int usual = defaults.bits && holds(*defaults.bits) ? *defaults.bits : depths.front();
+    const int bits = options.bits.value_or(usual);
+    if (!holds(bits)) {
         throw UsageError(fmt::format("--bits {}: {} holds {} bits", bits, extension_of(output),
                                      fmt::join(depths, " or ")));
     }
     if (bits == 32 && options.flat)
         throw UsageError("--flat: has no effect on 32-bit output, where flat is exact");
+    if (bits == 32 && options.dither)
+        throw UsageError("--dither: has no effect on 32-bit output, which needs no codes");
     return {.bits = bits,
-            .green = options.green,
-            .flat = options.flat.value_or(NormalMapFormat{}.flat)};
+            .green = options.green.value_or(defaults.green),
+            .flat = options.flat.value_or(defaults.flat),
+            .dither = options.dither.value_or(Dither::none)};
+}
+
+ImageWriteOptions write_options_of(const MapOutputOptions& options,
+                                   const std::filesystem::path& output) {
+    if (options.fast && options.small) throw UsageError("--fast, --small: contradict each other");
+    if (options.half && extension_of(output) != ".exr")
+        throw UsageError("--half: is for .exr, not " + output.filename().string());
+    ImageWriteOptions result;
+    result.half = options.half;
+    if (options.fast) result.effort = WriteEffort::fast;
+    if (options.small) result.effort = WriteEffort::small;
+    return result;
 }
 
 std::string format_words(const NormalMapFormat& format) {
     const std::string green = "green " + name_of(format.green, green_choices());
     if (format.bits == 32) return "32 bit float, " + green;
-    return fmt::format("{} bit, flat is {}, {}", format.bits,
-                       format.flat == FlatCode::middle ? "the middle code" : "between codes",
-                       green);
+    const std::string dither = format.dither == Dither::none
+                                   ? ""
+                                   : ", dithered " + name_of(format.dither, dither_choices());
+    return fmt::format("{} bit, flat is {}, {}{}", format.bits,
+                       format.flat == FlatCode::middle ? "the middle code" : "between codes", green,
+                       dither);
 }
 
 }  // namespace relief::tools

@@ -9,25 +9,46 @@
 #include <string>
 
 #include "common/command.h"
+#include "relief/mesh/image_file.h"
 #include "relief/mesh/normal_map.h"
 
 namespace relief::tools {
 
-/// What the command line says; absent: what suits the format of the file.
+/// What the command line says; absent: what the command does unless told otherwise.
 struct MapOutputOptions {
     std::optional<int> bits;
-    Green green = Green::up;
+    std::optional<Green> green;
     std::optional<FlatCode> flat;
+    std::optional<Dither> dither;
+    bool half = false;   ///< --half
+    bool fast = false;   ///< --fast
+    bool small = false;  ///< --small
 };
 
-/// --bits, --green, --flat
-void add_map_output_options(CLI::App& app, MapOutputOptions& options);
+/// What a command does unless told otherwise, and how its --help says it.
+struct MapOutputDefaults {
+    std::optional<int>
+        bits{};  ///< Absent, or not among what the format holds: its greatest below 32.
+    Green green = Green::up;
+    FlatCode flat = FlatCode::middle;
+};
+
+/// --bits, --green, --flat, --dither, --half, --fast, --small.
+///
+/// \param follows_input  whether the defaults are what the input has, for --help
+void add_map_output_options(CLI::App& app, MapOutputOptions& options, bool follows_input = false);
 
 /// Whether files of this name can be normal maps: .png .tif .tiff .exr.
 bool can_hold_normals(const std::filesystem::path& file);
 
-/// \throws UsageError if the file is of a format that cannot hold normals, or not in that depth
-NormalMapFormat format_of(const MapOutputOptions& options, const std::filesystem::path& output);
+/// \throws UsageError if the file is of a format that cannot hold normals, or not in that depth; if
+///         an option has no effect on it
+NormalMapFormat format_of(const MapOutputOptions& options, const std::filesystem::path& output,
+                          const MapOutputDefaults& defaults = {});
+
+/// \throws UsageError if the options contradict each other, or have no effect on such a file
+ImageWriteOptions write_options_of(const MapOutputOptions& options,
+                                   const std::filesystem::path& output);
 
 /// "16 bit, flat is the middle code, green up"
 std::string format_words(const NormalMapFormat& format);
