@@ -5,5 +5,6 @@
 
 int main(int argc, char** argv) {
     using namespace relief::tools;
-    return run_tool({"relief-bake", "Makes normal maps.", {add_bump_command}}, argc, argv);
+    return run_tool({"relief-bake", "Makes normal maps.", {add_bump_command, add_check_command}},
+                    argc, argv);
 }
