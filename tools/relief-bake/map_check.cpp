@@ -87,7 +87,7 @@ std::vector<std::string> lines_of(const CheckedMap& map, Severity severity) {
                 ? fmt::format("{}: {}", info.word, info.meaning)
                 : to_string(Finding{std::string(info.word), std::string(info.element),
                                     std::string(info.meaning), found.count, found.first}));
-        const std::string remedy = remedy_for(found.condition, map.file);
+        const std::string remedy = remedy_for(found.condition, map.check.content, map.file);
         if (!remedy.empty()) lines.push_back("-> " + remedy);
     }
     return lines;
@@ -103,7 +103,7 @@ nlohmann::ordered_json findings_json(const CheckedMap& map, Severity severity) {
                         {"count", found.count},
                         {"first", found.first},
                         {"meaning", info.meaning},
-                        {"remedy", remedy_for(found.condition, map.file)}});
+                        {"remedy", remedy_for(found.condition, map.check.content, map.file)}});
     }
     return list;
 }

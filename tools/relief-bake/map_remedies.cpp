@@ -25,11 +25,13 @@ std::string quoted(const std::filesystem::path& file) {
 
 }  // namespace
 
-std::string remedy_for(MapCondition condition, const std::filesystem::path& file) {
+std::string remedy_for(MapCondition condition, MapContent content,
+                       const std::filesystem::path& file) {
     const std::string name = quoted(file);
     switch (condition) {
         case MapCondition::not_normals:
-            return fmt::format("if it holds heights: relief-bake bump {} out.png", name);
+            if (content != MapContent::grey) return "";
+            return fmt::format("relief-bake bump {} out.png", name);
         default:
             return "";
     }

@@ -11,7 +11,8 @@
 
 namespace relief::tools {
 
-/// Empty where there is nothing to do. Files to write are called "out.png".
-std::string remedy_for(MapCondition condition, const std::filesystem::path& file);
+/// Empty where there is no such command. Files to write are called "out.png".
+std::string remedy_for(MapCondition condition, MapContent content,
+                       const std::filesystem::path& file);
 
 }  // namespace relief::tools
