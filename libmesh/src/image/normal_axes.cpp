@@ -78,4 +78,19 @@ void map_axes(Image& map, const AxisMapping& mapping, FlatCode flat, Report& rep
     });
 }
 
+void turn_normals(Image& normals, const AxisMapping& mapping) {
+    check_mapping(mapping);
+    check_floats(normals, 3, "normals");
+    const std::span<float> all = normals.as<float>();
+    Report unused;
+    for_each_texel(all.size() / 3, unused, [&](std::size_t texel, Report&) {
+        float* const normal = &all[texel * 3];
+        const std::array<float, 3> old = {normal[0], normal[1], normal[2]};
+        for (std::size_t i = 0; i < 3; ++i) {
+            const float part = old[static_cast<std::size_t>(mapping[i].axis)];
+            normal[i] = mapping[i].is_negative ? 0.0F - part : part;  // Never -0.
+        }
+    });
+}
+
 }  // namespace relief

@@ -95,31 +95,52 @@ Taps taps_of(int from, int to, double repeat, ResizeFilter filter, Wrap wrap) {
     return result;
 }
 
-/// One row of the result, `channels` floats a texel; `sums` has room for a row of the source.
-void resample_row(const Image& source, const Taps& down, const Taps& across, std::size_t row,
-                  std::vector<float>& sums, float* result) {
-    const float* const samples = source.as<float>().data();
-    const std::size_t row_size = sums.size();
-    const auto channels = static_cast<std::size_t>(source.channels);
-    std::fill(sums.begin(), sums.end(), 0.0F);
-    for (std::size_t t = down.first[row]; t < down.first[row + 1]; ++t) {
-        const float* const from = samples + down.taps[t].place * row_size;
-        const float weight = down.taps[t].weight;
-        for (std::size_t i = 0; i < row_size; ++i)
-            sums[i] += weight * from[i];
-    }
-    for (std::size_t x = 0; x + 1 < across.first.size(); ++x) {
-        for (std::size_t c = 0; c < channels; ++c) {
-            float sum = 0.0F;
-            for (std::size_t t = across.first[x]; t < across.first[x + 1]; ++t)
-                sum += across.taps[t].weight * sums[across.taps[t].place * channels + c];
-            result[x * channels + c] = sum;
+/// Makes rows of float samples at another size.
+class Resampling {
+  public:
+    Resampling(const Image& source, int width, int height, const ResizeOptions& options)
+        : source_(source),
+          across_(taps_of(source.width, width, options.repeat.x, options.filter, options.wrap.x)),
+          down_(taps_of(source.height, height, options.repeat.y, options.filter, options.wrap.y)) {}
+
+    void make_row(std::size_t row, float* result) const {
+        const auto channels = static_cast<std::size_t>(source_.channels);
+        const std::vector<float> sums = sum_of_rows(row);
+        for (std::size_t x = 0; x + 1 < across_.first.size(); ++x) {
+            for (std::size_t c = 0; c < channels; ++c) {
+                float sum = 0.0F;
+                for (std::size_t t = across_.first[x]; t < across_.first[x + 1]; ++t)
+                    sum += across_.taps[t].weight * sums[across_.taps[t].place * channels + c];
+                result[x * channels + c] = sum;
+            }
         }
     }
+
+  private:
+    /// The rows around one of the result, weighed, all columns alike.
+    [[nodiscard]] std::vector<float> sum_of_rows(std::size_t row) const {
+        const float* const samples = source_.as<float>().data();
+        std::vector<float> sums(static_cast<std::size_t>(source_.width) *
+                                static_cast<std::size_t>(source_.channels));
+        for (std::size_t t = down_.first[row]; t < down_.first[row + 1]; ++t) {
+            const float* const from = samples + down_.taps[t].place * sums.size();
+            const float weight = down_.taps[t].weight;
+            for (std::size_t i = 0; i < sums.size(); ++i)
+                sums[i] += weight * from[i];
+        }
+        return sums;
+    }
+
+    const Image& source_;
+    Taps across_;
+    Taps down_;
+};
+
+bool is_own_size(const Image& image, int width, int height, const ResizeOptions& options) {
+    return width == image.width && height == image.height && options.repeat == glm::dvec2(1.0);
 }
 
-void check(const Image& normals, int width, int height, const ResizeOptions& options) {
-    check_floats(normals, 3, "normals");
+void check(int width, int height, const ResizeOptions& options) {
     if (width < 1 || height < 1)
         throw InvalidInput(fmt::format("there is no image of {} x {} texels", width, height));
     for (const double repeat : {options.repeat.x, options.repeat.y}) {
@@ -147,27 +168,36 @@ void store_row(const std::vector<float>& means, ResizeDomain domain, std::size_t
 
 Image resize_normals(const Image& normals, int width, int height, const ResizeOptions& options,
                      Report& report) {
-    check(normals, width, height, options);
-    if (width == normals.width && height == normals.height && options.repeat == glm::dvec2(1.0))
-        return normals;
+    check_floats(normals, 3, "normals");
+    check(width, height, options);
+    if (is_own_size(normals, width, height, options)) return normals;
     const bool has_slopes = options.domain == ResizeDomain::slopes;
     const Image slopes = has_slopes ? slopes_from_normals(normals, report) : Image{};
-    const Image& source = has_slopes ? slopes : normals;
-    const Taps across =
-        taps_of(source.width, width, options.repeat.x, options.filter, options.wrap.x);
-    const Taps down =
-        taps_of(source.height, height, options.repeat.y, options.filter, options.wrap.y);
+    const Resampling resampling(has_slopes ? slopes : normals, width, height, options);
 
     Image result = make_image(width, height, 3, 32, ColorSpace::data);
     float* const to = result.as<float>().data();
     const auto columns = static_cast<std::size_t>(width);
-    const auto channels = static_cast<std::size_t>(source.channels);
     for_each_row(width, height, report, [&](std::size_t row, Report& found) {
-        std::vector<float> sums(static_cast<std::size_t>(source.width) * channels);
-        std::vector<float> means(columns * channels);
-        resample_row(source, down, across, row, sums, means.data());
+        std::vector<float> means(columns * (has_slopes ? 2 : 3));
+        resampling.make_row(row, means.data());
         store_row(means, options.domain, row * columns, to + row * columns * 3, found);
     });
+    return result;
+}
+
+Image resize_samples(const Image& image, int width, int height, const ResizeOptions& options) {
+    check_floats(image, image.channels, "samples");
+    check(width, height, options);
+    if (is_own_size(image, width, height, options)) return image;
+    const Resampling resampling(image, width, height, options);
+    Image result = make_image(width, height, image.channels, 32, image.color_space);
+    float* const to = result.as<float>().data();
+    const std::size_t row_size =
+        static_cast<std::size_t>(width) * static_cast<std::size_t>(image.channels);
+    Report unused;
+    for_each_row(width, height, unused,
+                 [&](std::size_t row, Report&) { resampling.make_row(row, to + row * row_size); });
     return result;
 }
 
@@ -177,7 +207,8 @@ Image fitted_detail(const Image& detail, int base_width, int base_height,
         const double texels = size / repeat;
         return texels >= 1.0 && texels == std::floor(texels) ? static_cast<int>(texels) : size;
     };
-    check(detail, base_width, base_height, options);
+    check_floats(detail, 3, "normals of a detail");
+    check(base_width, base_height, options);
     ResizeOptions fitted = options;
     fitted.wrap = Wrap::repeat;
     const int width = period(base_width, options.repeat.x);

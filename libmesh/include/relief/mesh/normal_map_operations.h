@@ -35,6 +35,9 @@ inline constexpr AxisMapping same_axes = {{{0, false}, {1, false}, {2, false}}};
 /// Else a mapping and its inverse give back every code; float samples come back within 2^-24.
 void map_axes(Image& map, const AxisMapping& mapping, FlatCode flat, Report& report);
 
+/// The same for unit normals that are decoded, exactly: three float channels.
+void turn_normals(Image& normals, const AxisMapping& mapping);
+
 /// Which channels of an image hold x and y.
 struct XyChannels {
     int x = 0;

@@ -49,6 +49,10 @@ struct ResizeOptions {
 Image resize_normals(const Image& normals, int width, int height, const ResizeOptions& options,
                      Report& report);
 
+/// Any float samples at another size, channel by channel: an alpha that goes with normals.
+/// \throws InvalidInput as resize_normals does; options.domain has no say
+Image resize_samples(const Image& image, int width, int height, const ResizeOptions& options);
+
 /// A detail map at the size that blend_normals needs for a base of this size, so that it is seen
 /// `options.repeat` times across it: one period where the base's size is a multiple of that, the
 /// whole area else. It wraps around by itself, whatever options.wrap says.

@@ -1,0 +1,444 @@
+// SPDX-License-Identifier: Apache-2.0
+// relief-bake convert as users run it: what it writes, read again; what it says; how it refuses.
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "relief/mesh/direction_error.h"
+#include "relief/mesh/image_channels.h"
+#include "relief/mesh/image_file.h"
+#include "relief/mesh/normal_map.h"
+#include "relief/mesh/normal_map_operations.h"
+#include "support/resized_waves.h"
+#include "support/shared_data.h"
+#include "tools/refusal.h"
+#include "tools/workplace.h"
+
+namespace relief::tools {
+namespace {
+
+using nlohmann::json;
+using test::expect_refusal;
+using test::normals_image;
+using test::ProgramResult;
+using test::Refused;
+using test::resized_waves;
+using test::Workplace;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+constexpr int side = 64;
+
+/// A surface that tiles, with rms slope 0.5.
+std::vector<HeightWave> waves() {
+    return tiling_waves(side, side, 8, 12, 0.5, 11);
+}
+
+AnalyticHeights truth() {
+    return wave_heights(side, side, waves());
+}
+
+/// Writes the surface's true normals.
+void write_map(const Workplace& workplace, const std::string& name,
+               const NormalMapFormat& format = {},
+               const std::map<std::string, std::string>& metadata = {}) {
+    Report report;
+    write_image(workplace / name,
+                encode_normal_map(normals_image(side, side, waves()), format, report), metadata);
+}
+
+Image decoded(const std::filesystem::path& file, Green green = Green::up,
+              FlatCode flat = FlatCode::middle) {
+    Report report;
+    return decode_normal_map(read_image(file, ImageUse::data), green, flat, report);
+}
+
+std::string green_of(const std::filesystem::path& file) {
+    const auto metadata = read_image_info(file).metadata;
+    const auto entry = metadata.find("relief:green");
+    return entry == metadata.end() ? "unknown" : entry->second;
+}
+
+/// Runs a line that must succeed.
+ProgramResult run(const Workplace& workplace, const std::string& line) {
+    ProgramResult result = workplace.run("relief-bake convert " + line);
+    EXPECT_EQ(result.exit_code, 0) << line << "\n" << result.error;
+    EXPECT_EQ(result.error, "");
+    return result;
+}
+
+/// Of 16 bits: half a code in three components.
+constexpr double degrees_of_16_bit = 0.0016;
+
+TEST(ConvertCommand, FlippingGreenTwiceGivesTheSameTexelsAndSaysWhichWayItIs) {
+    const Workplace workplace;
+    for (const FlatCode flat : {FlatCode::middle, FlatCode::half}) {
+        for (const int bits : {8, 16}) {
+            const NormalMapFormat format{bits, Green::up, flat};
+            write_map(workplace, "gl.png", format, normal_map_metadata(format));
+            const ProgramResult there = run(workplace, "gl.png out/dx.png --flip green");
+            EXPECT_THAT(there.out, HasSubstr("done      green flipped, every code kept\n"));
+            EXPECT_EQ(green_of(workplace / "out/dx.png"), "down");
+            EXPECT_LT(
+                normal_error(decoded(workplace / "out/dx.png", Green::down, flat), truth()).max,
+                bits == 8 ? 0.4 : degrees_of_16_bit);
+            run(workplace, "out/dx.png out/back.png --flip green");
+            EXPECT_EQ(workplace.read("out/back.png"), workplace.read("gl.png"));
+            run(workplace, "out/dx.png out/up.png --green up");
+            EXPECT_EQ(workplace.read("out/up.png"), workplace.read("gl.png"));
+        }
+    }
+}
+
+TEST(ConvertCommand, GreenIsNotGuessed) {
+    const Workplace workplace;
+    write_map(workplace, "map.png");
+    const ProgramResult refused = workplace.run("relief-bake convert map.png out/n.png --green up");
+    EXPECT_EQ(refused.exit_code, 1);
+    EXPECT_EQ(refused.error,
+              "relief-bake: error: map.png: where its green is bright is not known (give "
+              "--input-green, or --flip green to turn it, whichever it is)\n");
+    EXPECT_THAT(run(workplace, "map.png out/n.png --flip green").out, HasSubstr("green unknown\n"));
+    EXPECT_EQ(green_of(workplace / "out/n.png"), "unknown");
+    run(workplace, "map.png out/n.png --input-green up --green down");
+    EXPECT_EQ(green_of(workplace / "out/n.png"), "down");
+    EXPECT_LT(normal_error(decoded(workplace / "out/n.png", Green::down), truth()).max,
+              degrees_of_16_bit);
+    // What nobody knows is not asked for where it does not matter.
+    run(workplace, "map.png out/n.png --strength 2");
+    EXPECT_EQ(green_of(workplace / "out/n.png"), "unknown");
+}
+
+TEST(ConvertCommand, AxesTurnAsNamed) {
+    const Workplace workplace;
+    write_map(workplace, "map.png", {}, {{"relief:green", "up"}});
+    EXPECT_THAT(run(workplace, "map.png out/n.png --axes x,z,-y").out,
+                HasSubstr("done      axes turned to x,z,-y, every code kept\n"));
+    EXPECT_EQ(green_of(workplace / "out/n.png"), "unknown");
+    const Image before = decoded(workplace / "map.png");
+    const Image after = decoded(workplace / "out/n.png");
+    for (std::size_t i = 0; i < before.sample_count(); i += 3) {
+        ASSERT_EQ(after.as<float>()[i], before.as<float>()[i]);
+        ASSERT_EQ(after.as<float>()[i + 1], before.as<float>()[i + 2]);
+        ASSERT_EQ(after.as<float>()[i + 2], -before.as<float>()[i + 1]);
+    }
+    run(workplace, "out/n.png out/back.png --axes=x,-z,y");
+    EXPECT_EQ(read_image(workplace / "out/back.png", ImageUse::data).samples,
+              read_image(workplace / "map.png", ImageUse::data).samples);
+    run(workplace, "map.png out/red.png --flip red");
+    EXPECT_EQ(green_of(workplace / "out/red.png"), "up");
+    run(workplace, "map.png out/axes.png --axes=-x,y,z");
+    EXPECT_EQ(workplace.read("out/axes.png"), workplace.read("out/red.png"));
+}
+
+TEST(ConvertCommand, DepthAndFlatCodeChangeWithoutTurningANormal) {
+    const Workplace workplace;
+    const NormalMapFormat half{16, Green::up, FlatCode::half};
+    write_map(workplace, "half.png", half, normal_map_metadata(half));
+    run(workplace, "half.png out/middle.png --flat middle");
+    EXPECT_EQ(read_image_info(workplace / "out/middle.png").metadata.at("relief:flat"), "32768");
+    EXPECT_LT(normal_error(decoded(workplace / "out/middle.png"), truth()).max,
+              2 * degrees_of_16_bit);
+    run(workplace, "half.png out/n.exr");
+    EXPECT_EQ(read_image_info(workplace / "out/n.exr").bits, 32);
+    EXPECT_LT(normal_error(decoded(workplace / "out/n.exr"), truth()).max, degrees_of_16_bit);
+    EXPECT_THAT(run(workplace, "half.png out/8.png --bits 8 --dither blue-noise").out,
+                HasSubstr("coded     8 bit, flat is between codes, green up, dithered blue-noise"));
+    EXPECT_LT(
+        normal_error(decoded(workplace / "out/8.png", Green::up, FlatCode::half), truth()).max,
+        0.8);
+    // Bits follow the input where the format can hold them.
+    run(workplace, "out/8.png out/again.tif");
+    EXPECT_EQ(read_image_info(workplace / "out/again.tif").bits, 8);
+    run(workplace, "out/n.exr out/again.png");
+    EXPECT_EQ(read_image_info(workplace / "out/again.png").bits, 16);
+}
+
+TEST(ConvertCommand, RebuildsZFromTwoChannels) {
+    const Workplace workplace;
+    write_map(workplace, "map.png");
+    Image map = read_image(workplace / "map.png", ImageUse::data);
+    Image xy = make_image(side, side, 2, 16, ColorSpace::data);
+    Image swizzled = make_image(side, side, 4, 16, ColorSpace::data);
+    for (std::size_t i = 0; i < std::size_t{side} * side; ++i) {
+        const std::uint16_t x = map.as<std::uint16_t>()[3 * i];
+        const std::uint16_t y = map.as<std::uint16_t>()[3 * i + 1];
+        xy.as<std::uint16_t>()[2 * i] = swizzled.as<std::uint16_t>()[4 * i + 3] = x;
+        xy.as<std::uint16_t>()[2 * i + 1] = swizzled.as<std::uint16_t>()[4 * i + 1] = y;
+    }
+    write_image(workplace / "xy.png", xy);
+    write_image(workplace / "ag.png", swizzled);
+    for (const std::string line :
+         {"xy.png out/n.png --rebuild-z rg", "ag.png out/n.png --rebuild-z ag"}) {
+        EXPECT_THAT(run(workplace, line).out, HasSubstr("done      z computed from x and y\n"));
+        EXPECT_LT(normal_error(decoded(workplace / "out/n.png"), truth()).max, 0.003);
+        EXPECT_EQ(read_image_info(workplace / "out/n.png").channels, 3);
+    }
+    const ProgramResult refused = workplace.run("relief-bake convert xy.png out/m.png");
+    EXPECT_EQ(refused.exit_code, 1);
+    EXPECT_EQ(
+        refused.error,
+        "relief-bake: error: xy.png: has 2 channels, which hold no z (--rebuild-z rg computes "
+        "it from them)\n");
+}
+
+TEST(ConvertCommand, StrengthMultipliesSlopesAndResizingKeepsThem) {
+    const Workplace workplace;
+    write_map(workplace, "map.png");
+    std::vector<HeightWave> steep = waves();
+    for (HeightWave& wave : steep)
+        wave.amplitude *= -3.0;
+    run(workplace, "map.png out/n.png --strength -3");
+    EXPECT_LT(normal_error(decoded(workplace / "out/n.png"), wave_heights(side, side, steep)).max,
+              4 * degrees_of_16_bit);
+    EXPECT_THAT(run(workplace, "map.png out/n.png --resize 150%").out,
+                HasSubstr("resized to 150 % by slopes (best)\n"));
+    EXPECT_LT(normal_error(decoded(workplace / "out/n.png"),
+                           wave_heights(96, 96, resized_waves(waves(), 64.0 / 96)))
+                  .rms,
+              0.02);
+    run(workplace, "map.png out/n.png --resize 48x48 --resize-filter lanczos --resize-of vectors");
+    EXPECT_LT(normal_error(decoded(workplace / "out/n.png"),
+                           wave_heights(48, 48, resized_waves(waves(), 64.0 / 48)))
+                  .rms,
+              0.05);
+}
+
+TEST(ConvertCommand, DetailsAreLaidOverTheBaseWhicheverWayTheirGreenPoints) {
+    const Workplace workplace;
+    const std::vector<HeightWave> detail_waves = tiling_waves(32, 32, 4, 8, 0.3, 21);
+    std::vector<HeightWave> both = waves();
+    both.insert(both.end(), detail_waves.begin(), detail_waves.end());
+    Report report;
+    const Image detail = normals_image(32, 32, detail_waves);
+    write_map(workplace, "base.png", {}, {{"relief:green", "up"}});
+    write_image(workplace / "detail.png",
+                encode_normal_map(detail, {16, Green::down, FlatCode::half}, report));
+    const std::string line =
+        "base.png out/n.png --detail detail.png --detail-green down --detail-flat half "
+        "--detail-repeat 2 --blend partial-derivative";
+    EXPECT_THAT(run(workplace, line).out,
+                HasSubstr("detail.png laid over it (partial-derivative, 2 x 2 times)\n"));
+    EXPECT_LT(normal_error(decoded(workplace / "out/n.png"), wave_heights(side, side, both)).max,
+              0.005);
+    // The base turned first: the detail follows.
+    run(workplace, line + " --flip green");
+    EXPECT_LT(
+        normal_error(decoded(workplace / "out/n.png", Green::down), wave_heights(side, side, both))
+            .max,
+        0.005);
+    run(workplace, line + " --detail-strength 0");
+    EXPECT_LT(normal_error(decoded(workplace / "out/n.png"), truth()).max, 2 * degrees_of_16_bit);
+}
+
+TEST(ConvertCommand, MipLevelsKeepWhatTheyLose) {
+    const Workplace workplace;
+    // A chequerboard of slopes +-0.5 along x: every level is flat, with variance 0.125.
+    Image slopes = make_image(8, 4, 2, 32, ColorSpace::data);
+    for (std::size_t i = 0; i < 32; ++i)
+        slopes.as<float>()[2 * i] = (i + i / 8) % 2 == 0 ? 0.5F : -0.5F;
+    Report report;
+    write_image(workplace / "map.png",
+                encode_normal_map(normals_from_slopes(slopes, report), {}, report));
+    const ProgramResult result =
+        run(workplace,
+            "map.png out/m.png --mips --mip-lengths --roughness-from-variance 0.6 "
+            "--report out/r.json");
+    EXPECT_EQ(workplace.outputs(),
+              "m-mip01.png m-mip02.png m-mip03.png m-roughness-mip01.png m-roughness-mip02.png "
+              "m-roughness-mip03.png m-roughness.png m.png r.json");
+    EXPECT_THAT(result.out, HasSubstr("3 mip levels of mean vectors below it, lengths in alpha, "
+                                      "roughness 0.6 made up for\n"));
+    const double length = 1.0 / std::sqrt(1.25);
+    const double roughness = std::pow(0.6 * 0.6 * 0.6 * 0.6 + 0.25, 0.25);
+    const json levels = json::parse(workplace.read("out/r.json"))["levels"];
+    ASSERT_EQ(levels.size(), 4U);
+    EXPECT_EQ(levels[0]["mean_length"], 1.0);
+    EXPECT_NEAR(levels[0]["mean_roughness"].get<double>(), 0.6, 1e-6);
+    EXPECT_EQ(levels[3]["width"], 1);
+    for (int level = 1; level < 4; ++level) {
+        EXPECT_NEAR(levels[level]["mean_length"].get<double>(), length, 1e-5);
+        EXPECT_NEAR(levels[level]["least_length"].get<double>(), length, 1e-5);
+        EXPECT_NEAR(levels[level]["mean_roughness"].get<double>(), roughness, 1e-5);
+        const Image map =
+            read_image(workplace / fmt::format("out/m-mip0{}.png", level), ImageUse::data);
+        ASSERT_EQ(map.channels, 4);
+        EXPECT_THAT(std::vector<std::uint16_t>(map.as<std::uint16_t>().begin(),
+                                               map.as<std::uint16_t>().begin() + 4),
+                    ElementsAre(32768, 32768, 65535,
+                                testing::AllOf(testing::Gt(58615), testing::Lt(58619))));
+        const Image rough = read_image(workplace / fmt::format("out/m-roughness-mip0{}.png", level),
+                                       ImageUse::data);
+        EXPECT_NEAR(rough.as<std::uint16_t>()[0], roughness * 65535, 1.0);
+        EXPECT_EQ(rough.channels, 1);
+    }
+}
+
+TEST(ConvertCommand, AlphaIsKeptAlongOrDropped) {
+    const Workplace workplace;
+    write_map(workplace, "map.png", {8});
+    Image alpha = make_image(side, side, 1, 32, ColorSpace::data);
+    for (std::size_t i = 0; i < alpha.sample_count(); ++i)
+        alpha.as<float>()[i] = i % side < side / 2 ? 0.2F : 0.8F;
+    write_image(workplace / "alpha.png",
+                with_alpha(read_image(workplace / "map.png", ImageUse::data), alpha));
+    run(workplace, "alpha.png out/flip.png --flip both");
+    run(workplace, "alpha.png out/wide.png --strength 0.5 --bits 16");
+    run(workplace, "alpha.png out/half.png --resize 50% --wrap clamp --resize-filter box");
+    for (const char* name : {"out/flip.png", "out/wide.png", "out/half.png"}) {
+        const Image map = read_image(workplace / name, ImageUse::data);
+        ASSERT_EQ(map.channels, 4) << name;
+        const Image kept = channel_of(map, 3);
+        EXPECT_FLOAT_EQ(kept.as<float>()[0], 0.2F) << name;
+        EXPECT_FLOAT_EQ(kept.as<float>()[kept.sample_count() - 1], 0.8F) << name;
+    }
+    run(workplace, "alpha.png out/dropped.png --alpha drop");
+    EXPECT_EQ(read_image(workplace / "out/dropped.png", ImageUse::data).samples,
+              read_image(workplace / "map.png", ImageUse::data).samples);
+    const ProgramResult refused =
+        workplace.run("relief-bake convert alpha.png out/m.png --mips --mip-lengths");
+    EXPECT_EQ(refused.exit_code, 2);
+    EXPECT_THAT(refused.error, HasSubstr("--mip-lengths: alpha.png has an alpha of its own "
+                                         "(--alpha drop makes room)"));
+}
+
+TEST(ConvertCommand, CountsNormalsOfOtherLengthsAndTexelsWithoutDirection) {
+    const Workplace workplace;
+    Image map = make_image(4, 1, 3, 8, ColorSpace::data);
+    map.samples =
+        std::vector<std::uint8_t>{128, 128, 255, 128, 128, 200, 128, 128, 128, 0, 128, 128};
+    write_image(workplace / "map.png", map);
+    const ProgramResult result = workplace.run(
+        "relief-bake convert map.png out/n.png --normalize --strict --report out/r.json");
+    EXPECT_EQ(result.exit_code, 3);
+    const json findings = json::parse(workplace.read("out/r.json"))["findings"];
+    ASSERT_EQ(findings.size(), 2U);
+    EXPECT_EQ(findings[0]["kind"], "normal not of unit length");
+    EXPECT_EQ(findings[0]["first"], json({1, 2}));
+    EXPECT_EQ(findings[1]["kind"], "normal without direction");
+    EXPECT_EQ(findings[1]["first"], json({2}));
+    EXPECT_EQ(
+        std::get<std::vector<std::uint8_t>>(
+            read_image(workplace / "out/n.png", ImageUse::data).samples),
+        (std::vector<std::uint8_t>{128, 128, 255, 128, 128, 255, 128, 128, 255, 1, 128, 128}));
+    // Axes alone change no length, and find nothing.
+    EXPECT_EQ(
+        workplace.run("relief-bake convert map.png out/n.png --flip green --strict").exit_code, 0);
+}
+
+TEST(ConvertCommand, MetadataComesAlongButForWhatChanges) {
+    const Workplace workplace;
+    write_map(workplace, "map.png", {},
+              {{"relief:green", "up"},
+               {"relief:content", "normal map, object space"},
+               {"relief:basis", "mikktspace"},
+               {"Author", "somebody"},
+               {"Software", "another"}});
+    run(workplace, "map.png out/n.tif --flip green --bits 8");
+    const auto metadata = read_image_info(workplace / "out/n.tif").metadata;
+    EXPECT_EQ(metadata.at("relief:green"), "down");
+    EXPECT_EQ(metadata.at("relief:flat"), "128");
+    EXPECT_EQ(metadata.at("relief:content"), "normal map, object space");
+    EXPECT_EQ(metadata.at("relief:basis"), "mikktspace");
+}
+
+TEST(ConvertCommand, AMapMayReplaceItselfAndManyGoToAFolder) {
+    const Workplace workplace;
+    write_map(workplace, "a.png");
+    write_map(workplace, "b.tif");
+    workplace.write("bad.png", "this is no image");
+    const ProgramResult result =
+        workplace.run("relief-bake convert a.png bad.png b.tif -o out/maps/ --flip green");
+    EXPECT_EQ(result.exit_code, 1);
+    EXPECT_THAT(result.error, testing::StartsWith("relief-bake: error: bad.png: "));
+    EXPECT_THAT(result.out, testing::MatchesRegex("out/maps/a.png: 64 x 64, no findings, [^\n]*\n"
+                                                  "out/maps/b.tif: 64 x 64, no findings, [^\n]*\n"
+                                                  "in all    3 files, 1 failed\n"));
+    const std::string before = workplace.read("a.png");
+    run(workplace, "a.png a.png --flip green");
+    EXPECT_NE(workplace.read("a.png"), before);
+    run(workplace, "a.png a.png --flip green");
+    EXPECT_EQ(decoded(workplace / "a.png").samples, decoded(workplace / "b.tif").samples);
+}
+
+TEST(ConvertCommand, OutputDoesNotDependOnThreads) {
+    const Workplace workplace;
+    write_map(workplace, "map.png");
+    for (const std::string threads : {"1", "2"}) {
+        run(workplace, "map.png out/" + threads +
+                           ".png --detail map.png --resize 130% --strength 2 --bits 8 --dither "
+                           "ordered --threads " +
+                           threads);
+    }
+    EXPECT_EQ(workplace.read("out/1.png"), workplace.read("out/2.png"));
+}
+
+TEST(ConvertCommand, ARealDirectXMapBecomesTheOpenGlOne) {
+    RELIEF_NEEDS_SHARED(file, "data/textures/sand_ambientcg/sand_normal.png");
+    const Workplace workplace;
+    run(workplace, file.string() + " out/gl.png --input-green down --green up");
+    const Image before = read_image(file, ImageUse::data);
+    const Image after = read_image(workplace / "out/gl.png", ImageUse::data);
+    ASSERT_EQ(after.channels, before.channels);
+    for (std::size_t i = 0; i < before.sample_count(); ++i) {
+        const int code = before.as<std::uint8_t>()[i];
+        ASSERT_EQ(after.as<std::uint8_t>()[i], i % 3 == 1 ? (code == 0 ? 255 : 256 - code) : code);
+    }
+}
+
+class ConvertRefusal : public testing::TestWithParam<Refused> {};
+
+TEST_P(ConvertRefusal, SaysWhyAndLeavesNothingBehind) {
+    const Workplace workplace;
+    write_image(workplace / "map.png", make_image(4, 3, 3, 8, ColorSpace::data));
+    write_image(workplace / "grey.png", make_image(4, 3, 1, 8, ColorSpace::data));
+    expect_refusal(workplace, "relief-bake", GetParam(), "old.png");
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Convert, ConvertRefusal,
+    testing::Values(
+        Refused{"relief-bake convert missing.png out/old.png", 1, "missing.png: "},
+        Refused{"relief-bake convert grey.png out/old.png", 1,
+                "grey.png: has 1 channel, which holds no normals (relief-bake bump converts height "
+                "maps)"},
+        Refused{"relief-bake convert map.png out/n.jpg", 2, "out/n.jpg: JPEG distorts normals"},
+        Refused{"relief-bake convert map.png out/n.png --flip blue", 2,
+                "--flip blue: not one of green, red, both"},
+        Refused{"relief-bake convert map.png out/n.png --flip red --axes y,x,z", 2,
+                "--flip, --axes: both say what becomes of the axes"},
+        Refused{"relief-bake convert map.png out/n.png --flip green --green up", 2,
+                "--flip, --green: both say what becomes of green"},
+        Refused{"relief-bake convert map.png out/n.png --axes x,y", 2,
+                "--axes x,y: not x, y and z in some order, like x,-y,z"},
+        Refused{"relief-bake convert map.png out/n.png --axes x,x,z", 2,
+                "--axes x,x,z: not x, y and z in some order"},
+        Refused{"relief-bake convert map.png out/n.png --axes x,y,z", 2,
+                "--axes x,y,z: changes nothing"},
+        Refused{"relief-bake convert map.png out/n.png --blend udn", 2,
+                "--blend: has no effect without --detail"},
+        Refused{"relief-bake convert map.png out/n.png --detail-repeat 4", 2,
+                "--detail-repeat: has no effect without --detail"},
+        Refused{"relief-bake convert map.png out/n.png --wrap clamp", 2,
+                "--wrap: has no effect without --resize"},
+        Refused{"relief-bake convert map.png out/n.png --resize-filter box", 2,
+                "--resize-filter: has no effect without --resize or --detail"},
+        Refused{"relief-bake convert map.png out/n.png --roughness-from-variance 0.2", 2,
+                "--roughness-from-variance: has no effect without --mips"},
+        Refused{"relief-bake convert map.png out/n.png --normalize --rebuild-z rg", 2,
+                "--normalize: normals with a computed z are of length 1 anyway"},
+        Refused{"relief-bake convert map.png out/n.png --resize 0x4", 2, "--resize 0x4: "},
+        Refused{"relief-bake convert map.png out/n.png --resize 50", 2,
+                "--resize 50: not a size like 512x512 or 50%"},
+        Refused{"relief-bake convert map.png out/n.png --dither ordered", 2,
+                "--dither: has no effect where every code is kept"},
+        Refused{"relief-bake convert map.png out/n.png --detail missing.png", 1, "missing.png: "},
+        Refused{"relief-bake convert map.png out/old.png --detail out/old.png", 2,
+                "out/old.png: would replace the detail map"},
+        Refused{"relief-bake convert map.png", 2, ""}));
+
+}  // namespace
+}  // namespace relief::tools

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+// Reading a normal map with its conventions. Tests: tests/tools/convert_test.cpp.
+#include "normal_map_input.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+
+#include "common/command.h"
+#include "common/map_choices.h"
+#include "relief/mesh/image_file.h"
+
+namespace relief::tools {
+namespace {
+
+/// The green that the file itself names.
+std::optional<Green> named_green(const std::map<std::string, std::string>& metadata) {
+    const auto said = metadata.find("relief:green");
+    if (said == metadata.end()) return std::nullopt;
+    if (said->second == "up") return Green::up;
+    if (said->second == "down") return Green::down;
+    return std::nullopt;
+}
+
+std::string green_words(const MapInputOptions& options, const InputMap& map) {
+    if (!map.green) return "green unknown";
+    const std::string source = options.green ? "as told" : "as its file says";
+    return fmt::format("green {} ({})", name_of(*map.green, green_choices()), source);
+}
+
+std::string flat_words(const MapInputOptions& options, const InputMap& map) {
+    if (map.image.bits() == 32) return "flat is 0.5";
+    const char* source = options.flat                           ? "as told"
+                         : map.metadata.contains("relief:flat") ? "as its file says"
+                                                                : "by its flat texels";
+    return fmt::format("flat is {} ({})",
+                       map.flat == FlatCode::middle ? "the middle code" : "between codes", source);
+}
+
+void check_channels(const std::filesystem::path& file, int channels) {
+    if (channels > 1) return;
+    throw failure(file, "has 1 channel, which holds no normals",
+                  "relief-bake bump converts height maps");
+}
+
+}  // namespace
+
+InputMap read_normal_map(const std::filesystem::path& file, const MapInputOptions& options) {
+    InputMap map;
+    ImageInfo info = read_image_info(file);
+    check_channels(file, info.channels);
+    map.image = read_image(file, ImageUse::data);
+    map.metadata = std::move(info.metadata);
+    map.green = options.green ? options.green : named_green(map.metadata);
+    if (options.flat)
+        map.flat = *options.flat;
+    else if (map.image.channels > 2)
+        map.flat = detect_flat_code(map.image, map.metadata);
+    map.words = green_words(options, map) + ", " + flat_words(options, map);
+    return map;
+}
+
+std::map<std::string, std::string> kept_metadata(const std::map<std::string, std::string>& all) {
+    constexpr std::array<std::string_view, 10> about_the_work = {
+        "Title",   "Author", "Artist",   "Copyright", "Description",
+        "Comment", "Source", "comments", "owner",     "Disclaimer"};
+    std::map<std::string, std::string> kept;
+    for (const auto& [key, value] : all) {
+        const bool keeps =
+            key.starts_with("relief:") ||
+            std::find(about_the_work.begin(), about_the_work.end(), key) != about_the_work.end();
+        if (keeps) kept.emplace(key, value);
+    }
+    return kept;
+}
+
+}  // namespace relief::tools

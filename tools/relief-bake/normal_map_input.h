@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// A normal map as it comes: its texels, and what its numbers mean by the command line, by what its
+/// file says, or by what it shows. Tests: tests/tools/convert_test.cpp.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+
+#include "relief/mesh/image.h"
+#include "relief/mesh/normal_map.h"
+
+namespace relief::tools {
+
+/// What the command line says about a map.
+struct MapInputOptions {
+    std::optional<Green> green;
+    std::optional<FlatCode> flat;
+};
+
+struct InputMap {
+    Image image;
+    std::map<std::string, std::string> metadata;
+    std::optional<Green> green;  ///< Absent where nobody says; no map is guessed at.
+    FlatCode flat = FlatCode::middle;
+    std::string words;  ///< "green down (as told), flat is the middle code"
+};
+
+/// \throws FileError if it cannot be read, or has too few channels to be a normal map
+InputMap read_normal_map(const std::filesystem::path& file, const MapInputOptions& options);
+
+/// The text entries that a converted map keeps: who made it and what it shows, and relief's own.
+std::map<std::string, std::string> kept_metadata(const std::map<std::string, std::string>& all);
+
+}  // namespace relief::tools
