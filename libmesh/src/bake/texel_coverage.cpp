@@ -1,0 +1,310 @@
+// SPDX-License-Identifier: Apache-2.0
+// The map in bands of 64 rows, each done by one thread: triangles that reach into a band are drawn
+// there in order of index, and whoever has the better claim to a texel has it; claims are compared
+// by a strict order, so that the order of drawing does not matter. Texels, x right and y down from
+// the map's upper left corner. Tests: tests/mesh/bake/texel_coverage_test.cpp.
+#include "relief/mesh/texel_coverage.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+#include <vector>
+
+#include "bake/texel_triangle.h"
+#include "geometry/check_triangles.h"
+#include "parallel.h"
+#include "relief/mesh/error.h"
+
+namespace relief {
+namespace {
+
+constexpr int rows_per_band = 64;
+constexpr int largest_side = 65536;
+constexpr double most_turns = 64.0;  // Of a texture that repeats, across one triangle.
+
+/// The triangles of a map, found by index.
+class Triangles {
+  public:
+    Triangles(std::span<const glm::vec2> texcoords, std::span<const glm::uvec3> triangles,
+              const CoverageOptions& options)
+        : texcoords_(texcoords),
+          triangles_(triangles),
+          options_(options),
+          scale_(std::max(options.width, options.height)) {}
+
+    [[nodiscard]] std::size_t count() const { return triangles_.size(); }
+
+    TexelTriangle::Trouble make(std::size_t index, TexelTriangle& triangle) const {
+        std::array<glm::dvec2, 3> corners;
+        glm::dvec2 least(std::numeric_limits<double>::infinity());
+        for (std::size_t i = 0; i < 3; ++i) {
+            corners[i] = glm::dvec2(texcoords_[triangles_[index][static_cast<int>(i)]]);
+            least = glm::min(least, glm::floor(corners[i]));
+        }
+        const glm::dvec2 tile = options_.repeat ? least : glm::dvec2(options_.tile);
+        for (glm::dvec2& corner : corners) {
+            corner -= tile;
+            if (options_.repeat && std::max(corner.x, corner.y) > most_turns)
+                return TexelTriangle::Trouble::too_far;
+            corner *= glm::dvec2(options_.width, options_.height);
+        }
+        return TexelTriangle::make(corners, scale_, triangle);
+    }
+
+  private:
+    std::span<const glm::vec2> texcoords_;
+    std::span<const glm::uvec3> triangles_;
+    const CoverageOptions& options_;
+    TexelScale scale_;
+};
+
+/// Calls visit(begin, end) for the parts of [first, last) that are on the map: cut off, or each
+/// whole turn of it moved there.
+template <typename Visit>
+void for_parts(std::int64_t first, std::int64_t last, std::int64_t count, bool repeat,
+               const Visit& visit) {
+    if (!repeat) {
+        first = std::max<std::int64_t>(first, 0);
+        last = std::min(last, count);
+        if (first < last) visit(first, last, std::int64_t{0});
+        return;
+    }
+    while (first < last) {
+        const std::int64_t moved = (first % count + count) % count;
+        const std::int64_t length = std::min(last - first, count - moved);
+        visit(moved, moved + length, first - moved);
+        first += length;
+    }
+}
+
+/// For every band, the triangles that reach into it, ascending.
+class Bands {
+  public:
+    Bands(const Triangles& triangles, const CoverageOptions& options, Report& report)
+        : count_(static_cast<std::size_t>((options.height + rows_per_band - 1) / rows_per_band)),
+          starts_(count_ + 1, 0) {
+        // Twice through all triangles: to count, then to fill.
+        for_each_reach(triangles, options, &report,
+                       [&](std::size_t, std::size_t band) { ++starts_[band + 1]; });
+        for (std::size_t band = 0; band < count_; ++band)
+            starts_[band + 1] += starts_[band];
+        members_.resize(starts_.back());
+        std::vector<std::size_t> next(starts_.begin(), starts_.end() - 1);
+        for_each_reach(triangles, options, nullptr, [&](std::size_t index, std::size_t band) {
+            members_[next[band]++] = static_cast<std::uint32_t>(index);
+        });
+    }
+
+    [[nodiscard]] std::size_t count() const { return count_; }
+    [[nodiscard]] std::span<const std::uint32_t> members(std::size_t band) const {
+        return std::span(members_).subspan(starts_[band], starts_[band + 1] - starts_[band]);
+    }
+
+  private:
+    template <typename Reach>
+    void for_each_reach(const Triangles& triangles, const CoverageOptions& options, Report* report,
+                        const Reach& reach) const {
+        std::vector<std::size_t> reached;
+        for (std::size_t index = 0; index < triangles.count(); ++index) {
+            TexelTriangle triangle;
+            const TexelTriangle::Trouble trouble = triangles.make(index, triangle);
+            if (trouble != TexelTriangle::Trouble::none) {
+                if (report != nullptr) note(trouble, index, *report);
+                continue;
+            }
+            Columns rows = triangle.rows();
+            if (rows.end - rows.begin > options.height && options.repeat)
+                rows = {0, options.height};
+            reached.clear();
+            for_parts(rows.begin, rows.end, options.height, options.repeat,
+                      [&](std::int64_t first, std::int64_t last, std::int64_t) {
+                          for (auto band = first / rows_per_band; band * rows_per_band < last;
+                               ++band)
+                              reached.push_back(static_cast<std::size_t>(band));
+                      });
+            std::sort(reached.begin(), reached.end());
+            reached.erase(std::unique(reached.begin(), reached.end()), reached.end());
+            for (const std::size_t band : reached)
+                reach(index, band);
+        }
+    }
+
+    static void note(TexelTriangle::Trouble trouble, std::size_t index, Report& report) {
+        switch (trouble) {
+            case TexelTriangle::Trouble::not_finite:
+                report.add("texture not finite", "triangle", index, "covers no texel");
+                break;
+            case TexelTriangle::Trouble::too_far:
+                report.add("texture too far away", "triangle", index, "covers no texel");
+                break;
+            default:
+                report.add("triangle without area in the image", "triangle", index,
+                           "covers no texel");
+        }
+    }
+
+    std::size_t count_;
+    std::vector<std::size_t> starts_;
+    std::vector<std::uint32_t> members_;
+};
+
+/// A band being drawn.
+class Band {
+  public:
+    Band(const Triangles& triangles, const CoverageOptions& options, int first_row)
+        : triangles_(triangles),
+          options_(options),
+          first_row_(first_row),
+          last_row_(std::min(options.height, first_row + rows_per_band)),
+          texels_(static_cast<std::size_t>(options.width) *
+                  static_cast<std::size_t>(last_row_ - first_row)),
+          distances_(options.touched ? texels_.size() : 0),
+          shared_(texels_.size(), false) {}
+
+    void draw(std::uint32_t index) {
+        TexelTriangle triangle;
+        triangles_.make(index, triangle);
+        const Columns rows = triangle.rows();
+        for_parts(rows.begin, rows.end, options_.height, options_.repeat,
+                  [&](std::int64_t first, std::int64_t last, std::int64_t moved) {
+                      first = std::max<std::int64_t>(first, first_row_);
+                      last = std::min<std::int64_t>(last, last_row_);
+                      for (std::int64_t row = first; row < last; ++row)
+                          draw_row(index, triangle, row, row + moved);
+                  });
+    }
+
+    Coverage finish(Report& report) const {
+        Coverage coverage;
+        const std::size_t first_texel =
+            static_cast<std::size_t>(first_row_) * static_cast<std::size_t>(options_.width);
+        for (std::size_t i = 0; i < texels_.size(); ++i) {
+            ++(texels_[i].is_inside      ? coverage.inside
+               : texels_[i].is_covered() ? coverage.touched
+                                         : coverage.empty);
+            if (!shared_[i]) continue;
+            ++coverage.shared;
+            report.add("texel of several triangles", "texel", first_texel + i,
+                       "belongs to one of them, by a fixed rule");
+        }
+        return coverage;
+    }
+    [[nodiscard]] std::span<const CoveredTexel> texels() const { return texels_; }
+
+  private:
+    void draw_row(std::uint32_t index, const TexelTriangle& triangle, std::int64_t row,
+                  std::int64_t row_there) {
+        const std::size_t first =
+            static_cast<std::size_t>(row - first_row_) * static_cast<std::size_t>(options_.width);
+        const Columns inside = triangle.inside(row_there);
+        for_parts(inside.begin, inside.end, options_.width, options_.repeat,
+                  [&](std::int64_t begin, std::int64_t end, std::int64_t moved) {
+                      for (std::int64_t column = begin; column < end; ++column)
+                          claim_inside(first + static_cast<std::size_t>(column), index, triangle,
+                                       column + moved, row_there);
+                  });
+        if (!options_.touched) return;
+        const Columns touched = triangle.touched(row_there);
+        const auto claim = [&](std::int64_t begin, std::int64_t end, std::int64_t moved) {
+            for (std::int64_t column = begin; column < end; ++column)
+                claim_touched(first + static_cast<std::size_t>(column), index, triangle,
+                              column + moved, row_there);
+        };
+        if (inside.begin >= inside.end) {
+            for_parts(touched.begin, touched.end, options_.width, options_.repeat, claim);
+            return;
+        }
+        for_parts(touched.begin, inside.begin, options_.width, options_.repeat, claim);
+        for_parts(inside.end, touched.end, options_.width, options_.repeat, claim);
+    }
+
+    /// Whether a triangle comes before the owner of a texel.
+    [[nodiscard]] bool is_before(std::uint32_t index, const TexelTriangle& triangle,
+                                 std::uint32_t owner_index) const {
+        TexelTriangle owner;
+        triangles_.make(owner_index, owner);
+        return std::make_tuple(triangle.is_mirrored(), triangle.sorted(), index) <
+               std::make_tuple(owner.is_mirrored(), owner.sorted(), owner_index);
+    }
+
+    void set(std::size_t at, std::uint32_t index, const glm::dvec3& weights, bool is_inside) {
+        texels_[at] = {index, static_cast<float>(weights.y), static_cast<float>(weights.z),
+                       is_inside};
+    }
+
+    void claim_inside(std::size_t at, std::uint32_t index, const TexelTriangle& triangle,
+                      std::int64_t column, std::int64_t row) {
+        if (texels_[at].is_inside) {
+            shared_[at] = true;
+            if (!is_before(index, triangle, texels_[at].triangle)) return;
+        }
+        set(at, index, triangle.weights(column, row), true);
+    }
+
+    void claim_touched(std::size_t at, std::uint32_t index, const TexelTriangle& triangle,
+                       std::int64_t column, std::int64_t row) {
+        if (texels_[at].is_inside) return;
+        double distance = 0.0;
+        const glm::dvec3 weights = triangle.nearest(column, row, distance);
+        if (texels_[at].is_covered()) {
+            if (distance > distances_[at]) return;
+            if (distance == distances_[at] && !is_before(index, triangle, texels_[at].triangle))
+                return;
+        }
+        distances_[at] = distance;
+        set(at, index, weights, false);
+    }
+
+    const Triangles& triangles_;
+    const CoverageOptions& options_;
+    int first_row_, last_row_;
+    std::vector<CoveredTexel> texels_;
+    std::vector<double> distances_;  ///< Of those that are only touched, squared.
+    std::vector<bool> shared_;
+};
+
+void check(std::span<const glm::vec2> texcoords, std::span<const glm::uvec3> triangles,
+           const CoverageOptions& options) {
+    for (const int side : {options.width, options.height}) {
+        if (side < 1 || side > largest_side)
+            throw InvalidInput(fmt::format("a map of {} x {} texels is not within 1 to {}",
+                                           options.width, options.height, largest_side));
+    }
+    check_triangles(triangles, texcoords.size());
+}
+
+}  // namespace
+
+Coverage cover_texels(
+    std::span<const glm::vec2> texcoords, std::span<const glm::uvec3> triangles,
+    const CoverageOptions& options,
+    const std::function<void(int first_row, std::span<const CoveredTexel> texels)>& take,
+    Report& report) {
+    check(texcoords, triangles, options);
+    const Triangles all(texcoords, triangles, options);
+    const Bands bands(all, options, report);
+    std::vector<Coverage> found(bands.count());
+    parallel_for_reporting(bands.count(), 1, report,
+                           [&](std::size_t begin, std::size_t end, Report& findings) {
+                               for (std::size_t i = begin; i < end; ++i) {
+                                   const int first_row = static_cast<int>(i) * rows_per_band;
+                                   Band band(all, options, first_row);
+                                   for (const std::uint32_t index : bands.members(i))
+                                       band.draw(index);
+                                   found[i] = band.finish(findings);
+                                   take(first_row, band.texels());
+                               }
+                           });
+    Coverage coverage;
+    for (const Coverage& one : found) {
+        coverage.inside += one.inside;
+        coverage.touched += one.touched;
+        coverage.empty += one.empty;
+        coverage.shared += one.shared;
+    }
+    return coverage;
+}
+
+}  // namespace relief

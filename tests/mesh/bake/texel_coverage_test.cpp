@@ -1,0 +1,250 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which triangle owns a texel: shared edges without gap or overlap, overlaps by a rule, charts
+// smaller than a texel, and the same whatever the order of triangles and the number of threads.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "relief/mesh/error.h"
+#include "relief/mesh/shapes.h"
+#include "relief/mesh/texel_coverage.h"
+#include "relief/mesh/threads.h"
+#include "support/message_of.h"
+
+namespace relief {
+namespace {
+
+struct Map {
+    std::vector<CoveredTexel> texels;
+    Coverage coverage;
+    Report report;
+    int width = 0;
+
+    [[nodiscard]] const CoveredTexel& at(int column, int row) const {
+        return texels[static_cast<std::size_t>(row * width + column)];
+    }
+};
+
+Map covered(const std::vector<glm::vec2>& texcoords, const std::vector<glm::uvec3>& triangles,
+            CoverageOptions options) {
+    Map map;
+    map.width = options.width;
+    map.texels.resize(static_cast<std::size_t>(options.width) *
+                      static_cast<std::size_t>(options.height));
+    map.coverage = cover_texels(
+        texcoords, triangles, options,
+        [&](int first_row, std::span<const CoveredTexel> texels) {
+            std::copy(texels.begin(), texels.end(),
+                      map.texels.begin() + static_cast<std::ptrdiff_t>(first_row) * options.width);
+        },
+        map.report);
+    return map;
+}
+
+CoverageOptions size(int width, int height, bool touched = false) {
+    CoverageOptions options;
+    options.width = width;
+    options.height = height;
+    options.touched = touched;
+    return options;
+}
+
+TEST(TexelCoverage, GivesEachTexelOfASquareToOneTriangle) {
+    // The diagonal runs through every centre on it.
+    const std::vector<glm::vec2> corners = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+    const Map map = covered(corners, {{0, 2, 1}, {0, 3, 2}}, size(8, 8));
+    EXPECT_EQ(map.coverage.inside, 64U);
+    EXPECT_EQ(map.coverage.shared, 0U);
+    EXPECT_TRUE(map.report.empty());
+    for (int row = 0; row < 8; ++row) {
+        for (int column = 0; column < 8; ++column) {
+            const CoveredTexel& texel = map.at(column, row);
+            // A centre on the diagonal: its right side has it on its left edge.
+            EXPECT_EQ(texel.triangle, column >= row ? 0U : 1U) << column << "," << row;
+            const glm::uvec3 triangle =
+                texel.triangle == 0 ? glm::uvec3(0, 2, 1) : glm::uvec3(0, 3, 2);
+            const glm::vec3 w = texel.weights();
+            const glm::vec2 place =
+                w.x * corners[triangle.x] + w.y * corners[triangle.y] + w.z * corners[triangle.z];
+            EXPECT_NEAR(place.x * 8, static_cast<float>(column) + 0.5F, 1e-5F);
+            EXPECT_NEAR(place.y * 8, static_cast<float>(row) + 0.5F, 1e-5F);
+        }
+    }
+}
+
+/// Random triangles that fill the square, vertices on and off texel centres.
+void random_tiling(std::uint32_t seed, int cells, std::vector<glm::vec2>& texcoords,
+                   std::vector<glm::uvec3>& triangles) {
+    std::mt19937 random(seed);
+    const auto unit = [&] { return static_cast<float>(random()) / 4294967296.0F; };
+    const auto side = static_cast<unsigned>(cells + 1);
+    for (unsigned row = 0; row < side; ++row) {
+        for (unsigned column = 0; column < side; ++column) {
+            const bool is_border = row == 0 || column == 0 || row + 1 == side || column + 1 == side;
+            const float step = 1.0F / static_cast<float>(cells);
+            const float wander = is_border || random() % 4 == 0 ? 0.0F : 0.24F * step;
+            texcoords.emplace_back(static_cast<float>(column) * step + wander * (2 * unit() - 1),
+                                   static_cast<float>(row) * step + wander * (2 * unit() - 1));
+            if (row == 0 || column == 0) continue;
+            const unsigned d = row * side + column, c = d - 1, b = d - side, a = b - 1;
+            if (random() % 2 == 0) {
+                triangles.insert(triangles.end(), {{a, c, d}, {a, d, b}});
+            } else {
+                triangles.insert(triangles.end(), {{a, c, b}, {b, c, d}});
+            }
+        }
+    }
+}
+
+TEST(TexelCoverage, LeavesNoGapAndNoOverlapBetweenNeighbours) {
+    for (std::uint32_t seed = 0; seed < 30; ++seed) {
+        std::vector<glm::vec2> texcoords;
+        std::vector<glm::uvec3> triangles;
+        random_tiling(seed, 4 + static_cast<int>(seed), texcoords, triangles);
+        // 96 and 100 texels: vertices on centres, edges and corners of texels; and neither.
+        for (const auto& [width, height] : {std::pair{96, 96}, {100, 37}, {16, 200}}) {
+            const Map map = covered(texcoords, triangles, size(width, height));
+            EXPECT_EQ(map.coverage.inside, static_cast<std::size_t>(width * height)) << seed;
+            EXPECT_EQ(map.coverage.shared, 0U) << seed;
+        }
+    }
+}
+
+TEST(TexelCoverage, DoesNotDependOnOrderOrThreads) {
+    std::vector<glm::vec2> texcoords;
+    std::vector<glm::uvec3> triangles;
+    random_tiling(1, 20, texcoords, triangles);
+    // Overlapping ones too: the same again, smaller, mirrored.
+    const auto count = static_cast<unsigned>(texcoords.size());
+    for (unsigned i = 0; i < count; ++i)
+        texcoords.push_back(glm::vec2(0.9F - 0.8F * texcoords[i].x, 0.7F * texcoords[i].y));
+    const std::size_t plain = triangles.size();
+    for (std::size_t i = 0; i < plain; ++i)
+        triangles.push_back(triangles[i] + count);
+    set_thread_limit(1);
+    const Map map = covered(texcoords, triangles, size(300, 200, true));
+    set_thread_limit(0);
+    EXPECT_GT(map.coverage.shared, 30000U);
+    std::vector<unsigned> order(triangles.size());
+    for (unsigned i = 0; i < order.size(); ++i)
+        order[i] = i;
+    std::shuffle(order.begin(), order.end(), std::mt19937(5));
+    std::vector<glm::uvec3> shuffled;
+    for (const unsigned i : order) {
+        const glm::uvec3 t = triangles[i];
+        shuffled.push_back(i % 3 == 0   ? t
+                           : i % 3 == 1 ? glm::uvec3(t.y, t.z, t.x)
+                                        : glm::uvec3(t.z, t.x, t.y));
+    }
+    const Map other = covered(texcoords, shuffled, size(300, 200, true));
+    EXPECT_EQ(other.coverage.shared, map.coverage.shared);
+    std::size_t mirrored = 0;
+    for (std::size_t i = 0; i < map.texels.size(); ++i) {
+        ASSERT_EQ(order[other.texels[i].triangle], map.texels[i].triangle) << i;
+        ASSERT_EQ(other.texels[i].is_inside, map.texels[i].is_inside);
+        mirrored += map.texels[i].triangle >= plain ? 1 : 0;
+    }
+    EXPECT_EQ(mirrored, 0U);  // Those that are not mirrored come first.
+}
+
+TEST(TexelCoverage, GivesSmallChartsATexelEach) {
+    // Three triangles of a tenth of a texel: off centre, on a corner of four texels, in a covered
+    // one.
+    const std::vector<glm::vec2> texcoords = {{2.1F, 2.1F},   {2.2F, 2.1F},   {2.1F, 2.2F},
+                                              {4.95F, 4.95F}, {5.05F, 4.95F}, {5.0F, 5.05F},
+                                              {0, 0},         {0, 2},         {2, 0}};
+    std::vector<glm::vec2> scaled;
+    for (const glm::vec2& texcoord : texcoords)
+        scaled.push_back(texcoord / 8.0F);
+    const std::vector<glm::uvec3> triangles = {{0, 2, 1}, {3, 5, 4}, {6, 7, 8}};
+    EXPECT_EQ(covered(scaled, triangles, size(8, 8)).coverage.inside, 1U);
+    const Map map = covered(scaled, triangles, size(8, 8, true));
+    EXPECT_EQ(map.at(2, 2).triangle, 0U);
+    EXPECT_FALSE(map.at(2, 2).is_inside);
+    // The nearest point is the middle of the edge across: weights of its two corners.
+    EXPECT_NEAR(map.at(2, 2).weights().x, 0.0F, 1e-6F);
+    EXPECT_NEAR(map.at(2, 2).second, 0.5F, 1e-4F);
+    for (const auto& [column, row] : {std::pair{4, 4}, {5, 4}, {4, 5}, {5, 5}})
+        EXPECT_EQ(map.at(column, row).triangle, 1U) << column << "," << row;
+    // (1, 0) and (0, 1) have their centres on the slanted edge, not its own: half their square.
+    EXPECT_EQ(map.at(0, 0).triangle, 2U);
+    EXPECT_TRUE(map.at(0, 0).is_inside);
+    EXPECT_EQ(map.at(1, 0).triangle, 2U);
+    EXPECT_FALSE(map.at(1, 0).is_inside);
+    // (1, 1) is met in a corner only, which is no part of an area.
+    EXPECT_FALSE(map.at(1, 1).is_covered());
+    EXPECT_EQ(map.coverage.inside, 1U);
+    EXPECT_EQ(map.coverage.touched, 1U + 4U + 2U);
+    EXPECT_EQ(map.coverage.empty, 64U - 8U);
+}
+
+TEST(TexelCoverage, ChoosesTheSquareOrMovesEverythingThere) {
+    // A quad on tile (1, 2), and one across the border of tiles 0 and 1.
+    const std::vector<glm::vec2> texcoords = {
+        {1, 2}, {2, 2}, {2, 3}, {1, 3}, {0.75F, 0.F}, {1.25F, 0.F}, {1.25F, 1.F}, {0.75F, 1.F}};
+    const std::vector<glm::uvec3> triangles = {{0, 2, 1}, {0, 3, 2}, {4, 6, 5}, {4, 7, 6}};
+    CoverageOptions options = size(8, 8);
+    EXPECT_EQ(covered(texcoords, triangles, options).coverage.inside, 16U);
+    options.tile = {1, 2};
+    EXPECT_EQ(covered(texcoords, triangles, options).coverage.inside, 64U);
+    options.tile = {1, 0};
+    EXPECT_EQ(covered(texcoords, triangles, options).coverage.inside, 16U);
+    options.repeat = true;
+    const Map map = covered(texcoords, triangles, options);
+    EXPECT_EQ(map.coverage.inside, 64U);
+    EXPECT_EQ(map.coverage.shared, 32U);
+    EXPECT_EQ(map.report.count("texel of several triangles"), 32U);
+    EXPECT_TRUE(map.at(0, 0).is_covered() && map.at(7, 7).is_covered());
+}
+
+TEST(TexelCoverage, CountsTrianglesThatCoverNothing) {
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    const std::vector<glm::vec2> texcoords = {{0, 0},   {0.5F, 0.5F}, {1, 1},
+                                              {nan, 0}, {1e30F, 0},   {0, 1}};
+    const Map map =
+        covered(texcoords, {{0, 1, 2}, {0, 3, 2}, {0, 4, 2}, {0, 0, 5}}, size(8, 8, true));
+    EXPECT_EQ(map.report.count("triangle without area in the image"), 2U);
+    EXPECT_EQ(map.report.count("texture not finite"), 1U);
+    EXPECT_EQ(map.report.count("texture too far away"), 1U);
+    EXPECT_EQ(map.coverage.empty, 64U);
+}
+
+TEST(TexelCoverage, ReachesTheLargestMapsInBands) {
+    const Mesh sphere = make_sphere(64, 32);
+    std::size_t most = 0, rows = 0;
+    Report report;
+    set_thread_limit(1);
+    const Coverage coverage = cover_texels(
+        sphere.texcoords, sphere.triangles, size(512, 65536),
+        [&](int, std::span<const CoveredTexel> texels) {
+            most = std::max(most, texels.size());
+            rows += texels.size() / 512;
+        },
+        report);
+    set_thread_limit(0);
+    EXPECT_EQ(rows, 65536U);
+    EXPECT_EQ(most, 64U * 512U);
+    EXPECT_EQ(coverage.shared, 0U);
+    EXPECT_EQ(coverage.inside + coverage.empty, std::size_t{512} * 65536U);
+    EXPECT_EQ(coverage.empty, 0U);
+}
+
+TEST(TexelCoverage, RefusesWhatIsNoMap) {
+    Report report;
+    const auto message = [&](const CoverageOptions& options, const glm::uvec3& triangle) {
+        const std::vector<glm::vec2> texcoords(3);
+        const std::vector<glm::uvec3> triangles = {triangle};
+        return test::message_of<InvalidInput>([&] {
+            cover_texels(
+                texcoords, triangles, options, [](int, auto) {}, report);
+        });
+    };
+    EXPECT_EQ(message(size(0, 8), {0, 1, 2}), "a map of 0 x 8 texels is not within 1 to 65536");
+    EXPECT_EQ(message(size(8, 8), {0, 1, 3}), "triangle 0 names vertex 3, but there are only 3");
+}
+
+}  // namespace
+}  // namespace relief
