@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "hard_cases/hard_case.h"
+#include "hard_cases/map_cases.h"
 #include "hard_cases/mesh_cases.h"
 
 namespace relief::test {
@@ -7,8 +8,9 @@ namespace relief::test {
 const std::vector<HardCase>& hard_cases() {
     static const std::vector<HardCase> table = [] {
         std::vector<HardCase> rows;
-        for (const auto& part : {triangle_cases(), surface_cases(), number_cases(), stored_cases(),
-                                 tangent_cases(), tangent_surface_cases(), encoding_cases()})
+        for (const auto& part :
+             {triangle_cases(), surface_cases(), number_cases(), stored_cases(), tangent_cases(),
+              tangent_surface_cases(), encoding_cases(), normal_map_cases()})
             rows.insert(rows.end(), part.begin(), part.end());
         return rows;
     }();
