@@ -5,13 +5,13 @@
 
 #include <libdeflate.h>
 
+#include <memory>
 #include <new>
 
 namespace relief {
 namespace {
 
 struct Free {
-    void operator()(libdeflate_compressor* all) const { libdeflate_free_compressor(all); }
     void operator()(libdeflate_decompressor* all) const { libdeflate_free_decompressor(all); }
 };
 
@@ -26,19 +26,24 @@ bool inflate(std::span<const std::byte> stream, std::span<std::byte> to) {
                                       to.size(), nullptr) == LIBDEFLATE_SUCCESS;
 }
 
-Packed deflate(std::span<const std::byte> from, int level) {
-    const std::unique_ptr<libdeflate_compressor, Free> compressor(
-        libdeflate_alloc_compressor(level));
-    if (!compressor) throw std::bad_alloc();
-    const std::size_t bound = libdeflate_zlib_compress_bound(compressor.get(), from.size());
-    Packed packed{std::make_unique_for_overwrite<std::byte[]>(bound), 0};
-    packed.size = libdeflate_zlib_compress(compressor.get(), from.data(), from.size(),
-                                           packed.bytes.get(), bound);
-    return packed;
-}
-
 std::uint32_t crc32(std::span<const std::byte> bytes) {
     return libdeflate_crc32(0, bytes.data(), bytes.size());
+}
+
+std::uint32_t adler32(std::span<const std::byte> bytes) {
+    return libdeflate_adler32(1, bytes.data(), bytes.size());
+}
+
+std::uint32_t adler32_of_both(std::uint32_t first, std::uint32_t second, std::size_t second_size) {
+    // The low half is 1 plus the sum of all bytes; the high half is the sum of the low half after
+    // each byte, so that what the first bytes add to the low half counts once for each of the
+    // second.
+    constexpr std::uint64_t modulus = 65521;
+    const std::uint64_t low_first = first & 0xFFFFU, low_second = second & 0xFFFFU;
+    const std::uint64_t low = (low_first + low_second + modulus - 1) % modulus;
+    const std::uint64_t carried = (low_first + modulus - 1) % modulus * (second_size % modulus);
+    const std::uint64_t high = ((first >> 16) + (second >> 16) + carried) % modulus;
+    return static_cast<std::uint32_t>(high << 16 | low);
 }
 
 }  // namespace relief

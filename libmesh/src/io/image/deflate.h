@@ -1,30 +1,29 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// zlib streams and PNG's checksum, whole blocks of memory at a time. libdeflate's only home: it
-/// inflates 2 to 4 times and deflates 2 times as fast as zlib.
-/// Tests: tests/mesh/io/image/png_test.cpp.
+/// zlib streams read whole, and checksums. libdeflate's only home: it inflates 2 to 4 times as fast
+/// as zlib. Tests: tests/mesh/io/image/png_test.cpp.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
-#include <memory>
 #include <span>
+#include <string_view>
 
 namespace relief {
 
 /// Fills `to` exactly. \return false where the stream is damaged, cut short or of another size
 bool inflate(std::span<const std::byte> stream, std::span<std::byte> to);
 
-/// Bytes that nobody set to zero first.
-struct Packed {
-    std::unique_ptr<std::byte[]> bytes;
-    std::size_t size = 0;
-};
-
-/// A zlib stream. \param level  1 (fast) to 12 (small)
-Packed deflate(std::span<const std::byte> from, int level);
-
 /// The CRC-32 of PNG [ISO/IEC 15948], annex D.
 std::uint32_t crc32(std::span<const std::byte> bytes);
+
+/// How a zlib stream begins: deflate, with a window of 32 KiB.
+inline constexpr std::string_view zlib_header{"\x78\x9C"};
+
+/// The checksum at its end, Adler-32 [RFC 1950], of some bytes.
+std::uint32_t adler32(std::span<const std::byte> bytes);
+
+/// The checksum of bytes and of others behind them, of which there are `second_size`.
+std::uint32_t adler32_of_both(std::uint32_t first, std::uint32_t second, std::size_t second_size);
 
 }  // namespace relief

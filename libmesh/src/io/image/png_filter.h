@@ -12,6 +12,7 @@ namespace relief {
 
 /// Filter type 4, the prediction of Paeth; 0 to 3 are none, left, above, and their mean.
 inline constexpr std::uint8_t paeth_filter = 4;
+inline constexpr std::uint8_t filter_count = 5;
 
 /// Turns a row of filtered bytes into the row itself.
 ///
@@ -22,8 +23,8 @@ inline constexpr std::uint8_t paeth_filter = 4;
 bool undo_filter(std::uint8_t filter, std::size_t step, std::span<std::uint8_t> row,
                  std::span<const std::uint8_t> above);
 
-/// The row's bytes less Paeth's prediction of them, into `filtered`; parameters as above.
-void apply_paeth(std::size_t step, std::span<const std::uint8_t> row,
-                 std::span<const std::uint8_t> above, std::span<std::uint8_t> filtered);
+/// The row's bytes less their prediction by a filter, 0 to 4, into `filtered`; parameters as above.
+void apply_filter(std::uint8_t filter, std::size_t step, std::span<const std::uint8_t> row,
+                  std::span<const std::uint8_t> above, std::span<std::uint8_t> filtered);
 
 }  // namespace relief

@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // PNG files by rows. Tests: tests/mesh/io/image/image_rows_test.cpp.
-#include <cstring>
+#include <fmt/format.h>
 
-#include "file_replacement.h"
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+
 #include "io/image/png_encoder.h"
 #include "io/image/row_sink.h"
+#include "relief/mesh/error.h"
 
 namespace relief {
 namespace {
@@ -12,28 +16,31 @@ namespace {
 class PngSink final : public RowSink {
   public:
     explicit PngSink(const RowSinkPlan& plan)
-        : plan_(plan),
-          image_(make_image(plan.shape.width, plan.shape.height, plan.shape.channels,
-                            plan.shape.bits, plan.shape.color_space)) {}
+        : file_(plan.file),
+          out_(plan.written, std::ios::binary),
+          encoder_(plan.shape, plan.metadata, plan.options.effort, [this](std::string_view bytes) {
+              out_.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+              check();
+          }) {}
 
     void write(const std::byte* rows, int count) override {
-        std::byte* const all =
-            std::visit([](auto& held) { return std::as_writable_bytes(std::span(held)).data(); },
-                       image_.samples);
-        const std::size_t size = plan_.row_bytes() * static_cast<std::size_t>(count);
-        std::memcpy(all + written_, rows, size);
-        written_ += size;
+        encoder_.write(rows, static_cast<std::size_t>(count));
     }
 
     void finish() override {
-        const std::string encoded = encode_png(image_, plan_.metadata);
-        replace_file(plan_.written, std::as_bytes(std::span(encoded)));
+        out_.close();
+        check();
     }
 
   private:
-    RowSinkPlan plan_;
-    Image image_;
-    std::size_t written_ = 0;
+    void check() const {
+        if (!out_)
+            throw FileError(file_, fmt::format("cannot be written: {}", std::strerror(errno)));
+    }
+
+    std::filesystem::path file_;
+    std::ofstream out_;
+    PngEncoder encoder_;  ///< Last: it writes from its beginning.
 };
 
 }  // namespace

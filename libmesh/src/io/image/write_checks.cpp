@@ -54,6 +54,12 @@ void check_writable(const std::string& format, const ImageShape& shape,
         throw InvalidInput(fmt::format("EXR and HDR hold float samples, not {} bits", bits));
     if (options.half && format != "openexr")
         throw InvalidInput("half-float samples are written to EXR only");
+    constexpr std::size_t longest_png_row = std::size_t{1} << 30;
+    if (format == "png" && static_cast<std::size_t>(shape.width) *
+                                   static_cast<std::size_t>(shape.channels * bits / 8) >
+                               longest_png_row) {
+        throw InvalidInput(fmt::format("a row of {} texels is too long for PNG", shape.width));
+    }
     if (format == "png" && bits == 32) throw InvalidInput("PNG holds 8 or 16 bits, not float");
     if (format == "jpeg" && bits != 8)
         throw InvalidInput(fmt::format("JPEG holds 8 bits, not {}", bits));

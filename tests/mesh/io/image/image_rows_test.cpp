@@ -13,6 +13,7 @@
 
 #include "module_reference.h"
 #include "relief/mesh/error.h"
+#include "relief/mesh/threads.h"
 #include "support/message_of.h"
 #include "support/shared_data.h"
 
@@ -115,6 +116,60 @@ TEST(ImageRows, WholeImagesAndRowsGiveTheSameFile) {
         write_image(folder / kind.name, read_image(folder / kind.name, ImageUse::data),
                     {{"relief:content", "test"}});
         EXPECT_TRUE(contents_of(folder / kind.name) == by_rows) << kind.name;
+    }
+}
+
+/// 5 MB of slopes that go up and down, with some noise: several pieces, some with repetitions.
+Bytes smooth_words(const ImageShape& shape) {
+    Bytes bytes;
+    std::uint32_t state = 3;
+    for (int y = 0; y < shape.height; ++y) {
+        for (int i = 0; i < shape.width * shape.channels; ++i) {
+            state = state * 1664525U + 1013904223U;
+            const int noise = y < shape.height / 2 ? static_cast<int>(state >> 28) : 0;
+            const int value = (i * 37 + y * 11) % 5000 * 13 + noise;
+            bytes.push_back(static_cast<std::byte>(value));
+            bytes.push_back(static_cast<std::byte>(value >> 8));
+        }
+    }
+    return bytes;
+}
+
+TEST(ImageRows, TheNumberOfThreadsChangesNoByteAndLibpngReadsThemAll) {
+    const TemporaryDirectory folder;
+    const ImageShape shape{900, 1000, 3, 16, ColorSpace::data};
+    const Bytes samples = smooth_words(shape);
+    for (const WriteEffort effort : {WriteEffort::fast, WriteEffort::normal, WriteEffort::small}) {
+        std::string first;
+        for (const unsigned threads : {1U, 2U, 7U}) {
+            set_thread_limit(threads);
+            write_in_pieces(folder / "a.png", shape, samples, {.effort = effort});
+            const std::string file = contents_of(folder / "a.png");
+            if (first.empty()) first = file;
+            EXPECT_TRUE(file == first) << threads << " threads";
+        }
+        set_thread_limit(0);
+        const std::optional<Image> by_libpng = test::by_module(first);
+        ASSERT_TRUE(by_libpng);
+        EXPECT_TRUE(samples_of(*by_libpng) == samples);
+    }
+}
+
+TEST(ImageRows, MoreEffortMakesSmallerPngAndTiffFilesOfTheSameSamples) {
+    const TemporaryDirectory folder;
+    const ImageShape shape{900, 1000, 3, 16, ColorSpace::data};
+    const Bytes samples = smooth_words(shape);
+    for (const char* name : {"a.png", "a.tif"}) {
+        const auto size = [&](WriteEffort effort) {
+            write_in_pieces(folder / name, shape, samples, {.effort = effort});
+            EXPECT_TRUE(samples_of(read_image(folder / name, ImageUse::data)) == samples);
+            return std::filesystem::file_size(folder / name);
+        };
+        const auto fast = size(WriteEffort::fast);
+        const auto normal = size(WriteEffort::normal);
+        const auto small = size(WriteEffort::small);
+        EXPECT_LE(normal, fast) << name;
+        EXPECT_LT(small, normal) << name;
     }
 }
 

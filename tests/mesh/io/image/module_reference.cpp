@@ -5,8 +5,11 @@
 
 #include <fstream>
 
+#include "io/image/deflate.h"
+#include "io/image/deflate_encoder.h"
 #include "io/image/image_file_direct.h"
 #include "io/image/image_file_module.h"
+#include "io/image/png_chunk.h"
 #include "relief/mesh/error.h"
 
 namespace relief::test {
@@ -21,6 +24,16 @@ ImageContainer examined(const std::string& file) {
 std::string contents_of(const std::filesystem::path& file) {
     std::ifstream stream(file, std::ios::binary);
     return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+std::string zlib_stream(const std::string& bytes) {
+    const std::span all(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size());
+    std::vector<std::uint8_t> packed;
+    deflate_piece(all, 0, WriteEffort::normal, Repetitions::sought, true, packed);
+    std::string stream(zlib_header);
+    stream.append(packed.begin(), packed.end());
+    append_big32(stream, adler32(std::as_bytes(all)));
+    return stream;
 }
 
 std::optional<Image> directly(const std::string& file) {

@@ -14,6 +14,9 @@ namespace relief::test {
 /// A file that may be of any kind, as bytes.
 std::string contents_of(const std::filesystem::path& file);
 
+/// A zlib stream of these bytes.
+std::string zlib_stream(const std::string& bytes);
+
 /// What relief's own decoders make of it; nothing where they leave it to the module.
 /// \throws FileError where it is refused before any decoder sees it
 std::optional<Image> directly(const std::string& file);

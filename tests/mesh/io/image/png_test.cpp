@@ -6,6 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cstdlib>
 #include <random>
 
 #include "io/image/deflate.h"
@@ -50,8 +51,7 @@ struct Parts {
     std::string rows;         ///< Each behind its filter type.
 
     [[nodiscard]] std::string file() const {
-        const Packed packed = deflate(bytes_of(rows), 6);
-        const std::string data(reinterpret_cast<const char*>(packed.bytes.get()), packed.size);
+        const std::string data = test::zlib_stream(rows);
         return "\x89PNG\r\n\x1A\n" +
                chunk("IHDR", big32(width) + big32(height) + static_cast<char>(bits) +
                                  static_cast<char>(type) + "\0\0"s + interlaced) +
@@ -201,10 +201,38 @@ TEST(PngFilter, PaethTakesTheNeighbourNearestToTheirPlane) {
     // Left 10, above 20, upper left 12: the plane gives 18, nearest to 20.
     const std::vector<std::uint8_t> above{12, 20}, row{10, 25};
     std::vector<std::uint8_t> filtered(2);
-    apply_paeth(1, row, above, filtered);
+    apply_filter(paeth_filter, 1, row, above, filtered);
     EXPECT_THAT(filtered, testing::ElementsAre(254, 5));  // 10 - 12 modulo 256, 25 - 20.
     ASSERT_TRUE(undo_filter(paeth_filter, 1, filtered, above));
     EXPECT_EQ(filtered, row);
+}
+
+TEST(PngFilter, EveryFilterIsUndoneWhateverTheVectors) {
+    std::mt19937 random(11);
+    for (const std::size_t step : {1U, 2U, 3U, 4U, 6U, 8U}) {
+        for (const std::size_t texels : {1U, 2U, 5U, 67U, 200U}) {
+            std::vector<std::uint8_t> above(step * texels), row(step * texels);
+            for (std::size_t i = 0; i < row.size(); ++i) {
+                above[i] = static_cast<std::uint8_t>(random());
+                // Half of them near, so that ties and both signs of differences occur.
+                row[i] = static_cast<std::uint8_t>(i % 2 == 0 ? random() : above[i] + random() % 3);
+            }
+            for (std::uint8_t filter = 0; filter < filter_count; ++filter) {
+                std::vector<std::vector<std::uint8_t>> found;
+                for (const char* bits : {"128", "256", "512"}) {
+                    ::setenv("RELIEF_VECTOR_BITS", bits, 1);
+                    std::vector<std::uint8_t> filtered(row.size());
+                    apply_filter(filter, step, row, above, filtered);
+                    found.push_back(filtered);
+                    ASSERT_TRUE(undo_filter(filter, step, filtered, above));
+                    EXPECT_EQ(filtered, row) << "filter " << int{filter} << ", step " << step;
+                }
+                ::unsetenv("RELIEF_VECTOR_BITS");
+                EXPECT_EQ(found[0], found[1]);
+                EXPECT_EQ(found[0], found[2]);
+            }
+        }
+    }
 }
 
 }  // namespace
