@@ -34,30 +34,39 @@ void code(std::span<const float> heights, double least, double range, std::span<
 
 }  // namespace
 
-AnalyticHeights wave_heights(int width, int height, std::span<const HeightWave> waves) {
-    AnalyticHeights field{make_image(width, height, 1, 32, ColorSpace::data), {}};
-    const std::span<float> heights = field.heights.as<float>();
-    field.normals.resize(heights.size());
+HeightAt waves_at(std::span<const HeightWave> waves, const glm::dvec2& place) {
+    HeightAt sum;
+    for (const HeightWave& wave : waves) {
+        const double angle = glm::dot(wave.frequency, place) + wave.phase;
+        sum.height += wave.amplitude * std::sin(angle);
+        sum.slope += wave.amplitude * std::cos(angle) * wave.frequency;
+    }
+    return sum;
+}
+
+AnalyticHeights sampled_heights(int width, int height,
+                                const std::function<HeightAt(const glm::dvec2& place)>& field) {
+    AnalyticHeights result{make_image(width, height, 1, 32, ColorSpace::data), {}};
+    const std::span<float> heights = result.heights.as<float>();
+    result.normals.resize(heights.size());
     const auto rows = static_cast<std::size_t>(height);
     parallel_for(rows, 16, [&](std::size_t begin, std::size_t end) {
         for (int row = static_cast<int>(begin); row < static_cast<int>(end); ++row) {
             for (int column = 0; column < width; ++column) {
-                double sum = 0.0;
-                glm::dvec2 slope(0.0);
-                for (const HeightWave& wave : waves) {
-                    const double angle =
-                        glm::dot(wave.frequency, glm::dvec2(column, row)) + wave.phase;
-                    sum += wave.amplitude * std::sin(angle);
-                    slope += wave.amplitude * std::cos(angle) * wave.frequency;
-                }
+                const auto [value, slope] = field({column, row});
                 const std::size_t texel = texel_at(width, column, row);
-                heights[texel] = static_cast<float>(sum);
+                heights[texel] = static_cast<float>(value);
                 // Rows run downwards, the normal's y upwards.
-                field.normals[texel] = glm::normalize(glm::dvec3(-slope.x, slope.y, 1.0));
+                result.normals[texel] = glm::normalize(glm::dvec3(-slope.x, slope.y, 1.0));
             }
         }
     });
-    return field;
+    return result;
+}
+
+AnalyticHeights wave_heights(int width, int height, std::span<const HeightWave> waves) {
+    return sampled_heights(width, height,
+                           [&](const glm::dvec2& place) { return waves_at(waves, place); });
 }
 
 std::vector<HeightWave> tiling_waves(int width, int height, int count, double shortest,

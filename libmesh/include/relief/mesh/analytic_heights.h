@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <glm/glm.hpp>
 #include <span>
 #include <vector>
@@ -29,6 +30,22 @@ struct AnalyticHeights {
 
 /// The sum of waves, sampled at texel centres. \throws InvalidInput if a size is not positive
 AnalyticHeights wave_heights(int width, int height, std::span<const HeightWave> waves);
+
+/// A height, and how it changes to the right and downwards; in texels.
+struct HeightAt {
+    double height = 0.0;
+    glm::dvec2 slope{};
+};
+
+/// Any field, sampled at texel centres (x, y) = (0, 0), (1, 0), ...
+///
+/// \param field  called from several threads
+/// \throws InvalidInput if a size is not positive
+AnalyticHeights sampled_heights(int width, int height,
+                                const std::function<HeightAt(const glm::dvec2& place)>& field);
+
+/// The sum of waves at a place.
+HeightAt waves_at(std::span<const HeightWave> waves, const glm::dvec2& place);
 
 /// Waves that make a field tile: each goes a whole number of times into width and height.
 ///

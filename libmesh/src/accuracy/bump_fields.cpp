@@ -1,0 +1,301 @@
+// SPDX-License-Identifier: Apache-2.0
+// Height maps with known normals: shapes in closed form, noise added, then coded as a file has it.
+// Lengths in texels. Sizes too small throw. Tests: tests/mesh/accuracy/bump_fields_test.cpp.
+#include "relief/mesh/bump_fields.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "accuracy/random.h"
+#include "relief/mesh/error.h"
+
+namespace relief {
+namespace {
+
+constexpr double full_turn = 2.0 * std::numbers::pi;
+constexpr int waves_in_all = 24;
+
+using Field = std::function<HeightAt(const glm::dvec2&)>;
+
+/// Waves of any length: they do not tile.
+std::vector<HeightWave> open_waves(int size, const FieldRecipe& recipe) {
+    Random random(recipe.seed);
+    std::vector<HeightWave> waves;
+    for (int i = 0; i < waves_in_all; ++i) {
+        const double direction = random.between(0.0, full_turn);
+        const double length =
+            recipe.shortest * std::pow(1.7 * size / recipe.shortest, random.between(0.0, 1.0));
+        const double steepness = full_turn / length;
+        const glm::dvec2 frequency =
+            steepness * glm::dvec2(std::cos(direction), std::sin(direction));
+        waves.push_back({recipe.rms_slope * std::sqrt(2.0 / waves_in_all) / steepness, frequency,
+                         random.between(0.0, full_turn)});
+    }
+    return waves;
+}
+
+/// Bumps (1 - r^2)^3 in the cells of a lattice that goes into the size, of random heights.
+Field domes(int width, int height, const FieldRecipe& recipe) {
+    const glm::dvec2 size(width, height);
+    const glm::dvec2 cells = glm::max(glm::round(size / recipe.shortest), glm::dvec2(1.0));
+    const glm::dvec2 cell = size / cells;
+    const double radius = 0.48 * std::min(cell.x, cell.y);
+    return [=](const glm::dvec2& place) -> HeightAt {
+        const glm::dvec2 index = glm::floor(place / cell);
+        Random random(recipe.seed + static_cast<std::uint32_t>(index.x + index.y * cells.x));
+        // rms slope of the shape is about the height over the radius.
+        const double peak = recipe.rms_slope * radius * random.between(0.5, 1.5);
+        const glm::dvec2 from_centre = place - (index + 0.5) * cell;
+        const double inside = 1.0 - glm::dot(from_centre, from_centre) / (radius * radius);
+        if (inside <= 0.0) return {};
+        return {peak * inside * inside * inside,
+                peak * 3.0 * inside * inside * -2.0 * from_centre / (radius * radius)};
+    };
+}
+
+/// Roofs along both axes: slopes of one size, and ridges between texels.
+Field creases(int width, int height, const FieldRecipe& recipe) {
+    const glm::dvec2 size(width, height);
+    const glm::dvec2 period = size / glm::max(glm::round(size / recipe.shortest), glm::dvec2(1.0));
+    return [=](const glm::dvec2& place) -> HeightAt {
+        const glm::dvec2 phase = glm::fract((place + 0.37) / period) - 0.5;
+        const glm::dvec2 side(phase.x < 0.0 ? 1.0 : -1.0, phase.y < 0.0 ? 1.0 : -1.0);
+        const double slope = recipe.rms_slope / std::sqrt(2.0);
+        const glm::dvec2 roof = slope * period * (0.5 - glm::abs(phase));
+        return {roof.x + roof.y, slope * side};
+    };
+}
+
+/// Level ground whose height follows a long wave in stairs, with gentle waves on top.
+Field terraces(int width, int height, const FieldRecipe& recipe) {
+    const std::vector<HeightWave> shape =
+        tiling_waves(width, height, 6, 2.0 * recipe.shortest, 1.0, recipe.seed);
+    const std::vector<HeightWave> ground =
+        tiling_waves(width, height, 8, recipe.shortest, 0.25, recipe.seed + 1);
+    const double between = recipe.shortest;
+    const double wall = 4.0 * recipe.rms_slope;
+    const auto level = [=](const glm::dvec2& place) {
+        return std::floor(waves_at(shape, place).height / between + 0.3);
+    };
+    return [=](const glm::dvec2& place) -> HeightAt {
+        HeightAt result = waves_at(ground, place);
+        const double own = level(place);
+        result.height += wall * own;
+        // Where a neighbour is on another level, there is a wall in between, and no normal.
+        for (const glm::dvec2& step :
+             {glm::dvec2(1, 0), glm::dvec2(-1, 0), glm::dvec2(0, 1), glm::dvec2(0, -1)}) {
+            if (level(place + step) != own)
+                result.slope = glm::dvec2(std::numeric_limits<double>::quiet_NaN());
+        }
+        return result;
+    };
+}
+
+/// Long waves everywhere, short ones where a smooth mask of x lets them.
+Field mixed(int width, int height, const FieldRecipe& recipe) {
+    const double longest = std::max(width, height);
+    const std::vector<HeightWave> wide =
+        tiling_waves(width, height, 8, longest / 4.0, recipe.rms_slope, recipe.seed);
+    const std::vector<HeightWave> fine = tiling_waves(width, height, waves_in_all, recipe.shortest,
+                                                      recipe.rms_slope, recipe.seed + 1);
+    return [=](const glm::dvec2& place) -> HeightAt {
+        const double angle = full_turn * place.x / width;
+        const double s = 0.5 - 0.5 * std::cos(angle);
+        const double mask = s * s;
+        const double steepness = 2.0 * s * 0.5 * std::sin(angle) * full_turn / width;
+        HeightAt result = waves_at(wide, place);
+        const HeightAt detail = waves_at(fine, place);
+        result.height += mask * detail.height;
+        result.slope += mask * detail.slope + glm::dvec2(steepness * detail.height, 0.0);
+        return result;
+    };
+}
+
+Field shape_of(int width, int height, const FieldRecipe& recipe) {
+    switch (recipe.shape) {
+        case FieldShape::waves: {
+            auto waves = tiling_waves(width, height, waves_in_all, recipe.shortest,
+                                      recipe.rms_slope, recipe.seed);
+            return [waves](const glm::dvec2& place) { return waves_at(waves, place); };
+        }
+        case FieldShape::open: {
+            auto waves = open_waves(std::max(width, height), recipe);
+            return [waves](const glm::dvec2& place) { return waves_at(waves, place); };
+        }
+        case FieldShape::domes:
+            return domes(width, height, recipe);
+        case FieldShape::creases:
+            return creases(width, height, recipe);
+        case FieldShape::terraces:
+            return terraces(width, height, recipe);
+        case FieldShape::mixed:
+            break;
+    }
+    return mixed(width, height, recipe);
+}
+
+void add_noise(std::span<float> heights, const FieldRecipe& recipe) {
+    Random random(recipe.seed + 77);
+    for (float& height : heights)
+        height = static_cast<float>(static_cast<double>(height) + recipe.noise * random.normal());
+}
+
+/// The heights with 11 bits each, as half floats have; exponents of half are not looked at.
+void round_to_half(std::span<float> heights) {
+    for (float& height : heights) {
+        int exponent = 0;
+        const double fraction = std::frexp(static_cast<double>(height), &exponent);
+        height = static_cast<float>(std::ldexp(std::nearbyint(fraction * 2048.0), exponent - 11));
+    }
+}
+
+/// Codes of 8 bits told as others.
+template <typename Code>
+Image recoded(const Image& codes, int bits, int (*recode)(int)) {
+    Image result = make_image(codes.width, codes.height, 1, bits, ColorSpace::data);
+    std::transform(codes.as<std::uint8_t>().begin(), codes.as<std::uint8_t>().end(),
+                   result.as<Code>().begin(),
+                   [&](int code) { return static_cast<Code>(recode(code)); });
+    return result;
+}
+
+void store(Image heights, FieldCoding coding, BumpField& field) {
+    if (coding == FieldCoding::float16) round_to_half(heights.as<float>());
+    if (coding == FieldCoding::float32 || coding == FieldCoding::float16) {
+        field.options.strength = 1.0;
+        field.heights = std::move(heights);
+        return;
+    }
+    CodedHeights coded = coded_heights(heights, coding == FieldCoding::bits16 ? 16 : 8);
+    field.options.strength = coded.strength;
+    field.heights = std::move(coded.codes);
+    if (coding == FieldCoding::bits8_in_16) {
+        field.heights =
+            recoded<std::uint16_t>(field.heights, 16, [](int code) { return code * 257; });
+    }
+    if (coding == FieldCoding::bits8_dim) {
+        // By way of 16 bits, so that nothing is rounded twice to 8.
+        coded = coded_heights(heights, 16);
+        field.options.strength = coded.strength * 255.0 / 24.0;
+        field.heights = make_image(heights.width, heights.height, 1, 8, ColorSpace::data);
+        std::transform(
+            coded.codes.as<std::uint16_t>().begin(), coded.codes.as<std::uint16_t>().end(),
+            field.heights.as<std::uint8_t>().begin(),
+            [](int code) { return static_cast<std::uint8_t>(100 + (code * 24 + 32767) / 65535); });
+    }
+}
+
+}  // namespace
+
+BumpField make_bump_field(const FieldRecipe& original, int width, int height) {
+    if (width < 8 || height < 8)
+        throw InvalidInput(fmt::format("{} x {} texels are too few for a field", width, height));
+    FieldRecipe recipe = original;
+    recipe.shortest = std::min(recipe.shortest, 0.5 * std::max(width, height));
+    AnalyticHeights truth = sampled_heights(width, height, shape_of(width, height, recipe));
+    BumpField field;
+    field.options.wrap = recipe.shape == FieldShape::open ? Wrap::clamp : Wrap::repeat;
+    field.normals = std::move(truth.normals);
+    if (recipe.noise > 0.0) add_noise(truth.heights.as<float>(), recipe);
+    store(std::move(truth.heights), recipe.coding, field);
+    return field;
+}
+
+std::span<const FieldRecipe> tuning_fields() {
+    using enum FieldShape;
+    using enum FieldCoding;
+    static constexpr FieldRecipe all[] = {
+        {"smooth, float", waves, 32, 0.3, float32, 0, 1},
+        {"smooth, half float", waves, 32, 0.3, float16, 0, 2},
+        {"smooth, 16 bit", waves, 32, 0.3, bits16, 0, 3},
+        {"smooth, 8 bit", waves, 32, 0.3, bits8, 0, 4},
+        {"smooth, 8 bit in 16", waves, 32, 0.3, bits8_in_16, 0, 5},
+        {"smooth, 25 codes of 8 bit", waves, 32, 0.3, bits8_dim, 0, 6},
+        {"very smooth, float", waves, 120, 0.3, float32, 0, 7},
+        {"very smooth, 16 bit", waves, 120, 0.3, bits16, 0, 8},
+        {"very smooth, 8 bit", waves, 120, 0.3, bits8, 0, 9},
+        {"very smooth, 25 codes of 8 bit", waves, 120, 0.3, bits8_dim, 0, 10},
+        {"detailed, float", waves, 4, 0.3, float32, 0, 11},
+        {"detailed, 16 bit", waves, 4, 0.3, bits16, 0, 12},
+        {"detailed, 8 bit", waves, 4, 0.3, bits8, 0, 13},
+        {"detailed, 25 codes of 8 bit", waves, 4, 0.3, bits8_dim, 0, 14},
+        {"finest detail, float", waves, 3, 0.3, float32, 0, 15},
+        {"flat relief, 8 bit", waves, 16, 0.01, bits8, 0, 16},
+        {"steep, float", waves, 16, 2.0, float32, 0, 17},
+        {"steep, 8 bit", waves, 16, 2.0, bits8, 0, 18},
+        {"noise 0.003, float", waves, 32, 0.3, float32, 0.003, 19},
+        {"noise 0.03, float", waves, 32, 0.3, float32, 0.03, 20},
+        {"noise 0.3, float", waves, 32, 0.3, float32, 0.3, 21},
+        {"noise 0.03, detailed, 16 bit", waves, 4, 0.3, bits16, 0.03, 22},
+        {"noise 0.3, 16 bit", waves, 64, 0.3, bits16, 0.3, 23},
+        {"noise 0.1, 8 bit", waves, 32, 0.3, bits8, 0.1, 24},
+        {"open, float", open, 24, 0.3, float32, 0, 25},
+        {"open, 8 bit", open, 24, 0.3, bits8, 0, 26},
+        {"open, noise 0.1, 16 bit", open, 24, 0.3, bits16, 0.1, 27},
+        {"domes, float", domes, 32, 0.4, float32, 0, 28},
+        {"domes, 8 bit", domes, 32, 0.4, bits8, 0, 29},
+        {"domes, noise 0.05, 16 bit", domes, 32, 0.4, bits16, 0.05, 30},
+        {"creases, float", creases, 32, 0.5, float32, 0, 31},
+        {"creases, 8 bit", creases, 32, 0.5, bits8, 0, 32},
+        {"terraces, float", terraces, 16, 1.0, float32, 0, 33},
+        {"terraces, 16 bit", terraces, 16, 1.0, bits16, 0, 34},
+        {"terraces, 8 bit", terraces, 16, 1.0, bits8, 0, 35},
+        {"mixed, float", mixed, 4, 0.3, float32, 0, 36},
+        {"mixed, 16 bit", mixed, 4, 0.3, bits16, 0, 37},
+        {"mixed, 8 bit", mixed, 4, 0.3, bits8, 0, 38},
+        {"mixed, noise 0.05, float", mixed, 6, 0.3, float32, 0.05, 39},
+    };
+    return all;
+}
+
+std::span<const FieldRecipe> judging_fields() {
+    using enum FieldShape;
+    using enum FieldCoding;
+    static constexpr FieldRecipe all[] = {
+        {"waves of 20, float", waves, 20, 0.2, float32, 0, 101},
+        {"waves of 20, half float", waves, 20, 0.5, float16, 0, 102},
+        {"waves of 48, 16 bit", waves, 48, 0.15, bits16, 0, 103},
+        {"waves of 48, 8 bit", waves, 48, 0.15, bits8, 0, 104},
+        {"waves of 12, 8 bit", waves, 12, 0.6, bits8, 0, 105},
+        {"waves of 7, 8 bit", waves, 7, 0.3, bits8, 0, 106},
+        {"waves of 80, 8 bit in 16", waves, 80, 0.4, bits8_in_16, 0, 107},
+        {"waves of 24, 25 codes", waves, 24, 1.0, bits8_dim, 0, 108},
+        {"waves of 5, float", waves, 5, 0.7, float32, 0, 109},
+        {"waves of 48, noise 0.01, float", waves, 48, 0.3, float32, 0.01, 110},
+        {"waves of 10, noise 0.1, float", waves, 10, 0.4, float32, 0.1, 111},
+        {"waves of 90, noise 1, float", waves, 90, 0.5, float32, 1.0, 112},
+        {"waves of 20, noise 0.02, 16 bit", waves, 20, 0.1, bits16, 0.02, 113},
+        {"waves of 40, noise 0.05, 8 bit", waves, 40, 0.3, bits8, 0.05, 114},
+        {"open, 16 bit", open, 10, 0.4, bits16, 0, 115},
+        {"open, 25 codes", open, 40, 0.4, bits8_dim, 0, 116},
+        {"open, noise 0.02, float", open, 12, 0.2, float32, 0.02, 117},
+        {"domes of 20, 16 bit", domes, 20, 0.8, bits16, 0, 118},
+        {"domes of 60, 8 bit", domes, 60, 0.3, bits8, 0, 119},
+        {"creases of 20, 16 bit", creases, 20, 0.8, bits16, 0, 120},
+        {"creases of 50, 8 bit", creases, 50, 0.3, bits8, 0, 121},
+        {"terraces of 24, float", terraces, 24, 0.5, float32, 0, 122},
+        {"terraces of 24, 8 bit", terraces, 24, 2.0, bits8, 0, 123},
+        {"mixed from 6, 8 bit", mixed, 6, 0.5, bits8, 0, 124},
+        {"mixed from 8, noise 0.1, 16 bit", mixed, 8, 0.3, bits16, 0.1, 125},
+    };
+    return all;
+}
+
+DirectionError field_error(const Image& normals, const BumpField& field) {
+    const std::span<const float> samples = normals.as<float>();
+    if (normals.channels != 3 || samples.size() != 3 * field.normals.size())
+        throw InvalidInput("normals of another size than the field");
+    std::vector<glm::vec3> found(field.normals.size());
+    std::vector<unsigned char> counts(found.size());
+    for (std::size_t i = 0; i < found.size(); ++i) {
+        found[i] = {samples[3 * i], samples[3 * i + 1], samples[3 * i + 2]};
+        counts[i] = std::isnan(field.normals[i].x) ? 0 : 1;
+    }
+    return direction_error(found, field.normals, counts);
+}
+
+}  // namespace relief

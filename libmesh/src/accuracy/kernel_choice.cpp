@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: Apache-2.0
+// The choice of a kernel by a rehearsal (kernel_rehearsal.h), and the reason for it in words.
+// Heights in the map's unit, angles in degrees. Bad images and options throw.
+// Tests: tests/mesh/accuracy/kernel_choice_test.cpp.
+#include "relief/mesh/kernel_choice.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+
+#include "accuracy/kernel_rehearsal.h"
+#include "relief/mesh/error.h"
+
+namespace relief {
+namespace {
+
+constexpr int radii[] = {1, 2, 3, 4, 5, 6, 7, 8, 10, 12, 14, 16, 20, 24, 28, 32, 40, 48, 56, 64};
+/// From cheap to dear. Forward differences are half a texel off, and never the best.
+constexpr Kernel fixed_kernels[] = {Kernel::central3, Kernel::scharr3,  Kernel::sobel3,
+                                    Kernel::prewitt3, Kernel::central5, Kernel::central7,
+                                    Kernel::sobel5,   Kernel::scharr5};
+/// Kernels that are so little worse than the best count as good, and the cheapest is taken.
+/// Little, since what is uncertain of the truth adds to all predictions alike.
+constexpr double as_good = 1.003;
+
+std::vector<KernelPrediction> all_predictions(const KernelRehearsal& rehearsal) {
+    std::vector<KernelPrediction> all;
+    for (const Kernel kernel : fixed_kernels)
+        all.push_back(rehearsal.predict(kernel, 2));
+    double least = std::numeric_limits<double>::infinity();
+    for (const int radius : radii) {
+        all.push_back(rehearsal.predict(Kernel::gaussian, radius));
+        least = std::min(least, all.back().rms_degrees);
+        // Wider ones only get worse from here.
+        if (radius >= 3 && all.back().rms_degrees > 1.3 * least) break;
+    }
+    return all;
+}
+
+/// "8 bits used", or what else the heights are.
+std::string coding_words(const HeightCoding& coding) {
+    const int bits = coding.depth.bits;
+    if (bits > 0) return fmt::format("{} bit{} used", bits, bits == 1 ? "" : "s");
+    return coding.mantissa_bits < 20 ? fmt::format("floats of {} bits", coding.mantissa_bits)
+                                     : "float heights";
+}
+
+/// Why the kernel was taken, for people.
+std::string reason_of(const KernelRehearsal& rehearsal, const BumpOptions& options,
+                      const KernelPrediction& best) {
+    const GradientKernel kernel = gradient_kernel(best.kernel, best.gaussian_radius);
+    const std::string coding = coding_words(rehearsal.coding());
+    // Heights in texels, so that slopes are their differences.
+    const double texels = std::abs(options.strength) / std::sqrt(options.texel.x * options.texel.y);
+    const double step = texels * rehearsal.coding().step();
+    const double noise = texels * rehearsal.noise();
+    if (best.rms_degrees == 0.0) return coding + ": level ground, on which every kernel is exact";
+    const bool is_noisy = noise > 0.3 * step && noise > 0.0;
+    const std::string trouble = is_noisy     ? fmt::format("noise of {:.2g} texels", noise)
+                                : step > 0.0 ? fmt::format("steps of {:.2g} texels", step)
+                                             : "rounding";
+    if (kernel.smoothing.size() > 1) {
+        return fmt::format("{}: {} outweigh{} fine detail, so heights are smoothed over {} texels",
+                           coding, trouble, is_noisy || step == 0.0 ? "s" : "",
+                           2 * kernel.smoothing.size() - 1);
+    }
+    if (rehearsal.walls() > 0.005 && kernel.radius == 1) {
+        return fmt::format(
+            "{}: {:.1f}% of the texels are beside sharp walls, so only the next texels are read",
+            coding, 100.0 * rehearsal.walls());
+    }
+    return fmt::format(
+        "{}: detail outweighs {}, so heights are not smoothed, and slopes are of "
+        "order {}",
+        coding, trouble, kernel.order);
+}
+
+void check(std::span<const Image> parts) {
+    if (parts.empty())
+        throw InvalidInput("a kernel is chosen by parts of a map, of which none were given");
+    for (const Image& part : parts) {
+        if (part.empty()) throw InvalidInput("an empty part of a height map");
+        if (part.channels != 1) {
+            throw InvalidInput(
+                fmt::format("a height field has one channel, not {}", part.channels));
+        }
+        if (part.bits() != parts[0].bits()) {
+            throw InvalidInput(fmt::format("parts of {} and of {} bits are not of one map",
+                                           parts[0].bits(), part.bits()));
+        }
+    }
+}
+
+}  // namespace
+
+std::vector<MapPart> parts_to_look_at(int width, int height) {
+    constexpr int largest_side = 128;
+    constexpr int most_each_way = 3;
+    if (width <= 0 || height <= 0)
+        throw InvalidInput(fmt::format("a map of {} x {} texels has no parts", width, height));
+    if (std::min(width, height) < 8) {
+        constexpr int longest = largest_side * largest_side;
+        return {{0, 0, std::min(width, longest), std::min(height, longest)}};
+    }
+    const int least = std::min({width, height, largest_side});
+    const int side = static_cast<int>(std::bit_floor(static_cast<unsigned>(least)));
+    const auto places = [&](int length) { return (length - 1) / side + 1; };
+    // A long and narrow map is looked at in as many places.
+    int rows = std::min(places(height), most_each_way);
+    const int columns = std::min(places(width), most_each_way * most_each_way / rows);
+    rows = std::min(places(height), most_each_way * most_each_way / columns);
+    const auto place = [side](int i, int count, int length) {
+        const std::int64_t room = length - side;
+        if (std::int64_t{count} * side >= length)
+            return static_cast<int>(i * room / std::max(1, count - 1));
+        return static_cast<int>((2 * std::int64_t{i} + 1) * room / (2 * count));
+    };
+    std::vector<MapPart> parts;
+    for (int row = 0; row < rows; ++row) {
+        for (int column = 0; column < columns; ++column)
+            parts.push_back({place(column, columns, width), place(row, rows, height), side, side});
+    }
+    return parts;
+}
+
+Image part_of(const Image& map, const MapPart& part) {
+    if (part.x < 0 || part.y < 0 || part.width <= 0 || part.height <= 0 ||
+        part.width > map.width - part.x || part.height > map.height - part.y) {
+        throw InvalidInput(fmt::format("{} x {} texels at ({}, {}) are not within {} x {}",
+                                       part.width, part.height, part.x, part.y, map.width,
+                                       map.height));
+    }
+    Image result = make_image(part.width, part.height, map.channels, map.bits(), map.color_space);
+    std::visit(
+        [&](const auto& from) {
+            auto& to = std::get<std::remove_cvref_t<decltype(from)>>(result.samples);
+            const auto length = static_cast<std::ptrdiff_t>(part.width) * map.channels;
+            for (int row = 0; row < part.height; ++row) {
+                const auto first =
+                    (static_cast<std::ptrdiff_t>(part.y + row) * map.width + part.x) * map.channels;
+                std::copy_n(from.begin() + first, length, to.begin() + row * length);
+            }
+        },
+        map.samples);
+    return result;
+}
+
+KernelChoice choose_kernel(std::span<const Image> parts, const BumpOptions& options,
+                           bool destaircased) {
+    check(parts);
+    const KernelRehearsal rehearsal(parts, options, destaircased);
+    KernelChoice choice;
+    choice.depth = rehearsal.coding().depth;
+    choice.noise = rehearsal.noise();
+    choice.walls = rehearsal.walls();
+    choice.predictions = all_predictions(rehearsal);
+    const auto by_error = [](const KernelPrediction& a, const KernelPrediction& b) {
+        return a.rms_degrees < b.rms_degrees;
+    };
+    const double least =
+        std::min_element(choice.predictions.begin(), choice.predictions.end(), by_error)
+            ->rms_degrees;
+    const KernelPrediction best =
+        *std::find_if(choice.predictions.begin(), choice.predictions.end(),
+                      [&](const auto& tried) { return tried.rms_degrees <= as_good * least; });
+    std::stable_sort(choice.predictions.begin(), choice.predictions.end(), by_error);
+    choice.kernel = best.kernel;
+    choice.gaussian_radius = best.gaussian_radius;
+    choice.rms_degrees = best.rms_degrees;
+    choice.reason = reason_of(rehearsal, options, best);
+    return choice;
+}
+
+KernelChoice choose_kernel(const Image& height, const BumpOptions& options, bool destaircased) {
+    if (height.empty()) throw InvalidInput("an empty height field has no kernel");
+    std::vector<Image> parts;
+    for (const MapPart& place : parts_to_look_at(height.width, height.height))
+        parts.push_back(part_of(height, place));
+    return choose_kernel(parts, options, destaircased);
+}
+
+}  // namespace relief

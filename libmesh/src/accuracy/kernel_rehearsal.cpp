@@ -1,0 +1,250 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a map may have been: where rounding to codes is as good as white noise, and where there is
+// noise, its spectrum is subtracted; where steps are wider than texels, they are smoothed away
+// (destaircase.h); floats without noise are taken as they are. On that, rounding and noise are done
+// anew, for kernels to be measured. Heights in the map's unit, 1.0 white. Bad images throw.
+// Tests: tests/mesh/accuracy/kernel_choice_test.cpp.
+#include "accuracy/kernel_rehearsal.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <numbers>
+#include <optional>
+
+#include "accuracy/power_spectrum.h"
+#include "accuracy/random.h"
+#include "image/height_field.h"
+#include "parallel.h"
+#include "relief/mesh/destaircase.h"
+
+namespace relief {
+namespace {
+
+/// All values in one image: for what does not depend on their places.
+Image joined(std::span<const Image> parts) {
+    return std::visit(
+        [&](const auto& first) {
+            using Samples = std::remove_cvref_t<decltype(first)>;
+            Samples all;
+            for (const Image& part : parts) {
+                const auto& samples = std::get<Samples>(part.samples);
+                all.insert(all.end(), samples.begin(), samples.end());
+            }
+            Image image{static_cast<int>(all.size()), 1, 1, ColorSpace::data, {}};
+            image.samples = std::move(all);
+            return image;
+        },
+        parts[0].samples);
+}
+
+/// The bits of mantissa that the values use.
+int mantissa_bits(const Image& values) {
+    unsigned used = 0;
+    for (const float value : values.as<float>()) {
+        if (std::isfinite(value)) used |= std::bit_cast<std::uint32_t>(value);
+    }
+    return 24 - std::min(23, std::countr_zero(used));
+}
+
+HeightTile tile_of(const Image& part) {
+    Image floats = to_float(part);
+    Report ignored;  // The conversion counts holes.
+    std::vector<float> whole = filled_holes(floats, Wrap::clamp, ignored);
+    if (!whole.empty()) floats.samples = std::move(whole);
+    const std::span<const float> samples = floats.as<float>();
+    return {floats.width, floats.height, Wrap::clamp, {samples.begin(), samples.end()}};
+}
+
+Image image_of(const HeightTile& tile) {
+    Image image = make_image(tile.width, tile.height, 1, 32, ColorSpace::data);
+    std::transform(tile.values.begin(), tile.values.end(), image.as<float>().begin(),
+                   [](double value) { return static_cast<float>(value); });
+    return image;
+}
+
+Image without_steps(const Image& heights, double step) {
+    return destaircase(heights, {.wrap = Wrap::clamp, .step = step}).heights;
+}
+
+/// Without what smaller than a few texels is left of wide steps: there was none to be seen in them.
+/// Twice the binomial (1 4 6 4 1) / 16 less that applied twice, which leaves crests as they are.
+HeightTile evened(HeightTile tile) {
+    static constexpr std::array weights = {122.0 / 256, 72.0 / 256, 4.0 / 256, -8.0 / 256,
+                                           -1.0 / 256};
+    for (const int spacing : {1, 2})
+        tile = filtered(tile, weights, spacing);
+    return tile;
+}
+
+/// Rounding and noise as the map has them, but not the same ones.
+Image spoilt(const HeightTile& tile, const HeightCoding& coding, double noise, std::uint32_t seed) {
+    Random random(seed);
+    HeightTile result = tile;
+    const double step = coding.step();
+    // Codes lie elsewhere: what is left of the old steps must not fit them.
+    const double shift = 0.382 * step;
+    for (double& value : result.values) {
+        if (noise > 0.0) value += noise * random.normal();
+        if (step > 0.0)
+            value = step * std::floor((value + shift) / step + 0.5) - shift;
+        else
+            value += coding.error_of(value) * random.normal();
+    }
+    return image_of(result);
+}
+
+double root_mean_square_rounding(std::span<const HeightTile> tiles, const HeightCoding& coding) {
+    double squares = 0.0;
+    double count = 0.0;
+    for (const HeightTile& tile : tiles) {
+        for (const double value : tile.values)
+            squares += coding.error_of(value) * coding.error_of(value);
+        count += static_cast<double>(tile.values.size());
+    }
+    return std::sqrt(squares / count);
+}
+
+bool have_spectrum(std::span<const HeightTile> tiles) {
+    return std::all_of(tiles.begin(), tiles.end(), [&](const HeightTile& tile) {
+        return tile.width == tile.height && tile.width == tiles[0].width && tile.width >= 8 &&
+               std::has_single_bit(static_cast<unsigned>(tile.width));
+    });
+}
+
+struct MeanSquare {
+    double sum = 0.0;
+    double count = 0.0;
+};
+
+/// Of the angles in radians between float normals and the truth: by the chord, which is as good as
+/// an arc tangent for small angles and 1% short at 90 degrees.
+///
+/// \param margin  texels along the border that are left out
+MeanSquare square_error(const Image& normals, std::span<const glm::dvec3> truth, int margin) {
+    const std::span<const float> n = normals.as<float>();
+    MeanSquare result;
+    for (int y = margin; y < normals.height - margin; ++y) {
+        for (int x = margin; x < normals.width - margin; ++x) {
+            const auto i = static_cast<std::size_t>(y * normals.width + x);
+            if (truth[i] == glm::dvec3(0.0)) continue;
+            const glm::dvec3 chord = glm::dvec3(n[3 * i], n[3 * i + 1], n[3 * i + 2]) - truth[i];
+            const double square = glm::dot(chord, chord);
+            const double longer = 1.0 + square * (1.0 / 24.0 + square * (3.0 / 640.0));
+            result.sum += square * longer * longer;
+            result.count += 1.0;
+        }
+    }
+    return result;
+}
+
+}  // namespace
+
+double HeightCoding::error_of(double height) const {
+    constexpr double of_rounding = 0.28867513459481287;  // The root of 1/12.
+    if (depth.bits > 0) return of_rounding * depth.step;
+    if (height == 0.0) return 0.0;
+    int exponent = 0;
+    std::frexp(height, &exponent);
+    return of_rounding * std::ldexp(1.0, exponent - mantissa_bits);
+}
+
+void KernelRehearsal::restore(std::vector<HeightTile>& tiles) {
+    const double rounding = root_mean_square_rounding(tiles, coding_);
+    const auto [measured, is_white] = high_frequencies(tiles);
+    const double step = coding_.step();
+    // What little there is beyond rounding may as well be detail; and planes that are rounded make
+    // patterns.
+    if (is_white && measured > (step > 0.0 ? 1.1 : 1.25) * rounding)
+        noise_ = std::sqrt(measured * measured - rounding * rounding);
+    // Steps that texels climb one by one or faster leave as much in the highest frequencies as
+    // white noise; wider ones next to nothing.
+    const bool is_coarse_float = step == 0.0 && coding_.mantissa_bits < 20;
+    const double least = step > 0.0 ? 0.3 : is_coarse_float ? 0.0 : 1.25;
+    const bool steps_are_wide = step > 0.0 && measured <= least * rounding;
+    const bool by_spectrum = is_white && measured > least * rounding && have_spectrum(tiles);
+    if (!by_spectrum && step == 0.0) return;
+    std::optional<PowerSpectrum> spectrum;
+    if (by_spectrum) spectrum.emplace(tiles);
+    const double noise = std::max(measured, rounding);
+    parallel_for(tiles.size(), 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            if (by_spectrum) {
+                tiles[i] = without_noise(tiles[i], *spectrum, noise);
+                continue;
+            }
+            tiles[i] = tile_of(without_steps(image_of(tiles[i]), step));
+            if (steps_are_wide) tiles[i] = evened(std::move(tiles[i]));
+        }
+    });
+}
+
+void KernelRehearsal::spoil(const std::vector<HeightTile>& tiles, bool destaircased) {
+    const double step = coding_.step();
+    const double least_cliff = std::max(3.0 * step, 6.0 * noise_);
+    const glm::dvec2 scale = options_.strength / options_.texel;
+    normals_.resize(tiles.size());
+    spoilt_.resize(tiles.size());
+    std::vector<std::size_t> beside(tiles.size(), 0);
+    parallel_for(tiles.size(), 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            const TileSlopes truth = true_slopes(tiles[i], least_cliff);
+            for (std::size_t texel = 0; texel < truth.slopes.size(); ++texel) {
+                const glm::dvec2 slope = truth.slopes[texel] * scale;
+                const bool has_none = truth.beside_cliff[texel] != 0;
+                normals_[i].push_back(has_none
+                                          ? glm::dvec3(0.0)
+                                          : glm::normalize(glm::dvec3(-slope.x, slope.y, 1.0)));
+                beside[i] += has_none ? 1 : 0;
+            }
+            spoilt_[i] = spoilt(tiles[i], coding_, noise_, static_cast<std::uint32_t>(i));
+            if (destaircased && step > 0.0) spoilt_[i] = without_steps(spoilt_[i], step);
+        }
+    });
+    double texels = 0.0;
+    for (std::size_t i = 0; i < tiles.size(); ++i) {
+        walls_ += static_cast<double>(beside[i]);
+        texels += static_cast<double>(normals_[i].size());
+    }
+    walls_ /= texels;
+}
+
+KernelRehearsal::KernelRehearsal(std::span<const Image> parts, const BumpOptions& options,
+                                 bool destaircased)
+    : options_(options) {
+    const Image all = joined(parts);
+    coding_.depth = height_depth(all);
+    if (coding_.depth.bits == 0) coding_.mantissa_bits = mantissa_bits(all);
+    options_.wrap = Wrap::clamp;
+    options_.arithmetic = Arithmetic::float64;
+    std::vector<HeightTile> tiles(parts.size());
+    std::transform(parts.begin(), parts.end(), tiles.begin(), tile_of);
+    restore(tiles);
+    spoil(tiles, destaircased);
+}
+
+KernelPrediction KernelRehearsal::predict(Kernel kernel, int radius) const {
+    BumpOptions options = options_;
+    options.kernel = kernel;
+    options.gaussian_radius = radius;
+    std::vector<MeanSquare> of_parts(spoilt_.size());
+    parallel_for(spoilt_.size(), 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            Report ignored;
+            const Image normals = normals_from_height(spoilt_[i], options, ignored);
+            // Close to the border of a part, what lies beyond it is guessed.
+            const int margin = std::min(normals.width, normals.height) / 8;
+            of_parts[i] = square_error(normals, normals_[i], margin);
+        }
+    });
+    MeanSquare all;
+    for (const MeanSquare& part : of_parts) {
+        all.sum += part.sum;
+        all.count += part.count;
+    }
+    const double radians = all.count > 0.0 ? std::sqrt(all.sum / all.count) : 0.0;
+    return {kernel, radius, radians * 180.0 / std::numbers::pi};
+}
+
+}  // namespace relief

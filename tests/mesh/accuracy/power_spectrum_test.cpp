@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+// The Fourier transform against its definition, the spectra of noise and of waves.
+#include "accuracy/power_spectrum.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "accuracy/random.h"
+
+namespace relief {
+namespace {
+
+using Complex = std::complex<double>;
+
+HeightTile tile_of(int side, const std::function<double(int, int)>& at) {
+    HeightTile tile{side, side, Wrap::clamp, {}};
+    for (int y = 0; y < side; ++y) {
+        for (int x = 0; x < side; ++x)
+            tile.values.push_back(at(x, y));
+    }
+    return tile;
+}
+
+HeightTile noise_of(double deviation, std::uint32_t seed) {
+    Random random(seed);
+    return tile_of(64, [&](int, int) { return deviation * random.normal(); });
+}
+
+double root_mean_square(const HeightTile& tile, int margin) {
+    double squares = 0.0;
+    int count = 0;
+    for (int y = margin; y < tile.height - margin; ++y) {
+        for (int x = margin; x < tile.width - margin; ++x) {
+            squares += std::pow(tile.values[static_cast<std::size_t>(y * tile.width + x)], 2);
+            ++count;
+        }
+    }
+    return std::sqrt(squares / count);
+}
+
+TEST(PowerSpectrum, TheTransformIsThatOfItsDefinitionAndGoesBack) {
+    constexpr int side = 8;
+    Random random(3);
+    std::vector<Complex> square(side * side);
+    for (Complex& value : square)
+        value = {random.normal(), random.normal()};
+    std::vector<Complex> transformed = square;
+    transform_square(transformed, side, false);
+    for (int v = 0; v < side; ++v) {
+        for (int u = 0; u < side; ++u) {
+            Complex sum = 0.0;
+            for (int y = 0; y < side; ++y) {
+                for (int x = 0; x < side; ++x)
+                    sum += square[static_cast<std::size_t>(y * side + x)] *
+                           std::polar(1.0, -2.0 * std::numbers::pi * (u * x + v * y) / side);
+            }
+            EXPECT_LT(std::abs(transformed[static_cast<std::size_t>(v * side + u)] - sum), 1e-12);
+        }
+    }
+    transform_square(transformed, side, true);
+    for (std::size_t i = 0; i < square.size(); ++i)
+        EXPECT_LT(std::abs(transformed[i] / 64.0 - square[i]), 1e-13);
+}
+
+TEST(PowerSpectrum, NothingIsLeftOfNoiseAndNearlyAllOfWaves) {
+    const HeightTile noise[] = {noise_of(0.5, 1), noise_of(0.5, 2), noise_of(0.5, 3)};
+    const PowerSpectrum of_noise(noise);
+    EXPECT_LT(root_mean_square(without_noise(noise[0], of_noise, 0.5), 8), 0.08);
+
+    // Noise on a wave of 16 texels: what is left is far closer to the wave.
+    const auto wave = [](int x, int y) { return std::sin(0.36 * x + 0.15 * y); };
+    const HeightTile clean = tile_of(64, wave);
+    HeightTile noisy[3] = {noise[0], noise[1], noise[2]};
+    for (HeightTile& tile : noisy) {
+        for (std::size_t i = 0; i < tile.values.size(); ++i)
+            tile.values[i] += clean.values[i];
+    }
+    HeightTile rest = without_noise(noisy[1], PowerSpectrum(noisy), 0.5);
+    for (std::size_t i = 0; i < rest.values.size(); ++i)
+        rest.values[i] -= clean.values[i];
+    EXPECT_LT(root_mean_square(rest, 8), 0.3);
+    EXPECT_GT(root_mean_square(rest, 8), 0.02);
+}
+
+TEST(PowerSpectrum, TheFilterIsTheShareOfPowerThatIsNotNoise) {
+    const HeightTile noise[] = {noise_of(1.0, 5), noise_of(1.0, 6)};
+    const PowerSpectrum spectrum(noise);
+    // Of power 1 all round, noise of half the deviation leaves three quarters.
+    double sum = 0.0;
+    for (int i = 0; i < 60; ++i)
+        sum += std::pow(spectrum.without_noise(0.3 + 0.04 * i, 1.0, 0.5), 2);
+    EXPECT_NEAR(sum / 60.0, 0.75, 0.05);
+    EXPECT_EQ(spectrum.without_noise(1.0, 1.0, 2.0), 0.0);
+}
+
+}  // namespace
+}  // namespace relief
