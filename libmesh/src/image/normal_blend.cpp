@@ -62,10 +62,14 @@ void blend_row(float* base, const float* detail, std::size_t width, std::size_t 
         float* const b = base + x * 3;
         const float* const d = detail + at * 3;
         Direction result = blended(method, {b[0], b[1], b[2]}, {d[0], d[1], d[2]});
-        if (make_unit(result))
-            store(result, b);
-        else
+        const bool base_faces_out = b[2] >= 0.0F;
+        if (!make_unit(result)) {
             found.add("blend without direction", "texel", first_texel + x, "left as the base");
+            continue;
+        }
+        store(result, b);
+        if (base_faces_out && result.z < 0.0)
+            found.add("detail facing back on its base", "texel", first_texel + x, "left so");
     }
 }
 

@@ -8,13 +8,13 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <vector>
 
 #include "image/border.h"
 #include "image/texel_loops.h"
 #include "relief/mesh/error.h"
-#include "relief/mesh/normal_map_operations.h"
 
 namespace relief {
 namespace {
@@ -116,6 +116,26 @@ class Resampling {
         }
     }
 
+    /// The mean of vectors that lie as the samples do, at one place of the result.
+    [[nodiscard]] Direction mean_vector(const Image& vectors, std::size_t row,
+                                        std::size_t column) const {
+        const float* const all = vectors.as<float>().data();
+        Direction sum{0.0, 0.0, 0.0};
+        for (std::size_t j = down_.first[row]; j < down_.first[row + 1]; ++j) {
+            for (std::size_t i = across_.first[column]; i < across_.first[column + 1]; ++i) {
+                const float* const vector =
+                    all + (down_.taps[j].place * static_cast<std::size_t>(vectors.width) +
+                           across_.taps[i].place) *
+                              3;
+                const double weight = static_cast<double>(down_.taps[j].weight) *
+                                      static_cast<double>(across_.taps[i].weight);
+                sum = {sum.x + weight * vector[0], sum.y + weight * vector[1],
+                       sum.z + weight * vector[2]};
+            }
+        }
+        return sum;
+    }
+
   private:
     /// The rows around one of the result, weighed, all columns alike.
     [[nodiscard]] std::vector<float> sum_of_rows(std::size_t row) const {
@@ -150,14 +170,33 @@ void check(int width, int height, const ResizeOptions& options) {
     }
 }
 
-/// A row of means as unit normals.
+/// Slopes of normals, two floats a texel; not a number where there is none to be averaged.
+Image slopes_to_average(const Image& normals, Report& report) {
+    Image result = make_image(normals.width, normals.height, 2, 32, ColorSpace::data);
+    const std::span<const float> from = normals.as<float>();
+    const std::span<float> to = result.as<float>();
+    for_each_texel(from.size() / 3, report, [&](std::size_t texel, Report& found) {
+        const float* const n = &from[texel * 3];
+        const bool is_steep = !(std::hypot(n[0], n[1]) <= steepest_averaged_slope * n[2]);
+        if (is_steep)
+            found.add("normal too steep to average slopes", "texel", texel,
+                      "vectors averaged around it");
+        to[texel * 2] = is_steep ? std::numeric_limits<float>::quiet_NaN() : -n[0] / n[2];
+        to[texel * 2 + 1] = is_steep ? std::numeric_limits<float>::quiet_NaN() : -n[1] / n[2];
+    });
+    return result;
+}
+
+/// A row of means as unit normals. \param mean_vector  of a texel whose slopes are not numbers
+template <typename MeanVector>
 void store_row(const std::vector<float>& means, ResizeDomain domain, std::size_t first_texel,
-               float* normals, Report& found) {
+               float* normals, Report& found, const MeanVector& mean_vector) {
     const std::size_t channels = domain == ResizeDomain::slopes ? 2 : 3;
     for (std::size_t x = 0; x < means.size() / channels; ++x) {
         const float* const mean = &means[x * channels];
         Direction normal{mean[0], mean[1], channels == 3 ? mean[2] : 0.0};
         if (domain == ResizeDomain::slopes) normal = {-normal.x, -normal.y, 1.0};
+        if (std::isnan(normal.x)) normal = mean_vector(x);
         if (!make_unit(normal))
             found.add("normals that cancel", "texel", first_texel + x, "made flat");
         store(normal, normals + x * 3);
@@ -172,7 +211,7 @@ Image resize_normals(const Image& normals, int width, int height, const ResizeOp
     check(width, height, options);
     if (is_own_size(normals, width, height, options)) return normals;
     const bool has_slopes = options.domain == ResizeDomain::slopes;
-    const Image slopes = has_slopes ? slopes_from_normals(normals, report) : Image{};
+    const Image slopes = has_slopes ? slopes_to_average(normals, report) : Image{};
     const Resampling resampling(has_slopes ? slopes : normals, width, height, options);
 
     Image result = make_image(width, height, 3, 32, ColorSpace::data);
@@ -181,7 +220,8 @@ Image resize_normals(const Image& normals, int width, int height, const ResizeOp
     for_each_row(width, height, report, [&](std::size_t row, Report& found) {
         std::vector<float> means(columns * (has_slopes ? 2 : 3));
         resampling.make_row(row, means.data());
-        store_row(means, options.domain, row * columns, to + row * columns * 3, found);
+        store_row(means, options.domain, row * columns, to + row * columns * 3, found,
+                  [&](std::size_t x) { return resampling.mean_vector(normals, row, x); });
     });
     return result;
 }

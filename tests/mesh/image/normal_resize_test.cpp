@@ -167,12 +167,32 @@ TEST(ResizeNormals, NormalsThatCancelAreFlatAndCounted) {
         report);
     EXPECT_THAT(samples_of<float>(result), ElementsAre(0, 0, 1, 0, 0, 1));
     EXPECT_EQ(report.count("normals that cancel"), 1U);
-    // Their slopes cancel too, as far as they have any.
+    // Of normals so steep no slopes are averaged either.
     Report steep;
     const Image by_slopes = resize_normals(
         normals, 2, 1, {ResizeFilter::box, ResizeDomain::slopes, Wrap::repeat, {1.0, 1.0}}, steep);
-    EXPECT_THAT(samples_of<float>(by_slopes), ElementsAre(0, 0, 1, 0, 0, 1));
-    EXPECT_EQ(steep.count("normal too steep for a slope"), 2U);
+    EXPECT_EQ(by_slopes.samples, result.samples);
+    EXPECT_EQ(steep.count("normal too steep to average slopes"), 2U);
+    EXPECT_EQ(steep.count("normals that cancel"), 1U);
+}
+
+TEST(ResizeNormals, ASteepTexelIsAveragedAsAVectorAndSpoilsNothing) {
+    std::vector<double> slopes(32, 0.0);
+    slopes[16] = 1000.0;
+    const Image normals = normals_of(slopes);
+    for (const ResizeDomain domain : both_domains) {
+        Report report;
+        const Image result = resize_normals(
+            normals, 16, 1, {ResizeFilter::lanczos, domain, Wrap::repeat, {1.0, 1.0}}, report);
+        // Its weights, a quarter and 5 quarters from the middle: 0.4461 and -0.0664 of 1.
+        const std::vector<float> found = slopes_of(result);
+        EXPECT_NEAR(*std::max_element(found.begin(), found.end()), 0.4461 / 0.5539, 1e-3);
+        EXPECT_NEAR(*std::min_element(found.begin(), found.end()), -0.0664 / 1.0664, 1e-3);
+        EXPECT_EQ(report.count("normal too steep to average slopes"),
+                  domain == ResizeDomain::slopes ? 1U : 0U);
+    }
+    slopes[16] = 15.0;
+    EXPECT_GT(slopes_of(resized(normals_of(slopes), 16, 1, {}))[8], 6.0F);
 }
 
 TEST(ResizeNormals, TheSameBitsForAnyNumberOfThreads) {

@@ -35,7 +35,8 @@ inline constexpr NormalBlend all_normal_blends[] = {
 /// \param detail  the same, of any size: repeated from the upper left corner on; see fitted_detail
 ///                (normal_resize.h) for one that is to be stretched
 /// \param report  counts texels where the result has no direction, or (reoriented) the base faces
-///                straight back: they stay the base's
+///                straight back: they stay the base's; and those that reoriented or unity turn so
+///                far that they face back where the base does not: both slopes are steep there
 /// \throws InvalidInput if an image is empty or not of three float channels
 ///
 /// A flat detail changes nothing, to within rounding, but with `linear` and `overlay`; a flat base

@@ -27,6 +27,10 @@ enum class ResizeDomain {
     vectors,  ///< The normals themselves, made unit again: steep texels count for less.
 };
 
+/// Normals steeper than this, 86.4 degrees, would drown all slopes around them; where they count,
+/// vectors are averaged instead.
+inline constexpr float steepest_averaged_slope = 16.0F;
+
 struct ResizeOptions {
     ResizeFilter filter = ResizeFilter::best;
     ResizeDomain domain = ResizeDomain::slopes;
@@ -40,8 +44,8 @@ struct ResizeOptions {
 ///
 /// \param normals  three float channels, unit
 /// \param width, height  positive
-/// \param report  counts, with vectors, texels whose mean has no direction: made flat; with slopes,
-///                normals that have none (slopes_from_normals)
+/// \param report  counts texels where the mean of the vectors has no direction: made flat; with
+///                slopes, normals too steep for that
 /// \throws InvalidInput if the image is not of three float channels, or a size or repeat is not
 ///         positive
 ///
