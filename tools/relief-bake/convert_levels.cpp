@@ -105,39 +105,37 @@ void LevelWriter::write_roughness(WrittenLevel& written, std::size_t level, cons
     });
 }
 
-void LevelWriter::write_level(std::size_t level, const Image& normals,
-                              const std::optional<Image>& alpha,
-                              const std::optional<Image>& lengths, Stages& stages, Report& report) {
-    const std::filesystem::path file =
-        level == 0 ? job_.output : level_file(job_.output, level, false);
+Image LevelWriter::coded_level(const Image& normals, const std::optional<Image>& alpha,
+                               Report& report) const {
     NormalMapFormat as_stored = done_.format;
     as_stored.green = Green::up;
-    const Image codes = stages.run("convert", [&] {
-        Image plain = encode_normal_map(normals, as_stored, report);
-        if (request_.mips.lengths) return with_alpha(plain, *lengths);
-        return alpha ? with_alpha(plain, *alpha) : std::move(plain);
-    });
-    WrittenLevel written{file, normals.width, normals.height, 1.0, 1.0, {}, {}};
-    if (lengths) {
-        written.mean_length = mean_of(*lengths);
-        const auto all = lengths->as<float>();
-        written.least_length = static_cast<double>(*std::min_element(all.begin(), all.end()));
-    }
+    Image codes = encode_normal_map(normals, as_stored, report);
+    return alpha ? with_alpha(codes, *alpha) : codes;
+}
+
+void LevelWriter::write_level(std::size_t level, const Image& codes, const Image& lengths,
+                              Stages& stages, Report& report) {
+    const std::filesystem::path file =
+        level == 0 ? job_.output : level_file(job_.output, level, false);
+    const auto all = lengths.as<float>();
+    const auto least = static_cast<double>(*std::min_element(all.begin(), all.end()));
+    WrittenLevel written{file, codes.width, codes.height, mean_of(lengths), least, {}, {}};
     stages.run("write", [&] { write(file, codes, metadata(), report); });
-    if (request_.mips.roughness) write_roughness(written, level, *lengths, stages, report);
+    if (request_.mips.roughness) write_roughness(written, level, lengths, stages, report);
     done_.levels.push_back(std::move(written));
 }
 
-void LevelWriter::write_levels(NormalField& field, Stages& stages, Report& report) {
-    if (!request_.mips.wanted)
-        return write_level(0, field.normals, field.alpha, {}, stages, report);
-    if (request_.mips.lengths && field.alpha) {
-        throw UsageError(
-            fmt::format("--mip-lengths: {} has an alpha of its own", job_.input.string()),
-            "--alpha drop makes room");
-    }
-    write_level(0, field.normals, field.alpha, ones(field.normals.width, field.normals.height),
-                stages, report);
+/// The map and all levels below it.
+void LevelWriter::write_all_levels(NormalField& field, Stages& stages, Report& report) {
+    const auto code_and_write = [&](std::size_t level, const Image& normals, const Image& lengths,
+                                    const std::optional<Image>& alpha) {
+        const Image codes = stages.run("convert", [&] {
+            return request_.mips.lengths ? coded_level(normals, lengths, report)
+                                         : coded_level(normals, alpha, report);
+        });
+        write_level(level, codes, lengths, stages, report);
+    };
+    code_and_write(0, field.normals, ones(field.normals.width, field.normals.height), field.alpha);
     std::vector<Image> levels =
         stages.run("convert", [&] { return normal_mip_levels(field.normals); });
     field.normals = Image{};
@@ -146,10 +144,22 @@ void LevelWriter::write_levels(NormalField& field, Stages& stages, Report& repor
     for (std::size_t i = 0; i < levels.size(); ++i) {
         const Image lengths =
             stages.run("convert", [&] { return split_lengths(levels[i], report); });
-        const std::optional<Image> alpha =
-            alphas.empty() ? std::nullopt : std::optional<Image>(alphas[i]);
-        write_level(i + 1, levels[i], alpha, lengths, stages, report);
+        code_and_write(i + 1, levels[i], lengths,
+                       alphas.empty() ? std::nullopt : std::optional<Image>(alphas[i]));
     }
+}
+
+void LevelWriter::write_levels(NormalField& field, Stages& stages, Report& report) {
+    if (request_.mips.lengths && field.alpha) {
+        throw UsageError(
+            fmt::format("--mip-lengths: {} has an alpha of its own", job_.input.string()),
+            "--alpha drop makes room");
+    }
+    if (request_.mips.wanted) return write_all_levels(field, stages, report);
+    const Image codes =
+        stages.run("convert", [&] { return coded_level(field.normals, field.alpha, report); });
+    field = NormalField{};  // Before writing, which takes memory itself.
+    stages.run("write", [&] { write_codes(codes, report); });
 }
 
 }  // namespace relief::tools

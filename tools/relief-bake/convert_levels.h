@@ -22,8 +22,11 @@ class LevelWriter {
     void write_levels(NormalField& field, Stages& stages, Report& report);
 
   private:
-    void write_level(std::size_t level, const Image& normals, const std::optional<Image>& alpha,
-                     const std::optional<Image>& lengths, Stages& stages, Report& report);
+    void write_all_levels(NormalField& field, Stages& stages, Report& report);
+    [[nodiscard]] Image coded_level(const Image& normals, const std::optional<Image>& alpha,
+                                    Report& report) const;
+    void write_level(std::size_t level, const Image& codes, const Image& lengths, Stages& stages,
+                     Report& report);
     void write_roughness(WrittenLevel& written, std::size_t level, const Image& lengths,
                          Stages& stages, Report& report);
     void write(const std::filesystem::path& file, const Image& image,
