@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// Error against time for bump maps: ways to convert a height map, measured on that map, and the
+/// cheapest that is good enough. The one home of it. Tests:
+/// tests/mesh/accuracy/bump_experiment_test.cpp.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "relief/mesh/angle_distribution.h"
+#include "relief/mesh/bump_fields.h"
+#include "relief/mesh/kernel_choice.h"
+#include "relief/mesh/normal_map.h"
+#include "relief/mesh/timing.h"
+
+namespace relief {
+
+/// A way to convert.
+struct BumpMethod {
+    Kernel kernel = Kernel::sobel3;
+    int gaussian_radius = 2;  ///< Of Kernel::gaussian.
+    Arithmetic arithmetic = Arithmetic::float32;
+    int bits = 16;              ///< Of the stored map.
+    bool destaircased = false;  ///< After destaircase() (destaircase.h).
+
+    bool operator==(const BumpMethod&) const = default;
+};
+
+/// What it costs by its own nature, for choices that must not depend on a clock: bytes of the
+/// result first, then de-staircasing, then the operations a texel, twice as dear in float64.
+double cost_of(const BumpMethod& method);
+
+/// What a method did.
+struct BumpMeasurement {
+    BumpMethod method;
+    AngleDistribution error;  ///< Of the stored normals from the reference, in degrees.
+    Spread seconds;           ///< Of a conversion in memory; zeros if none was timed.
+    double megapixels_per_second = 0.0;
+    bool is_efficient = false;  ///< None measured has both less RMS error and less time.
+};
+
+/// What errors are counted from.
+struct BumpReference {
+    /// In float64, unrounded; nothing where the truth is known.
+    std::optional<BumpMethod> method;
+    /// What the reference itself is expected to be off the ground that the map was made of: errors
+    /// below say nothing about that. 0 where the truth is known.
+    double own_degrees = 0.0;
+    std::string words;  ///< All that, for people.
+};
+
+struct BumpExperiment {
+    BumpReference reference;
+    std::vector<BumpMeasurement> measurements;  ///< In the order of the methods.
+    KernelChoice choice;                        ///< For the map as it is.
+    std::int64_t texels = 0;                    ///< That were looked at.
+    bool is_whole = true;                       ///< False: parts of a large map.
+};
+
+struct BumpExperimentOptions {
+    BumpOptions bump;        ///< Strength, texel and wrap.
+    NormalMapFormat format;  ///< Of the stored maps, but for their bits.
+    Repeats repeats{5, 1};   ///< `counted` 0: nothing is timed.
+    /// Larger maps are measured on 9 parts with as many texels together.
+    std::int64_t most_texels = std::int64_t{1} << 20;
+};
+
+/// Every kernel (the Gaussian with the radius given), in both arithmetics, in each of the depths.
+std::vector<BumpMethod> bump_methods(int gaussian_radius, std::span<const int> depths,
+                                     std::span<const Arithmetic> arithmetics,
+                                     std::span<const bool> destaircased);
+
+/// Converts the map in every way and measures error and time, all in turns.
+///
+/// \param height  one channel, as for normals_from_height()
+/// \return errors from the truest normals known for this map: those of the chosen kernel in
+///         float64, of the map as it is or de-staircased, whichever choose_kernel() expects less
+///         error of. What was lost when the map was rounded, no reference can know
+/// \throws InvalidInput as normals_from_height() does
+BumpExperiment measure_bump(const Image& height, std::span<const BumpMethod> methods,
+                            const BumpExperimentOptions& options);
+
+/// The same on a field whose true normals are known, and from those.
+BumpExperiment measure_bump(const BumpField& field, std::span<const BumpMethod> methods,
+                            BumpExperimentOptions options);
+
+/// Which error a bound is for.
+enum class ErrorKind { rms, max };
+
+/// The measurement of least cost_of() with an error within the bound; nullptr where there is none.
+const BumpMeasurement* cheapest_within(const BumpExperiment& experiment, double degrees,
+                                       ErrorKind kind);
+
+/// The one of least error; nullptr if nothing was measured.
+const BumpMeasurement* truest(const BumpExperiment& experiment, ErrorKind kind);
+
+}  // namespace relief

@@ -1,0 +1,285 @@
+// SPDX-License-Identifier: Apache-2.0
+// Ways to convert a height map, run in turns on the map or on parts of it: stored normals are read
+// back and compared with the reference, in degrees; times are of all parts together. A bad map
+// throws. Tests: tests/mesh/accuracy/bump_experiment_test.cpp.
+#include "relief/mesh/bump_experiment.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "parallel.h"
+#include "relief/mesh/destaircase.h"
+#include "relief/mesh/direction_error.h"
+#include "relief/mesh/error.h"
+
+namespace relief {
+namespace {
+
+/// De-staircasing is for maps with fewer bits than this: the steps of more are nowhere to be seen.
+constexpr int fine_bits = 13;
+constexpr Kernel all_kernels[] = {
+    Kernel::forward, Kernel::central3, Kernel::prewitt3, Kernel::sobel3,   Kernel::scharr3,
+    Kernel::sobel5,  Kernel::scharr5,  Kernel::central5, Kernel::central7, Kernel::gaussian};
+
+/// What conversions are tried on.
+struct Sample {
+    std::vector<Image> heights;
+    std::vector<Image> smooth;  ///< De-staircased; empty if no method wants it.
+    std::vector<std::vector<glm::dvec3>> truth;
+    BumpOptions bump;
+    int margin = 0;  ///< Texels along the border that are not compared: there, parts are no maps.
+    double smoothing_seconds = 0.0;
+
+    [[nodiscard]] std::int64_t texels() const {
+        std::int64_t sum = 0;
+        for (const Image& part : heights)
+            sum += std::int64_t{part.width} * part.height;
+        return sum;
+    }
+};
+
+BumpOptions options_of(const BumpMethod& method, BumpOptions bump) {
+    bump.kernel = method.kernel;
+    bump.gaussian_radius = method.gaussian_radius;
+    bump.arithmetic = method.arithmetic;
+    return bump;
+}
+
+double seconds_of(const std::function<void()>& work) {
+    const auto begin = std::chrono::steady_clock::now();
+    work();
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+}
+
+Sample sample_of(const Image& height, const BumpExperimentOptions& options) {
+    Sample sample;
+    sample.bump = options.bump;
+    const std::int64_t texels = std::int64_t{height.width} * height.height;
+    if (texels <= options.most_texels) {
+        sample.heights.push_back(height);
+        return sample;
+    }
+    constexpr int each_way = 3;
+    const auto wanted = std::sqrt(static_cast<double>(options.most_texels) / (each_way * each_way));
+    const int width = std::min(height.width, std::max(1, static_cast<int>(wanted)));
+    const int rows = std::min(height.height, std::max(1, static_cast<int>(wanted)));
+    for (int row = 0; row < each_way; ++row) {
+        for (int column = 0; column < each_way; ++column) {
+            sample.heights.push_back(part_of(
+                height,
+                {static_cast<int>(std::int64_t{column} * (height.width - width) / 2),
+                 static_cast<int>(std::int64_t{row} * (height.height - rows) / 2), width, rows}));
+        }
+    }
+    sample.bump.wrap = Wrap::clamp;
+    sample.margin = std::min({16, (width - 1) / 2, (rows - 1) / 2});
+    return sample;
+}
+
+void smooth(Sample& sample) {
+    sample.smoothing_seconds = seconds_of([&] {
+        for (const Image& part : sample.heights)
+            sample.smooth.push_back(destaircase(part, {.wrap = sample.bump.wrap}).heights);
+    });
+}
+
+std::vector<glm::dvec3> vectors_of(const Image& normals) {
+    const std::span<const float> n = normals.as<float>();
+    std::vector<glm::dvec3> vectors(n.size() / 3);
+    for (std::size_t i = 0; i < vectors.size(); ++i)
+        vectors[i] = {n[3 * i], n[3 * i + 1], n[3 * i + 2]};
+    return vectors;
+}
+
+/// Angles between what is stored and the truth, of the texels that count.
+void add_angles(const Image& map, const NormalMapFormat& format,
+                const std::vector<glm::dvec3>& truth, int margin, std::vector<float>& angles) {
+    Report ignored;
+    const std::vector<glm::dvec3> found =
+        vectors_of(decode_normal_map(map, format.green, format.flat, ignored));
+    const std::size_t first = angles.size();
+    const int width = map.width - 2 * margin;
+    const int height = map.height - 2 * margin;
+    angles.resize(first + static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+    parallel_for(static_cast<std::size_t>(height), 16, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t y = begin; y < end; ++y) {
+            for (std::size_t x = 0; x < static_cast<std::size_t>(width); ++x) {
+                const std::size_t texel =
+                    (y + static_cast<std::size_t>(margin)) * static_cast<std::size_t>(map.width) +
+                    x + static_cast<std::size_t>(margin);
+                angles[first + y * static_cast<std::size_t>(width) + x] =
+                    static_cast<float>(degrees_between(found[texel], truth[texel]));
+            }
+        }
+    });
+}
+
+BumpReference reference_for(const Image& height, const BumpExperimentOptions& options,
+                            const KernelChoice& plain) {
+    KernelChoice best = plain;
+    bool destaircased = false;
+    if (plain.depth.bits > 0 && plain.depth.bits < fine_bits) {
+        const KernelChoice smooth = choose_kernel(height, options.bump, true);
+        destaircased = smooth.rms_degrees < plain.rms_degrees;
+        if (destaircased) best = smooth;
+    }
+    BumpReference reference;
+    reference.method =
+        BumpMethod{best.kernel, best.gaussian_radius, Arithmetic::float64, 32, destaircased};
+    reference.own_degrees = best.rms_degrees;
+    reference.words = fmt::format(
+        "the kernel chosen for this map in float64{}; itself expected to be about {:.2g} degrees "
+        "off what the map was made of, which nothing can know exactly",
+        destaircased ? ", its steps smoothed away" : "", best.rms_degrees);
+    return reference;
+}
+
+void take_reference(const BumpReference& reference, Sample& sample) {
+    const BumpMethod& method = *reference.method;
+    const std::vector<Image>& heights = method.destaircased ? sample.smooth : sample.heights;
+    for (const Image& part : heights) {
+        Report ignored;
+        sample.truth.push_back(
+            vectors_of(normals_from_height(part, options_of(method, sample.bump), ignored)));
+    }
+}
+
+void mark_efficient(std::vector<BumpMeasurement>& all) {
+    for (BumpMeasurement& one : all) {
+        one.is_efficient =
+            one.seconds.count > 0 && std::none_of(all.begin(), all.end(), [&](const auto& other) {
+                return other.error.rms <= one.error.rms &&
+                       other.seconds.median <= one.seconds.median &&
+                       (other.error.rms < one.error.rms ||
+                        other.seconds.median < one.seconds.median);
+            });
+    }
+}
+
+/// Runs all methods on a sample that has its truth.
+std::vector<BumpMeasurement> measured(std::span<const BumpMethod> methods, const Sample& sample,
+                                      const BumpExperimentOptions& options) {
+    std::vector<BumpMeasurement> results(methods.size());
+    std::vector<std::vector<double>> times(methods.size());
+    const auto texels = static_cast<double>(sample.texels());
+    const auto convert = [&](std::size_t i, std::vector<Image>& maps) {
+        const BumpMethod& method = methods[i];
+        NormalMapFormat format = options.format;
+        format.bits = method.bits;
+        const std::vector<Image>& heights = method.destaircased ? sample.smooth : sample.heights;
+        maps.resize(heights.size());
+        Report ignored;
+        for (std::size_t part = 0; part < heights.size(); ++part)
+            normal_map_from_height(heights[part], options_of(method, sample.bump), format,
+                                   maps[part], ignored);
+    };
+    std::vector<Image> maps;
+    for (std::size_t i = 0; i < methods.size(); ++i) {
+        convert(i, maps);
+        NormalMapFormat format = options.format;
+        format.bits = methods[i].bits;
+        std::vector<float> angles;
+        for (std::size_t part = 0; part < maps.size(); ++part)
+            add_angles(maps[part], format, sample.truth[part], sample.margin, angles);
+        results[i].method = methods[i];
+        results[i].error = angle_distribution(std::move(angles));
+    }
+    if (options.repeats.counted > 0) {
+        interleave(methods.size(), options.repeats, [&](std::size_t i, bool counted) {
+            convert(i, maps);  // Whatever shape the memory had last, it fits from here on.
+            const double seconds = seconds_of([&] { convert(i, maps); });
+            if (!counted) return;
+            times[i].push_back(seconds + (methods[i].destaircased ? sample.smoothing_seconds : 0));
+        });
+    }
+    for (std::size_t i = 0; i < methods.size(); ++i) {
+        results[i].seconds = spread_of(times[i]);
+        if (results[i].seconds.median > 0.0)
+            results[i].megapixels_per_second = texels / results[i].seconds.median / 1e6;
+    }
+    mark_efficient(results);
+    return results;
+}
+
+double error_of(const BumpMeasurement& measurement, ErrorKind kind) {
+    return kind == ErrorKind::rms ? measurement.error.rms : measurement.error.max;
+}
+
+}  // namespace
+
+double cost_of(const BumpMethod& method) {
+    const GradientKernel kernel = gradient_kernel(method.kernel, method.gaussian_radius);
+    // Both slopes: a multiplication and two additions for each difference and each smoothed pair.
+    const double operations =
+        6.0 * static_cast<double>(kernel.differences.size() + kernel.smoothing.size());
+    return 1e6 * method.bits + (method.destaircased ? 1e5 : 0.0) +
+           operations * (method.arithmetic == Arithmetic::float64 ? 2.0 : 1.0);
+}
+
+std::vector<BumpMethod> bump_methods(int gaussian_radius, std::span<const int> depths,
+                                     std::span<const Arithmetic> arithmetics,
+                                     std::span<const bool> destaircased) {
+    std::vector<BumpMethod> methods;
+    for (const bool smooth : destaircased) {
+        for (const int bits : depths) {
+            for (const Arithmetic arithmetic : arithmetics) {
+                for (const Kernel kernel : all_kernels)
+                    methods.push_back({kernel, gaussian_radius, arithmetic, bits, smooth});
+            }
+        }
+    }
+    return methods;
+}
+
+BumpExperiment measure_bump(const Image& height, std::span<const BumpMethod> methods,
+                            const BumpExperimentOptions& options) {
+    BumpExperiment experiment;
+    experiment.choice = choose_kernel(height, options.bump);
+    experiment.reference = reference_for(height, options, experiment.choice);
+    Sample sample = sample_of(height, options);
+    smooth(sample);
+    take_reference(experiment.reference, sample);
+    experiment.texels = sample.texels();
+    experiment.is_whole = sample.heights.size() == 1;
+    experiment.measurements = measured(methods, sample, options);
+    return experiment;
+}
+
+BumpExperiment measure_bump(const BumpField& field, std::span<const BumpMethod> methods,
+                            BumpExperimentOptions options) {
+    options.bump = field.options;
+    BumpExperiment experiment;
+    experiment.choice = choose_kernel(field.heights, options.bump);
+    experiment.reference.words = "the true normals of the field";
+    Sample sample;
+    sample.bump = options.bump;
+    sample.heights.push_back(field.heights);
+    smooth(sample);
+    sample.truth.push_back(field.normals);
+    experiment.texels = sample.texels();
+    experiment.measurements = measured(methods, sample, options);
+    return experiment;
+}
+
+const BumpMeasurement* cheapest_within(const BumpExperiment& experiment, double degrees,
+                                       ErrorKind kind) {
+    const BumpMeasurement* cheapest = nullptr;
+    for (const BumpMeasurement& one : experiment.measurements) {
+        if (!(error_of(one, kind) <= degrees)) continue;
+        if (cheapest == nullptr || cost_of(one.method) < cost_of(cheapest->method)) cheapest = &one;
+    }
+    return cheapest;
+}
+
+const BumpMeasurement* truest(const BumpExperiment& experiment, ErrorKind kind) {
+    const BumpMeasurement* least = nullptr;
+    for (const BumpMeasurement& one : experiment.measurements) {
+        if (least == nullptr || error_of(one, kind) < error_of(*least, kind)) least = &one;
+    }
+    return least;
+}
+
+}  // namespace relief
