@@ -27,7 +27,11 @@ bool inflate(std::span<const std::byte> stream, std::span<std::byte> to) {
 }
 
 std::uint32_t crc32(std::span<const std::byte> bytes) {
-    return libdeflate_crc32(0, bytes.data(), bytes.size());
+    return crc32_of_more(0, bytes);
+}
+
+std::uint32_t crc32_of_more(std::uint32_t before, std::span<const std::byte> bytes) {
+    return libdeflate_crc32(before, bytes.data(), bytes.size());
 }
 
 std::uint32_t adler32(std::span<const std::byte> bytes) {

@@ -17,6 +17,9 @@ bool inflate(std::span<const std::byte> stream, std::span<std::byte> to);
 /// The CRC-32 of PNG [ISO/IEC 15948], annex D.
 std::uint32_t crc32(std::span<const std::byte> bytes);
 
+/// That of more bytes, behind those that had this one.
+std::uint32_t crc32_of_more(std::uint32_t before, std::span<const std::byte> bytes);
+
 /// How a zlib stream begins: deflate, with a window of 32 KiB.
 inline constexpr std::string_view zlib_header{"\x78\x9C"};
 

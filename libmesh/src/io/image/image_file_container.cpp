@@ -12,6 +12,7 @@
 #include <array>
 #include <cstdint>
 #include <cstring>
+#include <optional>
 #include <string_view>
 
 #include "file_bytes.h"
@@ -52,7 +53,7 @@ void append(std::vector<std::byte>& to, Bytes bytes) {
 
 /// Refuses a header that announces more than its file can hold.
 void check_believable(std::uint64_t needed, std::uint64_t possible, std::uint64_t width,
-                      std::uint64_t height, std::size_t size, const std::filesystem::path& name) {
+                      std::uint64_t height, std::uint64_t size, const std::filesystem::path& name) {
     if (width == 0 || height == 0)
         throw FileError(name, fmt::format("is empty: {} x {} texels", width, height));
     if (needed <= possible) return;
@@ -62,6 +63,8 @@ void check_believable(std::uint64_t needed, std::uint64_t possible, std::uint64_
 
 // ---------------------------------------------------------------------------------------------
 // PNG
+
+}  // namespace
 
 /// Key, zero, value; or nothing where it is malformed. iTXt has five more fields in between.
 void keep_png_text(std::string_view type, std::string_view data,
@@ -81,7 +84,7 @@ void keep_png_text(std::string_view type, std::string_view data,
     text.emplace(data.substr(0, key_end), value);
 }
 
-void check_png_size(Bytes header, std::uint64_t compressed, std::size_t size,
+void check_png_size(Bytes header, std::uint64_t compressed, std::uint64_t size,
                     const std::filesystem::path& name) {
     static constexpr std::array<std::uint64_t, 7> channels_of_type{1, 0, 3, 1, 2, 0, 4};
     const std::uint64_t width = big32(header, 0);
@@ -96,32 +99,48 @@ void check_png_size(Bytes header, std::uint64_t compressed, std::size_t size,
     check_believable(height, rows_possible + 1, width, height, size, name);
 }
 
-void strip_png(Bytes bytes, const std::filesystem::path& name, ImageContainer& container) {
-    constexpr std::size_t signature = 8;
-    constexpr std::size_t frame = 12;  // Length, type and checksum around a chunk's data.
-    container.stripped.reserve(bytes.size());
-    append(container.stripped, bytes.first(signature));
-    Bytes header;
-    std::uint64_t compressed = 0;
-    for (std::size_t at = signature;;) {
-        if (bytes.size() - at < frame) throw FileError(name, "is cut short: it has no IEND chunk");
-        const std::uint64_t length = big32(bytes, at);
-        const std::string_view type = text_of(bytes.subspan(at + 4, 4));
-        if (length > bytes.size() - at - frame) {
+void walk_png(std::uint64_t size, const ReadBytes& read, const std::filesystem::path& name,
+              const std::function<void(const PngChunkPlace&)>& visit) {
+    constexpr std::uint64_t signature = 8;
+    constexpr std::uint64_t frame = 12;  // Length, type and checksum around a chunk's data.
+    std::array<std::byte, 8> start{};
+    PngChunkPlace chunk{signature, 0, {}};
+    for (;; chunk.at += chunk.length + frame) {
+        if (size - chunk.at < frame) throw FileError(name, "is cut short: it has no IEND chunk");
+        read(chunk.at, start);
+        chunk.length = big32(start, 0);
+        chunk.type = text_of(start).substr(4);
+        if (chunk.length > size - chunk.at - frame) {
             throw FileError(name, fmt::format("is cut short: the chunk at byte {} ends {} bytes "
                                               "after the file",
-                                              at, length - (bytes.size() - at - frame)));
+                                              chunk.at, chunk.length - (size - chunk.at - frame)));
         }
-        const Bytes data = bytes.subspan(at + 8, length);
-        if (type == "IHDR" && length >= 13) header = data;
-        if (type == "IDAT") compressed += length;
-        if (type == "tEXt" || type == "iTXt") keep_png_text(type, text_of(data), container.text);
-        for (const std::string_view kept : {"IHDR", "PLTE", "tRNS", "IDAT", "IEND"}) {
-            if (type == kept) append(container.stripped, bytes.subspan(at, length + frame));
-        }
-        at += length + frame;
-        if (type == "IEND") break;
+        visit(chunk);
+        if (chunk.type == "IEND") return;
     }
+}
+
+namespace {
+
+void strip_png(Bytes bytes, const std::filesystem::path& name, ImageContainer& container) {
+    container.stripped.reserve(bytes.size());
+    append(container.stripped, bytes.first(std::min<std::size_t>(bytes.size(), 8)));
+    Bytes header;
+    std::uint64_t compressed = 0;
+    const auto read = [&](std::uint64_t from, std::span<std::byte> to) {
+        std::memcpy(to.data(), bytes.data() + from, to.size());
+    };
+    walk_png(bytes.size(), read, name, [&](const PngChunkPlace& chunk) {
+        const Bytes whole = bytes.subspan(chunk.at, chunk.length + 12);
+        const Bytes data = whole.subspan(8, chunk.length);
+        if (chunk.type == "IHDR" && chunk.length >= 13) header = data;
+        if (chunk.type == "IDAT") compressed += chunk.length;
+        if (chunk.type == "tEXt" || chunk.type == "iTXt")
+            keep_png_text(chunk.type, text_of(data), container.text);
+        for (const std::string_view kept : {"IHDR", "PLTE", "tRNS", "IDAT", "IEND"}) {
+            if (chunk.type == kept) append(container.stripped, whole);
+        }
+    });
     if (header.empty()) throw FileError(name, "has no IHDR chunk");
     check_png_size(header, compressed, bytes.size(), name);
 }
@@ -221,29 +240,46 @@ std::uint32_t little32(Bytes bytes, std::size_t offset) {
     return little16(bytes, offset) | little16(bytes, offset + 2) << 16;
 }
 
-/// The value of an attribute in the first header, or nothing where it has none.
-Bytes exr_attribute(Bytes bytes, std::string_view wanted, const std::filesystem::path& name) {
+/// Where the header of the first part ends, or nothing where the bytes do before that.
+std::optional<std::size_t> exr_header_end(Bytes bytes) {
     const std::string_view text = text_of(bytes);
     for (std::size_t at = 8;;) {
         const std::size_t key_end = text.find('\0', at);
-        if (key_end == at) return {};
+        if (key_end == at) return at;
         const std::size_t type_end =
             key_end == text.npos ? text.npos : text.find('\0', key_end + 1);
-        if (type_end == text.npos || bytes.size() - type_end < 5)
-            throw FileError(name, "is cut short within its header");
+        if (type_end == text.npos || bytes.size() - type_end < 5) return std::nullopt;
         const std::uint32_t size = little32(bytes, type_end + 1);
-        const std::size_t value = type_end + 5;
-        if (size > bytes.size() - value) throw FileError(name, "is cut short within its header");
-        if (text.substr(at, key_end - at) == wanted) return bytes.subspan(value, size);
-        at = value + size;
+        if (size > bytes.size() - type_end - 5) return std::nullopt;
+        at = type_end + 5 + size;
     }
 }
 
+/// The value of an attribute in a header that is whole, or nothing where it has none.
+Bytes exr_attribute(Bytes bytes, std::string_view wanted) {
+    const std::string_view text = text_of(bytes);
+    for (std::size_t at = 8; text[at] != '\0';) {
+        const std::size_t key_end = text.find('\0', at);
+        const std::size_t type_end = text.find('\0', key_end + 1);
+        const Bytes value = bytes.subspan(type_end + 5, little32(bytes, type_end + 1));
+        if (text.substr(at, key_end - at) == wanted) return value;
+        at = type_end + 5 + value.size();
+    }
+    return {};
+}
+
+}  // namespace
+
 /// Every block of lines or tile has 8 bytes in a table; tiles are held in memory as a whole.
-void check_exr(Bytes bytes, const std::filesystem::path& name) {
+bool check_exr(std::span<const std::byte> start, std::uint64_t size,
+               const std::filesystem::path& name) {
     constexpr std::uint64_t most_lines_of_a_block = 256;
     constexpr std::uint64_t largest_tile = 1 << 24;
-    const Bytes window = exr_attribute(bytes, "dataWindow", name);
+    if (!exr_header_end(start)) {
+        if (start.size() < size) return false;
+        throw FileError(name, "is cut short within its header");
+    }
+    const Bytes window = exr_attribute(start, "dataWindow");
     if (window.size() < 16) throw FileError(name, "has no data window");
     const auto extent = [&](std::size_t axis) {
         const auto first = static_cast<std::int32_t>(little32(window, axis));
@@ -253,7 +289,7 @@ void check_exr(Bytes bytes, const std::filesystem::path& name) {
     const std::uint64_t width = extent(0);
     const std::uint64_t height = extent(4);
     std::uint64_t blocks = (height + most_lines_of_a_block - 1) / most_lines_of_a_block;
-    if (const Bytes tiles = exr_attribute(bytes, "tiles", name); tiles.size() >= 8) {
+    if (const Bytes tiles = exr_attribute(start, "tiles"); tiles.size() >= 8) {
         const std::uint64_t tile_width = little32(tiles, 0);
         const std::uint64_t tile_height = little32(tiles, 4);
         if (tile_width == 0 || tile_height == 0 || tile_width > largest_tile / tile_height) {
@@ -263,10 +299,10 @@ void check_exr(Bytes bytes, const std::filesystem::path& name) {
         blocks =
             ((width + tile_width - 1) / tile_width) * ((height + tile_height - 1) / tile_height);
     }
-    check_believable(blocks, bytes.size() / 8, width, height, bytes.size(), name);
+    check_believable(blocks, size / 8, width, height, size, name);
+    return true;
 }
 
-/// OpenImageIO's name for the format that the first bytes announce, or null.
 const char* format_by_signature(std::string_view start) {
     struct Signature {
         std::string_view start;
@@ -295,8 +331,6 @@ const char* format_by_signature(std::string_view start) {
     return nullptr;
 }
 
-}  // namespace
-
 ImageContainer examine_image(std::span<const std::byte> bytes, const std::filesystem::path& name) {
     if (bytes.empty()) throw FileError(name, "is empty");
     ImageContainer container;
@@ -311,7 +345,7 @@ ImageContainer examine_image(std::span<const std::byte> bytes, const std::filesy
     if (format == "png") strip_png(bytes, name, container);
     if (format == "jpeg") strip_jpeg(bytes, name, container);
     if (format == "targa") check_tga(bytes, name);
-    if (format == "openexr") check_exr(bytes, name);
+    if (format == "openexr") check_exr(bytes, bytes.size(), name);
     return container;
 }
 

@@ -13,13 +13,14 @@
 #include <exception>
 #include <memory>
 #include <string>
+#include <utility>
 
 #include "io/image/image_module_png.h"
 
 namespace relief {
 
 struct ImageModuleReader {
-    std::unique_ptr<OIIO::Filesystem::IOMemReader> bytes;
+    std::unique_ptr<OIIO::Filesystem::IOProxy> bytes;
     std::unique_ptr<OIIO::ImageInput> input;
     ImageModuleHeader header;
 };
@@ -84,31 +85,48 @@ void hand_out_text(const OIIO::ImageSpec& spec, const ImageModuleText& text) {
     }
 }
 
+/// Opens what `bytes` gives.
+ImageModuleReader* open_proxy(const char* format, std::unique_ptr<OIIO::Filesystem::IOProxy> bytes,
+                              ImageModuleHeader* header, ImageModuleText text,
+                              ImageModuleFailure failure) {
+    auto reader = std::make_unique<ImageModuleReader>();
+    reader->bytes = std::move(bytes);
+    reader->input = OIIO::ImageInput::create(format);
+    if (!reader->input) return fail(failure, OIIO::geterror()), nullptr;
+    // Opening with both a configuration and a proxy in one call fails in OpenImageIO 2.4; the
+    // proxy set beforehand works.
+    if (!reader->input->set_ioproxy(reader->bytes.get()))
+        return fail(failure, "this format cannot be read from memory"), nullptr;
+    OIIO::ImageSpec wish;
+    wish["oiio:UnassociatedAlpha"] = 1;
+    OIIO::ImageSpec spec;
+    if (!reader->input->open(std::string("image.") + format, spec, wish))
+        return fail(failure, pending_error(*reader->input)), nullptr;
+    if (spec.deep || spec.depth > 1)
+        return fail(failure, "holds a volume or deep samples"), nullptr;
+    reader->header = {spec.width, spec.height, spec.nchannels, bits_of(spec)};
+    *header = reader->header;
+    hand_out_text(spec, text);
+    return reader.release();
+}
+
 ImageModuleReader* open(const char* format, const void* bytes, std::size_t size,
                         ImageModuleHeader* header, ImageModuleText text,
                         ImageModuleFailure failure) {
-    const auto body = [&]() -> ImageModuleReader* {
-        auto reader = std::make_unique<ImageModuleReader>();
-        reader->bytes = std::make_unique<OIIO::Filesystem::IOMemReader>(bytes, size);
-        reader->input = OIIO::ImageInput::create(format);
-        if (!reader->input) return fail(failure, OIIO::geterror()), nullptr;
-        // Opening with both a configuration and a proxy in one call fails in OpenImageIO 2.4; the
-        // proxy set beforehand works.
-        if (!reader->input->set_ioproxy(reader->bytes.get()))
-            return fail(failure, "this format cannot be read from memory"), nullptr;
-        OIIO::ImageSpec wish;
-        wish["oiio:UnassociatedAlpha"] = 1;
-        OIIO::ImageSpec spec;
-        if (!reader->input->open(std::string("image.") + format, spec, wish))
-            return fail(failure, pending_error(*reader->input)), nullptr;
-        if (spec.deep || spec.depth > 1)
-            return fail(failure, "holds a volume or deep samples"), nullptr;
-        reader->header = {spec.width, spec.height, spec.nchannels, bits_of(spec)};
-        *header = reader->header;
-        hand_out_text(spec, text);
-        return reader.release();
-    };
-    return guarded<ImageModuleReader*>(failure, nullptr, body);
+    return guarded<ImageModuleReader*>(failure, nullptr, [&] {
+        return open_proxy(format, std::make_unique<OIIO::Filesystem::IOMemReader>(bytes, size),
+                          header, text, failure);
+    });
+}
+
+ImageModuleReader* open_file(const char* format, const char* path, ImageModuleHeader* header,
+                             ImageModuleText text, ImageModuleFailure failure) {
+    return guarded<ImageModuleReader*>(failure, nullptr, [&]() -> ImageModuleReader* {
+        auto file =
+            std::make_unique<OIIO::Filesystem::IOFile>(path, OIIO::Filesystem::IOProxy::Read);
+        if (!file->opened()) return fail(failure, file->error()), nullptr;
+        return open_proxy(format, std::move(file), header, text, failure);
+    });
 }
 
 std::int64_t row_grain(ImageModuleReader* reader) {
@@ -217,7 +235,7 @@ void release(ImageModuleWriter* writer) {
 }
 
 constexpr ImageModule table{
-    image_module_version, open, row_grain, read, close, create, write, finish, release};
+    image_module_version, open, open_file, row_grain, read, close, create, write, finish, release};
 
 }  // namespace
 }  // namespace relief

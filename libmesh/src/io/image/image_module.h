@@ -14,7 +14,7 @@
 namespace relief {
 
 /// Changes whenever anything in this file does; a module of another version is refused.
-inline constexpr std::uint32_t image_module_version = 2;
+inline constexpr std::uint32_t image_module_version = 3;
 
 /// The name of the module's one exported function: `const ImageModule* relief_image_module()`.
 inline constexpr const char* image_module_entry = "relief_image_module";
@@ -63,6 +63,10 @@ struct ImageModule {
     ImageModuleReader* (*open)(const char* format, const void* bytes, std::size_t size,
                                ImageModuleHeader* header, ImageModuleText text,
                                ImageModuleFailure failure);
+
+    /// Opens a file.
+    ImageModuleReader* (*open_file)(const char* format, const char* path, ImageModuleHeader* header,
+                                    ImageModuleText text, ImageModuleFailure failure);
 
     /// The least number of rows that read() may be asked for at once: 1, or the height of a tile.
     std::int64_t (*row_grain)(ImageModuleReader* reader);

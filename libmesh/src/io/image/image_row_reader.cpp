@@ -2,18 +2,14 @@
 // Image files read by rows. Tests: tests/mesh/io/image/image_rows_test.cpp.
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cstring>
-#include <utility>
-
+#include "io/image/row_source.h"
 #include "relief/mesh/error.h"
 #include "relief/mesh/image_rows.h"
 
 namespace relief {
 
 struct ImageRowReader::Implementation {
-    ImageInfo info;
-    Image image;
+    std::unique_ptr<RowSource> source;
     std::size_t row_bytes = 0;
     int next = 0;
 };
@@ -21,11 +17,10 @@ struct ImageRowReader::Implementation {
 ImageRowReader::ImageRowReader(const std::filesystem::path& file)
     : implementation_(new Implementation) {
     Implementation& self = *implementation_;
-    self.info = read_image_info(file);
-    self.image = read_image(file, ImageUse::data);
-    self.row_bytes = static_cast<std::size_t>(self.info.width) *
-                     static_cast<std::size_t>(self.info.channels) *
-                     static_cast<std::size_t>(self.info.bits / 8);
+    self.source = open_streamed_rows(file);
+    if (!self.source)
+        self.source = rows_of_image(read_image(file, ImageUse::data), read_image_info(file));
+    self.row_bytes = row_bytes_of(info());
 }
 
 ImageRowReader::~ImageRowReader() = default;
@@ -33,7 +28,7 @@ ImageRowReader::ImageRowReader(ImageRowReader&&) noexcept = default;
 ImageRowReader& ImageRowReader::operator=(ImageRowReader&&) noexcept = default;
 
 const ImageInfo& ImageRowReader::info() const {
-    return implementation_->info;
+    return implementation_->source->info();
 }
 
 std::size_t ImageRowReader::row_bytes() const {
@@ -45,31 +40,28 @@ int ImageRowReader::next_row() const {
 }
 
 bool ImageRowReader::is_streamed() const {
-    return false;
+    return implementation_->source->is_streamed();
 }
 
 void ImageRowReader::read(std::span<std::byte> rows) {
     Implementation& self = *implementation_;
     const std::size_t count = rows.size() / self.row_bytes;
-    const auto left = static_cast<std::size_t>(self.info.height - self.next);
+    const auto left = static_cast<std::size_t>(info().height - self.next);
     if (rows.size() % self.row_bytes != 0 || count > left) {
         throw InvalidInput(
             fmt::format("{} bytes are not up to {} rows of {}", rows.size(), left, self.row_bytes));
     }
-    const auto all = std::visit([](const auto& held) { return std::as_bytes(std::span(held)); },
-                                std::as_const(self.image.samples));
-    const auto wanted =
-        all.subspan(static_cast<std::size_t>(self.next) * self.row_bytes, rows.size());
-    std::copy(wanted.begin(), wanted.end(), rows.begin());
+    self.source->read(rows.data(), count);
     self.next += static_cast<int>(count);
 }
 
 void ImageRowReader::skip(int rows) {
     Implementation& self = *implementation_;
-    if (rows < 0 || rows > self.info.height - self.next) {
+    if (rows < 0 || rows > info().height - self.next) {
         throw InvalidInput(fmt::format("{} rows cannot be left out where {} are left", rows,
-                                       self.info.height - self.next));
+                                       info().height - self.next));
     }
+    self.source->skip(static_cast<std::size_t>(rows));
     self.next += rows;
 }
 

@@ -9,10 +9,13 @@
 #include <array>
 #include <cstdint>
 #include <cstring>
+#include <limits>
 #include <string_view>
+#include <utility>
 
 #include "io/image/deflate.h"
 #include "io/image/png_filter.h"
+#include "large_memory.h"
 #include "relief/mesh/image_file.h"
 
 namespace relief {
@@ -34,10 +37,7 @@ int byte_at(Bytes bytes, std::size_t at) {
 }
 
 /// The chunks' contents, or nothing where a checksum is wrong or their order is not the usual one.
-struct Chunks {
-    Bytes header;
-    Bytes palette;
-    Bytes transparency;
+struct Chunks : PngChunks {
     std::vector<std::byte> packed;
 };
 
@@ -72,7 +72,7 @@ std::optional<Chunks> chunks_of(Bytes stripped) {
 }
 
 /// RGB, or RGBA where some entry is not opaque; nothing where the chunks do not fit together.
-std::optional<std::vector<std::uint8_t>> palette_from(const Chunks& chunks, int bits) {
+std::optional<std::vector<std::uint8_t>> palette_from(const PngChunks& chunks, int bits) {
     const std::size_t count = chunks.palette.size() / 3;
     const std::size_t opaque_from = chunks.transparency.size();
     if (count == 0 || count * 3 != chunks.palette.size() || count > std::size_t{1} << bits ||
@@ -97,79 +97,78 @@ bool is_allowed(int type, int bits) {
     return (type == 0 || type == palette_type) && (bits == 1 || bits == 2 || bits == 4);
 }
 
-/// How the rows of a PNG lie in its stream.
-struct Rows {
-    std::size_t size = 0;  ///< In bytes, without the one that names the filter.
-    std::size_t step = 0;  ///< From a sample to the same of the texel on the left.
-    std::size_t count = 0;
-};
-
-Rows rows_of(const PlainPng& png) {
-    const auto texel_bits = static_cast<std::size_t>(png.stored_bits * png.stored_channels);
-    return {(static_cast<std::size_t>(png.width) * texel_bits + 7) / 8,
-            std::max<std::size_t>(texel_bits / 8, 1), static_cast<std::size_t>(png.height)};
-}
-
-/// All rows, one behind the other, in one piece of memory: each moves to the front by the filter
-/// bytes before it.
-std::optional<std::vector<std::uint8_t>> unfiltered_rows(const PlainPng& png) {
-    const Rows rows = rows_of(png);
-    std::vector<std::uint8_t> bytes((rows.size + 1) * rows.count);
-    if (!inflate(png.packed, std::as_writable_bytes(std::span(bytes)))) return std::nullopt;
-    const std::vector<std::uint8_t> zeros(rows.size, 0);
-    std::span<const std::uint8_t> above = zeros;
-    for (std::size_t y = 0; y < rows.count; ++y) {
-        std::uint8_t* const line = bytes.data() + y * (rows.size + 1);
-        if (!undo_filter(line[0], rows.step, {line + 1, rows.size}, above)) return std::nullopt;
-        std::uint8_t* const row = bytes.data() + y * rows.size;
-        std::memmove(row, line + 1, rows.size);
-        above = {row, rows.size};
-    }
-    bytes.resize(rows.size * rows.count);
-    return bytes;
-}
-
-/// Samples of 1, 2, 4 or 8 bits as 8-bit ones, indices as their palette's texels; nothing where an
-/// index is beyond the palette.
-std::optional<std::vector<std::uint8_t>> unpacked(const PlainPng& png,
-                                                  const std::vector<std::uint8_t>& bytes) {
-    const std::size_t row_size = rows_of(png).size;
+/// A row of samples of 1, 2, 4 or 8 bits as 8-bit ones, indices as their palette's texels.
+bool unpack_small(const PlainPng& png, const std::uint8_t* stored, std::uint8_t* samples) {
     const auto bits = static_cast<unsigned>(png.stored_bits);
     const unsigned mask = (1U << bits) - 1U;
     const auto channels = static_cast<std::size_t>(png.channels);
-    std::vector<std::uint8_t> samples;
-    samples.reserve(static_cast<std::size_t>(png.width) * static_cast<std::size_t>(png.height) *
-                    channels);
-    for (std::size_t row = 0; row < bytes.size(); row += row_size) {
-        for (unsigned x = 0; x < static_cast<unsigned>(png.width); ++x) {
-            const unsigned bit = x * bits;
-            const unsigned value = bytes[row + bit / 8] >> (8 - bits - bit % 8) & mask;
-            if (png.palette.empty()) {
-                samples.push_back(static_cast<std::uint8_t>(value * 255U / mask));
-                continue;
-            }
-            if ((value + 1) * channels > png.palette.size()) return std::nullopt;
-            const auto entry = png.palette.begin() + static_cast<std::ptrdiff_t>(value * channels);
-            samples.insert(samples.end(), entry, entry + png.channels);
+    for (unsigned x = 0; x < static_cast<unsigned>(png.width); ++x) {
+        const unsigned bit = x * bits;
+        const unsigned value = stored[bit / 8] >> (8 - bits - bit % 8) & mask;
+        if (png.palette.empty()) {
+            *samples++ = static_cast<std::uint8_t>(value * 255U / mask);
+            continue;
         }
+        if ((value + 1) * channels > png.palette.size()) return false;
+        samples = std::copy_n(png.palette.data() + value * channels, channels, samples);
+    }
+    return true;
+}
+
+/// The whole stream, unfiltered and unpacked.
+template <typename Sample>
+std::optional<Image::Samples> decoded_as(const PlainPng& png) {
+    const std::size_t size = png.stored_row_size();
+    const auto rows = static_cast<std::size_t>(png.height);
+    std::vector<std::uint8_t> bytes((size + 1) * rows);
+    if (!inflate(png.packed, std::as_writable_bytes(std::span(bytes)))) return std::nullopt;
+    std::vector<Sample> samples;
+    reserve_to_fill(samples, png.row_size() / sizeof(Sample) * rows);
+    samples.resize(png.row_size() / sizeof(Sample) * rows);
+    const std::vector<std::uint8_t> zeros(size, 0);
+    std::span<const std::uint8_t> above = zeros;
+    std::byte* to = std::as_writable_bytes(std::span(samples)).data();
+    for (std::size_t y = 0; y < rows; ++y, to += png.row_size()) {
+        std::uint8_t* const line = bytes.data() + y * (size + 1);
+        const std::span row(line + 1, size);
+        if (!undo_filter(line[0], png.step(), row, above)) return std::nullopt;
+        if (!unpack_row(png, row, to)) return std::nullopt;
+        above = row;
     }
     return samples;
 }
 
-/// PNG has the high byte first.
-std::vector<std::uint16_t> words_of(const std::vector<std::uint8_t>& bytes) {
-    std::vector<std::uint16_t> words(bytes.size() / 2);
-    for (std::size_t i = 0; i < words.size(); ++i)
-        words[i] = static_cast<std::uint16_t>(bytes[2 * i] << 8 | bytes[2 * i + 1]);
-    return words;
-}
-
 }  // namespace
 
-std::optional<PlainPng> open_plain_png(std::span<const std::byte> stripped) {
-    std::optional<Chunks> chunks = chunks_of(stripped);
-    if (!chunks || chunks->header.size() != 13) return std::nullopt;
-    const Bytes header = chunks->header;
+std::size_t PlainPng::stored_row_size() const {
+    return (static_cast<std::size_t>(width) *
+                static_cast<std::size_t>(stored_bits * stored_channels) +
+            7) /
+           8;
+}
+
+std::size_t PlainPng::row_size() const {
+    return static_cast<std::size_t>(width) * static_cast<std::size_t>(channels * bits() / 8);
+}
+
+std::size_t PlainPng::step() const {
+    return std::max<std::size_t>(static_cast<std::size_t>(stored_bits * stored_channels) / 8, 1);
+}
+
+bool unpack_row(const PlainPng& png, std::span<const std::uint8_t> stored, std::byte* samples) {
+    auto* const bytes = reinterpret_cast<std::uint8_t*>(samples);
+    if (png.stored_bits < 8 || !png.palette.empty()) return unpack_small(png, stored.data(), bytes);
+    std::memcpy(bytes, stored.data(), stored.size());
+    if (png.stored_bits == 16) {
+        for (std::size_t i = 0; i < stored.size(); i += 2)
+            std::swap(bytes[i], bytes[i + 1]);  // PNG has the high byte first.
+    }
+    return true;
+}
+
+std::optional<PlainPng> plain_png(const PngChunks& chunks) {
+    const Bytes header = chunks.header;
+    if (header.size() != 13) return std::nullopt;
     static constexpr std::array channels_of_type{1, 0, 3, 1, 2, 0, 4};
     const std::uint64_t width = big32(header, 0);
     const std::uint64_t height = big32(header, 4);
@@ -181,32 +180,41 @@ std::optional<PlainPng> open_plain_png(std::span<const std::byte> stripped) {
     png.stored_channels = channels_of_type[static_cast<std::size_t>(type)];
     const bool is_usual = byte_at(header, 10) == 0 && byte_at(header, 11) == 0;
     const bool is_interlaced = byte_at(header, 12) != 0;
-    constexpr std::uint64_t most_texels = max_image_samples / 4;
+    constexpr std::uint64_t largest = std::numeric_limits<int>::max();
     if (png.stored_channels == 0 || !is_usual || is_interlaced || width == 0 || height == 0 ||
-        width > most_texels / height) {
+        width > largest || height > largest) {
         return std::nullopt;
     }
     png.channels = png.stored_channels;
     if (type == palette_type) {
-        auto palette = palette_from(*chunks, png.stored_bits);
+        auto palette = palette_from(chunks, png.stored_bits);
         if (!palette) return std::nullopt;
         png.palette = std::move(*palette);
-        png.channels = chunks->transparency.empty() ? 3 : 4;
-    } else if (!chunks->transparency.empty()) {
+        png.channels = chunks.transparency.empty() ? 3 : 4;
+    } else if (!chunks.transparency.empty()) {
         return std::nullopt;
     }
     png.width = static_cast<int>(width);
     png.height = static_cast<int>(height);
-    png.packed = std::move(chunks->packed);
+    return png;
+}
+
+std::optional<PlainPng> open_plain_png(std::span<const std::byte> stripped) {
+    std::optional<Chunks> chunks = chunks_of(stripped);
+    if (!chunks) return std::nullopt;
+    std::optional<PlainPng> png = plain_png(*chunks);
+    constexpr std::size_t most_texels = max_image_samples / 4;
+    if (!png || static_cast<std::size_t>(png->width) >
+                    most_texels / static_cast<std::size_t>(png->height)) {
+        return std::nullopt;
+    }
+    png->packed = std::move(chunks->packed);
     return png;
 }
 
 std::optional<Image::Samples> decode(const PlainPng& png) {
-    std::optional<std::vector<std::uint8_t>> bytes = unfiltered_rows(png);
-    if (!bytes) return std::nullopt;
-    if (png.stored_bits == 16) return words_of(*bytes);
-    if (png.stored_bits == 8 && png.palette.empty()) return std::move(*bytes);
-    return unpacked(png, *bytes);
+    if (png.stored_bits == 16) return decoded_as<std::uint16_t>(png);
+    return decoded_as<std::uint8_t>(png);
 }
 
 }  // namespace relief

@@ -17,7 +17,7 @@
 
 namespace relief {
 
-/// A plain PNG, its header read and its chunks found whole; the data still packed.
+/// What the header and the palette of a plain PNG say.
 struct PlainPng {
     int width = 0;
     int height = 0;
@@ -25,16 +25,36 @@ struct PlainPng {
     int stored_channels = 0;            ///< 1 where a palette is.
     std::vector<std::uint8_t> palette;  ///< Texels of `channels` bytes; empty where there is none.
     int channels = 0;                   ///< Of the image as it is read.
-    std::vector<std::byte> packed;      ///< The zlib stream of all IDAT chunks.
+    std::vector<std::byte> packed;      ///< The zlib stream of all IDAT chunks, where it is held.
 
     [[nodiscard]] int bits() const { return stored_bits == 16 ? 16 : 8; }
+    /// Of a row in the stream, without the byte that names the filter.
+    [[nodiscard]] std::size_t stored_row_size() const;
+    /// Of a row of samples.
+    [[nodiscard]] std::size_t row_size() const;
+    /// From a stored sample to the same of the texel on the left, in bytes.
+    [[nodiscard]] std::size_t step() const;
 };
 
-/// What a PNG says of itself, or nothing where it is not plain.
+/// Some chunks' data, which is empty where there are none.
+struct PngChunks {
+    std::span<const std::byte> header;
+    std::span<const std::byte> palette;
+    std::span<const std::byte> transparency;
+};
+
+/// What these say, or nothing where that is not plain. `packed` is left empty.
+std::optional<PlainPng> plain_png(const PngChunks& chunks);
+
+/// What a PNG says of itself, or nothing where it is not plain, or of more than max_image_samples.
 /// \param stripped  IHDR, PLTE, tRNS, IDAT and IEND chunks only (image_file_container.h)
 std::optional<PlainPng> open_plain_png(std::span<const std::byte> stripped);
 
 /// Its samples, or nothing where the data are damaged.
 std::optional<Image::Samples> decode(const PlainPng& png);
+
+/// One row as it stands in the stream, unfiltered, as samples in the machine's byte order.
+/// \return false where an index is beyond the palette
+bool unpack_row(const PlainPng& png, std::span<const std::uint8_t> stored, std::byte* samples);
 
 }  // namespace relief

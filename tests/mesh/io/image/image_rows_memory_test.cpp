@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+// How much memory images take that are read and written by rows: a program of its own, whose peak
+// says it for everything together, libraries and all.
+#include "relief/mesh/image_rows.h"
+
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "relief/mesh/threads.h"
+#include "support/shared_data.h"
+
+namespace relief {
+namespace {
+
+double peak_megabytes() {
+    rusage usage{};
+    ::getrusage(RUSAGE_SELF, &usage);
+    return static_cast<double>(usage.ru_maxrss) * 1024 / 1e6;
+}
+
+/// Rows of some slopes and some noise.
+void fill_row(std::vector<std::uint16_t>& row, int y) {
+    std::uint32_t state = static_cast<std::uint32_t>(y) * 2654435761U;
+    for (std::size_t i = 0; i < row.size(); ++i) {
+        state = state * 1664525U + 1013904223U;
+        row[i] = static_cast<std::uint16_t>(i * 9 + static_cast<unsigned>(y) * 5 + (state >> 24));
+    }
+}
+
+void write_large(const std::filesystem::path& file, int width, int height) {
+    ImageRowWriter writer(file, {width, height, 1, 16, ColorSpace::data});
+    std::vector<std::uint16_t> row(static_cast<std::size_t>(width));
+    for (int y = 0; y < height; ++y) {
+        fill_row(row, y);
+        writer.write(std::as_bytes(std::span(row)));
+    }
+    writer.finish();
+}
+
+/// Grey to RGB, as normal maps are made of heights. Every row is checked on its way.
+void copy_as_rgb(const std::filesystem::path& from, const std::filesystem::path& to) {
+    ImageRowReader reader(from);
+    const ImageInfo info = reader.info();
+    ImageRowWriter writer(to, {info.width, info.height, 3, 16, ColorSpace::data});
+    std::vector<std::uint16_t> grey(static_cast<std::size_t>(info.width)), expected = grey;
+    std::vector<std::uint16_t> color(grey.size() * 3);
+    for (int y = 0; y < info.height; ++y) {
+        reader.read(std::as_writable_bytes(std::span(grey)));
+        fill_row(expected, y);
+        ASSERT_EQ(grey, expected);
+        for (std::size_t i = 0; i < color.size(); ++i)
+            color[i] = grey[i / 3];
+        writer.write(std::as_bytes(std::span(color)));
+    }
+    writer.finish();
+}
+
+TEST(ImageRowsMemory, FromFileToFileIsBoundedWhateverTheHeight) {
+    const test::TemporaryDirectory folder;
+    set_thread_limit(2);  // Pieces in work are 4 for each thread.
+    for (const char* extension : {".png", ".tif"}) {
+        const auto from = folder / ("from" + std::string(extension));
+        const auto to = folder / ("to" + std::string(extension));
+        write_large(from, 4096, 128);
+        copy_as_rgb(from, to);
+        const double small = peak_megabytes();
+        write_large(from, 4096, 6144);
+        copy_as_rgb(from, to);
+        // The samples are 50 MB grey and 151 MB in colour. Of the small image all was in the
+        // buffers already that hold a batch of pieces, but for what no small image fills.
+        EXPECT_LT(peak_megabytes() - small, 60.0) << extension;
+    }
+}
+
+}  // namespace
+}  // namespace relief
