@@ -2,7 +2,7 @@
 /// \file
 /// Which triangles a ray from the eye meets, and exactly where. View space: the eye at the origin,
 /// looking along -z. Embree, which works in float, says which triangles may be hit; where they are
-/// hit is computed in double. The only home of Embree. Triangles without area, and those with a
+/// hit is computed in double. Triangles without area, and those with a
 /// vertex that is not finite, are never met. Tests: tests/shade/reference/visibility_test.cpp.
 #pragma once
 

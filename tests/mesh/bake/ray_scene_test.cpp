@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: Apache-2.0
+// Rays at the places that go wrong: edges, vertices, grazing, coplanar, at every scale.
+#include "bake/ray_scene.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <random>
+
+#include "relief/mesh/shapes.h"
+
+namespace relief {
+namespace {
+
+/// Within -1 to 1.
+double number(std::mt19937& random) {
+    return static_cast<double>(random()) / 2147483648.0 - 1.0;
+}
+
+RayScene scene_of(const Mesh& mesh) {
+    return RayScene({{mesh.positions, mesh.triangles}});
+}
+
+glm::dvec3 place_of(const RayScene& scene, const RayHit& hit) {
+    const auto corners = scene.corners(hit.mesh, hit.triangle);
+    return hit.weights.x * corners[0] + hit.weights.y * corners[1] + hit.weights.z * corners[2];
+}
+
+/// Moved and scaled, each position rounded once.
+Mesh moved(Mesh mesh, double scale, const glm::dvec3& by) {
+    for (glm::vec3& position : mesh.positions)
+        position = glm::vec3(glm::dvec3(position) * scale + by);
+    return mesh;
+}
+
+TEST(RayScene, HitsAPlaneWhereTheRayMeetsItAtEveryScale) {
+    for (const double scale : {1e-20, 1e-3, 1.0, 1e5, 1e20}) {
+        for (const double away : {0.0, 100.0}) {
+            const glm::dvec3 by(away * scale, 0.0, 0.0);
+            const Mesh quad = moved(make_quad(8), scale, by);
+            const RayScene scene = scene_of(quad);
+            std::mt19937 random(1);
+            for (int i = 0; i < 100; ++i) {
+                const double x = 0.9999 * number(random);
+                const double y = 0.9999 * number(random);
+                const Ray ray{glm::dvec3(x, y, 0.25) * scale + by, {0, 0, -1}, 0.0, scale};
+                const RayHit hit = scene.nearest(ray);
+                ASSERT_TRUE(hit.is_hit()) << scale << " " << x << " " << y;
+                EXPECT_NEAR(hit.distance / scale, 0.25, 1e-12);
+                EXPECT_TRUE(hit.faces_origin);
+                // In double, from where the ray really is: no float is in between.
+                EXPECT_LT(glm::distance(place_of(scene, hit),
+                                        ray.origin - 0.25 * scale * glm::dvec3(0, 0, 1)) /
+                              scale,
+                          1e-6 * 0.2);
+            }
+        }
+    }
+}
+
+TEST(RayScene, OnAnEdgeOrAVertexThereIsOneHitWhateverTheOrder) {
+    // 8 x 8 cells: rays down their edges, diagonals and vertices, and one in the other order.
+    const Mesh quad = make_quad(8);
+    Mesh turned = quad;
+    std::reverse(turned.triangles.begin(), turned.triangles.end());
+    const RayScene scene = scene_of(quad);
+    const RayScene other = scene_of(turned);
+    const auto count = static_cast<std::uint32_t>(quad.triangles.size());
+    for (int i = 1; i < 32; ++i) {
+        for (int j = 1; j < 32; ++j) {
+            const Ray ray{{i / 16.0 - 1.0, j / 16.0 - 1.0, 1.0}, {0, 0, -1}, 0.0, 2.0};
+            const RayHit hit = scene.nearest(ray);
+            ASSERT_TRUE(hit.is_hit()) << i << " " << j;
+            EXPECT_EQ(hit.distance, 1.0);
+            EXPECT_EQ(other.nearest(ray).triangle, count - 1 - hit.triangle);
+            EXPECT_GE(std::min({hit.weights.x, hit.weights.y, hit.weights.z}), 0.0);
+        }
+    }
+}
+
+TEST(RayScene, NoRayPassesBetweenTheTrianglesOfAClosedSurface) {
+    const Mesh sphere = make_sphere(64, 32);
+    const RayScene scene = scene_of(sphere);
+    for (const glm::vec3& vertex : sphere.positions) {
+        for (const double share : {0.0, 0.5}) {
+            // Through vertices, and through the middle of edges along rows.
+            const std::size_t next =
+                static_cast<std::size_t>(&vertex - sphere.positions.data()) + 1;
+            if (next >= sphere.positions.size()) continue;
+            const glm::dvec3 target =
+                glm::mix(glm::dvec3(vertex), glm::dvec3(sphere.positions[next]), share);
+            if (glm::length(target) < 0.5) continue;
+            const glm::dvec3 outward = glm::normalize(target);
+            const RayHit hit = scene.nearest({2.0 * outward, -outward, 0.0, 2.0});
+            ASSERT_TRUE(hit.is_hit());
+            EXPECT_LT(glm::distance(place_of(scene, hit), target), 0.03);
+            EXPECT_TRUE(hit.faces_origin);
+        }
+    }
+}
+
+TEST(RayScene, SkinnyTrianglesSeenEdgeOnAreNotHit) {
+    // A needle 1e-6 wide in the xz plane; rays pass along it, 1e-4 beside.
+    Mesh needle;
+    needle.positions = {{-1, 0, 0}, {1, 0, 0}, {1, 0, 1e-6F}};
+    needle.triangles = {{0, 1, 2}};
+    const RayScene scene = scene_of(needle);
+    for (const double y : {1e-4, -1e-4, 1e-2}) {
+        EXPECT_FALSE(scene.nearest({{-2, y, 0}, {1, 0, 0}, 0.0, 4.0}).is_hit());
+        EXPECT_FALSE(scene.nearest({{0, y, 1e-3}, {0, 0, -1}, 0.0, 4.0}).is_hit());
+    }
+    // One through it is a hit, and its place is on it.
+    const RayHit hit = scene.nearest({{0.9, 1.0, 4e-7}, {0, -1, 0}, 0.0, 4.0});
+    ASSERT_TRUE(hit.is_hit());
+    EXPECT_NEAR(hit.distance, 1.0, 1e-12);
+}
+
+TEST(RayScene, NumbersThatAreNoneAndTrianglesWithoutAreaAreNotHit) {
+    Mesh quad = make_quad();
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    const float infinity = std::numeric_limits<float>::infinity();
+    quad.positions.push_back({nan, 0, 0});
+    quad.positions.push_back({0, infinity, 0});
+    const auto first = static_cast<std::uint32_t>(quad.positions.size() - 2);
+    quad.triangles.push_back({0, 1, first});
+    quad.triangles.push_back({0, 1, first + 1});
+    quad.triangles.push_back({0, 0, 1});
+    quad.triangles.push_back({0, 0, 0});
+    const RayScene scene = scene_of(quad);
+    EXPECT_EQ(scene.half_size(), 1.0);
+    for (const double x : {-0.9, -0.1, 0.3, 0.99}) {
+        const RayHit hit = scene.nearest({{x, 0.2, 1}, {0, 0, -1}, 0.0, 2.0});
+        ASSERT_TRUE(hit.is_hit());
+        EXPECT_LT(hit.triangle, 2U);
+    }
+    EXPECT_FALSE(scene.nearest({{2, 0, 1}, {0, 0, -1}, 0.0, 2.0}).is_hit());
+}
+
+TEST(RayScene, AnEmptySceneHasNoHits) {
+    const RayScene nothing({});
+    EXPECT_TRUE(nothing.is_empty());
+    EXPECT_FALSE(nothing.nearest({{0, 0, 1}, {0, 0, -1}, 0.0, 2.0}).is_hit());
+    EXPECT_EQ(nothing.distance_from({0, 0, 0}), std::numeric_limits<double>::infinity());
+    const Mesh mesh;
+    EXPECT_TRUE(scene_of(mesh).is_empty());
+}
+
+TEST(RayScene, KnowsMeshesApartAndHowFarTheyAre) {
+    const Mesh near = moved(make_quad(), 1.0, {0, 0, 0.5});
+    const Mesh far = make_quad();
+    const RayScene scene({{far.positions, far.triangles}, {near.positions, near.triangles}});
+    const Ray down{{0.1, 0.3, 1}, {0, 0, -1}, 0.0, 2.0};
+    EXPECT_EQ(scene.nearest(down).mesh, 1U);
+    EXPECT_DOUBLE_EQ(scene.nearest(down).distance, 0.5);
+    const Ray up{{0.1, 0.3, -1}, {0, 0, 1}, 0.0, 2.0};
+    EXPECT_EQ(scene.nearest(up).mesh, 0U);
+    EXPECT_FALSE(scene.nearest(up).faces_origin);
+    EXPECT_NEAR(scene.distance_from({0, 0, 0.75}), 0.25, 1e-6);
+    EXPECT_NEAR(scene.distance_from({4, 5, 0.5}), 5.0, 1e-5);
+    EXPECT_NEAR(scene.distance_from({0.2, -0.4, 0.1}), 0.1, 1e-6);
+}
+
+TEST(RayScene, ARayHitsTheSameInAnyPacket) {
+    const Mesh sphere = make_sphere(48, 24);
+    const RayScene scene = scene_of(sphere);
+    std::mt19937 random(7);
+    const auto vector = [&] {
+        const double x = number(random);
+        const double y = number(random);
+        return glm::dvec3(x, y, number(random));
+    };
+    for (int round = 0; round < 50; ++round) {
+        RayPacket packet;
+        std::array<Ray, RayPacket::size> rays;
+        for (std::size_t lane = 0; lane < rays.size(); ++lane) {
+            const glm::dvec3 from = 2.0 * glm::normalize(vector());
+            rays[lane] = {from, glm::normalize(0.5 * vector() - from), 0.0, 5.0};
+            scene.set(packet, lane, rays[lane]);
+        }
+        scene.find(packet, rays.size());
+        for (std::size_t lane = 0; lane < rays.size(); ++lane) {
+            const RayHit together = scene.hit(packet, lane, rays[lane]);
+            const RayHit alone = scene.nearest(rays[lane]);
+            EXPECT_EQ(together.triangle, alone.triangle);
+            EXPECT_EQ(together.weights, alone.weights);
+        }
+    }
+}
+
+}  // namespace
+}  // namespace relief
