@@ -13,6 +13,7 @@
 #include "relief/mesh/bump.h"
 #include "relief/mesh/frames.h"
 #include "relief/mesh/gltf_document.h"
+#include "relief/mesh/height_map.h"
 #include "relief/mesh/image_file.h"
 #include "relief/mesh/mesh_file.h"
 #include "relief/mesh/normal_map.h"

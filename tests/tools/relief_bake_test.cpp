@@ -288,6 +288,51 @@ TEST(BumpCommand, EveryEffortWritesTheSameImage) {
         EXPECT_EQ(read_image(workplace / name, ImageUse::data).samples, normal.samples);
 }
 
+TEST(BumpCommand, InvertTurnsBumpsIntoDentsAndChannelsAreChosen) {
+    const Workplace workplace;
+    // Red rises to the right, green falls, by 257 / 65535 a texel.
+    Image image = make_image(side, side, 3, 16, ColorSpace::data);
+    for (std::size_t i = 0; i < side * side; ++i) {
+        const auto x = static_cast<int>(i % side);
+        image.as<std::uint16_t>()[3 * i] = static_cast<std::uint16_t>(257 * x);
+        image.as<std::uint16_t>()[3 * i + 1] = static_cast<std::uint16_t>(257 * (side - x));
+    }
+    write_image(workplace / "h.tif", image);
+    const auto slope = [&](const std::string& options) {
+        const ProgramResult result = workplace.run(
+            "relief-bake bump h.tif out/n.exr --strength 255 --wrap clamp " + options);
+        EXPECT_EQ(result.exit_code, 0) << result.error;
+        const std::vector<float> samples = std::get<std::vector<float>>(
+            read_image(workplace / "out/n.exr", ImageUse::data).samples);
+        const std::size_t texel = (side / 2 * side + side / 2) * 3;
+        return (1.0 - 2.0 * static_cast<double>(samples[texel])) /
+               (2.0 * static_cast<double>(samples[texel + 2]) - 1.0);
+    };
+    EXPECT_NEAR(slope("--channel red"), 1.0, 1e-5);
+    EXPECT_NEAR(slope("--channel green"), -1.0, 1e-5);
+    EXPECT_NEAR(slope(""), 0.0, 1e-5) << "the mean is constant";
+    EXPECT_NEAR(slope("--channel red --invert"), -1.0, 1e-5);
+}
+
+TEST(BumpCommand, SaysWhatItLeavesOutAndKeepsBesides) {
+    const Workplace workplace;
+    Image image = make_image(4, 4, 2, 8, ColorSpace::data);
+    for (std::size_t i = 0; i < 16; ++i)
+        image.as<std::uint8_t>()[2 * i + 1] = i < 3 ? 0 : 255;
+    write_image(workplace / "h.png", image);
+    const ProgramResult result =
+        workplace.run("relief-bake bump h.png out/n.png --xy --alpha keep --report out/r.json");
+    ASSERT_EQ(result.exit_code, 0) << result.error;
+    EXPECT_THAT(result.out, HasSubstr("2 channels, 8 bit, 3 transparent texels left flat\n"));
+    EXPECT_THAT(result.out, HasSubstr("green up, without z, alpha kept\n"));
+    EXPECT_EQ(read_image_info(workplace / "out/n.png").channels, 4);
+    const json report = json::parse(workplace.read("out/r.json"));
+    EXPECT_EQ(report["transparent"], 3);
+    EXPECT_EQ(report["by_rows"], false);
+    EXPECT_EQ(report["xy_only"], true);
+    EXPECT_EQ(report["alpha"], "keep");
+}
+
 TEST(BumpCommand, ConvertsManyMapsAndTilesInOneCall) {
     const Workplace workplace;
     write_ramp(workplace, "a.png", false, 257);
@@ -377,6 +422,12 @@ INSTANTIATE_TEST_SUITE_P(
                 "--strength, --height: both say how deep the map is"},
         Refused{"relief-bake bump flat.png out/n.png --report flat.png", 2,
                 "--report flat.png: is also the input or the output"},
+        Refused{"relief-bake bump flat.png out/n.png --channel blue", 1,
+                "flat.png: a grey image has no blue channel to take heights from"},
+        Refused{"relief-bake bump flat.png out/n.png --slope-moments", 2,
+                "--bits 32: .png holds 16 or 8 bits"},
+        Refused{"relief-bake bump flat.png out/n.exr --slope-moments --xy", 2,
+                "--xy, --slope-moments: contradict each other"},
         Refused{"relief-bake bump flat.png flat.png", 2,
                 "flat.png: would replace the height map (write to another folder, or by another "
                 "name)"},

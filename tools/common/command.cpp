@@ -152,12 +152,34 @@ double Stages::milliseconds(std::string_view name) const {
     return sum;
 }
 
-Stages::Running::Running(Stages& stages, const std::string& name, const std::string& shown)
-    : stages_(stages), index_(0), start_(std::chrono::steady_clock::now()) {
-    const auto known = std::find_if(stages.finished_.begin(), stages.finished_.end(),
+std::size_t Stages::index_of(const std::string& name) {
+    const auto known = std::find_if(finished_.begin(), finished_.end(),
                                     [&](const Stage& stage) { return stage.name == name; });
-    index_ = static_cast<std::size_t>(known - stages.finished_.begin());
-    if (known == stages.finished_.end()) stages.finished_.push_back({name, 0});
+    const auto index = static_cast<std::size_t>(known - finished_.begin());
+    if (known == finished_.end()) finished_.push_back({name, 0});
+    return index;
+}
+
+void Stages::book(const std::string& name, double milliseconds) {
+    finished_[index_of(name)].milliseconds += milliseconds;
+}
+
+void Stages::show_progress(const std::string& name, double part) {
+    const int percent = static_cast<int>(part * 100);
+    if (!show_ || percent == shown_percent_) return;
+    shown_percent_ = percent;
+    fmt::print(stderr, "\r\033[K{} {} % ...", name, percent);
+    std::fflush(stderr);
+}
+
+void Stages::clear_progress() const {
+    if (!show_) return;
+    fmt::print(stderr, "\r\033[K");
+    std::fflush(stderr);
+}
+
+Stages::Running::Running(Stages& stages, const std::string& name, const std::string& shown)
+    : stages_(stages), index_(stages.index_of(name)), start_(std::chrono::steady_clock::now()) {
     if (stages.show_) {
         fmt::print(stderr, "\r\033[K{} ...", shown);
         std::fflush(stderr);
@@ -168,10 +190,7 @@ Stages::Running::~Running() {
     const std::chrono::duration<double, std::milli> spent =
         std::chrono::steady_clock::now() - start_;
     stages_.finished_[index_].milliseconds += spent.count();
-    if (stages_.show_) {
-        fmt::print(stderr, "\r\033[K");
-        std::fflush(stderr);
-    }
+    stages_.clear_progress();
 }
 
 CLI::App& add_subcommand(CLI::App& tool, const std::string& name, const std::string& sentence) {

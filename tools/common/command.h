@@ -87,6 +87,13 @@ class Stages {
         return std::forward<Work>(work)();
     }
 
+    /// Adds to the time of a step what was measured elsewhere.
+    void book(const std::string& name, double milliseconds);
+
+    /// On a terminal, says how far something is, 0 to 1, wherever it is told anew in percent.
+    void show_progress(const std::string& name, double part);
+    void clear_progress() const;
+
     [[nodiscard]] const std::vector<Stage>& finished() const { return finished_; }
     [[nodiscard]] double milliseconds(std::string_view name) const;
 
@@ -105,7 +112,10 @@ class Stages {
         std::chrono::steady_clock::time_point start_;
     };
 
+    std::size_t index_of(const std::string& name);
+
     bool show_;
+    int shown_percent_ = -1;
     std::vector<Stage> finished_;
 };
 

@@ -5,6 +5,7 @@
 
 #include "common/options.h"
 #include "relief/mesh/bump.h"
+#include "relief/mesh/bump_file.h"
 #include "relief/mesh/normal_map.h"
 
 namespace relief::tools {
@@ -15,6 +16,16 @@ inline Choices<Kernel> kernel_choices() {
             {"scharr3", Kernel::scharr3},   {"sobel5", Kernel::sobel5},
             {"scharr5", Kernel::scharr5},   {"central5", Kernel::central5},
             {"central7", Kernel::central7}, {"gaussian", Kernel::gaussian}};
+}
+
+inline Choices<HeightChannel> height_channel_choices() {
+    return {{"mean", HeightChannel::mean}, {"luminance", HeightChannel::luminance},
+            {"red", HeightChannel::red},   {"green", HeightChannel::green},
+            {"blue", HeightChannel::blue}, {"alpha", HeightChannel::alpha}};
+}
+
+inline Choices<MapAlpha> map_alpha_choices() {
+    return {{"none", MapAlpha::none}, {"height", MapAlpha::height}, {"keep", MapAlpha::keep}};
 }
 
 inline Choices<Wrap> wrap_choices() {

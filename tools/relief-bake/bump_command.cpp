@@ -37,8 +37,7 @@ void check(const BumpCommand& command, const JobList& list) {
     bump_of(command.request);
     std::vector<std::filesystem::path> files;
     for (const Job& job : list.jobs) {
-        format_of(command.request.output, job.output);
-        write_options_of(command.request.output, job.output);
+        file_format_of(command.request, job.output);
         std::error_code error;
         if (std::filesystem::equivalent(job.input, job.output, error)) {
             throw UsageError(job.output.string() + ": would replace the height map",
@@ -121,6 +120,7 @@ Command add_bump_command(CLI::App& tool) {
     add_file_arguments(app, command->words);
     add_bump_options(app, command->request);
     add_output_option(app, command->words);
+    add_bump_content_options(app, command->request);
     add_map_output_options(app, command->request.output);
     add_report_options(app, command->report);
     add_general_options(app, command->general);
@@ -131,6 +131,7 @@ Command add_bump_command(CLI::App& tool) {
          "relief-bake bump data/bricks-height.png out/bricks.exr --kernel central5 --wrap clamp",
          "relief-bake bump data/bricks-height.png out/wall.png --height 0.02 --texel-size "
          "0.001",
+         "relief-bake bump data/bricks-height.png out/bricks-parallax.png --alpha height",
          "relief-bake bump data/*-height.png -o out/maps/ --strength 8"});
     return {&app, [&app, command] { return run(app, *command); }};
 }

@@ -9,23 +9,22 @@
 #include "bump_options.h"
 #include "common/file_jobs.h"
 #include "common/findings.h"
-#include "relief/mesh/height_statistics.h"
 
 namespace relief::tools {
 
 /// What was made of which image.
 struct Baked {
-    int width = 0;
-    int height = 0;
-    int channels = 0;
-    int bits_read = 0;
+    ImageInfo input;
+    bool is_streamed = false;      ///< Read by rows, since it is large.
+    std::size_t transparent = 0;   ///< Texels that are no part of the surface.
     BumpOptions bump;              ///< With what was found out from the map.
     std::optional<Tiling> tiling;  ///< If it was looked at.
-    NormalMapFormat format;
+    BumpFileFormat format;
     Findings findings;
 };
 
-/// Reads, converts and writes; the stages are "read", "convert" and "write".
+/// Reads, converts and writes; the stages are "read", "look" where the map decides something,
+/// "convert" and "write".
 /// \throws FileError, UsageError
 Baked bake_bump(const Job& job, const BumpRequest& request, Stages& stages);
 

@@ -10,6 +10,7 @@
 #include "material_options.h"
 #include "near_names.h"
 #include "relief/mesh/bump.h"
+#include "relief/mesh/height_map.h"
 #include "relief/mesh/image_file.h"
 #include "relief/shade/effects.h"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Normals, codes and slopes of a height field [Blinn 1978], its rows shared out among threads (the
 // rows themselves: bump_rows.cpp). Non-finite heights show in the slopes that they touch; only then
-// are they looked for, filled (height_field.cpp) and counted, and all is done again. A bad image,
+// are they looked for, filled (height_holes.cpp) and counted, and all is done again. A bad image,
 // strength or texel throws. Tests: tests/mesh/image/bump_test.cpp.
 #include "relief/mesh/bump.h"
 
@@ -12,7 +12,7 @@
 #include <cmath>
 
 #include "image/bump_rows.h"
-#include "image/height_field.h"
+#include "image/height_holes.h"
 #include "large_memory.h"
 #include "parallel.h"
 #include "relief/mesh/error.h"
@@ -29,17 +29,7 @@ void check(const Image& height, const BumpOptions& options) {
     if (height.empty()) throw InvalidInput("an empty height field has no normals");
     if (height.channels != 1)
         throw InvalidInput(fmt::format("a height field has one channel, not {}", height.channels));
-    if (!(std::abs(options.strength) <= largest_strength)) {
-        throw InvalidInput(
-            fmt::format("the strength {} is not within +-{}", options.strength, largest_strength));
-    }
-    for (const double size : {options.texel.x, options.texel.y}) {
-        if (!(size >= 1.0 / largest_texel && size <= largest_texel)) {
-            throw InvalidInput(fmt::format("the texel size {} is not within {} and {}", size,
-                                           1.0 / largest_texel, largest_texel));
-        }
-    }
-    gradient_kernel(options.kernel, options.gaussian_radius);
+    check_bump(options);
 }
 
 /// All rows, on all threads. False where a height is not finite.
@@ -111,6 +101,20 @@ Image image_to_fill(int width, int height, int channels, int bits) {
 }
 
 }  // namespace
+
+void check_bump(const BumpOptions& options) {
+    if (!(std::abs(options.strength) <= largest_strength)) {
+        throw InvalidInput(
+            fmt::format("the strength {} is not within +-{}", options.strength, largest_strength));
+    }
+    for (const double size : {options.texel.x, options.texel.y}) {
+        if (!(size >= 1.0 / largest_texel && size <= largest_texel)) {
+            throw InvalidInput(fmt::format("the texel size {} is not within {} and {}", size,
+                                           1.0 / largest_texel, largest_texel));
+        }
+    }
+    gradient_kernel(options.kernel, options.gaussian_radius);
+}
 
 Image normals_from_height(const Image& height, const BumpOptions& options, Report& report) {
     return floats_from_height(height, 3, BumpResult::normals, options, report);

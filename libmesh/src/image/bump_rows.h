@@ -10,6 +10,9 @@
 
 namespace relief {
 
+/// \throws InvalidInput if the strength, the texel or the radius is out of range
+void check_bump(const BumpOptions& options);
+
 /// A height map by rows.
 struct HeightRows {
     int width = 0;

@@ -12,6 +12,7 @@
 #include <numbers>
 #include <numeric>
 
+#include "image/seam_survey.h"
 #include "parallel.h"
 #include "relief/mesh/error.h"
 
@@ -50,35 +51,6 @@ auto on_heights(const Image& image, const WithHeights& with_heights) {
     if (image.bits() == 8) return with_heights(Heights<std::uint8_t>(image));
     if (image.bits() == 16) return with_heights(Heights<std::uint16_t>(image));
     return with_heights(Heights<float>(image));
-}
-
-/// Root mean square of difference(i) over those that are finite.
-template <typename Difference>
-double root_mean_square(int count, const Difference& difference) {
-    double squares = 0.0;
-    int finite = 0;
-    for (int i = 0; i < count; ++i) {
-        const double value = difference(i);
-        if (!std::isfinite(value)) continue;
-        squares += value * value;
-        ++finite;
-    }
-    return finite == 0 ? 0.0 : std::sqrt(squares / finite);
-}
-
-/// \param change  of the line at a place to the next, the one after the last being the first
-template <typename Change>
-double seam_of(int count, const Change& change) {
-    constexpr int most_pairs = 256;
-    const double seam = change(count - 1);
-    double inside = 0.0;
-    const int pairs = std::min(count - 1, most_pairs);
-    for (int i = 0; i < pairs; ++i) {
-        const auto place = static_cast<std::int64_t>(i) * (count - 1) / pairs;
-        inside = std::max(inside, change(static_cast<int>(place)));
-    }
-    if (seam == 0.0) return 0.0;
-    return inside > 0.0 ? seam / inside : std::numeric_limits<double>::infinity();
 }
 
 template <typename Sample>
@@ -163,19 +135,11 @@ double noise_of(const Heights<Sample>& heights) {
 
 Tiling detect_tiling(const Image& height) {
     return on_heights(height, [](const auto& heights) {
-        const auto columns = [&](int column) {
-            const int next = (column + 1) % heights.width;
-            return root_mean_square(heights.height, [&](int row) {
-                return heights.at(next, row) - heights.at(column, row);
-            });
-        };
-        const auto rows = [&](int row) {
-            const int next = (row + 1) % heights.height;
-            return root_mean_square(heights.width, [&](int column) {
-                return heights.at(column, next) - heights.at(column, row);
-            });
-        };
-        return Tiling{seam_of(heights.width, columns), seam_of(heights.height, rows)};
+        SeamSurvey survey(heights.width, heights.height);
+        const auto width = static_cast<std::size_t>(heights.width);
+        for (int row = 0; row < heights.height; ++row)
+            survey.add_row(heights.samples().subspan(static_cast<std::size_t>(row) * width, width));
+        return survey.tiling();
     });
 }
 

@@ -11,6 +11,7 @@
 #include "relief/mesh/analytic_heights.h"
 #include "relief/mesh/bump.h"
 #include "relief/mesh/error.h"
+#include "relief/mesh/height_map.h"
 #include "relief/mesh/threads.h"
 #include "support/height_fields.h"
 

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "relief/mesh/bump.h"
+#include "relief/mesh/height_map.h"
 #include "relief/mesh/image_file.h"
 #include "relief/mesh/normal_map.h"
 #include "support/shared_data.h"

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Heights to normals: hand-computed slopes, symmetries bit for bit, order of convergence.
 #include "relief/mesh/bump.h"
+#include "relief/mesh/height_map.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -85,35 +86,6 @@ std::vector<std::uint32_t> bits_of(const Image& image) {
     for (const float sample : image.as<float>())
         bits.push_back(std::bit_cast<std::uint32_t>(sample));
     return bits;
-}
-
-// ---------------------------------------------------------------------------------------------
-
-TEST(HeightField, GreyIsItselfRgbItsMeanAndAlphaIsLeftOut) {
-    Image grey = make_image(2, 1, 2, 8, ColorSpace::data);
-    grey.samples = std::vector<std::uint8_t>{51, 7, 255, 0};
-    EXPECT_THAT(samples_of<float>(height_field(grey)), ElementsAre(0.2F, 1.0F));
-    Image rgb = make_image(1, 1, 4, 16, ColorSpace::data);
-    rgb.samples = std::vector<std::uint16_t>{65535, 0, 13107, 9};
-    EXPECT_THAT(samples_of<float>(height_field(rgb)), ElementsAre(0.4F));
-    Image floats = make_image(1, 1, 3, 32, ColorSpace::data);
-    floats.samples = std::vector<float>{-3.0F, 0.0F, 9.0F};
-    EXPECT_THAT(samples_of<float>(height_field(floats)), ElementsAre(2.0F));
-}
-
-TEST(HeightField, AGreyPictureStoredAsRgbGivesTheHeightsOfTheGreyOne) {
-    Image grey = make_image(256, 1, 1, 8, ColorSpace::data);
-    Image rgb = make_image(256, 1, 3, 8, ColorSpace::srgb);
-    for (std::size_t code = 0; code < 256; ++code) {
-        grey.as<std::uint8_t>()[code] = static_cast<std::uint8_t>(code);
-        for (std::size_t channel = 0; channel < 3; ++channel)
-            rgb.as<std::uint8_t>()[code * 3 + channel] = static_cast<std::uint8_t>(code);
-    }
-    EXPECT_EQ(height_field(rgb).samples, height_field(grey).samples);
-}
-
-TEST(HeightField, AnEmptyImageIsRefused) {
-    EXPECT_THROW(height_field(Image{}), InvalidInput);
 }
 
 // ---------------------------------------------------------------------------------------------

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Statistics of height maps, on fields made for it and on real ones.
 #include "relief/mesh/height_statistics.h"
+#include "relief/mesh/height_map.h"
 
 #include <gtest/gtest.h>
 

@@ -49,16 +49,10 @@ struct BumpOptions {
     std::optional<Arithmetic> arithmetic{};
 };
 
-/// The heights in an image: one float channel.
-///
-/// Grey as it is; RGB by its mean (data has no luminance); alpha is left out. Integer samples are
-/// divided by their maximum, and no colour space is decoded.
-/// \throws InvalidInput if the image is empty
-Image height_field(const Image& image);
-
 /// Unit normals of a height field, in tangent space: x to the right, y up in the image, z out.
 ///
-/// \param height  one channel, as from height_field or of 8 or 16 bits as in a file (samples stand
+/// \param height  one channel, as from height_field() (height_map.h) or of 8 or 16 bits as in a
+/// file (samples stand
 ///                for value / 255 and value / 65535)
 /// \param report  counts texels whose height is not finite: each is read as the mean of the finite
 ///                heights in the smallest square around it that holds any (beyond the border by

@@ -14,6 +14,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "relief/mesh/image.h"
 #include "relief/mesh/image_file.h"
@@ -71,6 +72,9 @@ struct ImageShape {
     int channels = 0;
     int bits = 0;  ///< 8, 16 or 32, of the samples that write() is given.
     ColorSpace color_space = ColorSpace::data;
+    /// What the channels are called, for images that are no colours, of up to 8 channels: EXR and
+    /// TIFF only, and only EXR keeps the names. Empty: grey, RGB and alpha.
+    std::vector<std::string> channel_names{};
 };
 
 /// An image file being written in order from the top.

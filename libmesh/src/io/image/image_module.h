@@ -50,6 +50,7 @@ struct ImageModulePicture {
     bool srgb = false;    ///< Label as sRGB where the format can say so.
     bool half = false;    ///< Store float samples as half floats.
     int zip_quality = 1;  ///< 1 (fast) to 9 (small), where the format deflates.
+    const char* const* channel_names = nullptr;  ///< As many as channels; null: grey, RGB, alpha.
     const char* const* keys = nullptr;
     const char* const* values = nullptr;
     std::size_t text_count = 0;

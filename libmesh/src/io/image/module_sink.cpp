@@ -76,10 +76,14 @@ class ModuleSink final : public RowSink {
             values.push_back(value.c_str());
         }
         const ImageShape& shape = plan.shape;
+        std::vector<const char*> names;
+        for (const std::string& name : shape.channel_names)
+            names.push_back(name.c_str());
         const ImageModulePicture picture{{shape.width, shape.height, shape.channels, shape.bits},
                                          shape.color_space == ColorSpace::srgb,
                                          plan.options.half,
                                          zip_quality(plan.options.effort),
+                                         names.empty() ? nullptr : names.data(),
                                          keys.data(),
                                          values.data(),
                                          entries.size()};

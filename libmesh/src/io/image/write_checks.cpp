@@ -16,8 +16,17 @@ void check_shape(const ImageShape& shape) {
         throw InvalidInput(
             fmt::format("an image of {} x {} texels is empty", shape.width, shape.height));
     }
-    if (shape.channels < 1 || shape.channels > 4)
-        throw InvalidInput(fmt::format("an image has 1 to 4 channels, not {}", shape.channels));
+    constexpr int most_named = 8;
+    const bool is_named = !shape.channel_names.empty();
+    const int most = is_named ? most_named : 4;
+    if (shape.channels < 1 || shape.channels > most) {
+        throw InvalidInput(
+            fmt::format("an image has 1 to {} channels, not {}", most, shape.channels));
+    }
+    if (is_named && shape.channel_names.size() != static_cast<std::size_t>(shape.channels)) {
+        throw InvalidInput(
+            fmt::format("{} names for {} channels", shape.channel_names.size(), shape.channels));
+    }
     if (shape.bits != 8 && shape.bits != 16 && shape.bits != 32)
         throw InvalidInput(fmt::format("samples have 8, 16 or 32 bits, not {}", shape.bits));
     const auto width = static_cast<std::size_t>(shape.width);
@@ -54,6 +63,8 @@ void check_writable(const std::string& format, const ImageShape& shape,
         throw InvalidInput(fmt::format("EXR and HDR hold float samples, not {} bits", bits));
     if (options.half && format != "openexr")
         throw InvalidInput("half-float samples are written to EXR only");
+    if (!shape.channel_names.empty() && format != "openexr" && format != "tiff")
+        throw InvalidInput("channels have names of their own in EXR and TIFF only");
     constexpr std::size_t longest_png_row = std::size_t{1} << 30;
     if (format == "png" && static_cast<std::size_t>(shape.width) *
                                    static_cast<std::size_t>(shape.channels * bits / 8) >

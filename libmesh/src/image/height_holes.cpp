@@ -1,21 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
-// Heights from an image, and the filling of holes (heights that are not finite).
-// A hole's value is the mean over the smallest square around it with a finite height. All squares
-// inside that one hold none, so the mean runs over its rim alone; which rim, a chessboard distance
-// map says [Rosenfeld and Pfaltz 1968]. Sums run in double in a fixed order around the rim.
-// Tests: tests/mesh/image/bump_test.cpp.
-#include "image/height_field.h"
+// The filling of holes: heights that are not finite, or transparent. A hole's value is the mean
+// over the smallest square around it with a finite height. All squares inside that one hold none,
+// so the mean runs over its rim alone; which rim, a chessboard distance map says [Rosenfeld and
+// Pfaltz 1968]. Sums run in double in a fixed order around the rim. Tests:
+// tests/mesh/image/bump_test.cpp, height_map_test.cpp.
+#include "image/height_holes.h"
 
 #include <algorithm>
 #include <atomic>
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 
 #include "image/border.h"
-#include "large_memory.h"
 #include "parallel.h"
-#include "relief/mesh/error.h"
 
 namespace relief {
 namespace {
@@ -126,80 +125,44 @@ bool all_finite(std::span<const float> heights) {
     return finite;
 }
 
-/// The number of channels is a constant, for the loop to become vector instructions.
-template <std::size_t channels, typename Sample>
-std::vector<float> mean_of_channels(std::span<const Sample> samples, double largest) {
-    constexpr std::size_t colors = channels < 3 ? 1 : 3;
-    std::vector<float> heights;
-    reserve_to_fill(heights, samples.size() / channels);
-    heights.resize(samples.size() / channels);
-    parallel_for(heights.size(), texels_per_piece, [&](std::size_t begin, std::size_t end) {
-        const Sample* const from = samples.data();
-        float* const to = heights.data();
-        const double divisor = largest * static_cast<double>(colors);
-        for (std::size_t texel = begin; texel < end; ++texel) {
-            double sum = 0.0;
-            for (std::size_t color = 0; color < colors; ++color)
-                sum += static_cast<double>(from[texel * channels + color]);
-            to[texel] = static_cast<float>(sum / divisor);
-        }
-    });
-    return heights;
-}
-
-template <typename Sample>
-std::vector<float> mean_of_colors(const Image& image, std::span<const Sample> samples,
-                                  double largest) {
-    switch (image.channels) {
-        case 1:
-            return mean_of_channels<1>(samples, largest);
-        case 2:
-            return mean_of_channels<2>(samples, largest);
-        case 3:
-            return mean_of_channels<3>(samples, largest);
-        default:
-            return mean_of_channels<4>(samples, largest);
-    }
-}
-
-}  // namespace
-
-Image height_field(const Image& image) {
-    if (image.empty()) throw InvalidInput("an empty image has no heights");
-    Image result{image.width, image.height, 1, ColorSpace::data, {}};
-    switch (image.bits()) {
-        case 8:
-            result.samples = mean_of_colors(image, image.as<std::uint8_t>(), 255.0);
-            break;
-        case 16:
-            result.samples = mean_of_colors(image, image.as<std::uint16_t>(), 65535.0);
-            break;
-        default:
-            result.samples = mean_of_colors(image, image.as<float>(), 1.0);
-            break;
+/// The heights, with NaN where there is none.
+std::vector<float> without_transparent(std::span<const float> heights,
+                                       std::span<const unsigned char> transparent) {
+    std::vector<float> result(heights.begin(), heights.end());
+    for (std::size_t texel = 0; texel < transparent.size(); ++texel) {
+        if (transparent[texel] != 0) result[texel] = std::numeric_limits<float>::quiet_NaN();
     }
     return result;
 }
 
-std::vector<float> filled_holes(const Image& height, const Wraps& wrap, Report& report) {
-    const std::span<const float> heights = height.as<float>();
-    if (all_finite(heights)) return {};
+}  // namespace
+
+std::vector<float> filled_holes(const Image& height, const Wraps& wrap, Report& report,
+                                const Transparency& transparency) {
+    const std::span<const unsigned char> transparent = transparency.texels;
+    if (transparent.empty() && all_finite(height.as<float>())) return {};
+    const std::vector<float> heights = without_transparent(height.as<float>(), transparent);
+    const auto is_transparent = [&](std::size_t texel) {
+        return !transparent.empty() && transparent[texel] != 0;
+    };
     const Lattice lattice{height.width, height.height, wrap};
     const std::vector<std::uint32_t> distance = distance_to_finite(heights, lattice);
     const auto farthest = static_cast<std::uint32_t>(std::max(height.width, height.height));
-    std::vector<float> whole(heights.begin(), heights.end());
+    const auto reach = static_cast<std::uint32_t>(transparency.reach);
+    std::vector<float> whole = heights;
     parallel_for(lattice.size(), texels_per_piece, [&](std::size_t begin, std::size_t end) {
         for (std::size_t texel = begin; texel < end; ++texel) {
             if (distance[texel] == 0) continue;
             const int column = static_cast<int>(texel % static_cast<std::size_t>(lattice.width));
             const int row = static_cast<int>(texel / static_cast<std::size_t>(lattice.width));
-            whole[texel] = distance[texel] > farthest ? 0.0F
-                                                      : rim_mean(heights, lattice, column, row,
-                                                                 static_cast<int>(distance[texel]));
+            const bool is_filled = distance[texel] <= (is_transparent(texel) ? reach : farthest);
+            whole[texel] = is_filled ? rim_mean(heights, lattice, column, row,
+                                                static_cast<int>(distance[texel]))
+                                     : 0.0F;
         }
     });
     for (std::size_t texel = 0; texel < distance.size(); ++texel) {
-        if (distance[texel] != 0)
+        if (distance[texel] != 0 && !is_transparent(texel))
             report.add("non-finite height", "texel", texel,
                        "read as the mean of the nearest finite heights");
     }

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+// A height map in memory, or its file in hand; what is asked about either is answered from rows in
+// order. Tests: tests/mesh/io/maps/bump_file_test.cpp.
+#include <algorithm>
+#include <utility>
+
+#include "image/seam_survey.h"
+#include "io/maps/height_window.h"
+#include "relief/mesh/bump_file.h"
+#include "relief/mesh/error.h"
+
+namespace relief {
+namespace {
+
+/// Of the file's samples, and of heights made of colours.
+std::size_t bytes_in_memory(const ImageInfo& info) {
+    const std::size_t texels =
+        static_cast<std::size_t>(info.width) * static_cast<std::size_t>(info.height);
+    const auto channels = static_cast<std::size_t>(info.channels);
+    const std::size_t heights = info.channels == 1 ? 0 : texels * sizeof(float);
+    return texels * channels * static_cast<std::size_t>(info.bits / 8) + heights;
+}
+
+/// Takes parts of a map out of bands of its rows.
+class PartCollector {
+  public:
+    PartCollector(std::span<const ImagePart> parts, int bits) : places_(parts) {
+        for (const ImagePart& part : parts)
+            parts_.push_back(make_image(part.width, part.height, 1, bits, ColorSpace::data));
+    }
+
+    /// \param first  the row of the map that the band begins with
+    void add(const Image& band, int first) {
+        for (std::size_t i = 0; i < places_.size(); ++i) {
+            const ImagePart& place = places_[i];
+            const int begin = std::max(place.y, first);
+            const int end = std::min(place.y + place.height, first + band.height);
+            if (begin >= end) continue;
+            const Image rows = part_of(band, {place.x, begin - first, place.width, end - begin});
+            copy_rows(rows, begin - place.y, parts_[i]);
+        }
+    }
+    [[nodiscard]] std::vector<Image> parts() && { return std::move(parts_); }
+
+  private:
+    static void copy_rows(const Image& rows, int first, Image& to) {
+        std::visit(
+            [&]<typename Sample>(std::vector<Sample>& samples) {
+                const std::span<const Sample> from = rows.as<Sample>();
+                std::copy(from.begin(), from.end(),
+                          samples.begin() + static_cast<std::ptrdiff_t>(first) * rows.width);
+            },
+            to.samples);
+    }
+
+    std::span<const ImagePart> places_;
+    std::vector<Image> parts_;
+};
+
+void add_rows(SeamSurvey& survey, const Image& band) {
+    std::visit(
+        [&]<typename Sample>(const std::vector<Sample>& samples) {
+            const auto width = static_cast<std::size_t>(band.width);
+            const std::span<const Sample> all(samples);
+            for (std::size_t row = 0; row < static_cast<std::size_t>(band.height); ++row)
+                survey.add_row(all.subspan(row * width, width));
+        },
+        band.samples);
+}
+
+}  // namespace
+
+HeightMapFile::HeightMapFile(const std::filesystem::path& file, const HeightMapChoice& choice)
+    : path_(file), choice_(choice) {
+    info_ = read_image_info(file);
+    is_streamed_ = bytes_in_memory(info_) > choice.most_memory;
+    if (is_streamed_) return;
+    map_ = height_map(read_image(file, ImageUse::data), choice.channel);
+    if (choice.ignore_alpha) map_.transparent.clear();
+}
+
+int HeightMapFile::rows_per_band() const {
+    const std::size_t rows = choice_.texels_per_band / static_cast<std::size_t>(info_.width);
+    return static_cast<int>(
+        std::clamp<std::size_t>(rows, 1, static_cast<std::size_t>(info_.height)));
+}
+
+HeightMapFile::Survey HeightMapFile::survey(std::span<const ImagePart> parts) const {
+    SeamSurvey seams(info_.width, info_.height);
+    if (!is_streamed_) {
+        Survey survey{detect_tiling(map_.heights), {}};
+        for (const ImagePart& part : parts)
+            survey.parts.push_back(part_of(map_.heights, part));
+        return survey;
+    }
+    PartCollector collector(parts, info_.channels == 1 ? info_.bits : 32);
+    HeightBandReader reader(*this);
+    const int band_rows = rows_per_band();
+    for (int first = 0; first < info_.height; first += band_rows) {
+        const HeightMap band = reader.read(band_rows);
+        add_rows(seams, band.heights);
+        collector.add(band.heights, first);
+    }
+    return {seams.tiling(), std::move(collector).parts()};
+}
+
+}  // namespace relief
