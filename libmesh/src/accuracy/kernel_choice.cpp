@@ -96,7 +96,7 @@ void check(std::span<const Image> parts) {
 
 }  // namespace
 
-std::vector<MapPart> parts_to_look_at(int width, int height) {
+std::vector<ImagePart> parts_to_look_at(int width, int height) {
     constexpr int largest_side = 128;
     constexpr int most_each_way = 3;
     if (width <= 0 || height <= 0)
@@ -118,34 +118,12 @@ std::vector<MapPart> parts_to_look_at(int width, int height) {
             return static_cast<int>(i * room / std::max(1, count - 1));
         return static_cast<int>((2 * std::int64_t{i} + 1) * room / (2 * count));
     };
-    std::vector<MapPart> parts;
+    std::vector<ImagePart> parts;
     for (int row = 0; row < rows; ++row) {
         for (int column = 0; column < columns; ++column)
             parts.push_back({place(column, columns, width), place(row, rows, height), side, side});
     }
     return parts;
-}
-
-Image part_of(const Image& map, const MapPart& part) {
-    if (part.x < 0 || part.y < 0 || part.width <= 0 || part.height <= 0 ||
-        part.width > map.width - part.x || part.height > map.height - part.y) {
-        throw InvalidInput(fmt::format("{} x {} texels at ({}, {}) are not within {} x {}",
-                                       part.width, part.height, part.x, part.y, map.width,
-                                       map.height));
-    }
-    Image result = make_image(part.width, part.height, map.channels, map.bits(), map.color_space);
-    std::visit(
-        [&](const auto& from) {
-            auto& to = std::get<std::remove_cvref_t<decltype(from)>>(result.samples);
-            const auto length = static_cast<std::ptrdiff_t>(part.width) * map.channels;
-            for (int row = 0; row < part.height; ++row) {
-                const auto first =
-                    (static_cast<std::ptrdiff_t>(part.y + row) * map.width + part.x) * map.channels;
-                std::copy_n(from.begin() + first, length, to.begin() + row * length);
-            }
-        },
-        map.samples);
-    return result;
 }
 
 KernelChoice choose_kernel(std::span<const Image> parts, const BumpOptions& options,
@@ -177,7 +155,7 @@ KernelChoice choose_kernel(std::span<const Image> parts, const BumpOptions& opti
 KernelChoice choose_kernel(const Image& height, const BumpOptions& options, bool destaircased) {
     if (height.empty()) throw InvalidInput("an empty height field has no kernel");
     std::vector<Image> parts;
-    for (const MapPart& place : parts_to_look_at(height.width, height.height))
+    for (const ImagePart& place : parts_to_look_at(height.width, height.height))
         parts.push_back(part_of(height, place));
     return choose_kernel(parts, options, destaircased);
 }

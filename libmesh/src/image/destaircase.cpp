@@ -12,7 +12,7 @@
 #include <cmath>
 
 #include "image/border.h"
-#include "image/height_field.h"
+#include "image/height_holes.h"
 #include "parallel.h"
 #include "relief/mesh/error.h"
 #include "relief/mesh/height_statistics.h"

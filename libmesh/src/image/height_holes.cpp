@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The filling of holes: heights that are not finite, or transparent. A hole's value is the mean
 // over the smallest square around it with a finite height. All squares inside that one hold none,
-// so the mean runs over its rim alone; which rim, a chessboard distance map says [Rosenfeld and
-// Pfaltz 1968]. Sums run in double in a fixed order around the rim. Tests:
-// tests/mesh/image/bump_test.cpp, height_map_test.cpp.
+// so the mean runs over its rim alone; which rim, a chessboard distance map says
+// [Rosenfeld and Pfaltz 1968]. Sums run in double in a fixed order around the rim.
+// Tests: tests/mesh/image/bump_test.cpp, height_map_test.cpp.
 #include "image/height_holes.h"
 
 #include <algorithm>

@@ -13,6 +13,7 @@
 #include "large_memory.h"
 #include "parallel.h"
 #include "relief/mesh/error.h"
+#include "relief/mesh/image_channels.h"
 
 namespace relief {
 namespace {
@@ -47,14 +48,6 @@ std::vector<float> make_heights(const Image& image, const Height& height) {
             heights[i] = height(texel);
     });
     return heights;
-}
-
-/// One channel as it is.
-template <typename Sample>
-std::vector<float> channel_heights(const Image& image, int channel) {
-    return make_heights<Sample>(image, [channel](const Sample* texel) {
-        return static_cast<float>(static_cast<double>(texel[channel]) / largest_of<Sample>());
-    });
 }
 
 /// The number of channels is a constant, for the loop to become vector instructions.
@@ -100,19 +93,23 @@ std::vector<float> luminance(const Image& image) {
     }
 }
 
+std::vector<float> floats_of(Image&& image) {
+    return std::get<std::vector<float>>(std::move(image.samples));
+}
+
 template <typename Sample>
 std::vector<float> heights_of(const Image& image, HeightChannel channel) {
-    if (channel == HeightChannel::alpha) return channel_heights<Sample>(image, image.channels - 1);
-    if (is_grey(image)) return channel_heights<Sample>(image, 0);
+    if (channel == HeightChannel::alpha) return floats_of(channel_of(image, image.channels - 1));
+    if (is_grey(image)) return floats_of(channel_of(image, 0));
     switch (channel) {
         case HeightChannel::luminance:
             return luminance<Sample>(image);
         case HeightChannel::red:
-            return channel_heights<Sample>(image, 0);
+            return floats_of(channel_of(image, 0));
         case HeightChannel::green:
-            return channel_heights<Sample>(image, 1);
+            return floats_of(channel_of(image, 1));
         case HeightChannel::blue:
-            return channel_heights<Sample>(image, 2);
+            return floats_of(channel_of(image, 2));
         default:
             return image.channels == 3 ? mean_of_colors<3>(image.as<Sample>())
                                        : mean_of_colors<4>(image.as<Sample>());

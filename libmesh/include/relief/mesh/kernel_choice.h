@@ -11,6 +11,7 @@
 #include "relief/mesh/bump.h"
 #include "relief/mesh/height_statistics.h"
 #include "relief/mesh/image.h"
+#include "relief/mesh/image_part.h"
 
 namespace relief {
 
@@ -34,17 +35,9 @@ struct KernelChoice {
     std::vector<KernelPrediction> predictions;  ///< All that were tried, best first.
 };
 
-/// A part of a map.
-struct MapPart {
-    int x = 0;
-    int y = 0;
-    int width = 0;
-    int height = 0;
-};
-
 /// The parts of a map that choose_kernel() looks at: at most 9 squares of 128 texels, in even
 /// distances; smaller ones of a small map. From top to bottom, so that a file can be read in turn.
-std::vector<MapPart> parts_to_look_at(int width, int height);
+std::vector<ImagePart> parts_to_look_at(int width, int height);
 
 /// The kernel with the least root mean square error of the normals to be expected.
 ///
@@ -66,8 +59,5 @@ KernelChoice choose_kernel(std::span<const Image> parts, const BumpOptions& opti
 /// The same for a map in memory.
 KernelChoice choose_kernel(const Image& height, const BumpOptions& options,
                            bool destaircased = false);
-
-/// The part of a map, of the same depth. \throws InvalidInput if it does not lie within
-Image part_of(const Image& map, const MapPart& part);
 
 }  // namespace relief
