@@ -7,6 +7,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <csignal>
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
@@ -42,9 +43,21 @@ class SpawnActions {
     posix_spawn_file_actions_t actions_{};
 };
 
-int exit_code_of(pid_t child) {
+/// Waits for the end, and sends a signal as soon as it is time.
+int exit_code_of(pid_t child, const std::function<bool()>& is_time, int signal) {
     int status = 0;
-    if (waitpid(child, &status, 0) != child) throw std::runtime_error("waitpid failed");
+    bool is_sent = is_time == nullptr;
+    for (;;) {
+        const pid_t ended = ::waitpid(child, &status, is_sent ? 0 : WNOHANG);
+        if (ended == child) break;
+        if (ended != 0) throw std::runtime_error("waitpid failed");
+        if (is_time()) {
+            ::kill(child, signal);
+            is_sent = true;
+        } else {
+            ::usleep(500);
+        }
+    }
     return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
 }
 
@@ -54,8 +67,9 @@ std::string ProgramResult::first_error_line() const {
     return error.substr(0, error.find('\n'));
 }
 
-ProgramResult run_program(const std::vector<std::string>& words,
-                          const std::filesystem::path& folder) {
+ProgramResult run_program_until(const std::vector<std::string>& words,
+                                const std::filesystem::path& folder,
+                                const std::function<bool()>& is_time, int signal) {
     const std::filesystem::path program =
         words.at(0).find('/') == std::string::npos
             ? std::filesystem::path(RELIEF_BIN_DIRECTORY) / words[0]
@@ -76,8 +90,13 @@ ProgramResult run_program(const std::vector<std::string>& words,
     const int failed =
         posix_spawn(&child, program.c_str(), actions.get(), nullptr, arguments.data(), environ);
     if (failed != 0) throw std::runtime_error(fmt::format("{} cannot be run", program.string()));
-    const int exit_code = exit_code_of(child);
+    const int exit_code = exit_code_of(child, is_time, signal);
     return {exit_code, contents_of(streams / "out"), contents_of(streams / "error")};
+}
+
+ProgramResult run_program(const std::vector<std::string>& words,
+                          const std::filesystem::path& folder) {
+    return run_program_until(words, folder, nullptr, 0);
 }
 
 ProgramResult run_line(const std::string& line, const std::filesystem::path& folder) {

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -25,7 +26,14 @@ struct ProgramResult {
 ProgramResult run_program(const std::vector<std::string>& words,
                           const std::filesystem::path& folder);
 
-/// The same for a line as typed in a shell; the project's programs are found first.
+/// The same, but for a signal that is sent as soon as `is_time` says so; not, where the program
+/// ends before.
+ProgramResult run_program_until(const std::vector<std::string>& words,
+                                const std::filesystem::path& folder,
+                                const std::function<bool()>& is_time, int signal);
+
+/// The same as run_program() for a line as typed in a shell; the project's programs are found
+/// first.
 ProgramResult run_line(const std::string& line, const std::filesystem::path& folder);
 
 }  // namespace relief::test

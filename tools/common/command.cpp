@@ -7,10 +7,12 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <csignal>
 #include <cstdio>
 #include <memory>
 
 #include "common/help_format.h"
+#include "file_replacement.h"
 #include "near_names.h"
 
 namespace relief::tools {
@@ -122,6 +124,14 @@ int parse_and_run(CLI::App& root, const std::vector<Command>& commands, int argc
     throw UsageError("a command is missing");
 }
 
+/// What a tool makes of signals: those that end it leave no half file; a reader that went away and
+/// a file that got too large are errors, reported as such, and not the end.
+void take_signals() {
+    remove_temporaries_on_signals();
+    std::signal(SIGPIPE, SIG_IGN);
+    std::signal(SIGXFSZ, SIG_IGN);
+}
+
 }  // namespace
 
 FileError failure(const std::filesystem::path& file, const std::string& problem,
@@ -212,6 +222,7 @@ void complain(const CLI::App& app, const std::string& text) {
 }
 
 int run_tool(const Tool& tool, int argc, const char* const* argv) {
+    take_signals();
     CLI::App root(tool.sentence, tool.name);
     root.formatter(std::make_shared<HelpFormat>());
     root.set_version_flag("--version", tool.name + " " + version(), "Print the version and leave.");

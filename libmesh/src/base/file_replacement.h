@@ -31,7 +31,15 @@ class FileReplacement {
     std::filesystem::path file_;
     std::filesystem::path temporary_;
     bool committed_ = false;
+    std::size_t place_;  ///< In the list of those that a signal removes.
 };
+
+/// From now on a program that is ended by SIGINT, SIGTERM or SIGHUP first removes what it has
+/// written beside: no half file and no temporary one stays. It still dies by the signal.
+///
+/// For programs, once, before they start threads: a library does not take signals from its user. A
+/// signal that is ignored stays so. Up to 128 files at once are known; of more, some would stay.
+void remove_temporaries_on_signals();
 
 /// Replaces a file by these bytes. \throws FileError
 void replace_file(const std::filesystem::path& file, std::span<const std::byte> bytes);

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+// Tools that are interrupted while they write: no half file, no temporary one, the old one
+// unharmed, and the shell is told which signal it was.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <csignal>
+#include <fstream>
+
+#include "relief/mesh/image_file.h"
+#include "tools/run_program.h"
+#include "tools/workplace.h"
+
+namespace relief::test {
+namespace {
+
+/// A map of noise: writing its normals takes a while.
+void write_noise(const std::filesystem::path& file, int size) {
+    Image heights = make_image(size, size, 1, 16, ColorSpace::data);
+    std::uint32_t state = 5;
+    for (std::uint16_t& sample : heights.as<std::uint16_t>()) {
+        state = state * 1664525U + 1013904223U;
+        sample = static_cast<std::uint16_t>(state >> 20);
+    }
+    write_image(file, heights);
+}
+
+/// Whether something is being written beside.
+bool is_writing(const std::filesystem::path& folder) {
+    for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+        if (entry.path().filename().string().starts_with(".")) return true;
+    }
+    return false;
+}
+
+TEST(Interruption, LeavesTheOldFileAndNothingElseAndDiesByTheSignal) {
+    const Workplace place;
+    write_noise(place / "heights.png", 3000);
+    for (const char* name : {"out/normals.png", "out/normals.tif"}) {
+        for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+            place.write(name, "old");
+            const ProgramResult result = run_program_until(
+                {"relief-bake", "bump", "heights.png", name}, place / ".",
+                [&] { return is_writing(place / "out"); }, signal);
+            EXPECT_EQ(result.exit_code, 128 + signal) << result.error;
+            EXPECT_EQ(result.error, "");
+            EXPECT_EQ(place.outputs(), std::filesystem::path(name).filename().string());
+            EXPECT_EQ(place.read(name), "old");
+        }
+        std::filesystem::remove(place / name);
+    }
+}
+
+TEST(Interruption, AFileThatGetsTooLargeIsAnErrorLikeAFullDisc) {
+    const Workplace place;
+    write_noise(place / "heights.png", 500);
+    for (const char* name : {"out/normals.png", "out/normals.tif"}) {
+        place.write(name, "old");
+        const ProgramResult result =
+            place.run("ulimit -f 100; relief-bake bump heights.png " + std::string(name));
+        EXPECT_EQ(result.exit_code, 1);
+        EXPECT_THAT(result.error, testing::StartsWith("relief-bake: error: " + std::string(name) +
+                                                      ": cannot be written: "));
+        EXPECT_EQ(place.outputs(), std::filesystem::path(name).filename().string());
+        EXPECT_EQ(place.read(name), "old");
+        std::filesystem::remove(place / name);
+    }
+}
+
+TEST(Interruption, AReaderThatWentAwayIsAnErrorInWords) {
+    const Workplace place;
+    place.write_square("square.obj");
+    // The pipe has no reader when the tool writes to it.
+    const ProgramResult result =
+        place.run("(sleep 0.2; relief-mesh check square.obj; echo $? > out/code) | true");
+    EXPECT_THAT(result.error, testing::HasSubstr("standard output: cannot be written"));
+    EXPECT_EQ(place.read("out/code"), "1\n");
+}
+
+}  // namespace
+}  // namespace relief::test
