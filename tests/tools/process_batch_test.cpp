@@ -100,6 +100,16 @@ TEST(ProcessBatch, RefusesBeforeAnythingIsDone) {
     }
 }
 
+TEST(ProcessBatch, AFileInTheFoldersPlaceIsToldAsSuch) {
+    const Workplace workplace;
+    workplace.write_square("a.obj");
+    workplace.write("out/taken", "old");
+    const ProgramResult result = workplace.run("relief-mesh process a.obj -o out/taken/");
+    EXPECT_EQ(result.exit_code, 1);
+    EXPECT_EQ(result.error, "relief-mesh: error: out/taken/: exists, but is no folder\n");
+    EXPECT_EQ(workplace.read("out/taken"), "old");
+}
+
 TEST(ProcessBatch, RealModelsComeOutTheSameForAnyNumberOfThreads) {
     RELIEF_NEEDS_SHARED(models, "data/models/gltf");
     constexpr std::array models_named = {"WaterBottle", "Corset", "BoomBox"};
