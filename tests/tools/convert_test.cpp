@@ -112,6 +112,24 @@ TEST(ConvertCommand, GreenIsNotGuessed) {
     EXPECT_EQ(green_of(workplace / "out/n.png"), "unknown");
 }
 
+TEST(ConvertCommand, GreenIsFoundByTheSlopesWhereThatIsAskedFor) {
+    const Workplace workplace;
+    write_map(workplace, "up.png");
+    write_map(workplace, "down.png", {16, Green::down});
+    for (const std::string name : {"up", "down"}) {
+        const ProgramResult result =
+            run(workplace, name + ".png out/n.png --input-green auto --green up");
+        EXPECT_THAT(result.out, HasSubstr("green " + name + " (by its slopes)"));
+        EXPECT_LT(normal_error(decoded(workplace / "out/n.png"), truth()).max, degrees_of_16_bit);
+    }
+    write_image(workplace / "flat.png", make_image(64, 64, 3, 8, ColorSpace::data));
+    const ProgramResult refused =
+        workplace.run("relief-bake convert flat.png out/n.png --input-green auto --green up");
+    EXPECT_EQ(refused.exit_code, 1);
+    EXPECT_THAT(refused.error, HasSubstr("flat.png: its slopes do not tell which way its green is "
+                                         "bright (say up or down instead of auto)"));
+}
+
 TEST(ConvertCommand, AxesTurnAsNamed) {
     const Workplace workplace;
     write_map(workplace, "map.png", {}, {{"relief:green", "up"}});

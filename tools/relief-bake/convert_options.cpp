@@ -63,12 +63,25 @@ Wraps parse_wraps(const std::string& subject, const std::string& text) {
     return {x, parse_choice(subject, parts[1], wrap_choices())};
 }
 
+/// "up", "down" or "auto"
+CLI::Option* add_green(CLI::App& app, const std::string& name, MapInputOptions& input,
+                       const std::string& description) {
+    Choices<std::optional<Green>> choices = {{"auto", std::nullopt}};
+    for (const auto& [word, green] : green_choices())
+        choices.emplace_back(word, green);
+    return add_value(app, name, "up|down|auto", description,
+                     [&input, choices](const std::string& subject, const std::string& text) {
+                         input.green = parse_choice(subject, text, choices);
+                         input.finds_green = !input.green;
+                     });
+}
+
 void add_input_options(CLI::App& app, ConvertRequest& request) {
     const std::string group = "Input";
-    add_choice(app, "--input-green", request.input.green, green_choices(),
-               "Where green is bright in the input: on slopes that face up (OpenGL) or down "
-               "(DirectX). Default: what the file says; else it is unknown, which --green alone "
-               "minds.")
+    add_green(app, "--input-green", request.input,
+              "Where green is bright in the input: on slopes that face up (OpenGL) or down "
+              "(DirectX), or whichever its slopes show, as relief-bake check finds it (auto). "
+              "Default: what the file says; else it is unknown, which --green alone minds.")
         ->group(group);
     add_choice(app, "--input-flat", request.input.flat, flat_choices(),
                "Which code stands for zero in the input: see --flat. Default: what the file says, "
@@ -152,9 +165,8 @@ void add_detail_options(CLI::App& app, DetailChoice& detail) {
                   detail.repeat = parse_repeat(subject, text);
               })
         ->group(group);
-    add_choice(app, "--detail-green", detail.input.green, green_choices(),
-               "Where green is bright in the detail. Default: what its file says, else as in the "
-               "base.")
+    add_green(app, "--detail-green", detail.input,
+              "The same for the detail. Default: what its file says, else as in the base.")
         ->group(group);
     add_choice(app, "--detail-flat", detail.input.flat, flat_choices(),
                "Which code stands for zero in the detail. Default: as for --input-flat.")
@@ -205,7 +217,7 @@ void check_convert_options(const ConvertRequest& request) {
         need(detail.blend.has_value(), "--blend", "--detail");
         need(detail.strength.has_value(), "--detail-strength", "--detail");
         need(detail.repeat.has_value(), "--detail-repeat", "--detail");
-        need(detail.input.green.has_value(), "--detail-green", "--detail");
+        need(detail.input.green || detail.input.finds_green, "--detail-green", "--detail");
         need(detail.input.flat.has_value(), "--detail-flat", "--detail");
     }
     if (!request.resize.size) {

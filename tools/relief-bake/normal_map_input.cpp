@@ -11,6 +11,7 @@
 #include "common/command.h"
 #include "common/map_choices.h"
 #include "relief/mesh/image_file.h"
+#include "relief/mesh/normal_map_check.h"
 
 namespace relief::tools {
 namespace {
@@ -26,7 +27,9 @@ std::optional<Green> named_green(const std::map<std::string, std::string>& metad
 
 std::string green_words(const MapInputOptions& options, const InputMap& map) {
     if (!map.green) return "green unknown";
-    const std::string source = options.green ? "as told" : "as its file says";
+    const char* source = options.finds_green ? "by its slopes"
+                         : options.green     ? "as told"
+                                             : "as its file says";
     return fmt::format("green {} ({})", name_of(*map.green, green_choices()), source);
 }
 
@@ -37,6 +40,14 @@ std::string flat_words(const MapInputOptions& options, const InputMap& map) {
                                                                 : "by its flat texels";
     return fmt::format("flat is {} ({})",
                        map.flat == FlatCode::middle ? "the middle code" : "between codes", source);
+}
+
+/// Which way green is bright by the slopes of a map, whatever its file says.
+Green found_green(const std::filesystem::path& file, const Image& image) {
+    const std::optional<Green> green = check_normal_map(image).green.green;
+    if (green) return *green;
+    throw failure(file, "its slopes do not tell which way its green is bright",
+                  "say up or down instead of auto");
 }
 
 void check_channels(const std::filesystem::path& file, int channels) {
@@ -54,6 +65,7 @@ InputMap read_normal_map(const std::filesystem::path& file, const MapInputOption
     map.image = read_image(file, ImageUse::data);
     map.metadata = std::move(info.metadata);
     map.green = options.green ? options.green : named_green(map.metadata);
+    if (options.finds_green) map.green = found_green(file, map.image);
     if (options.flat)
         map.flat = *options.flat;
     else if (map.image.channels > 2)

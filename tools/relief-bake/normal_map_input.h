@@ -17,18 +17,20 @@ namespace relief::tools {
 /// What the command line says about a map.
 struct MapInputOptions {
     std::optional<Green> green;
+    bool finds_green = false;  ///< By the slopes of the map: `auto`.
     std::optional<FlatCode> flat;
 };
 
 struct InputMap {
     Image image;
     std::map<std::string, std::string> metadata;
-    std::optional<Green> green;  ///< Absent where nobody says; no map is guessed at.
+    std::optional<Green> green;  ///< Absent where nobody says, and nobody asks the map.
     FlatCode flat = FlatCode::middle;
     std::string words;  ///< "green down (as told), flat is the middle code"
 };
 
-/// \throws FileError if it cannot be read, or has too few channels to be a normal map
+/// \throws FileError if it cannot be read, has too few channels to be a normal map, or cannot tell
+///         its green where that is asked of it
 InputMap read_normal_map(const std::filesystem::path& file, const MapInputOptions& options);
 
 /// The text entries that a converted map keeps: who made it and what it shows, and relief's own.

@@ -13,6 +13,7 @@
 #include <string_view>
 #include <type_traits>
 
+#include "large_memory.h"
 #include "parallel.h"
 #include "relief/mesh/error.h"
 
@@ -91,14 +92,22 @@ std::vector<To> converted(const Image& image, const std::vector<From>& from, Col
     return to;
 }
 
+template <typename Sample>
+std::vector<Sample> zeros(std::size_t count) {
+    std::vector<Sample> samples;
+    reserve_to_fill(samples, count);
+    samples.resize(count);
+    return samples;
+}
+
 Image::Samples zeros(int bits, std::size_t count) {
     switch (bits) {
         case 8:
-            return std::vector<std::uint8_t>(count);
+            return zeros<std::uint8_t>(count);
         case 16:
-            return std::vector<std::uint16_t>(count);
+            return zeros<std::uint16_t>(count);
         case 32:
-            return std::vector<float>(count);
+            return zeros<float>(count);
         default:
             throw InvalidInput(fmt::format("{} bits: a sample has 8, 16 or 32", bits));
     }

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+// What is done to normal maps, each thing in turn with the others so that the machine's drift hits
+// all alike: nanoseconds a texel, files left out. The figures of docs/normal-maps.md.
+#include <fmt/format.h>
+
+#include <chrono>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "relief/mesh/analytic_heights.h"
+#include "relief/mesh/normal_blend.h"
+#include "relief/mesh/normal_map.h"
+#include "relief/mesh/normal_map_operations.h"
+#include "relief/mesh/normal_mips.h"
+#include "relief/mesh/normal_resize.h"
+#include "relief/mesh/threads.h"
+#include "relief/mesh/timing.h"
+
+namespace {
+
+using namespace relief;
+
+constexpr int side = 2048;
+
+struct Thing {
+    std::string name;
+    std::function<void()> once;
+    std::function<void()> prepare = [] {};  ///< Before each time, and not timed.
+};
+
+Image bumpy_normals() {
+    const std::vector<HeightWave> waves = tiling_waves(side, side, 4, 16, 0.5, 3);
+    const AnalyticHeights field = wave_heights(side, side, waves);
+    Image image = make_image(side, side, 3, 32, ColorSpace::data);
+    for (std::size_t i = 0; i < image.sample_count(); ++i)
+        image.as<float>()[i] = static_cast<float>(field.normals[i / 3][static_cast<int>(i % 3)]);
+    return image;
+}
+
+std::vector<Thing> all_things(const Image& normals, Report& report) {
+    std::vector<Thing> things;
+    const auto codes_of = [&](const NormalMapFormat& format) {
+        return [&, format] { encode_normal_map(normals, format, report); };
+    };
+    things.push_back({"encode 16 bits", codes_of({16})});
+    things.push_back({"encode 8 bits", codes_of({8})});
+    things.push_back({"encode 8 bits, blue-noise",
+                      codes_of({8, Green::up, FlatCode::middle, Dither::blue_noise})});
+    static const Image map = encode_normal_map(normals, {16}, report);
+    things.push_back(
+        {"decode 16 bits", [&] { decode_normal_map(map, Green::up, FlatCode::middle, report); }});
+    static Image flipped = map;
+    things.push_back(
+        {"flip green of 16-bit codes", [&] {
+             map_axes(flipped, {{{0, false}, {1, true}, {2, false}}}, FlatCode::middle, report);
+         }});
+    static const char* const names[] = {
+        "reoriented", "partial-derivative", "whiteout", "udn", "unity", "linear", "overlay"};
+    static Image base = normals;
+    for (std::size_t i = 0; i < std::size(names); ++i) {
+        things.push_back({fmt::format("blend, {}", names[i]),
+                          [&, i] { blend_normals(base, normals, all_normal_blends[i], report); },
+                          [&] { base = normals; }});
+    }
+    for (const auto& [name, filter] :
+         {std::pair{"box", ResizeFilter::box}, std::pair{"lanczos", ResizeFilter::lanczos}}) {
+        for (const ResizeDomain domain : {ResizeDomain::slopes, ResizeDomain::vectors}) {
+            ResizeOptions options;
+            options.filter = filter;
+            options.domain = domain;
+            things.push_back(
+                {fmt::format("resize to 50 %, {}, {}", name,
+                             domain == ResizeDomain::slopes ? "slopes" : "vectors"),
+                 [&, options] { resize_normals(normals, side / 2, side / 2, options, report); }});
+        }
+    }
+    things.push_back({"all mip levels", [&] { normal_mip_levels(normals); }});
+    return things;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    if (argc > 1) set_thread_limit(static_cast<unsigned>(std::stoul(argv[1])));
+    const Image normals = bumpy_normals();
+    Report report;
+    const std::vector<Thing> things = all_things(normals, report);
+    std::vector<std::vector<double>> times(things.size());
+    interleave(things.size(), {}, [&](std::size_t thing, bool counted) {
+        things[thing].prepare();
+        const auto start = std::chrono::steady_clock::now();
+        things[thing].once();
+        const std::chrono::duration<double, std::nano> taken =
+            std::chrono::steady_clock::now() - start;
+        if (counted) times[thing].push_back(taken.count() / (double{side} * side));
+    });
+    for (std::size_t i = 0; i < things.size(); ++i) {
+        const Spread spread = spread_of(times[i]);
+        fmt::print("{:32} {:6.2f} ns a texel (p10 {:.2f}, p90 {:.2f})\n", things[i].name,
+                   spread.median, spread.p10, spread.p90);
+    }
+}
