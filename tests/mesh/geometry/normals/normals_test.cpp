@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Normals: by hand, for every hard mesh, under changes that must not matter, and against the
-// sphere.
+// Normals: by hand, for every hard mesh, and against the sphere. Bits that must not change:
+// normals_bits_test.cpp; weights by choice: chosen_normals_test.cpp.
 #include "relief/mesh/normals.h"
 
 #include <gmock/gmock.h>
@@ -10,6 +10,7 @@
 #include <numbers>
 
 #include "hard_meshes.h"
+#include "normals/normal_samples.h"
 #include "relief/mesh/error.h"
 #include "relief/mesh/mesh.h"
 #include "relief/mesh/threads.h"
@@ -19,21 +20,11 @@
 namespace relief {
 namespace {
 
+using test::all_weights;
 using test::degrees_between;
-
-constexpr glm::vec3 up(0.0F, 0.0F, 1.0F);
-constexpr NormalWeight all_weights[] = {
-    NormalWeight::uniform, NormalWeight::area,        NormalWeight::angle,     NormalWeight::sine,
-    NormalWeight::max,     NormalWeight::angle_edges, NormalWeight::area_angle};
-
-// A unit vector in floats is off by at most half a unit in the last place in each component: 6e-8
-// in all, or 3.4e-6 degrees.
-constexpr double float_degrees = 4e-6;
-
-std::vector<glm::vec3> normals_of(const Mesh& mesh, NormalWeight weight) {
-    Report report;
-    return vertex_normals(mesh.positions, mesh.triangles, weight, report);
-}
+using test::float_degrees;
+using test::normals_of;
+using test::up;
 
 void expect_unit(const std::vector<glm::vec3>& normals) {
     for (std::size_t i = 0; i < normals.size(); ++i) {
@@ -41,82 +32,6 @@ void expect_unit(const std::vector<glm::vec3>& normals) {
         ASSERT_TRUE(std::abs(glm::length(glm::dvec3(normals[i])) - 1.0) <= 2e-7) << "normal " << i;
     }
 }
-
-std::vector<glm::vec3> normals_of(const Mesh& mesh, const NormalOptions& options) {
-    Report report;
-    return vertex_normals(mesh.positions, mesh.triangles, options, report);
-}
-
-/// The weight of a corner with edges u and v, from the definition.
-long double weight_of(NormalWeight weight, const glm::dvec3& u, const glm::dvec3& v) {
-    using Vector = glm::vec<3, long double>;
-    const Vector a(u);
-    const Vector b(v);
-    const long double area = glm::length(glm::cross(a, b));
-    const long double lengths = glm::length(a) * glm::length(b);
-    const long double angle = std::atan2(area, glm::dot(a, b));
-    switch (weight) {
-        case NormalWeight::uniform:
-            return 1.0L;
-        case NormalWeight::area:
-            return area;
-        case NormalWeight::angle:
-            return angle;
-        case NormalWeight::sine:
-            return area / lengths;
-        case NormalWeight::max:
-            return area / lengths / lengths;
-        case NormalWeight::angle_edges:
-            return angle * lengths;
-        case NormalWeight::area_angle:
-            return angle * area;
-    }
-    return 0.0L;
-}
-
-/// Normals from the definition in long double, rounded as normals.h says. No sharing.
-std::vector<glm::vec3> normals_by_definition(const Mesh& mesh, NormalWeight weight) {
-    using Vector = glm::vec<3, long double>;
-    std::vector<Vector> sums(mesh.positions.size(), Vector(0.0L));
-    for (const glm::uvec3& triangle : mesh.triangles) {
-        for (int i = 0; i < 3; ++i) {
-            const glm::dvec3 here(mesh.positions[triangle[i]]);
-            const glm::dvec3 u = glm::dvec3(mesh.positions[triangle[(i + 1) % 3]]) - here;
-            const glm::dvec3 v = glm::dvec3(mesh.positions[triangle[(i + 2) % 3]]) - here;
-            sums[triangle[i]] +=
-                weight_of(weight, u, v) * glm::normalize(glm::cross(Vector(u), Vector(v)));
-        }
-    }
-    std::vector<glm::vec3> normals;
-    for (const Vector& sum : sums) {
-        const Vector steps = glm::round(glm::normalize(sum) * 268435456.0L);
-        normals.push_back(glm::vec3(steps) / 268435456.0F + 0.0F);
-    }
-    return normals;
-}
-
-/// A sphere with bumps of all sizes and no symmetry, so that no sum is round by chance.
-Mesh bumpy_ball() {
-    Mesh mesh = test::sphere(64, 32);
-    for (glm::vec3& p : mesh.positions) {
-        const double bump = 1.0 + 0.1 * std::sin(7.3 * p.x + 1.0) * std::cos(5.1 * p.y - 3.7 * p.z);
-        p = glm::vec3(glm::dvec3(p) * bump + glm::dvec3(0.1, 0.2, 0.3));
-    }
-    // Without the triangles at the poles that have no area.
-    std::erase_if(mesh.triangles, [&](const glm::uvec3& t) {
-        return mesh.positions[t.x] == mesh.positions[t.y] ||
-               mesh.positions[t.y] == mesh.positions[t.z] ||
-               mesh.positions[t.z] == mesh.positions[t.x];
-    });
-    return mesh;
-}
-
-/// Sets the vector instructions to use, until the end of the scope.
-class VectorBits {
-  public:
-    explicit VectorBits(const char* bits) { setenv("RELIEF_VECTOR_BITS", bits, 1); }
-    ~VectorBits() { unsetenv("RELIEF_VECTOR_BITS"); }
-};
 
 /// A cube of eight vertices; bit i of `splits` says how face i is cut in two.
 Mesh welded_cube(unsigned splits) {
@@ -186,34 +101,6 @@ TEST(VertexNormals, AngleWeightsGiveACubeItsDiagonalsHoweverItsFacesAreSplit) {
     EXPECT_NEAR(worst_by_area, std::acos(4.0 / std::sqrt(18.0)) * 180.0 / std::numbers::pi, 1e-4);
 }
 
-TEST(VertexNormals, AreTheDefinitionsBitForBit) {
-    const Mesh mesh = bumpy_ball();
-    for (const NormalWeight weight : all_weights) {
-        const auto normals = normals_of(mesh, {weight, Arithmetic::float64, std::nullopt});
-        const auto expected = normals_by_definition(mesh, weight);
-        std::size_t different = 0;
-        for (std::size_t i = 0; i < normals.size(); ++i) {
-            if (std::isnan(expected[i].x)) continue;  // Of a pole's spare vertex.
-            different += normals[i] != expected[i] ? 1 : 0;
-        }
-        EXPECT_EQ(different, 0U) << "weight " << static_cast<int>(weight);
-    }
-}
-
-TEST(VertexNormals, NoInstructionSetChangesABit) {
-    const Mesh mesh = bumpy_ball();
-    for (const NormalWeight weight : all_weights) {
-        for (const Arithmetic arithmetic : {Arithmetic::float64, Arithmetic::float32}) {
-            const auto expected = normals_of(mesh, {weight, arithmetic});
-            for (const char* bits : {"128", "256"}) {
-                const VectorBits narrower(bits);
-                EXPECT_TRUE(test::same_bits(normals_of(mesh, {weight, arithmetic}), expected))
-                    << bits << " bits, weight " << static_cast<int>(weight);
-            }
-        }
-    }
-}
-
 TEST(VertexNormals, MaxIsExactOnEverySphereHoweverItIsCut) {
     // Any closed polyhedron with its vertices on a sphere [Max 1999]; here with uneven triangles.
     Mesh mesh = test::sphere(24, 12);
@@ -232,34 +119,6 @@ TEST(VertexNormals, MaxIsExactOnEverySphereHoweverItIsCut) {
             std::max(worst_by_angle, degrees_between(by_angle[i], glm::dvec3(mesh.positions[i])));
     }
     EXPECT_GT(worst_by_angle, 0.5);
-}
-
-TEST(VertexNormals, ArithmeticInFloatIsOffByFloatsRounding) {
-    const Mesh mesh = bumpy_ball();
-    for (const NormalWeight weight : all_weights) {
-        const auto exact = normals_of(mesh, {weight, Arithmetic::float64});
-        const auto quick = normals_of(mesh, {weight, Arithmetic::float32});
-        double worst = 0.0;
-        for (std::size_t i = 0; i < exact.size(); ++i)
-            worst = std::max(worst, degrees_between(quick[i], exact[i]));
-        // Edges next to the poles are 0.01 long and at 1 from the origin: 1e-5 of them is rounding.
-        EXPECT_LE(worst, 1e-3) << "weight " << static_cast<int>(weight);
-        EXPECT_GT(worst, 0.0);
-    }
-}
-
-TEST(VertexNormals, ArithmeticInFloatKeepsItsBitsInAnyOrderAndAtAnyScale) {
-    const Mesh mesh = bumpy_ball();
-    const Mesh permuted = test::with_triangle_order(mesh, test::shuffled(mesh.triangles.size()));
-    Mesh scaled = mesh;
-    for (glm::vec3& position : scaled.positions)
-        position *= std::ldexp(1.0F, -90);
-    for (const NormalWeight weight : all_weights) {
-        const NormalOptions options{weight, Arithmetic::float32};
-        const auto expected = normals_of(mesh, options);
-        EXPECT_TRUE(test::same_bits(normals_of(permuted, options), expected));
-        EXPECT_TRUE(test::same_bits(normals_of(scaled, options), expected));
-    }
 }
 
 TEST(VertexNormals, VerticesWithinTheToleranceShareTheirNormal) {
@@ -294,35 +153,6 @@ TEST(VertexNormals, WithoutSharingEveryVertexIsAlone) {
     EXPECT_EQ(normals, cube.normals);
 }
 
-TEST(ChosenNormals, AreMaxWhereNothingFoldsOver) {
-    const Mesh mesh = bumpy_ball();
-    Report report;
-    const ChosenNormals chosen = chosen_normals(mesh.positions, mesh.triangles, {}, report);
-    EXPECT_EQ(chosen.by_area, 0U);
-    EXPECT_TRUE(test::same_bits(chosen.normals, normals_of(mesh, NormalWeight::max)));
-}
-
-TEST(ChosenNormals, AreAreaAroundAFoldAndMaxElsewhere) {
-    // A flat grid with one vertex pulled over its neighbour: the triangles turned over are the
-    // small ones, which Max's weights listen to most.
-    Mesh mesh = test::grid(8);
-    const std::size_t pulled = 4 * 9 + 4;
-    mesh.positions[pulled] = {0.5F + 0.14F, 0.5F, 0.0F};
-    Report report;
-    const ChosenNormals chosen = chosen_normals(mesh.positions, mesh.triangles, {}, report);
-    const auto by_max = normals_of(mesh, NormalWeight::max);
-    const auto by_area = normals_of(mesh, NormalWeight::area);
-    double worst_by_max = 0.0;
-    for (std::size_t i = 0; i < by_max.size(); ++i) {
-        EXPECT_LE(degrees_between(chosen.normals[i], up), degrees_between(by_area[i], up)) << i;
-        worst_by_max = std::max(worst_by_max, degrees_between(by_max[i], up));
-    }
-    EXPECT_GT(worst_by_max, 90.0);
-    EXPECT_GT(chosen.by_area, 0U);
-    EXPECT_LT(chosen.by_area, 8U);
-    EXPECT_TRUE(report.empty());
-}
-
 TEST(VertexNormals, ATextureSeamDoesNotShow) {
     const Mesh sphere = test::sphere(24, 12);
     for (const NormalWeight weight : all_weights) {
@@ -337,17 +167,6 @@ TEST(VertexNormals, ATextureSeamDoesNotShow) {
         }
         EXPECT_EQ(shared, 11U + 2U * (25U * 24U / 2U));
     }
-}
-
-TEST(VertexNormals, MinusZeroIsTheSamePlaceAsZero) {
-    // Two triangles at right angles whose shared corner is written with different zeros.
-    const std::vector<glm::vec3> positions = {{0, 0, 0},         {1, 0, 0}, {0, 1, 0},
-                                              {-0.0F, 0, -0.0F}, {0, 1, 0}, {0, 0, 1}};
-    Report report;
-    const auto normals = vertex_normals(positions, std::vector<glm::uvec3>{{0, 1, 2}, {3, 4, 5}},
-                                        NormalWeight::angle, report);
-    EXPECT_EQ(normals[0], normals[3]);
-    EXPECT_LE(degrees_between(normals[0], glm::dvec3(1, 0, 1)), float_degrees);
 }
 
 TEST(VertexNormals, AnIsolatedVertexPointsUpAndIsCounted) {
@@ -460,29 +279,6 @@ TEST(VertexNormals, ScaleDoesNotMatter) {
     }
 }
 
-TEST(VertexNormals, ScalingByAPowerOfTwoChangesNoBit) {
-    const Mesh sphere = test::sphere(16, 8);
-    for (const NormalWeight weight : all_weights) {
-        for (const int exponent : {-60, 60}) {
-            Mesh scaled = sphere;
-            for (glm::vec3& position : scaled.positions)
-                position *= std::ldexp(1.0F, exponent);
-            EXPECT_TRUE(test::same_bits(normals_of(scaled, weight), normals_of(sphere, weight)));
-        }
-    }
-}
-
-TEST(VertexNormals, AnOffsetCostsOnlyWhatItTakesFromThePositions) {
-    // Positions that are multiples of 1/16 stay exact at an offset of 2^19.
-    Mesh mesh = test::grid(8);
-    for (std::size_t i = 0; i < mesh.positions.size(); ++i)
-        mesh.positions[i].z = static_cast<float>(i * i % 7) / 16.0F;
-    const auto expected = normals_of(mesh, NormalWeight::angle);
-    for (glm::vec3& position : mesh.positions)
-        position += glm::vec3(524288.0F);
-    EXPECT_TRUE(test::same_bits(normals_of(mesh, NormalWeight::angle), expected));
-}
-
 TEST(VertexNormals, AreUnitOnEveryHardMesh) {
     for (const test::NamedMesh& hard : test::hard_meshes()) {
         SCOPED_TRACE(hard.name);
@@ -490,24 +286,6 @@ TEST(VertexNormals, AreUnitOnEveryHardMesh) {
             expect_unit(normals_of(hard.mesh, weight));
         Report report;
         expect_unit(triangle_normals(hard.mesh.positions, hard.mesh.triangles, report));
-    }
-}
-
-TEST(VertexNormals, PermutingTrianglesAndRotatingTheirCornersChangesNoBit) {
-    std::vector<test::NamedMesh> meshes = test::hard_meshes();
-    meshes.push_back({"sphere", test::sphere(20, 10)});
-    for (const test::NamedMesh& hard : meshes) {
-        SCOPED_TRACE(hard.name);
-        Mesh permuted =
-            test::with_triangle_order(hard.mesh, test::shuffled(hard.mesh.triangles.size()));
-        for (std::size_t i = 0; i < permuted.triangles.size(); i += 2) {
-            glm::uvec3& triangle = permuted.triangles[i];
-            triangle = {triangle.y, triangle.z, triangle.x};
-        }
-        for (const NormalWeight weight : all_weights) {
-            EXPECT_TRUE(
-                test::same_bits(normals_of(hard.mesh, weight), normals_of(permuted, weight)));
-        }
     }
 }
 
@@ -526,19 +304,6 @@ TEST(VertexNormals, RotateWithTheMesh) {
             EXPECT_LE(degrees_between(after[i], rotation * glm::dvec3(before[i])), 1e-4);
         }
     }
-}
-
-TEST(VertexNormals, TheNumberOfThreadsChangesNoBit) {
-    const Mesh sphere = test::sphere(200, 100);
-    for (const NormalWeight weight : all_weights) {
-        set_thread_limit(1);
-        const auto expected = normals_of(sphere, weight);
-        for (const unsigned threads : {2U, 3U, 0U}) {
-            set_thread_limit(threads);
-            EXPECT_TRUE(test::same_bits(normals_of(sphere, weight), expected)) << threads;
-        }
-    }
-    set_thread_limit(0);
 }
 
 TEST(VertexNormals, ApproachTheSphereAtSecondOrder) {
