@@ -5,6 +5,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "relief/mesh/analytic_heights.h"
+#include "relief/mesh/bump.h"
 #include "relief/mesh/image_file.h"
 #include "support/shared_data.h"
 #include "tools/refusal.h"
@@ -92,6 +94,63 @@ TEST(MapCheckCommand, SaysTheSameAsJson) {
     EXPECT_EQ(map["bits_used"], json({8, 8, 8}));
     EXPECT_EQ(map["lengths"]["within"]["0.1"], 1.0);
     EXPECT_TRUE(map["trouble"].empty());
+}
+
+/// Hills, as tangent-space normals of 8 bits.
+Image hills() {
+    Report report;
+    return normal_map_from_height(
+        wave_heights(64, 64, tiling_waves(64, 64, 8, 8.0, 0.5, 3)).heights,
+        {Kernel::central3, Wrap::repeat, 1.0}, {.bits = 8}, report);
+}
+
+template <typename Change>
+Image changed(Image map, Change change) {
+    for (std::size_t i = 0; i < map.sample_count(); ++i) {
+        std::uint8_t& sample = map.as<std::uint8_t>()[i];
+        sample = static_cast<std::uint8_t>(change(i % 3, static_cast<int>(sample)));
+    }
+    return map;
+}
+
+/// The remedy for a condition of a map, as --json has it; empty if it has not the condition.
+std::string remedy_of(const Workplace& workplace, const std::string& file,
+                      const std::string& kind) {
+    const json report = json::parse(workplace.run("relief-bake check " + file + " --json").out);
+    for (const char* list : {"trouble", "remarks"}) {
+        for (const json& finding : report["files"][0][list]) {
+            if (finding["kind"] == kind) return finding["remedy"];
+        }
+    }
+    return "";
+}
+
+TEST(MapCheckCommand, NamesRemediesThatHelp) {
+    const Workplace workplace;
+    const Image sound = hills();
+    Image wide = make_image(64, 64, 3, 16, ColorSpace::data);
+    for (std::size_t i = 0; i < wide.sample_count(); ++i)
+        wide.as<std::uint16_t>()[i] = static_cast<std::uint16_t>(257 * sound.as<std::uint8_t>()[i]);
+    Image alpha = make_image(64, 64, 4, 8, ColorSpace::data);
+    for (std::size_t i = 0; i < alpha.sample_count(); ++i)
+        alpha.as<std::uint8_t>()[i] =
+            i % 4 == 3 ? std::uint8_t{255} : sound.as<std::uint8_t>()[i / 4 * 3 + i % 4];
+    const std::vector<std::pair<const char*, Image>> maps = {
+        {"green is down", changed(hills(), [](auto c, int s) { return c == 1 ? 256 - s : s; })},
+        {"not of unit length", changed(hills(), [](auto, int s) { return 128 + (s - 128) / 2; })},
+        {"no third component", changed(hills(), [](auto c, int s) { return c == 2 ? 0 : s; })},
+        {"texel without direction",
+         changed(hills(), [n = 0](auto, int s) mutable { return n++ < 3 ? 128 : s; })},
+        {"bits unused", wide},
+        {"constant alpha", alpha}};
+    for (const auto& [kind, map] : maps) {
+        write_image(workplace / "map one.png", map);
+        const std::string remedy = remedy_of(workplace, "'map one.png'", kind);
+        EXPECT_THAT(remedy, testing::StartsWith("relief-bake convert 'map one.png' out.png --"))
+            << kind;
+        EXPECT_EQ(workplace.run(remedy).exit_code, 0) << remedy;
+        EXPECT_EQ(remedy_of(workplace, "out.png", kind), "") << kind;
+    }
 }
 
 TEST(MapCheckCommand, GoesOnAfterAFileThatCannotBeRead) {

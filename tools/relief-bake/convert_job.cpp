@@ -104,9 +104,12 @@ void convert_floats(const ConvertRequest& request, InputMap& input, const Turn& 
     }
     for (const ConvertStep& step : steps_of(request)) {
         step.apply(field, report);
-        done.steps.push_back(step.words);
+        done.steps.push_back(step.words + field.note);
+        field.note.clear();
     }
     done.green = field.green;
+    if (request.space.to_tangent) done.content = "normal map, tangent space";
+    if (field.is_object_space) done.content = "normal map, object space";
 }
 
 /// Turns axes code by code; drops alpha where that is asked for.
@@ -139,6 +142,8 @@ Converted convert_map(const Job& job, const ConvertRequest& request, Stages& sta
     done.bits_read = input.image.bits();
     done.input_words = input.words;
     check_channels(job, request, input);
+    // The green of what is made of it: object space has none.
+    if (request.space.to_tangent) input.green = request.output.green;
     const Turn turn = turn_of(job, request, input);
     done.format = format_of(request.output, job.output,
                             {.bits = done.bits_read, .green = Green::up, .flat = input.flat});

@@ -35,8 +35,9 @@ struct Converted {
     std::string input_words;         ///< The input's conventions.
     std::vector<std::string> steps;  ///< What was done, in order.
     NormalMapFormat format;
-    std::optional<Green> green;        ///< Absent where nobody knows.
-    std::vector<WrittenLevel> levels;  ///< The map itself first; others only with --mips.
+    std::optional<Green> green;          ///< Absent where nobody knows.
+    std::optional<std::string> content;  ///< Of "relief:content", where that is another now.
+    std::vector<WrittenLevel> levels;    ///< The map itself first; others only with --mips.
     Findings findings;
 };
 

@@ -71,9 +71,10 @@ std::map<std::string, std::string> LevelWriter::metadata() const {
     format.green = done_.green.value_or(Green::up);
     std::map<std::string, std::string> entries = normal_map_metadata(format);
     if (!done_.green) entries.erase("relief:green");
+    if (done_.content) entries["relief:content"] = *done_.content;
     for (const auto& [key, value] : kept_) {
         if (key == "relief:content")
-            entries[key] = value;
+            entries[key] = done_.content.value_or(value);
         else if (key != "relief:green" && key != "relief:flat")
             entries.emplace(key, value);
     }

@@ -202,6 +202,7 @@ void add_convert_options(CLI::App& app, ConvertRequest& request) {
     add_resize_options(app, request.resize);
     add_slope_options(app, request);
     add_detail_options(app, request.detail);
+    add_space_options(app, request.space);
     add_mip_options(app, request.mips);
 }
 
@@ -213,6 +214,12 @@ void check_convert_options(const ConvertRequest& request) {
         throw UsageError("--flip, --green: both say what becomes of green");
     if (request.normalize && request.rebuild_z)
         throw UsageError("--normalize: normals with a computed z are of length 1 anyway");
+    check_space_options(request.space);
+    if (request.space.to_object && request.output.green)
+        throw UsageError("--green, --to-object: object space has no green");
+    if (request.space.to_tangent && (request.input.green || request.flip))
+        throw UsageError(fmt::format("{}, --to-tangent: object space has no green",
+                                     request.flip ? "--flip" : "--input-green"));
     if (!detail.file) {
         need(detail.blend.has_value(), "--blend", "--detail");
         need(detail.strength.has_value(), "--detail-strength", "--detail");

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "common/command.h"
+#include "convert_space.h"
 #include "map_output.h"
 #include "normal_map_input.h"
 #include "relief/mesh/normal_blend.h"
@@ -59,6 +60,7 @@ struct ConvertRequest {
     ResizeChoice resize;
     std::optional<double> strength;
     DetailChoice detail;
+    SpaceChoice space;
     MipChoice mips;
     AlphaChoice alpha = AlphaChoice::keep;
     MapOutputOptions output;

@@ -103,9 +103,11 @@ ConvertStep detail_step(const DetailChoice& choice, const ResizeChoice& resize) 
 
 std::vector<ConvertStep> steps_of(const ConvertRequest& request) {
     std::vector<ConvertStep> steps;
+    if (request.space.to_tangent) steps.push_back(to_tangent_step(request.space));
     if (request.resize.size) steps.push_back(resize_step(request.resize));
     if (request.strength) steps.push_back(strength_step(*request.strength));
     if (request.detail.file) steps.push_back(detail_step(request.detail, request.resize));
+    if (request.space.to_object) steps.push_back(to_object_step(request.space));
     return steps;
 }
 

@@ -22,6 +22,8 @@ struct NormalField {
     /// Where y points: up or down in the image; absent where nobody knows. It is the output's
     /// already.
     std::optional<Green> green;
+    bool is_object_space = false;  ///< Then nothing is green.
+    std::string note;              ///< What the last step has to add to its words.
 };
 
 struct ConvertStep {
@@ -29,7 +31,8 @@ struct ConvertStep {
     std::function<void(NormalField& field, Report& report)> apply;
 };
 
-/// The steps that a request asks for, in the order in which they are done: size, slopes, detail.
+/// The steps that a request asks for, in the order in which they are done: from object space, size,
+/// slopes, detail, to object space.
 std::vector<ConvertStep> steps_of(const ConvertRequest& request);
 
 }  // namespace relief::tools

@@ -16,7 +16,9 @@ std::string coded_words(const Converted& converted) {
     const std::string words = format_words(format);
     if (converted.green) return words;
     const std::size_t place = words.find("green up");
-    return words.substr(0, place) + "green unknown" + words.substr(place + 8);
+    const bool is_object_space = converted.content == "normal map, object space";
+    return words.substr(0, place) + (is_object_space ? "object space" : "green unknown") +
+           words.substr(place + 8);
 }
 
 std::vector<std::string> level_lines(const Converted& converted) {

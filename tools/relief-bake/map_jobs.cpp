@@ -67,12 +67,12 @@ ExitCode run_all(const CLI::App& app, const MapFiles& files, const MapWork& work
 }  // namespace
 
 void add_map_files(CLI::App& app, MapFiles& files, const std::string& inputs,
-                   const std::string& details) {
+                   const std::string& details, const std::string& output) {
     add_files(app, "FILE...", files.words.files,
-              fmt::format("IN OUT: the {} to read and the normal map to write (.png .tif .exr). "
+              fmt::format("IN OUT: the {} to read and the {} to write (.png .tif .exr). "
                           "With -o: the {}s to read, any number of them. <UDIM> in a name stands "
                           "for all tiles that exist. {}",
-                          inputs, inputs, details));
+                          inputs, output, inputs, details));
 }
 
 void add_map_folder(CLI::App& app, MapFiles& files) {

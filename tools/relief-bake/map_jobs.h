@@ -33,8 +33,9 @@ struct MapWork {
 
 /// \param inputs   what the inputs are: "normal map", "normal maps" with an s
 /// \param details  what else there is to say of them, whole sentences
+/// \param output   what each becomes
 void add_map_files(CLI::App& app, MapFiles& files, const std::string& inputs,
-                   const std::string& details);
+                   const std::string& details, const std::string& output = "normal map");
 
 /// -o, which is best told beside the other options about output.
 void add_map_folder(CLI::App& app, MapFiles& files);

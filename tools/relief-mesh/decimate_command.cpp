@@ -8,7 +8,7 @@
 #include <optional>
 
 #include "commands.h"
-#include "process_choices.h"
+#include "common/frame_choices.h"
 #include "relief/mesh/decimate.h"
 #include "reshaping.h"
 

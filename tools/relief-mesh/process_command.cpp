@@ -12,7 +12,7 @@
 #include "common/report_options.h"
 #include "common/text.h"
 #include "process_batch.h"
-#include "process_choices.h"
+#include "common/frame_choices.h"
 #include "process_jobs.h"
 #include "process_summary.h"
 #include "processing.h"

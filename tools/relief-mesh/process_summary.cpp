@@ -9,7 +9,7 @@
 
 #include "common/options.h"
 #include "common/text.h"
-#include "process_choices.h"
+#include "common/frame_choices.h"
 
 namespace relief::tools {
 namespace {

@@ -11,7 +11,7 @@
 
 #include "common/text.h"
 #include "model_file.h"
-#include "process_choices.h"
+#include "common/frame_choices.h"
 #include "relief/mesh/split.h"
 #include "relief/mesh/threads.h"
 

@@ -3,7 +3,7 @@
 #include <memory>
 
 #include "commands.h"
-#include "process_choices.h"
+#include "common/frame_choices.h"
 #include "relief/mesh/subdivide.h"
 #include "reshaping.h"
 

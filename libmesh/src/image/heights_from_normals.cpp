@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "image/frequency_solver.h"
 #include "image/slope_operator.h"
@@ -40,15 +41,15 @@ Slope slope_of(const float* normal, double steepest) {
     return {-x / across * steepest, -y / across * steepest, trouble};
 }
 
-/// Rows of the map's slopes; no findings.
-SlopeOperator::SlopeRows slopes_of(const Image& normals, double steepest) {
-    return [&normals, steepest](int row, double* along_x, double* along_y) {
+/// Rows of the map's slopes less `mean`; no findings.
+SlopeOperator::SlopeRows slopes_of(const Image& normals, double steepest, glm::dvec2 mean) {
+    return [&normals, steepest, mean](int row, double* along_x, double* along_y) {
         const auto width = static_cast<std::size_t>(normals.width);
         const float* from = &normals.as<float>()[static_cast<std::size_t>(row) * width * 3];
         for (std::size_t i = 0; i < width; ++i) {
             const Slope slope = slope_of(from + i * 3, steepest);
-            along_x[i] = slope.x;
-            along_y[i] = slope.y;
+            along_x[i] = slope.x - mean.x;
+            along_y[i] = slope.y - mean.y;
         }
     };
 }
@@ -89,6 +90,23 @@ double sum_over_rows(int rows, const Sum& sum) {
     for (const double one : sums)
         all += one;
     return all;
+}
+
+glm::dvec2 mean_slope(const Image& normals, double steepest) {
+    const auto width = static_cast<std::size_t>(normals.width);
+    const SlopeOperator::SlopeRows slopes = slopes_of(normals, steepest, {0.0, 0.0});
+    Field x(static_cast<std::size_t>(normals.height)), y(x.size());
+    parallel_for(x.size(), 16, [&](std::size_t begin, std::size_t end) {
+        Field along_x(width), along_y(width);
+        for (std::size_t row = begin; row < end; ++row) {
+            slopes(static_cast<int>(row), along_x.data(), along_y.data());
+            x[row] = std::accumulate(along_x.begin(), along_x.end(), 0.0);
+            y[row] = std::accumulate(along_y.begin(), along_y.end(), 0.0);
+        }
+    });
+    return glm::dvec2(std::accumulate(x.begin(), x.end(), 0.0),
+                      std::accumulate(y.begin(), y.end(), 0.0)) /
+           (static_cast<double>(width) * static_cast<double>(normals.height));
 }
 
 double dot(const Field& a, const Field& b, int rows) {
@@ -224,7 +242,9 @@ IntegratedHeights heights_from_normals(const Image& normals, const IntegrationOp
     const SlopeOperator slopes(normals.width, normals.height, kernel, options.wrap, options.texel);
     const FrequencySolver solver(normals.width, normals.height, kernel, options.wrap,
                                  options.texel);
-    const SlopeOperator::SlopeRows wanted = slopes_of(normals, options.steepest);
+    result.mean_slope = mean_slope(normals, options.steepest);
+    const SlopeOperator::SlopeRows wanted =
+        slopes_of(normals, options.steepest, options.level ? result.mean_slope : glm::dvec2(0.0));
 
     Field heights(result.heights.sample_count());
     slopes.transpose(wanted, heights.data());

@@ -187,8 +187,11 @@ void find_conventions(const Image& map, const NormalMapCheck& check,
         found.if_so(check.green.green == Green::down, green_down);
         found.if_so(!check.green.green, green_unknown);
     }
+    // The other way round nothing shows: maps coded about 127.5 may well have 128 for flat.
     if (has_directions(check.content) && metadata.contains("relief:flat") && map.bits() != 32)
-        found.if_so(detect_flat_code(map) != detect_flat_code(map, metadata), flat_contradicted);
+        found.if_so(detect_flat_code(map, metadata) == FlatCode::middle &&
+                        detect_flat_code(map) == FlatCode::half,
+                    flat_contradicted);
 }
 
 void find_channels(const Image& map, const NormalMapCheck& check, const MapStatistics& all,

@@ -114,6 +114,13 @@ TEST(HeightsFromNormals, KeepAPlaneWhereBordersAreClamped) {
     EXPECT_LT(height_error(result.heights, plane), 1e-3);
     EXPECT_NEAR(result.highest, 0.25 * 32 + 0.5 * 19, 2e-3);
     EXPECT_NEAR(result.rms_slope, std::hypot(0.25, 0.5), 1e-6);
+    EXPECT_NEAR(result.mean_slope.x, 0.25, 1e-6);
+    EXPECT_NEAR(result.mean_slope.y, 0.5, 1e-6);
+    options.level = true;
+    EXPECT_LT(
+        heights_from_normals(normals_of(plane, Kernel::central7, Wrap::clamp), options, report)
+            .highest,
+        1e-5);
 }
 
 TEST(HeightsFromNormals, LeaveOverWhatIsNoSurface) {

@@ -23,6 +23,9 @@ struct IntegrationOptions {
     /// Slopes of steeper normals, and of those that face sideways or back, are cut to this length:
     /// 86 degrees, where one code of 8 bits in z is one sixteenth of the slope already.
     double steepest = 16.0;
+    /// Takes the mean slope out first. A map whose flat texels are one code off is a slope of 0.8 %
+    /// in all, which adds up to hills where borders are clamped.
+    bool level = false;
 };
 
 struct IntegratedHeights {
@@ -33,6 +36,7 @@ struct IntegratedHeights {
     double residual_slope = 0.0;
     DirectionError residual;  ///< The same as angles between the normals, in degrees.
     double rms_slope = 0.0;   ///< Of the map, to compare with.
+    glm::dvec2 mean_slope{};  ///< Of the map, to the right and upwards; as it was before `level`.
     int rounds = 1;           ///< Of refinement; 1 unless a wrap is clamp.
 };
 

@@ -30,10 +30,12 @@ struct ConvertedNormals {
 ///
 /// \param normals  three float channels, y up, as from decode_normal_map()
 /// \param mesh     with normals, tangents and texture coordinates
-/// \param report   counts what cover_texels() does; texels that no triangle has a part in, and
-///                 texels where the frame is none (normal along tangent, w between -1 and 1, not
-///                 finite) or the map's normal is zero or not finite: all these are (0, 0, 1)
-/// \return object space, x y z as in the mesh. A texel whose centre is outside the mesh's charts
+/// \param report   counts what cover_texels() does, and texels where the frame is none (normal
+/// along
+///                 tangent, w near 0, not finite) or the map's normal is zero or not finite: these
+///                 are (0, 0, 1)
+/// \return object space, x y z as in the mesh; (0, 0, 1) where no triangle has a part in a texel
+///         (`coverage.empty` of them). A texel whose centre is outside the mesh's charts
 /// but
 ///         whose square is not has the frame of the nearest point (texel_coverage.h)
 /// \throws InvalidInput if the image is empty or not of three float channels, the mesh is not valid

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: Apache-2.0
+// relief-bake heights as users run it: the file that it writes gives the normal map back by the
+// command that it names.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "relief/mesh/direction_error.h"
+#include "relief/mesh/image_file.h"
+#include "relief/mesh/normal_map.h"
+#include "tools/refusal.h"
+#include "tools/workplace.h"
+
+namespace relief::tools {
+namespace {
+
+using nlohmann::json;
+using test::expect_refusal;
+using test::ProgramResult;
+using test::Workplace;
+using testing::HasSubstr;
+
+/// Root mean square angle between two maps of the workplace, in degrees.
+double rms_angle(const Workplace& workplace, const char* a, const char* b) {
+    Report report;
+    const auto normals = [&](const char* file) {
+        return decode_normal_map(read_image(workplace / file, ImageUse::data), Green::up,
+                                 FlatCode::middle, report);
+    };
+    const Image one = normals(a), other = normals(b);
+    double squares = 0.0;
+    for (std::size_t i = 0; i < one.sample_count(); i += 3) {
+        const auto at = [i](const Image& image) {
+            return glm::dvec3(image.as<float>()[i], image.as<float>()[i + 1],
+                              image.as<float>()[i + 2]);
+        };
+        const double angle = degrees_between(at(one), at(other));
+        squares += angle * angle;
+    }
+    return std::sqrt(squares * 3.0 / static_cast<double>(one.sample_count()));
+}
+
+/// The command after "way back", with its result at out/back.png.
+std::string way_back(const std::string& summary) {
+    const std::size_t begin = summary.find("relief-bake bump");
+    std::string line = summary.substr(begin, summary.find('\n', begin) - begin);
+    return line.replace(line.find("normals.png"), 11, "out/back.png");
+}
+
+TEST(HeightsCommand, NamesTheWayBack) {
+    const Workplace workplace;
+    EXPECT_EQ(workplace
+                  .run("relief-bake bump data/bricks-height.png out/map.png --strength 20 --kernel "
+                       "sobel3 --quiet")
+                  .exit_code,
+              0);
+    for (const char* options :
+         {"out/heights.png", "out/heights.exr", "out/heights.tif --bits 32"}) {
+        const ProgramResult result = workplace.run(std::string("relief-bake heights out/map.png ") +
+                                                   options + " --kernel sobel3");
+        ASSERT_EQ(result.exit_code, 0) << result.error;
+        EXPECT_THAT(result.out, HasSubstr("findings  none\n"));
+        const std::string command = way_back(result.out);
+        EXPECT_THAT(command, HasSubstr(" --kernel sobel3 --wrap repeat"));
+        EXPECT_EQ(workplace.run(command).exit_code, 0) << command;
+        // 16-bit codes of the map that it is made of, and of the heights.
+        EXPECT_LT(rms_angle(workplace, "out/map.png", "out/back.png"), 0.02) << options;
+    }
+}
+
+TEST(HeightsCommand, SaysWhatItMadeInTheReportAndTheFile) {
+    const Workplace workplace;
+    const ProgramResult result = workplace.run(
+        "relief-bake heights data/scenes/bricks-normal.png out/heights.png --report "
+        "out/report.json --wrap mirror,repeat --level");
+    EXPECT_EQ(result.exit_code, 0) << result.error;
+    const json report = json::parse(workplace.read("out/report.json"));
+    EXPECT_EQ(report["tool"], "relief-bake heights");
+    EXPECT_EQ(report["green"], "up");
+    EXPECT_EQ(report["green_by_slopes"], true);
+    EXPECT_EQ(report["wrap"], "mirror,repeat");
+    EXPECT_EQ(report["kernel"], "central7");
+    EXPECT_EQ(report["bits"], 16);
+    EXPECT_EQ(report["strength"], report["highest"]);
+    EXPECT_GT(report["highest"], 4.0);
+    EXPECT_LT(report["highest"], 6.0);
+    EXPECT_LT(report["residual_degrees"]["rms"], 2.0);
+    EXPECT_LT(report["step_degrees"], 0.01);
+    const auto metadata = read_image_info(workplace / "out/heights.png").metadata;
+    EXPECT_EQ(metadata.at("relief:content"), "height map");
+    EXPECT_NEAR(std::stod(metadata.at("relief:strength")), report["strength"].get<double>(), 1e-6);
+}
+
+TEST(HeightsCommand, RefusesToGuessGreenAndWhatCannotHoldHeights) {
+    const Workplace workplace;
+    Image flat = make_image(8, 8, 3, 8, ColorSpace::data);
+    for (std::size_t i = 0; i < flat.sample_count(); ++i)
+        flat.as<std::uint8_t>()[i] = i % 3 == 2 ? 255 : 128;
+    write_image(workplace / "flat.png", flat);
+    for (const auto& [line, code, message] :
+         {test::Refused{"relief-bake heights flat.png out/old.png", 1,
+                        "flat.png: where its green is bright is not known, nor do its slopes tell "
+                        "(give --input-green)"},
+          test::Refused{"relief-bake heights flat.png out/old.png --bits 32", 2,
+                        "--bits 32: .png holds 16 or 8 bits"},
+          test::Refused{"relief-bake heights flat.png out/old.jpg", 2,
+                        "out/old.jpg: no format to write heights in (use .png, .tif or .exr)"},
+          test::Refused{"relief-bake heights flat.png out/old.png --wrap auto,clamp,repeat", 2,
+                        "--wrap auto,clamp,repeat: names more than two axes"},
+          test::Refused{"relief-bake heights data/bricks-height.png out/old.png", 1,
+                        "data/bricks-height.png: has 1 channel, which holds no normals"}}) {
+        expect_refusal(workplace, "relief-bake", {line, code, message}, "old.png");
+    }
+    EXPECT_EQ(workplace.run("relief-bake heights flat.png out/h.png --input-green up").exit_code,
+              0);
+}
+
+}  // namespace
+}  // namespace relief::tools
