@@ -10,7 +10,7 @@ const std::vector<HardCase>& hard_cases() {
         std::vector<HardCase> rows;
         for (const auto& part :
              {triangle_cases(), surface_cases(), number_cases(), stored_cases(), tangent_cases(),
-              tangent_surface_cases(), encoding_cases(), normal_map_cases()})
+              tangent_surface_cases(), encoding_cases(), normal_map_cases(), map_check_cases()})
             rows.insert(rows.end(), part.begin(), part.end());
         return rows;
     }();

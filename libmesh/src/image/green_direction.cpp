@@ -69,32 +69,41 @@ struct SquareEvidence {
     double alpha_slopes = 0.0, alpha_alpha = 0.0, slopes_slopes = 0.0;
 };
 
+/// One row of a square, three rows of p and q being given: adds what each column shows. Plain
+/// loops over neighbours, with Sobel's weights, which halve the noise.
+void observe_row(const std::array<const float*, 3>& p, const std::array<const float*, 3>& q,
+                 std::size_t count, float* agree, float* size) {
+    for (std::size_t i = 1; i + 1 < count; ++i) {
+        // Rows count downwards, y upwards.
+        const float p_in_y = (p[0][i - 1] + 2.0F * p[0][i] + p[0][i + 1]) -
+                             (p[2][i - 1] + 2.0F * p[2][i] + p[2][i + 1]);
+        const float q_in_x = (q[0][i + 1] + 2.0F * q[1][i + 1] + q[2][i + 1]) -
+                             (q[0][i - 1] + 2.0F * q[1][i - 1] + q[2][i - 1]);
+        const float weight = 1.0F / (1.0F + p[1][i] * p[1][i] + q[1][i] * q[1][i]);
+        const float squared = weight * weight;
+        const float of_size = 0.5F * squared * (p_in_y * p_in_y + q_in_x * q_in_x);
+        // Where a slope has no say, all of this is NaN, which is not below anything.
+        const bool counts = of_size < std::numeric_limits<float>::max();
+        agree[i] += counts ? squared * p_in_y * q_in_x : 0.0F;
+        size[i] += counts ? of_size : 0.0F;
+    }
+}
+
 /// Over the texels of a square that have two neighbours on each side inside it.
 Observation observe(const Slopes& slopes) {
+    const auto side = static_cast<std::size_t>(slopes.side);
+    std::array<float, largest_square> agree{}, size{};
+    for (std::size_t row = 1; row + 1 < side; ++row) {
+        const auto rows_of = [&](const std::vector<float>& of) {
+            const float* middle = of.data() + row * side;
+            return std::array<const float*, 3>{middle - side, middle, middle + side};
+        };
+        observe_row(rows_of(slopes.p), rows_of(slopes.q), side, agree.data(), size.data());
+    }
     Observation sum;
-    for (int row = 1; row + 1 < slopes.side; ++row) {
-        for (int column = 1; column + 1 < slopes.side; ++column) {
-            // Rows count downwards, y upwards. Sobel's weights: noise is halved.
-            const auto change = [&](const std::vector<float>& of, int dx, int dy) {
-                const auto line = [&](int across) {
-                    const int along_x = dx != 0 ? 1 : 0;
-                    const int x = column + (along_x != 0 ? 0 : across);
-                    const int y = row + (along_x != 0 ? across : 0);
-                    return of[slopes.at(x + dx, y + dy)] - of[slopes.at(x - dx, y - dy)];
-                };
-                return line(-1) + 2.0F * line(0) + line(1);
-            };
-            const float p = slopes.p[slopes.at(column, row)];
-            const float q = slopes.q[slopes.at(column, row)];
-            const float p_in_y = change(slopes.p, 0, -1);
-            const float q_in_x = change(slopes.q, 1, 0);
-            const float weight = 1.0F / (1.0F + p * p + q * q);
-            const float agree = weight * weight * p_in_y * q_in_x;
-            const float size = 0.5F * weight * weight * (p_in_y * p_in_y + q_in_x * q_in_x);
-            if (!std::isfinite(agree) || !std::isfinite(size)) continue;
-            sum.agree += static_cast<double>(agree);
-            sum.size += static_cast<double>(size);
-        }
+    for (std::size_t i = 0; i < side; ++i) {
+        sum.agree += static_cast<double>(agree[i]);
+        sum.size += static_cast<double>(size[i]);
     }
     return sum;
 }

@@ -13,7 +13,7 @@ namespace relief {
 namespace {
 
 constexpr std::size_t texels_per_piece = 1 << 15;
-constexpr double longest_without_direction = 1.0 / 16.0;
+constexpr float longest_without_direction = 1.0F / 16.0F;
 constexpr float facing_back = -0.02F;  // Beyond what rounding to 8 bits makes of 0.
 
 constexpr std::size_t listed_at_most = 8;
@@ -37,17 +37,17 @@ struct Sums {
     double squared_deviation = 0.0;
     std::array<std::size_t, VectorLengths::bounds.size()> within{};
 
-    void add(const glm::vec3& v) {
+    void add(const glm::vec3& v, float length_of_v) {
         ++counts.vectors;
         counts.upwards += v.z > 0.0F ? 1 : 0;
         counts.in_disk += v.x * v.x + v.y * v.y <= 1.1F ? 1 : 0;
         counts.mean += glm::dvec3(v);
-        const double length_of_v = static_cast<double>(glm::length(v));
-        const double deviation = length_of_v - 1.0;
-        length += length_of_v;
+        const double deviation = static_cast<double>(length_of_v) - 1.0;
+        length += static_cast<double>(length_of_v);
         squared_deviation += deviation * deviation;
+        const double distance = std::abs(deviation);
         for (std::size_t i = 0; i < within.size(); ++i)
-            within[i] += std::abs(deviation) <= VectorLengths::bounds[i] ? 1 : 0;
+            within[i] += distance <= VectorLengths::bounds[i] ? 1 : 0;
     }
 
     void add(const Sums& other) {
@@ -90,25 +90,26 @@ Sums sums_of(const MapVectors<Sample>& vectors, std::size_t begin, std::size_t e
     const std::size_t channels = vectors.channels();
     for (std::size_t texel = begin; texel < end; texel += step) {
         ++sums.counts.texels;
-        for (std::size_t channel = 0; channel < channels; ++channel)
+        for (std::size_t channel = 0; channel < channels; ++channel) {
+            if (!sums.counts.constant[channel]) continue;
             sums.counts.constant[channel] =
-                sums.counts.constant[channel] &&
                 vectors.component(texel, channel) == vectors.component(0, channel);
+        }
         const glm::vec3 v = vectors[texel];
+        const float length = std::sqrt(v.x * v.x + v.y * v.y + v.z * v.z);
         if (!std::isfinite(v.x + v.y + v.z)) {
             note(sums.counts.not_finite, texel);
             continue;
         }
-        const auto length = static_cast<double>(glm::length(v));
         const bool has_direction = length > longest_without_direction;
         if (!has_direction) note(sums.counts.without_direction, texel);
         if (v.x == v.y && v.y == v.z) {
             ++sums.counts.equal;
-            sums.counts.background += has_direction && std::abs(length - 1.0) > 0.25 ? 1 : 0;
+            sums.counts.background += has_direction && std::abs(length - 1.0F) > 0.25F ? 1 : 0;
             continue;
         }
         if (v.z < facing_back) note(sums.counts.facing_back, texel);
-        sums.add(v);
+        sums.add(v, length);
     }
     return sums;
 }
