@@ -130,6 +130,20 @@ TEST(ConvertCommand, GreenIsFoundByTheSlopesWhereThatIsAskedFor) {
                                          "bright (say up or down instead of auto)"));
 }
 
+TEST(ConvertCommand, FloatMapsOfSignedComponentsAreNotTakenForOthers) {
+    const Workplace workplace;
+    write_image(workplace / "signed.exr", normals_image(side, side, waves()));
+    const ProgramResult refused = workplace.run("relief-bake convert signed.exr out/n.png");
+    EXPECT_EQ(refused.exit_code, 1);
+    EXPECT_THAT(refused.error, HasSubstr("signed.exr: holds samples below 0, so n and not "
+                                         "(n + 1) / 2 (--input-signed reads it)"));
+    EXPECT_THAT(run(workplace, "signed.exr out/n.png --input-signed").out,
+                HasSubstr("flat is 0 (as told)\n"));
+    EXPECT_LT(normal_error(decoded(workplace / "out/n.png"), truth()).max, degrees_of_16_bit);
+    write_map(workplace, "map.png");
+    EXPECT_EQ(workplace.run("relief-bake convert map.png out/m.png --input-signed").exit_code, 2);
+}
+
 TEST(ConvertCommand, AxesTurnAsNamed) {
     const Workplace workplace;
     write_map(workplace, "map.png", {}, {{"relief:green", "up"}});
@@ -332,7 +346,12 @@ TEST(ConvertCommand, CountsNormalsOfOtherLengthsAndTexelsWithoutDirection) {
     const ProgramResult result = workplace.run(
         "relief-bake convert map.png out/n.png --normalize --strict --report out/r.json");
     EXPECT_EQ(result.exit_code, 3);
-    const json findings = json::parse(workplace.read("out/r.json"))["findings"];
+    const json report = json::parse(workplace.read("out/r.json"));
+    EXPECT_EQ(report["input_lengths"]["least"], 0.0);
+    EXPECT_NEAR(report["input_lengths"]["greatest"].get<double>(), 1.0, 1e-12);
+    EXPECT_NEAR(report["input_lengths"]["mean"].get<double>(), (2.0 + 72.0 / 127) / 4, 1e-12);
+    EXPECT_THAT(result.out, HasSubstr("made of length 1 (was 0.642, from 0.000 to 1.000)\n"));
+    const json findings = report["findings"];
     ASSERT_EQ(findings.size(), 2U);
     EXPECT_EQ(findings[0]["kind"], "normal not of unit length");
     EXPECT_EQ(findings[0]["first"], json({1, 2}));

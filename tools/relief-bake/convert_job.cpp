@@ -79,25 +79,26 @@ std::optional<Image> alpha_of(const ConvertRequest& request, const Image& image)
 }
 
 /// Unit normals of the input, y as it is stored.
-Image decoded(const ConvertRequest& request, const InputMap& input, Report& report) {
-    if (request.rebuild_z)
+Image decoded(const ConvertRequest& request, const InputMap& input, Converted& done,
+              Report& report) {
+    if (request.rebuild_z) {
+        done.steps.emplace_back("z computed from x and y");
         return decode_xy_map(input.image, *request.rebuild_z, Green::up, input.flat, report);
-    count_lengths(input.image, input.flat, report);
+    }
+    done.lengths = count_lengths(input.image, input.flat, report);
+    done.steps.push_back(fmt::format("made of length 1 (was {:.3f}, from {:.3f} to {:.3f})",
+                                     done.lengths->mean, done.lengths->least,
+                                     done.lengths->greatest));
     return decode_normal_map(input.image, Green::up, input.flat, report);
-}
-
-std::string z_words(const ConvertRequest& request) {
-    return request.rebuild_z ? "z computed from x and y" : "made of length 1";
 }
 
 /// All that goes through floats. Frees the texels of the input on the way.
 void convert_floats(const ConvertRequest& request, InputMap& input, const Turn& turn,
                     Converted& done, NormalField& field, Report& report) {
-    field.normals = decoded(request, input, report);
+    field.normals = decoded(request, input, done, report);
     field.alpha = alpha_of(request, input.image);
     field.green = turn.green;
     input.image = Image{};
-    done.steps.push_back(z_words(request));
     if (turn.mapping != same_axes) {
         turn_normals(field.normals, turn.mapping);
         done.steps.push_back(axis_words(turn.mapping));

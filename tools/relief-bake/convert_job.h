@@ -32,8 +32,9 @@ struct Converted {
     int height = 0;
     int channels = 0;
     int bits_read = 0;
-    std::string input_words;         ///< The input's conventions.
-    std::vector<std::string> steps;  ///< What was done, in order.
+    std::string input_words;              ///< The input's conventions.
+    std::vector<std::string> steps;       ///< What was done, in order.
+    std::optional<LengthSpread> lengths;  ///< Of the input's vectors, if they were looked at.
     NormalMapFormat format;
     std::optional<Green> green;          ///< Absent where nobody knows.
     std::optional<std::string> content;  ///< Of "relief:content", where that is another now.

@@ -87,6 +87,10 @@ void add_input_options(CLI::App& app, ConvertRequest& request) {
                "Which code stands for zero in the input: see --flat. Default: what the file says, "
                "else the commoner of the two among its flat texels.")
         ->group(group);
+    add_switch(app, "--input-signed", request.input.is_signed,
+               "Float samples of the input hold n itself, from -1 to 1, not (n + 1) / 2, which is "
+               "what is written.")
+        ->group(group);
     add_choice(app, "--rebuild-z", request.rebuild_z, xy_choices(),
                "Take x and y from red and green (rg), or from alpha and green (ag), and compute z. "
                "Where x and y are longer than 1, z is 0.")

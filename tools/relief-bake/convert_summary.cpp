@@ -35,6 +35,11 @@ std::vector<std::string> level_lines(const Converted& converted) {
     return lines;
 }
 
+nlohmann::ordered_json lengths_json(const std::optional<LengthSpread>& lengths) {
+    if (!lengths) return nullptr;
+    return {{"least", lengths->least}, {"mean", lengths->mean}, {"greatest", lengths->greatest}};
+}
+
 nlohmann::ordered_json levels_json(const Converted& converted) {
     nlohmann::ordered_json levels = nlohmann::ordered_json::array();
     for (const WrittenLevel& level : converted.levels) {
@@ -88,6 +93,7 @@ nlohmann::ordered_json results_json(const Converted& converted, const Stages& st
             {"height", converted.levels.front().height},
             {"input_size", {converted.width, converted.height}},
             {"done", converted.steps},
+            {"input_lengths", lengths_json(converted.lengths)},
             {"bits", converted.format.bits},
             {"green", green(converted.green)},
             {"flat", name_of(converted.format.flat, flat_choices())},

@@ -34,12 +34,41 @@ std::string green_words(const MapInputOptions& options, const InputMap& map) {
 }
 
 std::string flat_words(const MapInputOptions& options, const InputMap& map) {
+    if (options.is_signed) return "flat is 0 (as told)";
     if (map.image.bits() == 32) return "flat is 0.5";
     const char* source = options.flat                           ? "as told"
                          : map.metadata.contains("relief:flat") ? "as its file says"
                                                                 : "by its flat texels";
     return fmt::format("flat is {} ({})",
                        map.flat == FlatCode::middle ? "the middle code" : "between codes", source);
+}
+
+/// Whether float samples are below 0 more often than overshoots of a filter are.
+bool shows_signs(const Image& image) {
+    std::size_t below = 0;
+    for (const float sample : image.as<float>())
+        below += sample < -0.01F ? 1 : 0;
+    return below > image.sample_count() / 1000;
+}
+
+/// Brings float samples to (n + 1) / 2, or says that they should have been; alpha stays.
+void settle_signs(const std::filesystem::path& file, bool is_signed, Image& image) {
+    if (image.bits() != 32) {
+        if (is_signed)
+            throw UsageError(fmt::format("--input-signed: {} is of {} bits, which have no sign",
+                                         file.string(), image.bits()));
+        return;
+    }
+    if (!is_signed && shows_signs(image)) {
+        throw failure(file, "holds samples below 0, so n and not (n + 1) / 2",
+                      "--input-signed reads it");
+    }
+    if (!is_signed) return;
+    const auto channels = static_cast<std::size_t>(image.channels);
+    const std::span<float> samples = image.as<float>();
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+        if (i % channels < 3) samples[i] = (samples[i] + 1.0F) / 2.0F;
+    }
 }
 
 /// Which way green is bright by the slopes of a map, whatever its file says.
@@ -63,6 +92,7 @@ InputMap read_normal_map(const std::filesystem::path& file, const MapInputOption
     ImageInfo info = read_image_info(file);
     check_channels(file, info.channels);
     map.image = read_image(file, ImageUse::data);
+    settle_signs(file, options.is_signed, map.image);
     map.metadata = std::move(info.metadata);
     map.green = options.green ? options.green : named_green(map.metadata);
     if (options.finds_green) map.green = found_green(file, map.image);

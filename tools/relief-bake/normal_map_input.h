@@ -19,10 +19,11 @@ struct MapInputOptions {
     std::optional<Green> green;
     bool finds_green = false;  ///< By the slopes of the map: `auto`.
     std::optional<FlatCode> flat;
+    bool is_signed = false;  ///< Float samples hold n itself, not (n + 1) / 2.
 };
 
 struct InputMap {
-    Image image;
+    Image image;  ///< Float samples hold (n + 1) / 2, however they were stored.
     std::map<std::string, std::string> metadata;
     std::optional<Green> green;  ///< Absent where nobody says, and nobody asks the map.
     FlatCode flat = FlatCode::middle;

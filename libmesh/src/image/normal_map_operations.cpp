@@ -6,9 +6,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <vector>
 
 #include "image/normal_coding.h"
 #include "image/texel_loops.h"
@@ -51,6 +53,51 @@ double length_tolerance(FlatCode flat) {
         return std::numbers::sqrt3 / NormalCoding<Sample>::steps(flat);
 }
 
+/// Of the vectors of a row.
+struct RowLengths {
+    double least = std::numeric_limits<double>::infinity();
+    double sum = 0.0;
+    double greatest = 0.0;
+    std::size_t count = 0;
+};
+
+template <typename Sample>
+RowLengths lengths_of_row(const Image& map, FlatCode flat, std::size_t row, Report& found) {
+    const auto width = static_cast<std::size_t>(map.width);
+    const auto stride = static_cast<std::size_t>(map.channels);
+    const NormalCoding<Sample> coding{flat};
+    const double tolerance = length_tolerance<Sample>(flat);
+    const Sample* sample = map.as<Sample>().data() + row * width * stride;
+    RowLengths result;
+    for (std::size_t texel = row * width; texel < (row + 1) * width; ++texel, sample += stride) {
+        const double x = coding.decoded(sample[0]);
+        const double y = coding.decoded(sample[1]);
+        const double z = coding.decoded(sample[2]);
+        const double length = std::sqrt(x * x + y * y + z * z);
+        if (!(std::abs(length - 1.0) <= tolerance))
+            found.add("normal not of unit length", "texel", texel, "scaled to length 1");
+        if (!std::isfinite(length)) continue;
+        result.least = std::min(result.least, length);
+        result.greatest = std::max(result.greatest, length);
+        result.sum += length;
+        ++result.count;
+    }
+    return result;
+}
+
+/// All rows together, in their order.
+LengthSpread spread_of(const std::vector<RowLengths>& rows) {
+    RowLengths all;
+    for (const RowLengths& row : rows) {
+        all.least = std::min(all.least, row.least);
+        all.greatest = std::max(all.greatest, row.greatest);
+        all.sum += row.sum;
+        all.count += row.count;
+    }
+    if (all.count == 0) return {};
+    return {all.least, all.sum / static_cast<double>(all.count), all.greatest};
+}
+
 }  // namespace
 
 Image decode_xy_map(const Image& map, const XyChannels& channels, Green green, FlatCode flat,
@@ -75,27 +122,17 @@ Image decode_xy_map(const Image& map, const XyChannels& channels, Green green, F
     return result;
 }
 
-void count_lengths(const Image& map, FlatCode flat, Report& report) {
+LengthSpread count_lengths(const Image& map, FlatCode flat, Report& report) {
     if (map.empty()) throw InvalidInput("an empty image holds no normals");
     if (map.channels < 3)
         throw InvalidInput(fmt::format("a normal map has 3 or 4 channels, not {}", map.channels));
-    const auto stride = static_cast<std::size_t>(map.channels);
+    std::vector<RowLengths> rows(static_cast<std::size_t>(map.height));
     with_sample_type(map, [&]<typename Sample>(Sample) {
-        const std::span<const Sample> samples = map.as<Sample>();
-        const NormalCoding<Sample> coding{flat};
-        const double tolerance = length_tolerance<Sample>(flat);
-        const double least = (1.0 - tolerance) * (1.0 - tolerance);
-        const double most = (1.0 + tolerance) * (1.0 + tolerance);
-        for_each_texel(samples.size() / stride, report, [&](std::size_t texel, Report& found) {
-            const Sample* sample = &samples[texel * stride];
-            const double x = coding.decoded(sample[0]);
-            const double y = coding.decoded(sample[1]);
-            const double z = coding.decoded(sample[2]);
-            const double square = x * x + y * y + z * z;
-            if (!(square >= least && square <= most))
-                found.add("normal not of unit length", "texel", texel, "scaled to length 1");
+        for_each_row(map.width, map.height, report, [&](std::size_t row, Report& found) {
+            rows[row] = lengths_of_row<Sample>(map, flat, row, found);
         });
     });
+    return spread_of(rows);
 }
 
 void scale_slopes(Image& normals, double strength, Report& report) {

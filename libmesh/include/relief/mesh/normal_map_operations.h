@@ -54,12 +54,22 @@ struct XyChannels {
 Image decode_xy_map(const Image& map, const XyChannels& channels, Green green, FlatCode flat,
                     Report& report);
 
-/// Counts texels whose vectors are not of length 1: by more than rounding, or dithering, to the
-/// map's own codes can do (sqrt(3) codes; 0.001 for float, as half needs it). They are not changed:
-/// decode_normal_map takes them for the directions that they have.
+/// How long the vectors of a map are.
+struct LengthSpread {
+    double least = 0.0;
+    double mean = 0.0;
+    double greatest = 0.0;
+};
+
+/// Looks at the lengths of a map's vectors and changes nothing: decode_normal_map takes them for
+/// the directions that they have.
 ///
+/// \param report  counts those not of length 1 by more than rounding, or dithering, to the map's
+/// own
+///                codes can do (sqrt(3) codes; 0.001 for float, as half needs it)
+/// \return of the vectors whose length is a number
 /// \throws InvalidInput if the image is empty or has fewer than three channels
-void count_lengths(const Image& map, FlatCode flat, Report& report);
+LengthSpread count_lengths(const Image& map, FlatCode flat, Report& report);
 
 /// Multiplies the slopes of unit normals, in place: as if heights had been multiplied.
 ///
