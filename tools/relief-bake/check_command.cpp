@@ -103,7 +103,7 @@ Command add_check_command(CLI::App& tool) {
         app, "--json", options->json,
         "Print one JSON object: tool, version, sound, with_trouble and unreadable (numbers of "
         "files), words, files [file, sound, error or: width, height, channels, bits, content, "
-        "curve, lengths and lengths_uncurved {mean, rms_deviation, within}, green {is, "
+        "curve, color_tag, lengths and lengths_uncurved {mean, rms_deviation, within}, green {is, "
         "correlation, deviation, confidence, scale} or null, flat, seams [x, y], bits_used, "
         "alpha_correlation, trouble and remarks [kind, element, count, first, meaning, remedy], "
         "milliseconds, megapixels_per_second].");

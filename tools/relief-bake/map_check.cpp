@@ -9,6 +9,7 @@
 #include "common/text.h"
 #include "map_remedies.h"
 #include "relief/mesh/image_file.h"
+#include "relief/mesh/image_tags.h"
 
 namespace relief::tools {
 namespace {
@@ -140,12 +141,14 @@ CheckedMap check_map(const std::filesystem::path& file, std::optional<Green> gre
         const Image image = read_image(file, ImageUse::data);
         std::map<std::string, std::string> metadata = read_image_info(file).metadata;
         if (green) metadata["relief:green"] = name_of(*green, green_choices());
+        map.color_tag = color_tag(file);
         map.width = image.width;
         map.height = image.height;
         map.channels = image.channels;
         map.bits = image.bits();
         Stages stages(true);
-        map.check = stages.run("check", [&] { return check_normal_map(image, metadata); });
+        map.check =
+            stages.run("check", [&] { return check_normal_map(image, metadata, map.color_tag); });
         map.milliseconds = stages.milliseconds("check");
     } catch (const FileError& error) {
         map.error = error.what();
@@ -191,6 +194,7 @@ nlohmann::ordered_json json_of(const CheckedMap& map) {
             {"bits", map.bits},
             {"content", name_of(check.content, content_names())},
             {"curve", name_of(check.curve, curve_names())},
+            {"color_tag", map.color_tag},
             {"lengths", lengths_json(check.lengths)},
             {"lengths_uncurved", lengths_json(check.lengths_uncurved)},
             {"green", green_json(check)},

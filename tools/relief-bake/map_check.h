@@ -20,6 +20,7 @@ struct CheckedMap {
     int height = 0;
     int channels = 0;
     int bits = 0;
+    std::string color_tag;  ///< Empty where the file says nothing of colours.
     NormalMapCheck check;
     double milliseconds = 0.0;  ///< Of the check, without reading.
 

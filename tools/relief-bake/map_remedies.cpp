@@ -29,31 +29,33 @@ std::string remedy_for(MapCondition condition, MapContent content,
                        const std::filesystem::path& file) {
     using enum MapCondition;
     const auto convert = [&](const char* options) {
-        return fmt::format("relief-bake convert {} out.png {}", quoted(file), options);
+        return fmt::format("relief-bake convert {} out.png{}", quoted(file), options);
     };
     switch (condition) {
         case not_normals:
             if (content != MapContent::grey) return "";
             return fmt::format("relief-bake bump {} out.png", quoted(file));
         case object_space:
-            return convert("--to-tangent mesh.glb");
+            return convert(" --to-tangent mesh.glb");
         case z_missing:
         case z_constant:
-            return convert("--rebuild-z rg");
+            return convert(" --rebuild-z rg");
+        case tagged_as_color:
+            return convert("");
         case texel_not_finite:
         case texel_without_direction:
         case not_unit:
         case not_quite_unit:
-            return convert("--normalize");
+            return convert(" --normalize");
         case green_contradicted:
         case green_down:
-            return convert("--flip green");
+            return convert(" --flip green");
         case flat_contradicted:
-            return convert("--input-flat half --flat middle");
+            return convert(" --input-flat half --flat middle");
         case bits_unused:
-            return convert("--bits 8");
+            return convert(" --bits 8");
         case alpha_opaque:
-            return convert("--alpha drop");
+            return convert(" --alpha drop");
         default:
             return "";
     }

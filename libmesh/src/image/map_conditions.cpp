@@ -25,6 +25,9 @@ constexpr std::array conditions = {
                      "too bright: flat is 188 of 255 instead of 128"},
     MapConditionInfo{decoded_from_srgb, "darkened by the sRGB curve", "map", trouble,
                      "read as colour and stored as light: flat is 55 of 255 instead of 128"},
+    MapConditionInfo{tagged_as_color, "tagged as a colour", "map", remark,
+                     "its file says sRGB or the like: programs that follow such tags bend the "
+                     "normals (relief does not, nor does glTF)"},
     MapConditionInfo{signed_samples, "signed samples", "map", trouble,
                      "float samples hold n itself; relief and most others read (n + 1) / 2"},
     MapConditionInfo{texel_not_finite, "texel not finite", "texel", trouble, "is read as flat"},

@@ -144,7 +144,7 @@ bool has_directions(MapContent content) {
 }
 
 void find_meaning(const NormalMapCheck& check, const SampleMeaning& meaning,
-                  const MapStatistics& all, int channels, Found& found) {
+                  const MapStatistics& all, int channels, bool is_tagged, Found& found) {
     using enum MapCondition;
     found.if_so(check.content == MapContent::grey || check.content == MapContent::other,
                 not_normals);
@@ -156,6 +156,8 @@ void find_meaning(const NormalMapCheck& check, const SampleMeaning& meaning,
                 z_constant);
     found.if_so(check.curve == StoredCurve::srgb_encoded, stored_through_srgb);
     found.if_so(check.curve == StoredCurve::srgb_decoded, decoded_from_srgb);
+    const bool is_color = check.content == MapContent::grey || check.content == MapContent::other;
+    found.if_so(is_tagged && !is_color, tagged_as_color);
     found.if_so(meaning.is_signed, signed_samples);
 }
 
@@ -250,7 +252,8 @@ void look_at_surface(const Image& map, SampleMeaning meaning, const MapStatistic
 }  // namespace
 
 NormalMapCheck check_normal_map(const Image& map,
-                                const std::map<std::string, std::string>& metadata) {
+                                const std::map<std::string, std::string>& metadata,
+                                std::string_view color_tag) {
     if (map.empty()) throw InvalidInput("an empty image holds no normals");
     NormalMapCheck check;
     Found found(check);
@@ -267,7 +270,7 @@ NormalMapCheck check_normal_map(const Image& map,
     const MapStatistics all = map_statistics(map, meaning.samples);
     measure_lengths(map, meaning.samples, all, check);
     look_at_surface(map, meaning.samples, all, check);
-    find_meaning(check, meaning.samples, all, map.channels, found);
+    find_meaning(check, meaning.samples, all, map.channels, !color_tag.empty(), found);
     find_texels(check, all, found);
     find_conventions(map, check, metadata, all, found);
     find_channels(map, check, all, found);

@@ -67,7 +67,8 @@ enum class MapCondition {
     z_constant,    ///< The third channel says nothing, but is near what it should be.
     stored_through_srgb,
     decoded_from_srgb,
-    signed_samples,  ///< Float samples hold n itself, not (n + 1) / 2.
+    tagged_as_color,  ///< The file says that its samples are sRGB colours, or the like.
+    signed_samples,   ///< Float samples hold n itself, not (n + 1) / 2.
     // Texels.
     texel_not_finite,
     texel_without_direction,  ///< Its vector is no longer than 1 / 16.
@@ -137,13 +138,15 @@ struct NormalMapCheck {
 /// \param map       any number of channels and bits
 /// \param metadata  text entries of its file; "relief:green" and "relief:flat" are compared with
 ///                  what the texels show
+/// \param color_tag  what color_tag() says of its file (image_tags.h)
 /// \throws InvalidInput if the image is empty
 ///
 /// What needs a surface (green, alpha) is looked for in tangent-space normals only. The same
 /// for any number of threads. Source of the criterion for green: [Frankot and Chellappa 1988], who
 /// make slopes integrable; here it is only asked how far they are.
 NormalMapCheck check_normal_map(const Image& map,
-                                const std::map<std::string, std::string>& metadata = {});
+                                const std::map<std::string, std::string>& metadata = {},
+                                std::string_view color_tag = {});
 
 /// The conditions as findings, or those of one severity.
 Report to_report(const NormalMapCheck& check, std::optional<Severity> severity = std::nullopt);
