@@ -136,7 +136,7 @@ TEST(ConvertCommand, FloatMapsOfSignedComponentsAreNotTakenForOthers) {
     const ProgramResult refused = workplace.run("relief-bake convert signed.exr out/n.png");
     EXPECT_EQ(refused.exit_code, 1);
     EXPECT_THAT(refused.error, HasSubstr("signed.exr: holds samples below 0, so n and not "
-                                         "(n + 1) / 2 (--input-signed reads it)"));
+                                         "(n + 1) / 2 (convert it with --input-signed)"));
     EXPECT_THAT(run(workplace, "signed.exr out/n.png --input-signed").out,
                 HasSubstr("flat is 0 (as told)\n"));
     EXPECT_LT(normal_error(decoded(workplace / "out/n.png"), truth()).max, degrees_of_16_bit);

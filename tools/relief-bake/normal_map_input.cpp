@@ -61,7 +61,7 @@ void settle_signs(const std::filesystem::path& file, bool is_signed, Image& imag
     }
     if (!is_signed && shows_signs(image)) {
         throw failure(file, "holds samples below 0, so n and not (n + 1) / 2",
-                      "--input-signed reads it");
+                      "convert it with --input-signed");
     }
     if (!is_signed) return;
     const auto channels = static_cast<std::size_t>(image.channels);
