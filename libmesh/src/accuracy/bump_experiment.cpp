@@ -25,7 +25,7 @@ constexpr Kernel all_kernels[] = {
     Kernel::sobel5,  Kernel::scharr5,  Kernel::central5, Kernel::central7, Kernel::gaussian};
 
 /// What conversions are tried on.
-struct Sample {
+struct Trial {
     std::vector<Image> heights;
     std::vector<Image> smooth;  ///< De-staircased; empty if no method wants it.
     std::vector<std::vector<glm::dvec3>> truth;
@@ -54,35 +54,10 @@ double seconds_of(const std::function<void()>& work) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }
 
-Sample sample_of(const Image& height, const BumpExperimentOptions& options) {
-    Sample sample;
-    sample.bump = options.bump;
-    const std::int64_t texels = std::int64_t{height.width} * height.height;
-    if (texels <= options.most_texels) {
-        sample.heights.push_back(height);
-        return sample;
-    }
-    constexpr int each_way = 3;
-    const auto wanted = std::sqrt(static_cast<double>(options.most_texels) / (each_way * each_way));
-    const int width = std::min(height.width, std::max(1, static_cast<int>(wanted)));
-    const int rows = std::min(height.height, std::max(1, static_cast<int>(wanted)));
-    for (int row = 0; row < each_way; ++row) {
-        for (int column = 0; column < each_way; ++column) {
-            sample.heights.push_back(part_of(
-                height,
-                {static_cast<int>(std::int64_t{column} * (height.width - width) / 2),
-                 static_cast<int>(std::int64_t{row} * (height.height - rows) / 2), width, rows}));
-        }
-    }
-    sample.bump.wrap = Wrap::clamp;
-    sample.margin = std::min({16, (width - 1) / 2, (rows - 1) / 2});
-    return sample;
-}
-
-void smooth(Sample& sample) {
-    sample.smoothing_seconds = seconds_of([&] {
-        for (const Image& part : sample.heights)
-            sample.smooth.push_back(destaircase(part, {.wrap = sample.bump.wrap}).heights);
+void smooth(Trial& trial) {
+    trial.smoothing_seconds = seconds_of([&] {
+        for (const Image& part : trial.heights)
+            trial.smooth.push_back(destaircase(part, {.wrap = trial.bump.wrap}).heights);
     });
 }
 
@@ -117,12 +92,12 @@ void add_angles(const Image& map, const NormalMapFormat& format,
     });
 }
 
-BumpReference reference_for(const Image& height, const BumpExperimentOptions& options,
+BumpReference reference_for(const BumpSample& sample, const BumpExperimentOptions& options,
                             const KernelChoice& plain) {
     KernelChoice best = plain;
     bool destaircased = false;
     if (plain.depth.bits > 0 && plain.depth.bits < fine_bits) {
-        const KernelChoice smooth = choose_kernel(height, options.bump, true);
+        const KernelChoice smooth = choose_kernel(sample.looked_at, options.bump, true);
         destaircased = smooth.rms_degrees < plain.rms_degrees;
         if (destaircased) best = smooth;
     }
@@ -137,13 +112,13 @@ BumpReference reference_for(const Image& height, const BumpExperimentOptions& op
     return reference;
 }
 
-void take_reference(const BumpReference& reference, Sample& sample) {
+void take_reference(const BumpReference& reference, Trial& trial) {
     const BumpMethod& method = *reference.method;
-    const std::vector<Image>& heights = method.destaircased ? sample.smooth : sample.heights;
+    const std::vector<Image>& heights = method.destaircased ? trial.smooth : trial.heights;
     for (const Image& part : heights) {
         Report ignored;
-        sample.truth.push_back(
-            vectors_of(normals_from_height(part, options_of(method, sample.bump), ignored)));
+        trial.truth.push_back(
+            vectors_of(normals_from_height(part, options_of(method, trial.bump), ignored)));
     }
 }
 
@@ -159,21 +134,21 @@ void mark_efficient(std::vector<BumpMeasurement>& all) {
     }
 }
 
-/// Runs all methods on a sample that has its truth.
-std::vector<BumpMeasurement> measured(std::span<const BumpMethod> methods, const Sample& sample,
+/// Runs all methods on a trial that has its truth.
+std::vector<BumpMeasurement> measured(std::span<const BumpMethod> methods, const Trial& trial,
                                       const BumpExperimentOptions& options) {
     std::vector<BumpMeasurement> results(methods.size());
     std::vector<std::vector<double>> times(methods.size());
-    const auto texels = static_cast<double>(sample.texels());
+    const auto texels = static_cast<double>(trial.texels());
     const auto convert = [&](std::size_t i, std::vector<Image>& maps) {
         const BumpMethod& method = methods[i];
         NormalMapFormat format = options.format;
         format.bits = method.bits;
-        const std::vector<Image>& heights = method.destaircased ? sample.smooth : sample.heights;
+        const std::vector<Image>& heights = method.destaircased ? trial.smooth : trial.heights;
         maps.resize(heights.size());
         Report ignored;
         for (std::size_t part = 0; part < heights.size(); ++part)
-            normal_map_from_height(heights[part], options_of(method, sample.bump), format,
+            normal_map_from_height(heights[part], options_of(method, trial.bump), format,
                                    maps[part], ignored);
     };
     std::vector<Image> maps;
@@ -183,7 +158,7 @@ std::vector<BumpMeasurement> measured(std::span<const BumpMethod> methods, const
         format.bits = methods[i].bits;
         std::vector<float> angles;
         for (std::size_t part = 0; part < maps.size(); ++part)
-            add_angles(maps[part], format, sample.truth[part], sample.margin, angles);
+            add_angles(maps[part], format, trial.truth[part], trial.margin, angles);
         results[i].method = methods[i];
         results[i].error = angle_distribution(std::move(angles));
     }
@@ -192,7 +167,7 @@ std::vector<BumpMeasurement> measured(std::span<const BumpMethod> methods, const
             convert(i, maps);  // Whatever shape the memory had last, it fits from here on.
             const double seconds = seconds_of([&] { convert(i, maps); });
             if (!counted) return;
-            times[i].push_back(seconds + (methods[i].destaircased ? sample.smoothing_seconds : 0));
+            times[i].push_back(seconds + (methods[i].destaircased ? trial.smoothing_seconds : 0));
         });
     }
     for (std::size_t i = 0; i < methods.size(); ++i) {
@@ -234,17 +209,53 @@ std::vector<BumpMethod> bump_methods(int gaussian_radius, std::span<const int> d
     return methods;
 }
 
-BumpExperiment measure_bump(const Image& height, std::span<const BumpMethod> methods,
+std::vector<MapPart> parts_to_measure(int width, int height, std::int64_t most_texels) {
+    if (std::int64_t{width} * height <= most_texels) return {{0, 0, width, height}};
+    constexpr int each_way = 3;
+    const auto side = static_cast<int>(std::sqrt(most_texels / (each_way * each_way)));
+    const int part_width = std::clamp(side, 1, width);
+    const int part_height = std::clamp(side, 1, height);
+    std::vector<MapPart> parts;
+    for (int row = 0; row < each_way; ++row) {
+        for (int column = 0; column < each_way; ++column) {
+            parts.push_back({static_cast<int>(std::int64_t{column} * (width - part_width) / 2),
+                             static_cast<int>(std::int64_t{row} * (height - part_height) / 2),
+                             part_width, part_height});
+        }
+    }
+    return parts;
+}
+
+BumpSample sample_of(const Image& height, std::int64_t most_texels) {
+    if (height.empty()) throw InvalidInput("an empty height field cannot be measured");
+    BumpSample sample;
+    for (const MapPart& part : parts_to_look_at(height.width, height.height))
+        sample.looked_at.push_back(part_of(height, part));
+    const std::vector<MapPart> parts = parts_to_measure(height.width, height.height, most_texels);
+    sample.is_whole = parts.size() == 1;
+    for (const MapPart& part : parts)
+        sample.measured.push_back(sample.is_whole ? height : part_of(height, part));
+    return sample;
+}
+
+BumpExperiment measure_bump(const BumpSample& sample, std::span<const BumpMethod> methods,
                             const BumpExperimentOptions& options) {
     BumpExperiment experiment;
-    experiment.choice = choose_kernel(height, options.bump);
-    experiment.reference = reference_for(height, options, experiment.choice);
-    Sample sample = sample_of(height, options);
-    smooth(sample);
-    take_reference(experiment.reference, sample);
-    experiment.texels = sample.texels();
-    experiment.is_whole = sample.heights.size() == 1;
-    experiment.measurements = measured(methods, sample, options);
+    experiment.choice = choose_kernel(sample.looked_at, options.bump);
+    experiment.reference = reference_for(sample, options, experiment.choice);
+    Trial trial;
+    trial.bump = options.bump;
+    trial.heights = sample.measured;
+    if (!sample.is_whole) {
+        trial.bump.wrap = Wrap::clamp;
+        const Image& part = sample.measured.front();
+        trial.margin = std::min({16, (part.width - 1) / 2, (part.height - 1) / 2});
+    }
+    smooth(trial);
+    take_reference(experiment.reference, trial);
+    experiment.texels = trial.texels();
+    experiment.is_whole = sample.is_whole;
+    experiment.measurements = measured(methods, trial, options);
     return experiment;
 }
 
@@ -254,13 +265,13 @@ BumpExperiment measure_bump(const BumpField& field, std::span<const BumpMethod> 
     BumpExperiment experiment;
     experiment.choice = choose_kernel(field.heights, options.bump);
     experiment.reference.words = "the true normals of the field";
-    Sample sample;
-    sample.bump = options.bump;
-    sample.heights.push_back(field.heights);
-    smooth(sample);
-    sample.truth.push_back(field.normals);
-    experiment.texels = sample.texels();
-    experiment.measurements = measured(methods, sample, options);
+    Trial trial;
+    trial.bump = options.bump;
+    trial.heights.push_back(field.heights);
+    smooth(trial);
+    trial.truth.push_back(field.normals);
+    experiment.texels = trial.texels();
+    experiment.measurements = measured(methods, trial, options);
     return experiment;
 }
 

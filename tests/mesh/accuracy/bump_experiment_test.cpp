@@ -67,7 +67,8 @@ TEST(BumpExperiment, OnAKnownFieldTheErrorsAreThoseOfTheirMethods) {
 TEST(BumpExperiment, OnAMapTheReferenceIsTheTruestKnownAndSaysSo) {
     const BumpField field = field_of(FieldCoding::bits8);
     const auto methods = bump_methods(4, all_depths, both_arithmetics, both_ways);
-    const BumpExperiment experiment = measure_bump(field.heights, methods, untimed(field));
+    const BumpExperiment experiment =
+        measure_bump(sample_of(field.heights), methods, untimed(field));
     ASSERT_TRUE(experiment.reference.method);
     EXPECT_TRUE(experiment.reference.method->destaircased);
     EXPECT_EQ(experiment.reference.method->arithmetic, Arithmetic::float64);
@@ -88,7 +89,8 @@ TEST(BumpExperiment, OnAMapTheReferenceIsTheTruestKnownAndSaysSo) {
 TEST(BumpExperiment, TheCheapestWithinABoundIsNoDearerThanNeeded) {
     const BumpField field = field_of(FieldCoding::float32);
     const auto methods = bump_methods(4, all_depths, both_arithmetics, as_stored);
-    const BumpExperiment experiment = measure_bump(field.heights, methods, untimed(field));
+    const BumpExperiment experiment =
+        measure_bump(sample_of(field.heights), methods, untimed(field));
     const auto chosen = [&](double degrees, ErrorKind kind) {
         const BumpMeasurement* one = cheapest_within(experiment, degrees, kind);
         return one == nullptr ? std::nullopt : std::optional(one->method);
@@ -122,7 +124,7 @@ TEST(BumpExperiment, TimesAreTakenInTurnsAndTheEfficientOnesAreMarked) {
     BumpExperimentOptions options = untimed(field);
     options.repeats = {3, 1};
     const auto methods = bump_methods(2, std::array{16}, both_arithmetics, as_stored);
-    const BumpExperiment experiment = measure_bump(field.heights, methods, options);
+    const BumpExperiment experiment = measure_bump(sample_of(field.heights), methods, options);
     int efficient = 0;
     for (const BumpMeasurement& one : experiment.measurements) {
         EXPECT_EQ(one.seconds.count, 3U);
@@ -143,9 +145,8 @@ TEST(BumpExperiment, ALargeMapIsMeasuredOnPartsOfIt) {
     BumpExperimentOptions options = untimed(field);
     const auto methods =
         bump_methods(2, std::array{16}, std::array{Arithmetic::float64}, as_stored);
-    const BumpExperiment whole = measure_bump(field.heights, methods, options);
-    options.most_texels = 40000;
-    const BumpExperiment parts = measure_bump(field.heights, methods, options);
+    const BumpExperiment whole = measure_bump(sample_of(field.heights), methods, options);
+    const BumpExperiment parts = measure_bump(sample_of(field.heights, 40000), methods, options);
     EXPECT_TRUE(whole.is_whole);
     EXPECT_FALSE(parts.is_whole);
     EXPECT_LE(parts.texels, 40000);

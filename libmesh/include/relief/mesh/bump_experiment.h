@@ -65,9 +65,23 @@ struct BumpExperimentOptions {
     BumpOptions bump;        ///< Strength, texel and wrap.
     NormalMapFormat format;  ///< Of the stored maps, but for their bits.
     Repeats repeats{5, 1};   ///< `counted` 0: nothing is timed.
-    /// Larger maps are measured on 9 parts with as many texels together.
-    std::int64_t most_texels = std::int64_t{1} << 20;
 };
+
+/// What is known of a map, which may be too large for memory.
+struct BumpSample {
+    std::vector<Image> looked_at;  ///< parts_to_look_at(): for the choice of a kernel.
+    std::vector<Image> measured;   ///< parts_to_measure()
+    bool is_whole = true;          ///< The one part measured is the map.
+};
+
+/// The parts of a map that methods are measured on: one, the whole of it, unless it has more than
+/// so many texels; then nine that have as many together. From top to bottom.
+inline constexpr std::int64_t texels_to_measure = std::int64_t{1} << 20;
+std::vector<MapPart> parts_to_measure(int width, int height,
+                                      std::int64_t most_texels = texels_to_measure);
+
+/// Of a map in memory.
+BumpSample sample_of(const Image& height, std::int64_t most_texels = texels_to_measure);
 
 /// Every kernel (the Gaussian with the radius given), in both arithmetics, in each of the depths.
 std::vector<BumpMethod> bump_methods(int gaussian_radius, std::span<const int> depths,
@@ -76,12 +90,13 @@ std::vector<BumpMethod> bump_methods(int gaussian_radius, std::span<const int> d
 
 /// Converts the map in every way and measures error and time, all in turns.
 ///
-/// \param height  one channel, as for normals_from_height()
+/// \param sample  of one channel, as for normals_from_height(); of parts, the outermost 16 texels
+///                are not compared
 /// \return errors from the truest normals known for this map: those of the chosen kernel in
 ///         float64, of the map as it is or de-staircased, whichever choose_kernel() expects less
 ///         error of. What was lost when the map was rounded, no reference can know
 /// \throws InvalidInput as normals_from_height() does
-BumpExperiment measure_bump(const Image& height, std::span<const BumpMethod> methods,
+BumpExperiment measure_bump(const BumpSample& sample, std::span<const BumpMethod> methods,
                             const BumpExperimentOptions& options);
 
 /// The same on a field whose true normals are known, and from those.
