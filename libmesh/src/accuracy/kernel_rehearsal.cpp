@@ -152,21 +152,23 @@ double HeightCoding::error_of(double height) const {
 
 void KernelRehearsal::restore(std::vector<HeightTile>& tiles) {
     const double rounding = root_mean_square_rounding(tiles, coding_);
-    const auto [measured, is_white] = high_frequencies(tiles);
+    const HighFrequencies high = high_frequencies(tiles);
+    std::optional<PowerSpectrum> spectrum;
+    if (have_spectrum(tiles)) spectrum.emplace(tiles);
+    const double measured =
+        spectrum ? std::min(high.deviation, spectrum->white_floor()) : high.deviation;
     const double step = coding_.step();
     // What little there is beyond rounding may as well be detail; and planes that are rounded make
     // patterns.
-    if (is_white && measured > (step > 0.0 ? 1.1 : 1.25) * rounding)
+    if (high.is_white && measured > (step > 0.0 ? 1.1 : 1.25) * rounding)
         noise_ = std::sqrt(measured * measured - rounding * rounding);
     // Steps that texels climb one by one or faster leave as much in the highest frequencies as
     // white noise; wider ones next to nothing.
     const bool is_coarse_float = step == 0.0 && coding_.mantissa_bits < 20;
     const double least = step > 0.0 ? 0.3 : is_coarse_float ? 0.0 : 1.25;
-    const bool steps_are_wide = step > 0.0 && measured <= least * rounding;
-    const bool by_spectrum = is_white && measured > least * rounding && have_spectrum(tiles);
+    const bool steps_are_wide = step > 0.0 && high.deviation <= least * rounding;
+    const bool by_spectrum = spectrum && high.is_white && high.deviation > least * rounding;
     if (!by_spectrum && step == 0.0) return;
-    std::optional<PowerSpectrum> spectrum;
-    if (by_spectrum) spectrum.emplace(tiles);
     const double noise = std::max(measured, rounding);
     parallel_for(tiles.size(), 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {

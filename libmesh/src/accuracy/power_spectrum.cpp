@@ -129,12 +129,27 @@ std::size_t PowerSpectrum::bin_at(double x, double y) const {
     return static_cast<std::size_t>(ring * sectors + sector);
 }
 
+double PowerSpectrum::white_floor() const {
+    std::vector<double> powers;
+    for (int ring = 3 * side_ / 8; ring < side_; ++ring) {
+        for (int sector = 0; sector < sectors; ++sector) {
+            const Bin& bin = bins_[static_cast<std::size_t>(ring * sectors + sector)];
+            if (bin.count >= 4.0) powers.push_back(bin.power);
+        }
+    }
+    if (powers.empty()) return 0.0;
+    const auto middle = powers.begin() + static_cast<std::ptrdiff_t>(powers.size() / 2);
+    std::nth_element(powers.begin(), middle, powers.end());
+    return std::sqrt(*middle);
+}
+
 double PowerSpectrum::without_noise(double x, double y, double deviation) const {
+    constexpr double chance = 5.0;
     const Bin& bin = bins_[bin_at(x, y)];
     const double noise = deviation * deviation;
     // Half of the coefficients are independent, and the window makes neighbours alike: about one
     // in four is a draw of its own from an exponential distribution.
-    const double by_chance = noise * (1.0 + 3.0 / std::sqrt(std::max(1.0, bin.count / 4.0)));
+    const double by_chance = noise * (1.0 + chance / std::sqrt(std::max(1.0, bin.count / 4.0)));
     if (!(bin.power > by_chance)) return 0.0;
     return std::sqrt((bin.power - noise) / bin.power);
 }

@@ -32,6 +32,10 @@ class PowerSpectrum {
     ///         noise may have by chance
     [[nodiscard]] double without_noise(double x, double y, double deviation) const;
 
+    /// Standard deviation of white noise with as much power as half of the highest frequencies
+    /// have: where rounding makes patterns, which fill a few of them, next to nothing.
+    [[nodiscard]] double white_floor() const;
+
   private:
     struct Bin {
         double power = 0.0;

@@ -91,8 +91,12 @@ TEST(PowerSpectrum, TheFilterIsTheShareOfPowerThatIsNotNoise) {
     double sum = 0.0;
     for (int i = 0; i < 60; ++i)
         sum += std::pow(spectrum.without_noise(0.3 + 0.04 * i, 1.0, 0.5), 2);
-    EXPECT_NEAR(sum / 60.0, 0.75, 0.05);
+    EXPECT_NEAR(sum / 60.0, 0.75, 0.08);
     EXPECT_EQ(spectrum.without_noise(1.0, 1.0, 2.0), 0.0);
+    EXPECT_NEAR(spectrum.white_floor(), 1.0, 0.1);
+    // A pattern on every other texel, however strong, is no white floor.
+    const HeightTile pattern[] = {tile_of(64, [](int x, int y) { return (x + y) % 2 * 50.0; })};
+    EXPECT_LT(PowerSpectrum(pattern).white_floor(), 1e-9);
 }
 
 }  // namespace
