@@ -58,8 +58,8 @@ TEST(BumpCommand, StoresTheSlopeThatStrengthSays) {
     const Workplace workplace;
     // 65535 / 257 = 255 steps of 1/255 each; with strength 255 the height rises one texel a texel.
     write_ramp(workplace, "ramp.png", false, 257);
-    const ProgramResult result =
-        workplace.run("relief-bake bump ramp.png out/normal.png --strength 255 --wrap clamp");
+    const ProgramResult result = workplace.run(
+        "relief-bake bump ramp.png out/normal.png --strength 255 --wrap clamp --kernel sobel3");
     ASSERT_EQ(result.exit_code, 0) << result.error;
     EXPECT_EQ(result.error, "");
     EXPECT_THAT(result.out, HasSubstr("read      ramp.png: 16 x 16, 1 channel, 16 bit\n"
@@ -131,7 +131,7 @@ TEST(BumpCommand, HeightAndTexelSizeAreInOneUnitAndPerAxis) {
     // 1/255 of 0.51 m a texel is 2 mm; over texels 4 mm wide a slope of a half.
     const ProgramResult result = workplace.run(
         "relief-bake bump ramp.png out/n.png --height 0.51 --texel-size 0.004x0.5 --wrap clamp "
-        "--report out/report.json");
+        "--kernel sobel3 --report out/report.json");
     ASSERT_EQ(result.exit_code, 0) << result.error;
     EXPECT_THAT(result.out, HasSubstr("slopes    sobel3, height 0.51 over texels of 0.004 x 0.5, "
                                       "clamp at the border\n"));
@@ -197,7 +197,8 @@ TEST(BumpCommand, ATexelThatIsNoNumberIsFoundAndStrictExitsWith3) {
     Image image = make_image(8, 8, 1, 32, ColorSpace::data);
     image.as<float>()[27] = std::numeric_limits<float>::quiet_NaN();
     write_image(workplace / "nan.exr", image);
-    const std::string line = "relief-bake bump nan.exr out/n.png --report out/report.json";
+    const std::string line =
+        "relief-bake bump nan.exr out/n.png --kernel sobel3 --report out/report.json";
     const ProgramResult lenient = workplace.run(line);
     EXPECT_EQ(lenient.exit_code, 0) << lenient.error;
     const json report = json::parse(workplace.read("out/report.json"));
@@ -341,7 +342,7 @@ TEST(BumpCommand, ConvertsManyMapsAndTilesInOneCall) {
     workplace.write("bad.png", "this is no image");
     const ProgramResult result = workplace.run(
         "relief-bake bump a.png bad.png 'b.<UDIM>.tif' -o out/maps/ --strength 255 --wrap clamp "
-        "--report out/r.json");
+        "--kernel sobel3 --report out/r.json");
     EXPECT_EQ(result.exit_code, 1);
     EXPECT_THAT(result.error, testing::StartsWith("relief-bake: error: bad.png: "));
     EXPECT_THAT(result.out,
@@ -403,7 +404,8 @@ INSTANTIATE_TEST_SUITE_P(
         Refused{"relief-bake bump flat.png out/n.png --strength abc", 2,
                 "--strength abc: not a number"},
         Refused{"relief-bake bump flat.png out/n.png --kernel sobel", 2,
-                "--kernel sobel: not one of forward, central3, prewitt3, sobel3, scharr3, sobel5, "
+                "--kernel sobel: not one of auto, forward, central3, prewitt3, sobel3, scharr3, "
+                "sobel5, "
                 "scharr5, central5, central7, gaussian"},
         Refused{"relief-bake bump flat.png out/n.png --kernel-radius 3", 2,
                 "--kernel-radius: is for --kernel gaussian"},

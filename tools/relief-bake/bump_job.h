@@ -19,6 +19,7 @@ struct Baked {
     std::size_t transparent = 0;   ///< Texels that are no part of the surface.
     BumpOptions bump;              ///< With what was found out from the map.
     std::optional<Tiling> tiling;  ///< If it was looked at.
+    AccuracyFound accuracy;
     BumpFileFormat format;
     Findings findings;
 };

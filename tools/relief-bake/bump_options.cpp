@@ -69,18 +69,12 @@ void add_depth_options(CLI::App& app, BumpRequest& request) {
 
 void add_slope_options(CLI::App& app, BumpRequest& request) {
     const std::string group = "Slopes";
-    add_choice(app, "--kernel", request.bump.kernel, kernel_choices(),
-               "How the slope is taken from neighbouring heights; all give the same depth. "
-               "central5 and central7 are the truest on smooth maps of 16 bits or float; sobel5, "
-               "scharr5 and gaussian smooth steps and noise; forward is half a texel off. "
-               "Default: sobel3.")
-        ->group(group);
     add_value(app, "--kernel-radius", "R",
               "Texels that --kernel gaussian reaches, 1 to 64. Default: 2.",
               [&](const std::string& subject, const std::string& text) {
                   request.gaussian_radius = parse_integer(subject, text, 1, largest_kernel_radius);
               })
-        ->group(group);
+        ->group("Accuracy");
     add_value(
         app, "--wrap", "WORD[,WORD]",
         "What lies beyond the border: the opposite edge, for maps that tile (repeat), "
@@ -98,6 +92,7 @@ void add_slope_options(CLI::App& app, BumpRequest& request) {
 void add_bump_options(CLI::App& app, BumpRequest& request) {
     add_height_options(app, request);
     add_depth_options(app, request);
+    add_accuracy_options(app, request.accuracy);
     add_slope_options(app, request);
 }
 
@@ -125,8 +120,9 @@ BumpOptions bump_of(const BumpRequest& request) {
                          "give --texel-size, or --strength instead");
     if (request.texel && !request.height)
         throw UsageError("--texel-size: says in which unit --height is", "give --height");
-    if (request.gaussian_radius && request.bump.kernel != Kernel::gaussian)
+    if (request.gaussian_radius && request.accuracy.kernel != Kernel::gaussian)
         throw UsageError("--kernel-radius: is for --kernel gaussian");
+    check(request.accuracy, request.slope_moments, request.output.half);
     BumpOptions bump = request.bump;
     bump.strength = request.height ? *request.height : request.strength.value_or(bump.strength);
     if (request.invert) bump.strength = -bump.strength;

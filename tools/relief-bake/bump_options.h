@@ -7,6 +7,7 @@
 #include <glm/vec2.hpp>
 #include <optional>
 
+#include "bump_accuracy.h"
 #include "common/options.h"
 #include "map_output.h"
 #include "relief/mesh/bump_file.h"
@@ -22,6 +23,7 @@ struct BumpRequest {
     bool ignore_alpha = false;
     bool invert = false;
     BumpOptions bump;
+    AccuracyRequest accuracy;
     std::optional<double> strength;
     std::optional<double> height;
     std::optional<glm::dvec2> texel;

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "bump_accuracy_summary.h"
 #include "common/map_choices.h"
 #include "common/text.h"
 
@@ -83,6 +84,7 @@ void print_summary(const Job& job, const BumpRequest& request, const Baked& bake
     print_entry("read", input_words(job, baked));
     print_entry("slopes", fmt::format("{}, {}, {}", kernel_words(baked.bump),
                                       depth_words(request, baked.bump), border_words(baked)));
+    print_accuracy(baked.accuracy);
     print_entry("coded", content_words(baked.format));
     print_entry("findings",
                 baked.findings.empty() ? std::vector<std::string>{"none"} : baked.findings.lines());
@@ -108,26 +110,29 @@ nlohmann::ordered_json results_json(const Baked& baked, const Stages& stages) {
     const bool has_radius = bump.kernel == Kernel::gaussian;
     const NormalMapFormat& format = baked.format.normals;
     const bool has_slopes = baked.format.content == BumpContent::slope_moments;
-    return {{"width", baked.input.width},
-            {"height", baked.input.height},
-            {"by_rows", baked.is_streamed},
-            {"transparent", baked.transparent},
-            {"kernel", name_of(bump.kernel, kernel_choices())},
-            {"kernel_radius", has_radius ? nlohmann::ordered_json(bump.gaussian_radius) : nullptr},
-            {"strength", bump.strength},
-            {"texel_size", {bump.texel.x, bump.texel.y}},
-            {"wrap", wrap_words(bump.wrap)},
-            {"seams", seams_json(baked.tiling)},
-            {"content", has_slopes ? "slope moments" : "normals"},
-            {"xy_only", baked.format.xy_only},
-            {"alpha", name_of(baked.format.alpha, map_alpha_choices())},
-            {"bits", format.bits},
-            {"green", name_of(format.green, green_choices())},
-            {"flat", name_of(format.flat, flat_choices())},
-            {"dither", name_of(format.dither, dither_choices())},
-            {"findings", baked.findings.json()},
-            {"milliseconds", durations_json(stages.finished())},
-            {"megapixels_per_second", megapixels_per_second(baked, stages)}};
+    nlohmann::ordered_json json = {
+        {"width", baked.input.width},
+        {"height", baked.input.height},
+        {"by_rows", baked.is_streamed},
+        {"transparent", baked.transparent},
+        {"kernel", name_of(bump.kernel, kernel_choices())},
+        {"kernel_radius", has_radius ? nlohmann::ordered_json(bump.gaussian_radius) : nullptr},
+        {"strength", bump.strength},
+        {"texel_size", {bump.texel.x, bump.texel.y}},
+        {"wrap", wrap_words(bump.wrap)},
+        {"seams", seams_json(baked.tiling)},
+        {"content", has_slopes ? "slope moments" : "normals"},
+        {"xy_only", baked.format.xy_only},
+        {"alpha", name_of(baked.format.alpha, map_alpha_choices())},
+        {"bits", format.bits},
+        {"green", name_of(format.green, green_choices())},
+        {"flat", name_of(format.flat, flat_choices())},
+        {"dither", name_of(format.dither, dither_choices())},
+        {"findings", baked.findings.json()},
+        {"milliseconds", durations_json(stages.finished())},
+        {"megapixels_per_second", megapixels_per_second(baked, stages)}};
+    add_accuracy(baked.accuracy, json);
+    return json;
 }
 
 }  // namespace relief::tools

@@ -6,7 +6,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <vector>
 
 #include "common/map_choices.h"
 #include "common/options.h"
@@ -14,16 +13,6 @@
 
 namespace relief::tools {
 namespace {
-
-/// The depths that a format can hold normals in, the first being the one to use unless asked; none
-/// where it can hold none.
-std::vector<int> depths_of(const std::filesystem::path& output) {
-    const std::string extension = extension_of(output);
-    if (extension == ".png") return {16, 8};
-    if (extension == ".tif" || extension == ".tiff") return {16, 8, 32};
-    if (extension == ".exr") return {32};
-    return {};
-}
 
 [[noreturn]] void refuse(const std::filesystem::path& output) {
     const std::string extension = extension_of(output);
@@ -34,6 +23,14 @@ std::vector<int> depths_of(const std::filesystem::path& output) {
 }
 
 }  // namespace
+
+std::vector<int> depths_of(const std::filesystem::path& output) {
+    const std::string extension = extension_of(output);
+    if (extension == ".png") return {16, 8};
+    if (extension == ".tif" || extension == ".tiff") return {16, 8, 32};
+    if (extension == ".exr") return {32};
+    return {};
+}
 
 void add_map_output_options(CLI::App& app, MapOutputOptions& options, bool follows_input) {
     const std::string group = "Output";

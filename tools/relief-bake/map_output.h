@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "common/command.h"
 #include "relief/mesh/image_file.h"
@@ -37,6 +38,10 @@ struct MapOutputDefaults {
 ///
 /// \param follows_input  whether the defaults are what the input has, for --help
 void add_map_output_options(CLI::App& app, MapOutputOptions& options, bool follows_input = false);
+
+/// The depths that a format can hold normals in, the first being the one to use unless asked; none
+/// where it can hold none.
+std::vector<int> depths_of(const std::filesystem::path& output);
 
 /// Whether files of this name can be normal maps: .png .tif .tiff .exr.
 bool can_hold_normals(const std::filesystem::path& file);

@@ -209,13 +209,13 @@ std::vector<BumpMethod> bump_methods(int gaussian_radius, std::span<const int> d
     return methods;
 }
 
-std::vector<MapPart> parts_to_measure(int width, int height, std::int64_t most_texels) {
+std::vector<ImagePart> parts_to_measure(int width, int height, std::int64_t most_texels) {
     if (std::int64_t{width} * height <= most_texels) return {{0, 0, width, height}};
     constexpr int each_way = 3;
     const auto side = static_cast<int>(std::sqrt(most_texels / (each_way * each_way)));
     const int part_width = std::clamp(side, 1, width);
     const int part_height = std::clamp(side, 1, height);
-    std::vector<MapPart> parts;
+    std::vector<ImagePart> parts;
     for (int row = 0; row < each_way; ++row) {
         for (int column = 0; column < each_way; ++column) {
             parts.push_back({static_cast<int>(std::int64_t{column} * (width - part_width) / 2),
@@ -229,11 +229,11 @@ std::vector<MapPart> parts_to_measure(int width, int height, std::int64_t most_t
 BumpSample sample_of(const Image& height, std::int64_t most_texels) {
     if (height.empty()) throw InvalidInput("an empty height field cannot be measured");
     BumpSample sample;
-    for (const MapPart& part : parts_to_look_at(height.width, height.height))
+    for (const ImagePart& part : parts_to_look_at(height.width, height.height))
         sample.looked_at.push_back(part_of(height, part));
-    const std::vector<MapPart> parts = parts_to_measure(height.width, height.height, most_texels);
+    const std::vector<ImagePart> parts = parts_to_measure(height.width, height.height, most_texels);
     sample.is_whole = parts.size() == 1;
-    for (const MapPart& part : parts)
+    for (const ImagePart& part : parts)
         sample.measured.push_back(sample.is_whole ? height : part_of(height, part));
     return sample;
 }

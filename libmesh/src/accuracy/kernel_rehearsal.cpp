@@ -106,12 +106,31 @@ double root_mean_square_rounding(std::span<const HeightTile> tiles, const Height
     return std::sqrt(squares / count);
 }
 
+/// Of the heights about the mean of their tile.
+double variance_of(std::span<const HeightTile> tiles) {
+    double squares = 0.0;
+    double count = 0.0;
+    for (const HeightTile& tile : tiles) {
+        double sum = 0.0;
+        for (const double value : tile.values)
+            sum += value;
+        const double mean = sum / static_cast<double>(tile.values.size());
+        for (const double value : tile.values)
+            squares += (value - mean) * (value - mean);
+        count += static_cast<double>(tile.values.size());
+    }
+    return squares / count;
+}
+
 bool have_spectrum(std::span<const HeightTile> tiles) {
     return std::all_of(tiles.begin(), tiles.end(), [&](const HeightTile& tile) {
         return tile.width == tile.height && tile.width == tiles[0].width && tile.width >= 8 &&
                std::has_single_bit(static_cast<unsigned>(tile.width));
     });
 }
+
+/// What is more of a map's variance than this is no noise.
+constexpr double most_noise = 0.2;
 
 struct MeanSquare {
     double sum = 0.0;
@@ -162,6 +181,11 @@ void KernelRehearsal::restore(std::vector<HeightTile>& tiles) {
     // patterns.
     if (high.is_white && measured > (step > 0.0 ? 1.1 : 1.25) * rounding)
         noise_ = std::sqrt(measured * measured - rounding * rounding);
+    // A map that is grain for a good part is meant to be so.
+    if (noise_ * noise_ > most_noise * variance_of(tiles)) {
+        noise_ = 0.0;
+        return;
+    }
     // Steps that texels climb one by one or faster leave as much in the highest frequencies as
     // white noise; wider ones next to nothing.
     const bool is_coarse_float = step == 0.0 && coding_.mantissa_bits < 20;

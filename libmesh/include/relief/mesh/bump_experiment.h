@@ -77,8 +77,8 @@ struct BumpSample {
 /// The parts of a map that methods are measured on: one, the whole of it, unless it has more than
 /// so many texels; then nine that have as many together. From top to bottom.
 inline constexpr std::int64_t texels_to_measure = std::int64_t{1} << 20;
-std::vector<MapPart> parts_to_measure(int width, int height,
-                                      std::int64_t most_texels = texels_to_measure);
+std::vector<ImagePart> parts_to_measure(int width, int height,
+                                        std::int64_t most_texels = texels_to_measure);
 
 /// Of a map in memory.
 BumpSample sample_of(const Image& height, std::int64_t most_texels = texels_to_measure);

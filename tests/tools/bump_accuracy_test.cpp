@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: Apache-2.0
+// What `relief-bake bump` takes by itself, what it keeps within a bound, and what it prints of
+// both.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "relief/mesh/bump_fields.h"
+#include "relief/mesh/image_file.h"
+#include "tools/refusal.h"
+#include "tools/workplace.h"
+
+namespace relief::tools {
+namespace {
+
+using nlohmann::json;
+using test::expect_refusal;
+using test::ProgramResult;
+using test::Refused;
+using test::Workplace;
+using testing::HasSubstr;
+
+/// A field in a file, and the strength that belongs to it.
+BumpField write_field(const Workplace& workplace, const std::string& name, FieldCoding coding) {
+    BumpField field = make_bump_field({"", FieldShape::waves, 32.0, 0.3, coding, 0.0, 5}, 160, 128);
+    write_image(workplace / name, field.heights);
+    return field;
+}
+
+std::string strength_of(const BumpField& field) {
+    return " --strength " + std::to_string(field.options.strength);
+}
+
+double error_of(const Workplace& workplace, const std::string& name, const BumpField& field) {
+    Report report;
+    const Image normals = decode_normal_map(read_image(workplace / name, ImageUse::data), Green::up,
+                                            FlatCode::middle, report);
+    return field_error(normals, field).rms;
+}
+
+TEST(BumpAccuracyCommand, TakesTheKernelThatTheMapCallsForAndSaysWhy) {
+    const Workplace workplace;
+    const BumpField coarse = write_field(workplace, "coarse.png", FieldCoding::bits8);
+    const BumpField fine = write_field(workplace, "fine.png", FieldCoding::bits16);
+    const ProgramResult of_coarse = workplace.run("relief-bake bump coarse.png out/c.png" +
+                                                  strength_of(coarse) + " --report out/c.json");
+    ASSERT_EQ(of_coarse.exit_code, 0) << of_coarse.error;
+    EXPECT_THAT(of_coarse.out, HasSubstr("slopes    gaussian of radius "));
+    EXPECT_THAT(of_coarse.out, HasSubstr("because   8 bits used: steps of 0."));
+    const json report = json::parse(workplace.read("out/c.json"));
+    EXPECT_EQ(report["kernel"], "gaussian");
+    EXPECT_THAT(report["kernel_reason"].get<std::string>(), HasSubstr("8 bits used"));
+    EXPECT_EQ(report["destaircased_step"], nullptr);
+    const ProgramResult of_fine =
+        workplace.run("relief-bake bump fine.png out/f.png" + strength_of(fine));
+    EXPECT_THAT(of_fine.out, HasSubstr("slopes    central"));
+    EXPECT_THAT(of_fine.out, HasSubstr("because   16 bits used: detail outweighs"));
+
+    // Truer than what was the default.
+    ASSERT_EQ(
+        workplace.run("relief-bake bump coarse.png out/s.png --kernel sobel3" + strength_of(coarse))
+            .exit_code,
+        0);
+    EXPECT_LT(2.0 * error_of(workplace, "out/c.png", coarse),
+              error_of(workplace, "out/s.png", coarse));
+}
+
+TEST(BumpAccuracyCommand, DestaircasingGainsOnA8BitMap) {
+    const Workplace workplace;
+    const BumpField field = write_field(workplace, "h.png", FieldCoding::bits8);
+    const std::string line = "relief-bake bump h.png" + strength_of(field);
+    ASSERT_EQ(workplace.run(line + " out/plain.png").exit_code, 0);
+    const ProgramResult smooth =
+        workplace.run(line + " out/smooth.png --destaircase --report out/r.json");
+    ASSERT_EQ(smooth.exit_code, 0) << smooth.error;
+    EXPECT_THAT(smooth.out, HasSubstr("steps     smoothed away: of 1/255, heights moved by half"));
+    EXPECT_NEAR(json::parse(workplace.read("out/r.json"))["destaircased_step"].get<double>(),
+                1.0 / 255.0, 1e-12);
+    EXPECT_LT(1.2 * error_of(workplace, "out/smooth.png", field),
+              error_of(workplace, "out/plain.png", field));
+}
+
+TEST(BumpAccuracyCommand, KeepsWithinABoundAtTheLeastCost) {
+    const Workplace workplace;
+    const BumpField field = write_field(workplace, "h.png", FieldCoding::bits16);
+    const std::string line = "relief-bake bump h.png" + strength_of(field);
+    const ProgramResult loose = workplace.run(line + " out/a.png --max-error 0.5");
+    ASSERT_EQ(loose.exit_code, 0) << loose.error;
+    EXPECT_THAT(loose.out, HasSubstr(", 8 bit: 0."));
+    EXPECT_EQ(read_image(workplace / "out/a.png", ImageUse::data).bits(), 8);
+    const ProgramResult tight = workplace.run(line + " out/b.png --max-error 0.02 --report out/r");
+    ASSERT_EQ(tight.exit_code, 0) << tight.error;
+    EXPECT_EQ(read_image(workplace / "out/b.png", ImageUse::data).bits(), 16);
+    const json report = json::parse(workplace.read("out/r"));
+    EXPECT_LE(report["kept"]["degrees"]["rms"].get<double>(), 0.02);
+    EXPECT_EQ(report["kept"]["kernel"], report["kernel"]);
+    EXPECT_EQ(report["bits"], 16);
+    EXPECT_TRUE(report["reference"]["whole"].get<bool>());
+    // What the command line fixes stays.
+    const ProgramResult fixed =
+        workplace.run(line + " out/c.png --max-error 2 --bits 16 --kernel scharr3");
+    EXPECT_THAT(fixed.out, HasSubstr("kept      scharr3 in float32, 16 bit: "));
+    // Nothing is written where nothing keeps to it.
+    const ProgramResult none =
+        workplace.run(line + " out/d.png --max-error 0.02 --max-error-kind max --bits 8");
+    EXPECT_EQ(none.exit_code, 1);
+    EXPECT_THAT(none.error, HasSubstr("h.png: no way to convert it keeps within 0.02 degrees "
+                                      "(greatest): the least is 0."));
+    EXPECT_THAT(workplace.outputs(), testing::Not(HasSubstr("d.png")));
+}
+
+TEST(BumpAccuracyCommand, ComparesEveryWayOnTheMap) {
+    const Workplace workplace;
+    const BumpField field = write_field(workplace, "h.png", FieldCoding::bits16);
+    const ProgramResult result = workplace.run("relief-bake bump h.png out/n.png --compare" +
+                                               strength_of(field) + " --report out/r.json");
+    ASSERT_EQ(result.exit_code, 0) << result.error;
+    EXPECT_THAT(result.out, HasSubstr("measured on all of the map, against the kernel chosen"));
+    EXPECT_THAT(result.out, HasSubstr("MPixel/s\n"));
+    EXPECT_THAT(result.out, HasSubstr("* none is both truer and faster\n"));
+    const json report = json::parse(workplace.read("out/r.json"));
+    ASSERT_EQ(report["comparison"].size(), 20U);
+    int efficient = 0;
+    for (const json& one : report["comparison"]) {
+        EXPECT_GT(one["milliseconds"]["median"].get<double>(), 0.0);
+        EXPECT_LE(one["degrees"]["rms"].get<double>(), one["degrees"]["max"].get<double>());
+        efficient += one["efficient"].get<bool>() ? 1 : 0;
+    }
+    EXPECT_GE(efficient, 1);
+}
+
+class BumpAccuracyRefusal : public testing::TestWithParam<Refused> {};
+
+TEST_P(BumpAccuracyRefusal, SaysWhyAndLeavesNothingBehind) {
+    const Workplace workplace;
+    write_image(workplace / "flat.png", make_image(4, 4, 1, 8, ColorSpace::data));
+    expect_refusal(workplace, "relief-bake", GetParam(), "old.png");
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Bump, BumpAccuracyRefusal,
+    testing::Values(Refused{"relief-bake bump flat.png out/n.png --max-error-kind max", 2,
+                            "--max-error-kind: is for --max-error (give --max-error DEG)"},
+                    Refused{"relief-bake bump flat.png out/n.png --max-error -1", 2,
+                            "--max-error -1: "},
+                    Refused{"relief-bake bump flat.png out/n.png --max-error 1 --compare", 2,
+                            "--compare, --max-error: one converts in every way, the other in one"},
+                    Refused{"relief-bake bump flat.png out/n.exr --max-error 1 --slope-moments", 2,
+                            "--max-error, --slope-moments: errors are those of normals"},
+                    Refused{"relief-bake bump flat.png out/n.exr --compare --half", 2,
+                            "--compare, --half: errors of half floats are not measured"}));
+
+}  // namespace
+}  // namespace relief::tools
