@@ -291,7 +291,7 @@ TEST(ConvertCommand, MipLevelsKeepWhatTheyLose) {
     EXPECT_EQ(levels[0]["mean_length"], 1.0);
     EXPECT_NEAR(levels[0]["mean_roughness"].get<double>(), 0.6, 1e-6);
     EXPECT_EQ(levels[3]["width"], 1);
-    for (int level = 1; level < 4; ++level) {
+    for (std::size_t level = 1; level < 4; ++level) {
         EXPECT_NEAR(levels[level]["mean_length"].get<double>(), length, 1e-5);
         EXPECT_NEAR(levels[level]["least_length"].get<double>(), length, 1e-5);
         EXPECT_NEAR(levels[level]["mean_roughness"].get<double>(), roughness, 1e-5);
