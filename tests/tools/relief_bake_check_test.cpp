@@ -153,6 +153,21 @@ TEST(MapCheckCommand, NamesRemediesThatHelp) {
     }
 }
 
+TEST(MapCheckCommand, NamesTheRemedyForSignedSamples) {
+    const Workplace workplace;
+    Report report;
+    write_image(
+        workplace / "signed.exr",
+        normals_from_height(wave_heights(64, 64, tiling_waves(64, 64, 8, 8.0, 0.5, 3)).heights,
+                            {Kernel::central3, Wrap::repeat, 1.0}, report));
+    const std::string remedy = remedy_of(workplace, "signed.exr", "signed samples");
+    EXPECT_EQ(remedy, "relief-bake convert signed.exr out.png --input-signed");
+    EXPECT_EQ(workplace.run(remedy).exit_code, 0);
+    EXPECT_EQ(workplace.run("relief-bake check out.png --strict").exit_code, 0);
+    EXPECT_EQ(workplace.run("relief-bake heights signed.exr out/h.png --input-signed").exit_code,
+              0);
+}
+
 TEST(MapCheckCommand, RemarksOnTagsThatSayColour) {
     RELIEF_NEEDS_SHARED(file, "data/textures/sand_ambientcg/sand_normal.png");
     const Workplace workplace;

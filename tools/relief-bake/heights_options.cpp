@@ -44,6 +44,9 @@ void add_heights_options(CLI::App& app, HeightsRequest& request) {
                "Which code stands for zero in the input: 128 of 255 (middle) or 127.5 (half). "
                "Default: what the file says, else the commoner of the two among its flat texels.")
         ->group(input);
+    add_switch(app, "--input-signed", request.input.is_signed,
+               "Float samples of the input hold the components themselves, not (n + 1) / 2.")
+        ->group(input);
     const std::string group = "Heights";
     add_choice(app, "--kernel", request.integration.kernel, kernel_choices(),
                "The kernel by which relief-bake bump will give the normals back. central7 knows "

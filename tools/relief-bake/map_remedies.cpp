@@ -40,6 +40,8 @@ std::string remedy_for(MapCondition condition, MapContent content,
         case z_missing:
         case z_constant:
             return convert(" --rebuild-z rg");
+        case signed_samples:
+            return convert(" --input-signed");
         case tagged_as_color:
             return convert("");
         case texel_not_finite:
