@@ -166,6 +166,7 @@ class Band {
     void draw(std::uint32_t index) {
         TexelTriangle triangle;
         triangles_.make(index, triangle);
+        compared_with_ = CoveredTexel::nobody;
         const Columns rows = triangle.rows();
         for_parts(rows.begin, rows.end, options_.height, options_.repeat,
                   [&](std::int64_t first, std::int64_t last, std::int64_t moved) {
@@ -220,13 +221,17 @@ class Band {
         for_parts(inside.end, touched.end, options_.width, options_.repeat, claim);
     }
 
-    /// Whether a triangle comes before the owner of a texel.
+    /// Whether the triangle being drawn comes before the owner of a texel; neighbours mostly have
+    /// the same owner, for whom the answer is kept.
     [[nodiscard]] bool is_before(std::uint32_t index, const TexelTriangle& triangle,
-                                 std::uint32_t owner_index) const {
+                                 std::uint32_t owner_index) {
+        if (owner_index == compared_with_) return is_before_;
         TexelTriangle owner;
         triangles_.make(owner_index, owner);
-        return std::make_tuple(triangle.is_mirrored(), triangle.sorted(), index) <
-               std::make_tuple(owner.is_mirrored(), owner.sorted(), owner_index);
+        compared_with_ = owner_index;
+        is_before_ = std::make_tuple(triangle.is_mirrored(), triangle.sorted(), index) <
+                     std::make_tuple(owner.is_mirrored(), owner.sorted(), owner_index);
+        return is_before_;
     }
 
     void set(std::size_t at, std::uint32_t index, const glm::dvec3& weights, bool is_inside) {
@@ -263,6 +268,8 @@ class Band {
     std::vector<CoveredTexel> texels_;
     std::vector<double> distances_;  ///< Of those that are only touched, squared.
     std::vector<bool> shared_;
+    std::uint32_t compared_with_ = CoveredTexel::nobody;  ///< By is_before(), which found this:
+    bool is_before_ = false;
 };
 
 void check(std::span<const glm::vec2> texcoords, std::span<const glm::uvec3> triangles,
