@@ -89,10 +89,12 @@ void keep_within(const AccuracyRequest& request, AccuracyFound& found, BumpOptio
     if (kept == nullptr) {
         const BumpMeasurement* least = truest(*found.experiment, kind);
         const double error = kind == ErrorKind::rms ? least->error.rms : least->error.max;
+        const bool steps_may_go =
+            !request.destaircase && found.experiment->reference.method->destaircased;
         throw InvalidInput(fmt::format(
-            "no way to convert it keeps within {:g} degrees ({}): the least is {:.3g}, with {}",
+            "no way to convert it keeps within {:g} degrees ({}): the least is {:.3g}, with {}{}",
             *request.max_error, kind == ErrorKind::rms ? "RMS" : "greatest", error,
-            method_words(least->method)));
+            method_words(least->method), steps_may_go ? " (--destaircase comes closer)" : ""));
     }
     found.kept = *kept;
     bump.kernel = kept->method.kernel;

@@ -82,7 +82,8 @@ std::string method_words(const BumpMethod& method) {
 }
 
 void print_accuracy(const AccuracyFound& found) {
-    if (found.choice) print_entry("because", found.choice->reason);
+    // What keeps within a bound was not taken for being the truest.
+    if (found.choice && !found.kept) print_entry("because", found.choice->reason);
     if (found.step > 0.0) {
         print_entry("steps",
                     fmt::format("smoothed away: of 1/{:.0f}, heights moved by half of that at most",
@@ -99,7 +100,7 @@ void print_accuracy(const AccuracyFound& found) {
 }
 
 void add_accuracy(const AccuracyFound& found, nlohmann::ordered_json& report) {
-    if (found.choice) report["kernel_reason"] = found.choice->reason;
+    if (found.choice && !found.kept) report["kernel_reason"] = found.choice->reason;
     report["destaircased_step"] =
         found.step > 0.0 ? nlohmann::ordered_json(found.step) : nlohmann::ordered_json(nullptr);
     if (!found.experiment) return;

@@ -251,7 +251,10 @@ BumpExperiment measure_bump(const BumpSample& sample, std::span<const BumpMethod
         const Image& part = sample.measured.front();
         trial.margin = std::min({16, (part.width - 1) / 2, (part.height - 1) / 2});
     }
-    smooth(trial);
+    const auto is_destaircased = [](const BumpMethod& method) { return method.destaircased; };
+    if (is_destaircased(*experiment.reference.method) ||
+        std::any_of(methods.begin(), methods.end(), is_destaircased))
+        smooth(trial);
     take_reference(experiment.reference, trial);
     experiment.texels = trial.texels();
     experiment.is_whole = sample.is_whole;
