@@ -87,8 +87,9 @@ INSTANTIATE_TEST_SUITE_P(Tools, HelpPage,
                                          "relief-mesh decimate", "relief-mesh subdivide",
                                          "relief-mesh check", "relief-mesh compare",
                                          "relief-mesh conformance", "relief-bake",
-                                         "relief-bake bump", "relief-bake check",
-                                         "relief-bake heights", "relief-view"));
+                                         "relief-bake bump", "relief-bake mesh",
+                                         "relief-bake check", "relief-bake heights",
+                                         "relief-view"));
 
 }  // namespace
 }  // namespace relief::tools

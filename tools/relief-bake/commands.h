@@ -11,5 +11,6 @@ Command add_bump_command(CLI::App& tool);
 Command add_check_command(CLI::App& tool);
 Command add_heights_command(CLI::App& tool);
 Command add_convert_command(CLI::App& tool);
+Command add_mesh_command(CLI::App& tool);
 
 }  // namespace relief::tools

@@ -7,10 +7,10 @@
 #include <memory>
 
 #include "commands.h"
+#include "common/model_file.h"
 #include "common/options.h"
 #include "common/text.h"
 #include "model_check.h"
-#include "model_file.h"
 #include "relief/mesh/threads.h"
 
 namespace relief::tools {

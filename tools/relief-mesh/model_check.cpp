@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "common/findings.h"
+#include "common/model_file.h"
 #include "common/text.h"
-#include "model_file.h"
 
 namespace relief::tools {
 namespace {

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "model_file.h"
+#include "common/model_file.h"
 #include "relief/mesh/compare.h"
 
 namespace relief::tools {

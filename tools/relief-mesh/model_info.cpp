@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "common/command.h"
-#include "model_file.h"
+#include "common/model_file.h"
 
 namespace relief::tools {
 namespace {

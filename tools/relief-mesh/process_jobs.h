@@ -7,7 +7,7 @@
 #include <optional>
 
 #include "common/file_jobs.h"
-#include "model_file.h"
+#include "common/model_file.h"
 
 namespace relief::tools {
 

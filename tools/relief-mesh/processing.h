@@ -12,7 +12,7 @@
 
 #include "common/command.h"
 #include "common/findings.h"
-#include "model_file.h"
+#include "common/model_file.h"
 #include "relief/mesh/frames.h"
 
 namespace relief::tools {

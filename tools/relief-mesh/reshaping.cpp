@@ -9,9 +9,9 @@
 #include <cassert>
 #include <numeric>
 
-#include "common/text.h"
-#include "model_file.h"
 #include "common/frame_choices.h"
+#include "common/model_file.h"
+#include "common/text.h"
 #include "relief/mesh/split.h"
 #include "relief/mesh/threads.h"
 

@@ -10,48 +10,11 @@
 #include <map>
 #include <mutex>
 
+#include "bake/texel_frame.h"
 #include "relief/mesh/error.h"
 
 namespace relief {
 namespace {
-
-constexpr double least_volume = 1e-6;  // Of a frame, over the lengths of its axes.
-
-/// Axes of tangent space, in object space.
-struct Frame {
-    glm::dvec3 tangent, bitangent, normal;
-    double volume;
-
-    Frame(const Mesh& mesh, const CoveredTexel& texel) {
-        const glm::uvec3 corners = mesh.triangles[texel.triangle];
-        const glm::dvec3 weights(texel.weights());
-        glm::dvec4 t(0.0);
-        normal = glm::dvec3(0.0);
-        for (int i = 0; i < 3; ++i) {
-            normal += weights[i] * glm::dvec3(mesh.normals[corners[i]]);
-            t += weights[i] * glm::dvec4(mesh.tangents[corners[i]]);
-        }
-        tangent = glm::dvec3(t);
-        bitangent = t.w * glm::cross(normal, tangent);
-        volume = glm::dot(tangent, glm::cross(bitangent, normal));
-    }
-
-    [[nodiscard]] bool is_usable() const {
-        const double lengths = glm::length(tangent) * glm::length(normal);
-        // The bitangent's own length is in both; w near 0 makes it short.
-        return std::isfinite(volume) && std::abs(volume) > least_volume * lengths * lengths &&
-               lengths > 0.0;
-    }
-    [[nodiscard]] glm::dvec3 to_object(const glm::dvec3& n) const {
-        return n.x * tangent + n.y * bitangent + n.z * normal;
-    }
-    [[nodiscard]] glm::dvec3 to_tangent(const glm::dvec3& n) const {
-        return glm::dvec3(glm::dot(n, glm::cross(bitangent, normal)),
-                          glm::dot(n, glm::cross(normal, tangent)),
-                          glm::dot(n, glm::cross(tangent, bitangent))) /
-               volume;
-    }
-};
 
 enum class Direction { to_object, to_tangent };
 
@@ -60,7 +23,7 @@ glm::dvec3 converted(const Mesh& mesh, const CoveredTexel& texel, const glm::dve
                      Direction direction, std::size_t index, Report& found) {
     const glm::dvec3 flat(0.0, 0.0, 1.0);
     if (!texel.is_covered()) return flat;
-    const Frame frame(mesh, texel);
+    const TexelFrame frame(mesh, texel.triangle, glm::dvec3(texel.weights()));
     if (!frame.is_usable()) {
         found.add("texel without a frame", "texel", index, "is (0, 0, 1)");
         return flat;

@@ -20,7 +20,7 @@
 namespace relief {
 namespace {
 
-constexpr int rows_per_band = 64;
+constexpr int rows_per_band = TexelCover::band_rows;
 constexpr int largest_side = 65536;
 constexpr double most_turns = 64.0;  // Of a texture that repeats, across one triangle.
 
@@ -284,34 +284,55 @@ void check(std::span<const glm::vec2> texcoords, std::span<const glm::uvec3> tri
 
 }  // namespace
 
+struct TexelCover::Implementation {
+    Implementation(std::span<const glm::vec2> texcoords, std::span<const glm::uvec3> triangles,
+                   const CoverageOptions& given, Report& report)
+        : options(given), all(texcoords, triangles, options), bands(all, options, report) {}
+
+    CoverageOptions options;
+    Triangles all;
+    Bands bands;
+};
+
+TexelCover::TexelCover(std::span<const glm::vec2> texcoords, std::span<const glm::uvec3> triangles,
+                       const CoverageOptions& options, Report& report) {
+    check(texcoords, triangles, options);
+    implementation_ = std::make_unique<Implementation>(texcoords, triangles, options, report);
+}
+
+TexelCover::~TexelCover() = default;
+
+Coverage TexelCover::cover(
+    int first_row, int last_row,
+    const std::function<void(int first_row, std::span<const CoveredTexel> texels)>& take,
+    Report& report) const {
+    const auto& [options, all, bands] = *implementation_;
+    const auto first_band = static_cast<std::size_t>(first_row / rows_per_band);
+    const auto last_band = static_cast<std::size_t>((last_row + rows_per_band - 1) / rows_per_band);
+    std::vector<Coverage> found(last_band - first_band);
+    parallel_for_reporting(
+        found.size(), 1, report, [&](std::size_t begin, std::size_t end, Report& findings) {
+            for (std::size_t i = begin; i < end; ++i) {
+                const int band_row = static_cast<int>(first_band + i) * rows_per_band;
+                Band band(all, options, band_row);
+                for (const std::uint32_t index : bands.members(first_band + i))
+                    band.draw(index);
+                found[i] = band.finish(findings);
+                take(band_row, band.texels());
+            }
+        });
+    Coverage coverage;
+    for (const Coverage& one : found)
+        coverage += one;
+    return coverage;
+}
+
 Coverage cover_texels(
     std::span<const glm::vec2> texcoords, std::span<const glm::uvec3> triangles,
     const CoverageOptions& options,
     const std::function<void(int first_row, std::span<const CoveredTexel> texels)>& take,
     Report& report) {
-    check(texcoords, triangles, options);
-    const Triangles all(texcoords, triangles, options);
-    const Bands bands(all, options, report);
-    std::vector<Coverage> found(bands.count());
-    parallel_for_reporting(bands.count(), 1, report,
-                           [&](std::size_t begin, std::size_t end, Report& findings) {
-                               for (std::size_t i = begin; i < end; ++i) {
-                                   const int first_row = static_cast<int>(i) * rows_per_band;
-                                   Band band(all, options, first_row);
-                                   for (const std::uint32_t index : bands.members(i))
-                                       band.draw(index);
-                                   found[i] = band.finish(findings);
-                                   take(first_row, band.texels());
-                               }
-                           });
-    Coverage coverage;
-    for (const Coverage& one : found) {
-        coverage.inside += one.inside;
-        coverage.touched += one.touched;
-        coverage.empty += one.empty;
-        coverage.shared += one.shared;
-    }
-    return coverage;
+    return TexelCover(texcoords, triangles, options, report).cover(0, options.height, take, report);
 }
 
 }  // namespace relief

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <functional>
 #include <glm/glm.hpp>
+#include <memory>
 #include <span>
 
 #include "relief/mesh/report.h"
@@ -49,6 +50,14 @@ struct Coverage {
     std::size_t touched = 0;  ///< Texels that only have another part in one.
     std::size_t empty = 0;
     std::size_t shared = 0;  ///< Texels of `inside` whose centre is in several triangles.
+
+    Coverage& operator+=(const Coverage& other) {
+        inside += other.inside;
+        touched += other.touched;
+        empty += other.empty;
+        shared += other.shared;
+        return *this;
+    }
 };
 
 /// Finds the owner of every texel.
@@ -80,5 +89,31 @@ Coverage cover_texels(
     const CoverageOptions& options,
     const std::function<void(int first_row, std::span<const CoveredTexel> texels)>& take,
     Report& report);
+
+/// The same in several calls, for those who want the map from the top, or not all at once.
+class TexelCover {
+  public:
+    /// First rows are multiples of this, last ones too or the map's end.
+    static constexpr int band_rows = 64;
+
+    /// \param texcoords, triangles, options, report  as above; spans must outlive this. The report
+    ///        gets what is said of triangles
+    TexelCover(std::span<const glm::vec2> texcoords, std::span<const glm::uvec3> triangles,
+               const CoverageOptions& options, Report& report);
+    ~TexelCover();
+    TexelCover(const TexelCover&) = delete;
+    TexelCover& operator=(const TexelCover&) = delete;
+
+    /// The owners of the texels of some rows, and what there was there.
+    /// \param report  gets what is said of texels
+    Coverage cover(
+        int first_row, int last_row,
+        const std::function<void(int first_row, std::span<const CoveredTexel> texels)>& take,
+        Report& report) const;
+
+  private:
+    struct Implementation;
+    std::unique_ptr<Implementation> implementation_;
+};
 
 }  // namespace relief

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "model_file.h"
+#include "common/model_file.h"
 
 #include <fmt/format.h>
 

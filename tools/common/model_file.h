@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Which model files relief-mesh reads and writes, by extension, and reading one of either kind.
+/// Which model files the tools read and write, by extension, and reading one of either kind.
 /// Tests: tests/tools/relief_mesh_test.cpp.
 #pragma once
 

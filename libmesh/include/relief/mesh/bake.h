@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// Normal maps of detailed meshes for a simple one: what rays from its surface meet. In the library
+/// relief::bake. Tests: tests/mesh/bake/bake_test.cpp, bake_sphere_test.cpp.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <glm/glm.hpp>
+#include <optional>
+#include <span>
+
+#include "relief/mesh/mesh.h"
+#include "relief/mesh/normal_space.h"
+#include "relief/mesh/report.h"
+#include "relief/mesh/texel_coverage.h"
+
+namespace relief {
+
+/// What the normals of a map are relative to.
+enum class BakeSpace {
+    tangent,  ///< The low mesh's normals and tangents, as the shader interpolates them.
+    object,   ///< The space that all meshes are given in.
+};
+
+/// Along what rays are cast, before any blending.
+enum class RayDirections {
+    averaged,  ///< Normals averaged over everything that meets at a position: no gaps at hard
+               ///< edges.
+    shading,   ///< The low mesh's own normals: rays part at hard edges.
+    face,      ///< Of each triangle.
+};
+
+/// Which side of a high mesh's triangles counts.
+enum class BackFaces {
+    skip,  ///< The outer one (counter-clockwise) alone.
+    take,  ///< Either; normals are turned to where the ray comes from.
+};
+
+struct BakeOptions {
+    int width = 0;  ///< Of the map, in texels.
+    int height = 0;
+    MapPlacement placement{};
+    BakeSpace space = BakeSpace::tangent;
+    RayDirections directions = RayDirections::averaged;
+    /// Of averaged directions: 0 to 1, how far they are drawn to the shading normals, vertex by
+    /// vertex; which makes a difference at hard edges only.
+    double hardness = 0.0;
+    /// The low mesh moved outwards: the same triangles, vertex by vertex. Rays run from it to the
+    /// low mesh, and `directions`, `hardness` and `offset` have no say.
+    const Mesh* cage = nullptr;
+    /// How far outside of the low mesh rays begin, and how far inside of it they end, in the unit
+    /// of the meshes. Absent: what automatic_distances() says; inside, with a cage: as far again as
+    /// it is outside.
+    std::optional<double> offset;
+    std::optional<double> max_distance;
+    BackFaces back_faces = BackFaces::skip;
+    /// A texel's mean of 1, 4, 16 or 64 samples, the centres of as many equal squares of it. Each
+    /// has an owner of its own (texel_coverage.h); those that no chart reaches have no say.
+    int samples = 1;
+    /// With several samples: a quarter of them is cast first (of 4: the upper left and the lower
+    /// right one), and the others only where two of those are further apart than this, radians.
+    std::optional<double> sample_angle;
+    /// How far around charts, in texels, what is not baked is filled from the nearest texels that
+    /// are: the mean of them, where several are equally near. 0 to 1024.
+    int padding = 0;
+    /// Turns normals of object space into the axes that they are wanted in, from those of the
+    /// meshes; made unit afterwards.
+    glm::dmat3 output_from_mesh{1.0};
+};
+
+/// What became of a texel.
+enum class TexelState : std::uint8_t {
+    empty,   ///< No chart has a part in it.
+    missed,  ///< No ray of it met anything, and nothing baked is near.
+    baked,
+    padded,  ///< Filled from the nearest texels that are baked; it may have been missed.
+};
+
+/// Rows of a map. Spans live as long as the call that they are given to.
+struct BakedRows {
+    int first_row = 0;
+    int row_count = 0;
+    std::span<float> normals;  ///< Three a texel, unit; (0, 0, 1) where neither baked nor padded.
+    std::span<float> heights;  ///< Where the surface is, outside of the low mesh; 0 likewise.
+    std::span<TexelState> states;
+};
+
+struct BakeDistances {
+    double offset = 0.0;        ///< Outside.
+    double max_distance = 0.0;  ///< Inside.
+};
+
+struct BakeResult {
+    Coverage coverage;  ///< Of samples, where there are several to a texel.
+    std::size_t texels_baked = 0;
+    std::size_t texels_missed = 0;
+    std::size_t samples = 0;  ///< Places that rays were cast for.
+    std::size_t rays = 0;
+    BakeDistances distances;  ///< As used; with a cage, the inner one, or 0 where that varies.
+    /// Of the surface outside of the low mesh, over all samples that hit; 0 where none did.
+    double least_height = 0.0;
+    double greatest_height = 0.0;
+};
+
+/// How far rays must reach for two surfaces that lie close to each other.
+///
+/// d is the largest distance of 16384 points all over the low mesh from the high ones, or of as
+/// many of their vertices from the low one, if that is more, but of this at most 4 times the
+/// former: the high ones may have parts that the low one lacks. Both distances are 1.5 d and 1% of
+/// half of the longest side of the low mesh's box.
+BakeDistances automatic_distances(std::span<const Mesh> high, const Mesh& low);
+
+/// Bakes the normals of the high meshes into a map for the low one.
+///
+/// \param high    in the same space as `low`; those without normals get averaged ones (frames.h)
+/// \param low     with texture coordinates; without normals it gets averaged ones, without tangents
+///                those of MikkTSpace, which is what a renderer would do
+/// \param take    gets the map from the top, some rows at a time, on the calling thread; it may
+///                change them. Row counts are multiples of 64, but for the last
+/// \param report  counts texels that are missed, have no frame, face away from the surface baked,
+/// or
+///                have several owners; triangles that own no texel; rays without a direction, which
+///                run along the triangle's normal; normals without one, which are the triangle's
+/// \throws InvalidInput if a size or an option is out of range, a mesh is not valid, `low` has no
+///         texture coordinates, or the cage has other triangles
+///
+/// *Which surface.* Each ray runs from outside, through a texel's point on the low mesh, to inside,
+/// and what it meets first counts, if nothing lies between the two that faces the low mesh. So of
+/// two sheets one above the other the outer one is baked, as it is the one to be seen; but the
+/// inner side of a fold or the far side of a thin wall is not: walking outwards from the point, the
+/// line leaves the solid, and what lies behind the next solid that it enters belongs to somewhere
+/// else. Where the point lies inside of several solids that pass through each other, their
+/// outermost side counts. See projection.h.
+///
+/// Computed in double, from the triangles that Embree finds. The same bits for any number of
+/// threads. Memory: the high meshes' rays (some 100 bytes a triangle), what cover_texels() takes,
+/// and some 64 MB or 64 rows, and twice
+/// the padding, for what is being baked; never the map.
+BakeResult bake_normals(std::span<const Mesh> high, const Mesh& low, const BakeOptions& options,
+                        const std::function<void(const BakedRows& rows)>& take, Report& report);
+
+}  // namespace relief

@@ -1,0 +1,230 @@
+// SPDX-License-Identifier: Apache-2.0
+// Rows in pieces of 4, or of as many as have samples in 4 rows, in blocks of 4 x 4 samples: rays
+// that run side by side share a packet. Tests: tests/mesh/bake/bake_test.cpp.
+#include "bake/band_bake.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <mutex>
+
+#include "geometry/direction.h"
+#include "parallel.h"
+
+namespace relief {
+namespace {
+
+constexpr int block = 4;                    // Samples along a block's side.
+constexpr std::size_t rays_at_once = 4096;  // What is known of them fits a cache.
+
+/// Whether a sample is among those that are cast first: in each 4 x 4 one a row and a column.
+bool is_first(int x, int y, int side) {
+    if (side == 2) return x == y;
+    constexpr std::array<int, block> column = {1, 3, 0, 2};
+    return column[static_cast<std::size_t>(y % block)] == x % block;
+}
+
+/// What has come together for a texel.
+struct TexelSum {
+    glm::dvec3 normal{0.0};
+    double height = 0.0;
+    glm::dvec3 first{0.0};  ///< The normal of the first sample that hit.
+    double widest = 1.0;    ///< Least cosine between it and others.
+    std::uint32_t hits = 0;
+    std::uint32_t cast = 0;
+};
+
+/// A piece: whole rows of texels, which no other piece writes to.
+class Piece {
+  public:
+    Piece(const BakeWork& work, int first_row, std::span<const CoveredTexel> owners,
+          const BakedRows& rows, int begin, int end, Report& found)
+        : work_(work),
+          projection_(work.high.scene(), work.options.back_faces),
+          owners_(owners),
+          rows_(rows),
+          first_row_(first_row),
+          begin_(begin),
+          end_(end),
+          width_(work.options.width),
+          found_(found),
+          sums_(static_cast<std::size_t>(width_) * static_cast<std::size_t>(end - begin)) {}
+
+    BakeCounts bake() {
+        const bool is_adaptive = work_.side > 1 && work_.options.sample_angle.has_value();
+        if (is_adaptive) {
+            cast([&](int x, int y, std::size_t) {
+                return is_first(x % work_.side, y % work_.side, work_.side);
+            });
+            const double least = std::cos(*work_.options.sample_angle);
+            std::vector<bool> disagree(sums_.size());
+            for (std::size_t i = 0; i < sums_.size(); ++i) {
+                const TexelSum& sum = sums_[i];
+                disagree[i] =
+                    sum.hits != sum.cast || sum.widest < least || sum.cast < first_count();
+            }
+            cast([&](int x, int y, std::size_t texel) {
+                return disagree[texel] && !is_first(x % work_.side, y % work_.side, work_.side);
+            });
+        } else {
+            cast([](int, int, std::size_t) { return true; });
+        }
+        for (std::size_t texel = 0; texel < sums_.size(); ++texel)
+            store(texel);
+        return counts_;
+    }
+
+  private:
+    [[nodiscard]] std::uint32_t first_count() const {
+        const int count = work_.side == 2 ? 2 : work_.side * work_.side / block;
+        return static_cast<std::uint32_t>(count);
+    }
+
+    /// Casts rays for all samples with an owner that are wanted, block by block.
+    template <typename Wanted>
+    void cast(const Wanted& wanted) {
+        const int side = work_.side;
+        const int columns = width_ * side;
+        const int rows = (end_ - begin_) * side;
+        for (int row = 0; row < rows; row += block) {
+            for (int column = 0; column < columns; column += block) {
+                for (int y = row; y < std::min(row + block, rows); ++y) {
+                    for (int x = column; x < std::min(column + block, columns); ++x) {
+                        const std::size_t texel =
+                            static_cast<std::size_t>(y / side) * static_cast<std::size_t>(width_) +
+                            static_cast<std::size_t>(x / side);
+                        const CoveredTexel& owner =
+                            owners_[(static_cast<std::size_t>(begin_ * side + y)) *
+                                        static_cast<std::size_t>(columns) +
+                                    static_cast<std::size_t>(x)];
+                        if (owner.is_covered() && wanted(x, y, texel)) add(owner, texel);
+                    }
+                }
+                if (lines_.size() + block * block > rays_at_once) flush();
+            }
+        }
+        flush();
+    }
+
+    void add(const CoveredTexel& owner, std::size_t texel) {
+        lines_.push_back(work_.low.line(owner, work_.distances, map_index(texel), found_));
+        samples_.push_back({owner, texel});
+        ++sums_[texel].cast;
+    }
+
+    void flush() {
+        points_.resize(lines_.size());
+        counts_.rays += projection_.find(lines_, points_);
+        counts_.samples += lines_.size();
+        for (std::size_t i = 0; i < lines_.size(); ++i) {
+            if (points_[i].hit.is_hit()) take(samples_[i], points_[i]);
+        }
+        lines_.clear();
+        samples_.clear();
+    }
+
+    struct Sample {
+        CoveredTexel owner;
+        std::size_t texel;
+    };
+
+    void take(const Sample& sample, const ProjectedPoint& point) {
+        glm::dvec3 normal = work_.high.normal(point.hit, map_index(sample.texel), found_);
+        if (!point.hit.faces_origin) normal = -normal;
+        normal = in_output_space(normal, sample);
+        TexelSum& sum = sums_[sample.texel];
+        if (sum.hits == 0) sum.first = normal;
+        sum.widest = std::min(sum.widest, glm::dot(sum.first, normal));
+        sum.normal += normal;
+        sum.height += point.height;
+        ++sum.hits;
+        counts_.least_height = std::min(counts_.least_height, point.height);
+        counts_.greatest_height = std::max(counts_.greatest_height, point.height);
+    }
+
+    [[nodiscard]] glm::dvec3 in_output_space(const glm::dvec3& normal, const Sample& sample) {
+        if (work_.options.space == BakeSpace::object)
+            return direction_or_zero(work_.options.output_from_mesh * normal);
+        const TexelFrame frame(work_.low.mesh(), sample.owner.triangle,
+                               glm::dvec3(sample.owner.weights()));
+        const std::size_t index = map_index(sample.texel);
+        if (!frame.is_usable()) {
+            found_.add("texel without a frame", "texel", index, "is (0, 0, 1)");
+            return {0.0, 0.0, 1.0};
+        }
+        const glm::dvec3 result = direction_or_zero(frame.to_tangent(normal));
+        if (result.z < 0.0) found_.add("normal behind the surface", "texel", index, "kept");
+        return result;
+    }
+
+    /// The mean over the samples that hit.
+    void store(std::size_t texel) {
+        const TexelSum& sum = sums_[texel];
+        const std::size_t at =
+            static_cast<std::size_t>(begin_) * static_cast<std::size_t>(width_) + texel;
+        TexelState state = sum.cast == 0 ? TexelState::empty : TexelState::missed;
+        glm::dvec3 normal(0.0, 0.0, 1.0);
+        if (sum.hits > 0) {
+            state = TexelState::baked;
+            normal = direction_or_zero(sum.normal);
+            if (normal == glm::dvec3(0.0)) normal = sum.first;
+        }
+        if (state == TexelState::baked) ++counts_.baked;
+        if (state == TexelState::missed) {
+            ++counts_.missed;
+            found_.add("texel missed by its rays", "texel", map_index(texel),
+                       "is filled from its neighbours");
+        }
+        rows_.states[at] = state;
+        rows_.heights[at] = sum.hits > 0 ? static_cast<float>(sum.height / sum.hits) : 0.0F;
+        for (std::size_t axis = 0; axis < 3; ++axis)
+            rows_.normals[3 * at + axis] = rounded(normal)[static_cast<int>(axis)];
+    }
+
+    [[nodiscard]] std::size_t map_index(std::size_t texel) const {
+        return static_cast<std::size_t>(first_row_ + begin_) * static_cast<std::size_t>(width_) +
+               texel;
+    }
+
+    const BakeWork& work_;
+    Projection projection_;
+    std::span<const CoveredTexel> owners_;
+    const BakedRows& rows_;
+    int first_row_, begin_, end_, width_;
+    Report& found_;
+    BakeCounts counts_;
+    std::vector<TexelSum> sums_;
+    std::vector<ProjectionLine> lines_;
+    std::vector<ProjectedPoint> points_;
+    std::vector<Sample> samples_;
+};
+
+}  // namespace
+
+BakeCounts& BakeCounts::operator+=(const BakeCounts& other) {
+    samples += other.samples;
+    rays += other.rays;
+    baked += other.baked;
+    missed += other.missed;
+    least_height = std::min(least_height, other.least_height);
+    greatest_height = std::max(greatest_height, other.greatest_height);
+    return *this;
+}
+
+BakeCounts bake_rows(const BakeWork& work, int first_row, std::span<const CoveredTexel> owners,
+                     const BakedRows& rows, Report& report) {
+    const auto piece_rows = static_cast<std::size_t>(std::max(block / work.side, 1));
+    BakeCounts counts;
+    std::mutex mutex;
+    parallel_for_reporting(static_cast<std::size_t>(rows.row_count), piece_rows, report,
+                           [&](std::size_t begin, std::size_t end, Report& found) {
+                               Piece piece(work, first_row, owners, rows, static_cast<int>(begin),
+                                           static_cast<int>(end), found);
+                               const BakeCounts more = piece.bake();
+                               const std::lock_guard lock(mutex);
+                               counts += more;
+                           });
+    return counts;
+}
+
+}  // namespace relief

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: Apache-2.0
+// Directions by vertex once, then by texel whatever is asked for. Tests:
+// tests/mesh/bake/bake_test.cpp.
+#include "bake/low_surface.h"
+
+#include <fmt/format.h>
+
+#include "geometry/direction.h"
+#include "relief/mesh/error.h"
+#include "relief/mesh/frames.h"
+#include "relief/mesh/normals.h"
+
+namespace relief {
+namespace {
+
+std::vector<glm::vec3> corner_places(const Mesh& cage, const Mesh& low) {
+    validate(cage);
+    if (cage.triangles.size() != low.triangles.size()) {
+        throw InvalidInput(fmt::format("the cage has {} triangles, not {} as the low mesh",
+                                       cage.triangles.size(), low.triangles.size()));
+    }
+    std::vector<glm::vec3> places;
+    places.reserve(3 * cage.triangles.size());
+    for (const glm::uvec3& triangle : cage.triangles) {
+        for (int i = 0; i < 3; ++i)
+            places.push_back(cage.positions[triangle[i]]);
+    }
+    return places;
+}
+
+/// Normals averaged over all that meets at a position, drawn to the mesh's own.
+std::vector<glm::vec3> directions_of(const Mesh& mesh, const BakeOptions& options) {
+    if (options.directions == RayDirections::face) return {};
+    if (options.directions == RayDirections::shading) return mesh.normals;
+    // What is wrong with triangles has been said of the frames, or of the rays.
+    Report unsaid;
+    std::vector<glm::vec3> directions =
+        vertex_normals(mesh.positions, mesh.triangles, NormalWeight::angle, unsaid);
+    if (options.hardness == 0.0) return directions;
+    for (std::size_t i = 0; i < directions.size(); ++i) {
+        directions[i] = rounded(direction_or_zero(
+            glm::mix(glm::dvec3(directions[i]), glm::dvec3(mesh.normals[i]), options.hardness)));
+    }
+    return directions;
+}
+
+}  // namespace
+
+LowSurface::LowSurface(const Mesh& low, const BakeOptions& options, Report& report) {
+    validate(low);
+    if (low.texcoords.empty()) throw InvalidInput("the low mesh has no texture coordinates");
+    const bool to_tangent = options.space == BakeSpace::tangent;
+    FrameOptions frames;
+    frames.tangents = !to_tangent            ? TangentMode::none
+                      : low.tangents.empty() ? TangentMode::mikktspace
+                                             : TangentMode::keep;
+    mesh_ = with_frames(low, frames, report).mesh;
+    if (options.cage != nullptr) {
+        cage_ = corner_places(*options.cage, low);
+        cage_inside_ = options.max_distance;
+    } else {
+        directions_ = directions_of(mesh_, options);
+    }
+}
+
+glm::dvec3 LowSurface::interpolated(std::span<const glm::vec3> values,
+                                    const CoveredTexel& texel) const {
+    const glm::uvec3 corners = mesh_.triangles[texel.triangle];
+    const glm::dvec3 weights(texel.weights());
+    return weights.x * glm::dvec3(values[corners.x]) + weights.y * glm::dvec3(values[corners.y]) +
+           weights.z * glm::dvec3(values[corners.z]);
+}
+
+glm::dvec3 LowSurface::direction(const CoveredTexel& texel, std::size_t sample,
+                                 Report& found) const {
+    if (!directions_.empty()) {
+        const glm::dvec3 outward = direction_or_zero(interpolated(directions_, texel));
+        if (outward != glm::dvec3(0.0)) return outward;
+        found.add("ray without a direction", "texel", sample, "runs along its triangle's normal");
+    }
+    const glm::uvec3 corners = mesh_.triangles[texel.triangle];
+    const glm::dvec3 a(mesh_.positions[corners.x]);
+    return direction_or_zero(glm::cross(glm::dvec3(mesh_.positions[corners.y]) - a,
+                                        glm::dvec3(mesh_.positions[corners.z]) - a));
+}
+
+ProjectionLine LowSurface::line(const CoveredTexel& texel, const BakeDistances& distances,
+                                std::size_t sample, Report& found) const {
+    ProjectionLine line;
+    line.point = interpolated(mesh_.positions, texel);
+    line.outside = distances.offset;
+    line.inside = distances.max_distance;
+    if (has_cage()) {
+        const glm::dvec3 weights(texel.weights());
+        glm::dvec3 start(0.0);
+        for (int i = 0; i < 3; ++i) {
+            start +=
+                weights[i] *
+                glm::dvec3(cage_[3 * std::size_t{texel.triangle} + static_cast<std::size_t>(i)]);
+        }
+        line.outside = glm::distance(start, line.point);
+        line.inside = cage_inside_.value_or(line.outside);
+        line.outward = direction_or_zero(start - line.point);
+    } else {
+        line.outward = direction(texel, sample, found);
+    }
+    // Without a direction, or not finite: a line that is over before it begins.
+    if (!(glm::length(line.outward) > 0.5) || !is_finite(line.point)) {
+        found.add("place without a ray", "texel", sample, "missed");
+        line = {glm::dvec3(0.0), glm::dvec3(0.0, 0.0, 1.0), -1.0, 0.0};
+    }
+    return line;
+}
+
+}  // namespace relief

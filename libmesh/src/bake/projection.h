@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// Where the lines of a bake meet the high meshes: the surface that belongs to a point of the low
+/// one. Space and unit of the meshes. Tests: tests/mesh/bake/projection_test.cpp.
+///
+/// *The rule.* A line runs through a point P along an outward direction. Walking outwards from P,
+/// triangles are passed from behind (the line leaves a solid) or from the front (it enters one).
+/// Once outside of all, the surface that was left last is the one wanted, and the walk ends where
+/// the line enters another solid: what lies beyond belongs to somewhere else. How deep inside P is
+/// shows on the way: where the first triangle met is an entry, P is outside if what lies inwards of
+/// it faces it, else within two solids that pass through each other, and both must be left. Where
+/// no surface was left, P lies outside, and it is the first surface inwards that faces P.
+///
+/// That takes one ray where nothing lies outwards of P: the first hit from outside is it. Where
+/// that hit lies outwards of P, a second ray outwards tells whether it is the first surface there;
+/// it almost always is. Only else the line is walked triangle by triangle.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "bake/ray_scene.h"
+#include "relief/mesh/bake.h"
+
+namespace relief {
+
+/// Through a point, from outside to inside.
+struct ProjectionLine {
+    glm::dvec3 point{0.0};
+    glm::dvec3 outward{0.0};  ///< Unit; zero: there is no line, and nothing is hit.
+    double outside = 0.0;     ///< How far it reaches from the point.
+    double inside = 0.0;
+};
+
+/// Where a line meets the surface that belongs to it.
+struct ProjectedPoint {
+    RayHit hit;           ///< As seen from outside.
+    double height = 0.0;  ///< Outwards from the line's point.
+};
+
+class Projection {
+  public:
+    Projection(const RayScene& scene, BackFaces back_faces);
+
+    /// Finds the surface for all lines; neighbours in order are fastest. \return rays cast
+    std::size_t find(std::span<const ProjectionLine> lines, std::span<ProjectedPoint> points) const;
+
+  private:
+    struct Walk;
+
+    std::size_t find_from_outside(std::span<const ProjectionLine> lines,
+                                  std::span<ProjectedPoint> points) const;
+    /// Which of the points found lie outwards, with something else before them.
+    std::size_t find_doubtful(std::span<const ProjectionLine> lines,
+                              std::span<const ProjectedPoint> points,
+                              std::vector<std::size_t>& doubtful) const;
+    std::size_t walk(const ProjectionLine& line, ProjectedPoint& point) const;
+
+    const RayScene& scene_;
+    BackFaces back_faces_;
+    double step_;  ///< By which rays pass what they have met: above the errors of Embree's floats.
+};
+
+}  // namespace relief

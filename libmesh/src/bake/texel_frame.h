@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// The tangent space of a texel as the shader has it: normal and tangent interpolated linearly, not
+/// made unit again, and b = w cross(n, t). In double. The one home of this basis: what one way
+/// makes with it, the other takes back. Source: [Mikkelsen 2008]. Tests:
+/// tests/mesh/bake/normal_space_test.cpp.
+#pragma once
+
+#include <cmath>
+#include <glm/glm.hpp>
+
+#include "relief/mesh/mesh.h"
+
+namespace relief {
+
+/// Axes of tangent space, in object space.
+struct TexelFrame {
+    static constexpr double least_volume = 1e-6;  ///< Over the lengths of the axes.
+
+    glm::dvec3 tangent, bitangent, normal;
+    double volume;
+
+    /// \param weights  of the triangle's corners
+    TexelFrame(const Mesh& mesh, std::uint32_t triangle, const glm::dvec3& weights) {
+        const glm::uvec3 corners = mesh.triangles[triangle];
+        glm::dvec4 t(0.0);
+        normal = glm::dvec3(0.0);
+        for (int i = 0; i < 3; ++i) {
+            normal += weights[i] * glm::dvec3(mesh.normals[corners[i]]);
+            t += weights[i] * glm::dvec4(mesh.tangents[corners[i]]);
+        }
+        tangent = glm::dvec3(t);
+        bitangent = t.w * glm::cross(normal, tangent);
+        volume = glm::dot(tangent, glm::cross(bitangent, normal));
+    }
+
+    [[nodiscard]] bool is_usable() const {
+        const double lengths = glm::length(tangent) * glm::length(normal);
+        // The bitangent's own length is in both; w near 0 makes it short.
+        return std::isfinite(volume) && std::abs(volume) > least_volume * lengths * lengths &&
+               lengths > 0.0;
+    }
+    [[nodiscard]] glm::dvec3 to_object(const glm::dvec3& n) const {
+        return n.x * tangent + n.y * bitangent + n.z * normal;
+    }
+    [[nodiscard]] glm::dvec3 to_tangent(const glm::dvec3& n) const {
+        return glm::dvec3(glm::dot(n, glm::cross(bitangent, normal)),
+                          glm::dot(n, glm::cross(normal, tangent)),
+                          glm::dot(n, glm::cross(tangent, bitangent))) /
+               volume;
+    }
+};
+
+}  // namespace relief

@@ -1,0 +1,277 @@
+// SPDX-License-Identifier: Apache-2.0
+// Whole bakes: flat onto itself, heights and states of stacks, padding, cages, samples, threads.
+#include "relief/mesh/bake.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "mesh/bake/bake_support.h"
+#include "relief/mesh/direction_error.h"
+#include "relief/mesh/error.h"
+#include "relief/mesh/frames.h"
+#include "relief/mesh/shapes.h"
+#include "relief/mesh/threads.h"
+#include "support/message_of.h"
+
+namespace relief {
+namespace {
+
+using test::bake;
+using test::BakedImage;
+using test::sized;
+
+const glm::dvec3 flat(0, 0, 1);
+
+Mesh moved(Mesh mesh, float scale, const glm::vec3& by) {
+    for (glm::vec3& position : mesh.positions)
+        position = position * scale + by;
+    return mesh;
+}
+
+/// A square with waves, over the one of make_quad().
+Mesh waves(int cells) {
+    Mesh mesh = make_quad(cells);
+    mesh.normals.clear();
+    for (glm::vec3& position : mesh.positions)
+        position.z = 0.05F * std::sin(9.0F * position.x) * std::cos(7.0F * position.y);
+    return mesh;
+}
+
+TEST(Bake, OfAMeshOntoItselfIsFlat) {
+    for (const Mesh& mesh :
+         {make_quad(), make_sphere(), make_torus(), make_cube(), make_cylinder()}) {
+        const BakedImage image = bake({mesh}, mesh, sized(128, 96));
+        EXPECT_EQ(image.result.texels_missed, 0U);
+        double worst = 0.0;
+        float farthest = 0.0F;
+        for (std::size_t i = 0; i < image.states.size(); ++i) {
+            worst = std::max(worst, degrees_between(image.normal(i), flat));
+            farthest = std::max(farthest, std::abs(image.heights[i]));
+        }
+        // Codes of 16 bits are 0.002 degrees apart.
+        EXPECT_LT(worst, 0.001);
+        EXPECT_LT(farthest, 1e-5F);
+    }
+}
+
+TEST(Bake, OntoItselfIsFlatAtEveryScale) {
+    for (const float scale : {1e-18F, 1e-6F, 1e6F, 1e18F}) {
+        const Mesh mesh = moved(make_torus(), scale, glm::vec3(0));
+        const BakedImage image = bake({mesh}, mesh, sized(64, 64));
+        EXPECT_EQ(image.result.texels_baked, 64U * 64U);
+        double worst = 0.0;
+        for (std::size_t i = 0; i < image.states.size(); ++i)
+            worst = std::max(worst, degrees_between(image.normal(i), flat));
+        EXPECT_LT(worst, 0.001) << scale;
+    }
+}
+
+TEST(Bake, HeightsAreHowFarOutsideTheSurfaceLies) {
+    const Mesh low = make_quad();
+    for (const float height : {0.25F, 0.0F, -0.125F}) {
+        const BakedImage image =
+            bake({moved(make_quad(), 1.0F, {0, 0, height})}, low, sized(16, 16));
+        EXPECT_EQ(image.count(TexelState::baked), 256U);
+        for (const float here : image.heights)
+            EXPECT_NEAR(here, height, 1e-7F);
+        EXPECT_NEAR(image.result.distances.offset, 1.5 * std::abs(height) + 0.01, 1e-6);
+        EXPECT_NEAR(image.result.least_height, height, 1e-15);
+        EXPECT_NEAR(image.result.greatest_height, height, 1e-15);
+    }
+}
+
+TEST(Bake, IsTheSameForAnyNumberOfThreadsAndOrderOfHighTriangles) {
+    BakeOptions options = sized(150, 130);
+    options.padding = 7;
+    options.samples = 4;
+    Mesh high = make_torus(0.43F, 200, 100);
+    const Mesh low = make_torus();
+    const BakedImage usual = bake({high}, low, options);
+    set_thread_limit(1);
+    const BakedImage alone = bake({high}, low, options);
+    set_thread_limit(0);
+    EXPECT_EQ(usual.normals, alone.normals);
+    EXPECT_EQ(usual.heights, alone.heights);
+    EXPECT_TRUE(std::equal(usual.report.findings().begin(), usual.report.findings().end(),
+                           alone.report.findings().begin(), alone.report.findings().end()));
+    std::reverse(high.triangles.begin(), high.triangles.end());
+    const BakedImage turned = bake({high}, low, options);
+    EXPECT_EQ(usual.normals, turned.normals);
+}
+
+TEST(Bake, TexelsThatMeetNothingAreCountedAndFilledFromTheNearest) {
+    // A high mesh over the left half alone, tilted.
+    Mesh high = make_quad();
+    high.normals.assign(high.positions.size(), glm::normalize(glm::vec3(0.6F, 0, 0.8F)));
+    for (glm::vec3& position : high.positions)
+        position.x = (position.x - 1.0F) / 2.0F;
+    BakeOptions options = sized(64, 64);
+    const BakedImage image = bake({high}, make_quad(), options);
+    EXPECT_EQ(image.count(TexelState::baked), 32U * 64U);
+    EXPECT_EQ(image.count(TexelState::missed), 32U * 64U);
+    EXPECT_EQ(image.report.count("texel missed by its rays"), 32U * 64U);
+    EXPECT_EQ(image.result.texels_missed, 32U * 64U);
+    EXPECT_EQ(image.normal(63), flat);
+    options.padding = 5;
+    const BakedImage padded = bake({high}, make_quad(), options);
+    EXPECT_EQ(padded.count(TexelState::padded), 5U * 64U);
+    EXPECT_LT(degrees_between(padded.normal(36), {0.6, 0, 0.8}), 1e-4);
+    EXPECT_EQ(padded.normal(37), flat);
+}
+
+TEST(Bake, NothingHighIsAllMissed) {
+    const BakedImage image = bake({}, make_quad(), sized(8, 8));
+    EXPECT_EQ(image.count(TexelState::missed), 64U);
+    EXPECT_EQ(image.result.least_height, 0.0);
+    EXPECT_EQ(bake({Mesh{}}, make_quad(), sized(8, 8)).count(TexelState::missed), 64U);
+}
+
+TEST(Bake, AChartSmallerThanATexelHasOne) {
+    Mesh low = make_quad();
+    for (glm::vec2& texcoord : low.texcoords)
+        texcoord = glm::vec2(0.51F, 0.27F) + 0.01F * texcoord;
+    const BakedImage image = bake({make_quad()}, low, sized(10, 10));
+    EXPECT_EQ(image.count(TexelState::baked), 1U);
+    EXPECT_EQ(image.states[25], TexelState::baked);
+}
+
+TEST(Bake, OddSizesAreBakedToo) {
+    for (const auto& [width, height] : {std::pair(1, 1), {3, 17}, {1, 200}, {129, 1}}) {
+        BakeOptions options = sized(width, height);
+        options.padding = 3;
+        const BakedImage image = bake({make_quad()}, make_quad(), options);
+        EXPECT_EQ(image.count(TexelState::baked), static_cast<std::size_t>(width * height));
+    }
+}
+
+TEST(Bake, MirroredChartsThatOverlapHaveOneOwnerEach) {
+    // Two squares side by side with the same image, one mirrored: the other one owns it.
+    Mesh low = make_quad();
+    Mesh other = moved(make_quad(), 1.0F, {3, 0, 0});
+    for (glm::vec2& texcoord : other.texcoords)
+        texcoord.x = 1.0F - texcoord.x;
+    const auto first = static_cast<std::uint32_t>(low.positions.size());
+    low.positions.insert(low.positions.end(), other.positions.begin(), other.positions.end());
+    low.normals.insert(low.normals.end(), other.normals.begin(), other.normals.end());
+    low.texcoords.insert(low.texcoords.end(), other.texcoords.begin(), other.texcoords.end());
+    for (const glm::uvec3& triangle : other.triangles)
+        low.triangles.push_back(triangle + first);
+    // Slopes differ, so that it shows whose are baked.
+    Mesh high = make_quad();
+    high.normals.assign(high.positions.size(), glm::normalize(glm::vec3(0.6F, 0, 0.8F)));
+    Mesh wrong = moved(make_quad(), 1.0F, {3, 0, 0});
+    wrong.normals.assign(wrong.positions.size(), glm::normalize(glm::vec3(0, 0.6F, 0.8F)));
+    const BakedImage image = bake({high, wrong}, low, sized(32, 32));
+    EXPECT_EQ(image.report.count("texel of several triangles"), 32U * 32U);
+    for (std::size_t i = 0; i < 32UL * 32UL; ++i)
+        EXPECT_LT(degrees_between(image.normal(i), {0.6, 0, 0.8}), 1e-4);
+}
+
+TEST(Bake, RaysRunFromACageToTheLowMesh) {
+    // The cage leans: rays come from the right, and meet a floor 0.5 below 0.25 further left.
+    const Mesh cage = moved(make_quad(), 1.0F, {0.5F, 0, 1.0F});
+    Mesh floor = moved(make_quad(), 4.0F, {0, 0, -0.5F});
+    // Which place is hit shows in the normal.
+    floor.normals.clear();
+    for (const glm::vec3& position : floor.positions)
+        floor.normals.push_back(glm::vec3(position.x, position.y, 10));
+    BakeOptions options = sized(8, 8);
+    options.space = BakeSpace::object;
+    options.cage = &cage;
+    const BakedImage image = bake({floor}, make_quad(), options);
+    ASSERT_EQ(image.count(TexelState::baked), 64U);
+    for (int y = 0; y < 8; ++y) {
+        for (int x = 0; x < 8; ++x) {
+            const glm::dvec3 expected((x + 0.5) / 4 - 1 - 0.25, 1 - (y + 0.5) / 4, 10);
+            EXPECT_LT(degrees_between(image.normal(static_cast<std::size_t>(y * 8 + x)), expected),
+                      1e-4);
+        }
+    }
+    Mesh other = cage;
+    other.triangles.pop_back();
+    options.cage = &other;
+    EXPECT_EQ(test::message_of<InvalidInput>([&] { bake({floor}, make_quad(), options); }),
+              "the cage has 1 triangles, not 2 as the low mesh");
+}
+
+TEST(Bake, HardDirectionsLeaveGapsAndAveragedOnesNone) {
+    // A cube baked from a larger one: averaged rays fan out to all of it, hard ones stay in front.
+    const Mesh low = make_cube();
+    const Mesh high = moved(make_cube(), 1.2F, glm::vec3(0));
+    BakeOptions options = sized(64, 64);
+    options.space = BakeSpace::object;
+    options.max_distance = 0.01;
+    options.offset = 0.5;
+    const auto heights = [&](RayDirections directions, double hardness) {
+        options.directions = directions;
+        options.hardness = hardness;
+        const BakedImage image = bake({high}, low, options);
+        EXPECT_EQ(image.result.texels_missed, 0U);
+        return *std::max_element(image.heights.begin(), image.heights.end());
+    };
+    EXPECT_NEAR(heights(RayDirections::face, 0.0), 0.2F, 1e-6F);
+    EXPECT_NEAR(heights(RayDirections::shading, 0.0), 0.2F, 1e-6F);
+    EXPECT_NEAR(heights(RayDirections::averaged, 1.0), 0.2F, 1e-6F);
+    // Along the diagonal at the corners, and in between in between.
+    EXPECT_NEAR(heights(RayDirections::averaged, 0.0), 0.2F * std::sqrt(3.0F), 0.005F);
+    const float half = heights(RayDirections::averaged, 0.5);
+    EXPECT_GT(half, 0.2F);
+    EXPECT_LT(half, 0.25F);
+}
+
+TEST(Bake, SamplesAreMeansAndAutoCastsThemWhereTheyDisagree) {
+    const Mesh high = waves(64);
+    BakeOptions options = sized(16, 16);
+    const BakedImage one = bake({high}, make_quad(), options);
+    EXPECT_EQ(one.result.samples, 256U);
+    options.samples = 16;
+    const BakedImage many = bake({high}, make_quad(), options);
+    EXPECT_EQ(many.result.samples, 16U * 256U);
+    options.sample_angle = 0.0;
+    const BakedImage all = bake({high}, make_quad(), options);
+    EXPECT_EQ(all.result.samples, 16U * 256U);
+    options.sample_angle = 3.2;
+    EXPECT_THROW(bake({high}, make_quad(), options), InvalidInput);
+    options.sample_angle = 3.1;
+    EXPECT_EQ(bake({high}, make_quad(), options).result.samples, 4U * 256U);
+    options.sample_angle = 0.12;
+    const BakedImage some = bake({high}, make_quad(), options);
+    EXPECT_GT(some.result.samples, 5U * 256U);
+    EXPECT_LT(some.result.samples, 15U * 256U);
+    // 256 means of the surface's normals over 16 x 16 texels each: the truth.
+    options = sized(256, 256);
+    const BakedImage fine = bake({high}, make_quad(), options);
+    const auto error = [&](const BakedImage& image) {
+        double sum = 0.0;
+        for (std::size_t texel = 0; texel < 256; ++texel) {
+            glm::dvec3 truth(0.0);
+            for (std::size_t i = 0; i < 256; ++i)
+                truth += fine.normal((texel / 16 * 16 + i / 16) * 256 + texel % 16 * 16 + i % 16);
+            sum += degrees_between(image.normal(texel), truth);
+        }
+        return sum / 256;
+    };
+    EXPECT_LT(error(many), 0.25 * error(one));
+    EXPECT_LT(error(some), 0.5 * error(one));
+}
+
+TEST(Bake, SaysWhatIsWrong) {
+    Mesh bare = make_quad();
+    bare.texcoords.clear();
+    EXPECT_EQ(test::message_of<InvalidInput>([&] { bake({make_quad()}, bare, sized(4, 4)); }),
+              "the low mesh has no texture coordinates");
+    BakeOptions options = sized(4, 4);
+    options.samples = 3;
+    EXPECT_EQ(test::message_of<InvalidInput>([&] { bake({make_quad()}, make_quad(), options); }),
+              "3 samples are not 1, 4, 16 or 64");
+    options = sized(4, 4);
+    options.offset = -1.0;
+    EXPECT_EQ(test::message_of<InvalidInput>([&] { bake({make_quad()}, make_quad(), options); }),
+              "an offset of -1 is negative or not finite");
+    EXPECT_THROW(bake({make_quad()}, make_quad(), sized(0, 4)), InvalidInput);
+}
+
+}  // namespace
+}  // namespace relief

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// What `relief-bake mesh` can be asked for. Tests: tests/tools/relief_bake_mesh_test.cpp.
+#pragma once
+
+#include <filesystem>
+#include <glm/vec2.hpp>
+#include <optional>
+#include <vector>
+
+#include "common/command.h"
+#include "map_output.h"
+#include "relief/mesh/bake.h"
+
+namespace relief::tools {
+
+/// --space
+enum class SpaceChoice { tangent, object, world };
+
+/// --background
+enum class Background { flat, transparent };
+
+/// --outside
+enum class OutsideChoice { drop, repeat };
+
+/// --samples
+struct SampleChoice {
+    int count = 1;
+    bool is_auto = false;
+};
+
+struct MeshBakeRequest {
+    std::vector<std::filesystem::path> high;
+    std::filesystem::path low, output;
+    std::optional<std::filesystem::path> cage;
+    glm::ivec2 size{1024, 1024};
+    SpaceChoice space = SpaceChoice::tangent;
+    std::optional<RayDirections> directions;
+    std::optional<double> hardness;
+    std::optional<double> offset, max_distance;
+    BackFaces back_faces = BackFaces::skip;
+    OutsideChoice outside = OutsideChoice::drop;
+    SampleChoice samples;
+    std::optional<double> sample_angle;  ///< Degrees.
+    int padding = 16;
+    Background background = Background::flat;
+    MapOutputOptions map;
+};
+
+/// \param files  gets the file arguments, for check_mesh_options() to part
+void add_mesh_options(CLI::App& app, MeshBakeRequest& request,
+                      std::vector<std::filesystem::path>& files);
+
+/// Parts the files into high meshes, low mesh and map.
+/// \throws UsageError where options contradict each other, or one has no effect
+void check_mesh_options(MeshBakeRequest& request, const std::vector<std::filesystem::path>& files);
+
+/// What the library is asked for; the cage is left out.
+BakeOptions bake_options_of(const MeshBakeRequest& request);
+
+}  // namespace relief::tools
