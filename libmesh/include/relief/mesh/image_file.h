@@ -58,11 +58,16 @@ Image read_image(std::span<const std::byte> bytes, const std::string& name, Imag
 /// What a file's header says; throws as read_image does, as far as headers tell.
 ImageInfo read_image_info(const std::filesystem::path& file);
 
-/// What writing may cost.
+/// What writing may cost: PNG on all threads, TIFF by how it deflates; other formats know no
+/// difference. The samples are the same.
+///
+/// Normal maps as PNG, beside OpenImageIO's defaults, which write 2 to 6 MPixel/s on one thread
+/// (bench/README.md): most have the same size within a tenth by any effort, for what prediction
+/// leaves over is noise. Where heights came in steps, or change very little, efforts differ.
 enum class WriteEffort {
-    fast,    ///< The least time.
-    normal,  ///< Little more time for most of what can be saved.
-    small,   ///< The smallest file, at many times the time.
+    fast,    ///< 35 to 60 MPixel/s a thread; files up to a quarter larger than OpenImageIO's.
+    normal,  ///< 17 to 60 MPixel/s a thread; files at most a tenth larger, mostly smaller.
+    small,   ///< 3 to 60 MPixel/s a thread; files of 0.55 to 1 of OpenImageIO's size.
 };
 
 /// How an image file is written. No choice but `half` changes what is read back.
@@ -86,8 +91,9 @@ struct ImageWriteOptions {
 ///         colour in integers (encode it with to_srgb first), sRGB colour in float
 ///
 /// Written beside and renamed: a failure leaves no half file and the old one unharmed. The same
-/// image gives the same bytes. PNG, TIFF and EXR keep every sample (EXR and TIFF as float); HDR
-/// keeps 8 bits of precision and no negative values; JPEG is written at quality 95.
+/// image gives the same bytes, whatever the number of threads. PNG, TIFF and EXR keep every sample
+/// (EXR and TIFF as float); HDR keeps 8 bits of precision and no negative values; JPEG is written
+/// at quality 95.
 void write_image(const std::filesystem::path& file, const Image& image,
                  const std::map<std::string, std::string>& metadata = {},
                  const ImageWriteOptions& options = {});

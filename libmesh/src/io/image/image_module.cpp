@@ -182,6 +182,9 @@ OIIO::ImageSpec spec_to_write(const std::string& format, const ImageModulePictur
     if (picture.srgb) spec["oiio:ColorSpace"] = "sRGB";
     if (format == "tiff" || format == "openexr") spec["compression"] = "zip";
     if (format == "tiff") spec["tiff:zipquality"] = picture.zip_quality;
+    // Plain TIFF has 32-bit offsets; what deflate makes of the samples is not known yet.
+    constexpr std::uint64_t large = 0xF0000000;
+    if (format == "tiff" && spec.image_bytes(true) >= large) spec["tiff:bigtiff"] = 1;
     // OpenImageIO 2.4 takes some of its own entries for Exif and then cannot write them.
     if (format == "tiff") spec["tiff:write_exif"] = 0;
     // Else the date would be written, and the same image would never give the same file.

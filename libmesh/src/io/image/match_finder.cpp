@@ -85,9 +85,9 @@ MatchFinder::MatchFinder(std::span<const std::uint8_t> bytes, std::size_t begin,
 MatchFinder::Limits MatchFinder::limits_of(WriteEffort effort) {
     switch (effort) {
         case WriteEffort::fast:
-            return {1, 16, 5, 3};
+            return {1, 16, 3, 4};
         case WriteEffort::normal:
-            return {4, 32, 5, 1};
+            return {1, 32, 4, 1};
         case WriteEffort::small:
             break;
     }
