@@ -12,5 +12,6 @@ namespace relief::test {
 std::vector<HardCase> image_cases();       ///< Heights, and the normals made of them.
 std::vector<HardCase> normal_map_cases();  ///< Normals without slope, direction, z or length.
 std::vector<HardCase> map_check_cases();   ///< What a map means, its heights, and who owns a texel.
+std::vector<HardCase> bake_cases();        ///< Rays, and the surfaces that they meet or miss.
 
 }  // namespace relief::test

@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "hard_cases/map_cases.h"
+#include "relief/mesh/bake.h"
+#include "relief/mesh/direction_error.h"
+#include "relief/mesh/error.h"
+#include "relief/mesh/shapes.h"
+
+namespace relief::test {
+namespace {
+
+constexpr int side = 16;
+constexpr std::size_t texels = std::size_t{side} * side;
+
+/// A map of 16 x 16 texels.
+struct Map {
+    std::vector<float> normals, heights;
+    std::vector<TexelState> states;
+    BakeResult result;
+    Report report;
+
+    [[nodiscard]] double degrees(std::size_t texel, const glm::dvec3& expected) const {
+        return degrees_between({normals[3 * texel], normals[3 * texel + 1], normals[3 * texel + 2]},
+                               expected);
+    }
+};
+
+Map baked(const std::vector<Mesh>& high, const Mesh& low, int padding = 0) {
+    Map map;
+    BakeOptions options;
+    options.width = side;
+    options.height = side;
+    options.padding = padding;
+    map.result = bake_normals(
+        high, low, options,
+        [&](const BakedRows& rows) {
+            map.normals.assign(rows.normals.begin(), rows.normals.end());
+            map.heights.assign(rows.heights.begin(), rows.heights.end());
+            map.states.assign(rows.states.begin(), rows.states.end());
+        },
+        map.report);
+    return map;
+}
+
+Mesh moved(Mesh mesh, const glm::vec3& by) {
+    for (glm::vec3& position : mesh.positions)
+        position += by;
+    return mesh;
+}
+
+/// Every texel baked, this direction and this height.
+std::string not_all(const Map& map, const glm::dvec3& normal, double height) {
+    for (std::size_t i = 0; i < texels; ++i) {
+        if (map.states[i] != TexelState::baked) return fmt::format("texel {} is not baked", i);
+        if (!(map.degrees(i, normal) < 0.001))
+            return fmt::format("texel {} is {} degrees off", i, map.degrees(i, normal));
+        if (!(std::abs(map.heights[i] - height) < 1e-5))
+            return fmt::format("texel {} is {} high", i, map.heights[i]);
+    }
+    return "";
+}
+
+const glm::dvec3 flat(0, 0, 1);
+
+HardCase self_case() {
+    return {
+        "mesh baked onto itself",
+        "A cube, a sphere and a torus as high and low mesh: every ray hits where it is, many on "
+        "edges and vertices.",
+        "rays that miss what they start on; bakers with a bias",
+        {{"bake", "flat within 0.001 degrees, no texel missed, height 0", [] {
+              for (const Mesh& mesh : {make_cube(), make_sphere(), make_torus()}) {
+                  const std::string problem = not_all(baked({mesh}, mesh), flat, 0.0);
+                  if (!problem.empty()) return problem;
+              }
+              return std::string();
+          }}}};
+}
+
+HardCase edges_case() {
+    return {"rays on edges and vertices",
+            "A square of 8 x 8 cells under a map whose texel centres lie on its diagonals.",
+            "Embree#174, #181; tinybvh#168",
+            {{"bake", "one hit each, the same whatever the order of triangles", [] {
+                  Mesh high = moved(make_quad(8), {0, 0, 0.125F});
+                  const Map map = baked({high}, make_quad());
+                  std::reverse(high.triangles.begin(), high.triangles.end());
+                  const std::string problem = not_all(map, flat, 0.125);
+                  if (!problem.empty()) return problem;
+                  return std::string(baked({high}, make_quad()).normals == map.normals
+                                         ? ""
+                                         : "another order bakes another map");
+              }}}};
+}
+
+HardCase needle_case() {
+    return {"needles seen edge-on",
+            "A square, and above it upright triangles 1e-7 wide, between the rays.",
+            "Embree#387",
+            {{"bake", "the square alone is hit", [] {
+                  Mesh needles;
+                  for (int i = 0; i < side; ++i) {
+                      const float x = static_cast<float>(i) / 8.0F - 1.0F;
+                      needles.positions.insert(needles.positions.end(),
+                                               {{x, -1, 0}, {x, 1, 0}, {x + 1e-7F, 1, 0.005F}});
+                      const auto first = static_cast<std::uint32_t>(3 * i);
+                      needles.triangles.emplace_back(first, first + 1, first + 2);
+                  }
+                  return not_all(baked({make_quad(), needles}, make_quad()), flat, 0.0);
+              }}}};
+}
+
+HardCase missed_case() {
+    return {"rays that meet nothing",
+            "The high mesh is over the left half of the low one alone.",
+            "bakers that leave black texels",
+            {{"bake", "flat; reported: 128 x texel missed by its rays",
+              [] {
+                  Mesh half = make_quad();
+                  for (glm::vec3& position : half.positions)
+                      position.x = (position.x - 1.0F) / 2.0F;
+                  const Map map = baked({half}, make_quad());
+                  return map.report.count("texel missed by its rays") == texels / 2 &&
+                                 map.degrees(side - 1, flat) == 0.0
+                             ? ""
+                             : std::string("not so");
+              }},
+             {"padding", "filled from the nearest baked texel", [] {
+                  Mesh half = make_quad();
+                  half.normals.assign(4, glm::normalize(glm::vec3(0.6F, 0, 0.8F)));
+                  for (glm::vec3& position : half.positions)
+                      position.x = (position.x - 1.0F) / 2.0F;
+                  const Map map = baked({half}, make_quad(), side);
+                  for (std::size_t i = 0; i < texels; ++i) {
+                      if (!(map.degrees(i, {0.6, 0, 0.8}) < 0.001))
+                          return fmt::format("texel {} is not", i);
+                  }
+                  return std::string();
+              }}}};
+}
+
+HardCase wall_case() {
+    return {
+        "far side of a thin wall",
+        "A square, and 0.3 above it a wall 0.01 thick, whose far side faces the same way.",
+        "wrong sheets in tight folds",
+        {{"bake", "the square; of two open sheets, the outer one", [] {
+              const Mesh own = moved(make_quad(), {0, 0, 0.05F});
+              Mesh near = moved(make_quad(), {0, 0, 0.3F});
+              for (glm::uvec3& triangle : near.triangles)
+                  std::swap(triangle.y, triangle.z);
+              const Mesh far = moved(make_quad(), {0, 0, 0.31F});
+              const std::string problem = not_all(baked({own, near, far}, make_quad()), flat, 0.05);
+              return problem.empty() ? not_all(baked({own, far}, make_quad()), flat, 0.31)
+                                     : problem;
+          }}}};
+}
+
+HardCase scale_case() {
+    return {"bakes of size 1e-18 and 1e18",
+            "A torus onto itself, all its positions multiplied.",
+            "Embree's floats, whose squares overflow",
+            {{"bake", "flat within 0.001 degrees, no texel missed", [] {
+                  for (const float size : {1e-18F, 1e18F}) {
+                      Mesh mesh = make_torus();
+                      for (glm::vec3& position : mesh.positions)
+                          position *= size;
+                      Map map = baked({mesh}, mesh);
+                      std::fill(map.heights.begin(), map.heights.end(), 0.0F);
+                      const std::string problem = not_all(map, flat, 0.0);
+                      if (!problem.empty()) return problem;
+                  }
+                  return std::string();
+              }}}};
+}
+
+HardCase broken_case() {
+    return {"broken high meshes",
+            "Nothing; triangles without area; vertices that are not finite, beside a sound square.",
+            "crashes of ray casters",
+            {{"bake", "of nothing all missed; else the square", [] {
+                  if (baked({Mesh{}}, make_quad()).result.texels_missed != texels)
+                      return std::string("hit nothing");
+                  Mesh high = make_quad();
+                  const float nan = std::numeric_limits<float>::quiet_NaN();
+                  high.positions.insert(
+                      high.positions.end(),
+                      {{nan, 0, 0}, {0, std::numeric_limits<float>::infinity(), 0}});
+                  high.normals.insert(high.normals.end(), 2, {0, 0, 1});
+                  high.texcoords.clear();
+                  high.triangles.insert(high.triangles.end(), {{0, 1, 4}, {1, 2, 5}, {0, 0, 1}});
+                  return not_all(baked({high}, make_quad()), flat, 0.0);
+              }}}};
+}
+
+HardCase bare_case() {
+    return {"bake without texture coordinates",
+            "The low mesh has none.",
+            "bakers that write an empty map",
+            {{"bake", "refused: the low mesh has no texture coordinates", [] {
+                  Mesh bare = make_quad();
+                  bare.texcoords.clear();
+                  try {
+                      baked({make_quad()}, bare);
+                  } catch (const InvalidInput& error) {
+                      return std::string(error.what() == std::string("the low mesh has no texture "
+                                                                     "coordinates")
+                                             ? ""
+                                             : error.what());
+                  }
+                  return std::string("taken");
+              }}}};
+}
+
+}  // namespace
+
+std::vector<HardCase> bake_cases() {
+    return {self_case(), edges_case(), needle_case(), missed_case(),
+            wall_case(), scale_case(), broken_case(), bare_case()};
+}
+
+}  // namespace relief::test
