@@ -306,7 +306,10 @@ Coverage TexelCover::cover(
     int first_row, int last_row,
     const std::function<void(int first_row, std::span<const CoveredTexel> texels)>& take,
     Report& report) const {
-    const auto& [options, all, bands] = *implementation_;
+    // No structured binding: Clang 14 lets no lambda capture one.
+    const CoverageOptions& options = implementation_->options;
+    const Triangles& all = implementation_->all;
+    const Bands& bands = implementation_->bands;
     const auto first_band = static_cast<std::size_t>(first_row / rows_per_band);
     const auto last_band = static_cast<std::size_t>((last_row + rows_per_band - 1) / rows_per_band);
     std::vector<Coverage> found(last_band - first_band);
