@@ -9,7 +9,7 @@
 #include <numbers>
 
 #include "image/border.h"
-#include "image/complex_fft.h"
+#include "image/integration/complex_fft.h"
 
 namespace relief {
 namespace {

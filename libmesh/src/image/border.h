@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Places beyond the border of an image, along one axis. Tests: tests/mesh/image/bump_test.cpp.
+/// Places beyond the border of an image, along one axis. Tests:
+/// tests/mesh/image/bump/bump_test.cpp.
 #pragma once
 
 #include <algorithm>

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// What is done texel by texel to normals, in parallel, and what a vector of any length is worth as
-/// a direction. Tests: tests/mesh/image/normal_map_test.cpp, normal_map_operations_test.cpp.
+/// a direction. Tests: tests/mesh/image/normals/normal_map_test.cpp,
+/// normal_map_operations_test.cpp.
 #pragma once
 
 #include <algorithm>

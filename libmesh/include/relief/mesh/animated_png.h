@@ -2,7 +2,7 @@
 /// \file
 /// Animated PNG files (APNG), written frame by frame: what browsers play, and what any PNG reader
 /// shows the first frame of. Source: the APNG chunks of [PNG 3], section 11.3.6.
-/// Tests: tests/mesh/io/image/animated_png_test.cpp.
+/// Tests: tests/mesh/io/png/animated_png_test.cpp.
 #pragma once
 
 #include <cstdint>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// From a bump map (a field of heights) to unit normals, by finite differences.
-/// Tests: tests/mesh/image/bump_test.cpp.
+/// Tests: tests/mesh/image/bump/bump_test.cpp.
 #pragma once
 
 #include <glm/vec2.hpp>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// The steps of 8-bit height maps smoothed away, without moving any height farther than rounding
-/// had. Tests: tests/mesh/image/destaircase_test.cpp.
+/// had. Tests: tests/mesh/image/heights/destaircase_test.cpp.
 #pragma once
 
 #include "relief/mesh/bump.h"

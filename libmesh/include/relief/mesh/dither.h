@@ -2,7 +2,7 @@
 /// \file
 /// Dithering: rounding up or down by a pattern, so that the mean over a few texels is what no
 /// single code can say. Deterministic: a texel's place alone decides its threshold, whatever part
-/// of an image is made when, by how many threads. Tests: tests/mesh/image/dither_test.cpp.
+/// of an image is made when, by how many threads. Tests: tests/mesh/image/normals/dither_test.cpp.
 #pragma once
 
 namespace relief {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// How a slope is estimated from neighbouring heights: the kernels as data, and what is known of
-/// them in closed form. Tests: tests/mesh/image/gradient_kernel_test.cpp.
+/// them in closed form. Tests: tests/mesh/image/bump/gradient_kernel_test.cpp.
 #pragma once
 
 #include <glm/vec2.hpp>

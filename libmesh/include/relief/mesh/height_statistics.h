@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// What a height map itself says about how it should be converted: whether it tiles, how many bits
-/// were really used, how noisy it is. Tests: tests/mesh/image/height_statistics_test.cpp.
+/// were really used, how noisy it is. Tests: tests/mesh/image/heights/height_statistics_test.cpp.
 #pragma once
 
 #include "relief/mesh/bump.h"

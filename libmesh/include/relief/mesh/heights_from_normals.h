@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// From a normal map back to heights: the field whose slopes are nearest to those of the normals.
-/// Tests: tests/mesh/image/heights_from_normals_test.cpp.
+/// Tests: tests/mesh/image/integration/heights_from_normals_test.cpp.
 #pragma once
 
 #include <cstddef>

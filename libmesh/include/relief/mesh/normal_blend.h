@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// A detail normal map laid over a base map. Tests: tests/mesh/image/normal_blend_test.cpp; how far
-/// each method is from the truth: docs/normal-maps.md.
+/// A detail normal map laid over a base map. Tests: tests/mesh/image/normals/normal_blend_test.cpp;
+/// how far each method is from the truth: docs/normal-maps.md.
 #pragma once
 
 #include "relief/mesh/image.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// Unit normals in image files: what the stored numbers mean.
-/// Tests: tests/mesh/image/normal_map_test.cpp.
+/// Tests: tests/mesh/image/normals/normal_map_test.cpp.
 #pragma once
 
 #include <map>

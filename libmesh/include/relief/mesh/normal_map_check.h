@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// The health of a normal map: whether an image is one, what its numbers mean, and what is wrong
-/// with it. Tests: tests/mesh/image/normal_map_check_test.cpp, normal_map_check_real_test.cpp.
+/// with it. Tests: tests/mesh/image/check/normal_map_check_test.cpp,
+/// normal_map_check_real_test.cpp.
 #pragma once
 
 #include <array>

@@ -2,7 +2,7 @@
 /// \file
 /// What is done to the normals of a map one by one: axes turned round, a missing z found, lengths
 /// looked at, slopes made steeper or gentler.
-/// Tests: tests/mesh/image/normal_map_operations_test.cpp.
+/// Tests: tests/mesh/image/normals/normal_map_operations_test.cpp.
 #pragma once
 
 #include <array>

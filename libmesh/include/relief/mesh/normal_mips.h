@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// Mip levels of a normal map, and what each loses: the shorter the mean of its normals, the
-/// rougher the surface must be told to be. Tests: tests/mesh/image/normal_mips_test.cpp.
+/// rougher the surface must be told to be. Tests: tests/mesh/image/normals/normal_mips_test.cpp.
 #pragma once
 
 #include <vector>

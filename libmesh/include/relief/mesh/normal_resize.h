@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Normal maps at other sizes. Tests: tests/mesh/image/normal_resize_test.cpp; errors of the
-/// filters: docs/normal-maps.md.
+/// Normal maps at other sizes. Tests: tests/mesh/image/normals/normal_resize_test.cpp; errors of
+/// the filters: docs/normal-maps.md.
 #pragma once
 
 #include <glm/vec2.hpp>

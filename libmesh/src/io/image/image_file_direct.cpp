@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Which decoder of ours takes an image, if any. Nothing is thrown but std::bad_alloc: what goes
-// wrong is left to the image module. Tests: tests/mesh/io/image/png_test.cpp, jpeg_test.cpp.
+// wrong is left to the image module. Tests: tests/mesh/io/png/png_test.cpp, image/jpeg_test.cpp.
 #include "io/image/image_file_direct.h"
 
 #include <string_view>
 #include <utility>
 
 #include "io/image/jpeg_decoder.h"
-#include "io/image/png_decoder.h"
+#include "io/png/png_decoder.h"
 
 namespace relief {
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// The usual PNG and JPEG files without the image module: see png_decoder.h and jpeg_decoder.h.
-/// Tests: tests/mesh/io/image/png_test.cpp, jpeg_test.cpp.
+/// Tests: tests/mesh/io/png/png_test.cpp, image/jpeg_test.cpp.
 #pragma once
 
 #include <optional>

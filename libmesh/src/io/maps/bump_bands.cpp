@@ -11,7 +11,7 @@
 #include <type_traits>
 #include <vector>
 
-#include "image/normal_coding.h"
+#include "image/normals/normal_coding.h"
 #include "parallel.h"
 
 namespace relief {
@@ -83,10 +83,9 @@ class BandMaker {
         std::vector<Sample> scratch;
         if (!is_plain) scratch.resize(width() * 3 * static_cast<std::size_t>(last - first));
         Sample* const codes = is_plain ? samples : scratch.data();
-        const BumpTarget target{BumpResult::codes, format_.normals, [&](int row) {
-                                    return codes + static_cast<std::size_t>(row - first) * 3 *
-                                                       width();
-                                }};
+        const BumpTarget target{
+            BumpResult::codes, format_.normals,
+            [&](int row) { return codes + static_cast<std::size_t>(row - first) * 3 * width(); }};
         if (!make_bump_rows(source_.heights, options_, target, first, last)) return false;
         if (is_plain) return true;
         const std::size_t row_size = width() * static_cast<std::size_t>(shape_.channels);
@@ -185,7 +184,11 @@ class BandMaker {
 
 ImageShape shape_of(const BumpFileFormat& format, int width, int height) {
     if (format.content == BumpContent::slope_moments)
-        return {width, height, 6, 32, ColorSpace::data,
+        return {width,
+                height,
+                6,
+                32,
+                ColorSpace::data,
                 {"b0_h", "b1_dhds", "b2_dhdt", "b3_dhds2", "b4_dhdt2", "b5_dh2dsdt"}};
     const int channels = format.alpha == MapAlpha::none ? 3 : 4;
     return {width, height, channels, format.normals.bits, ColorSpace::data, {}};
@@ -197,8 +200,8 @@ bool make_bump_band(const BumpBandSource& source, const BumpOptions& options,
     const BandMaker maker(source, options, format);
     const auto count = static_cast<std::size_t>(last - first);
     const std::size_t row_bytes = rows.size() / count;
-    const std::size_t grain = std::max<std::size_t>(
-        1, texels_per_piece / static_cast<std::size_t>(source.heights.width));
+    const std::size_t grain =
+        std::max<std::size_t>(1, texels_per_piece / static_cast<std::size_t>(source.heights.width));
     std::atomic<bool> finite = true;
     Report found_here;
     parallel_for_reporting(

@@ -9,7 +9,7 @@
 #include <functional>
 #include <span>
 
-#include "image/bump_rows.h"
+#include "image/bump/bump_rows.h"
 #include "relief/mesh/bump_file.h"
 
 namespace relief {

@@ -12,7 +12,7 @@
 #include <cmath>
 #include <utility>
 
-#include "image/height_holes.h"
+#include "image/heights/height_holes.h"
 #include "io/maps/bump_bands.h"
 #include "io/maps/height_window.h"
 #include "parallel.h"

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "image/seam_survey.h"
+#include "image/heights/seam_survey.h"
 #include "io/maps/height_window.h"
 #include "relief/mesh/bump_file.h"
 #include "relief/mesh/error.h"

@@ -6,8 +6,8 @@
 
 #include <fstream>
 
-#include "io/image/deflate.h"
-#include "io/image/png_chunk.h"
+#include "io/png/deflate.h"
+#include "io/png/png_chunk.h"
 #include "module_reference.h"
 #include "relief/mesh/error.h"
 #include "relief/mesh/image_rows.h"

@@ -4,7 +4,7 @@
 
 #include <fstream>
 
-#include "io/image/png_chunk.h"
+#include "io/png/png_chunk.h"
 #include "relief/mesh/error.h"
 #include "relief/mesh/image_tags.h"
 #include "support/shared_data.h"

@@ -5,11 +5,11 @@
 
 #include <fstream>
 
-#include "io/image/deflate.h"
-#include "io/image/deflate_encoder.h"
 #include "io/image/image_file_direct.h"
 #include "io/image/image_file_module.h"
-#include "io/image/png_chunk.h"
+#include "io/png/deflate.h"
+#include "io/png/deflate_encoder.h"
+#include "io/png/png_chunk.h"
 #include "relief/mesh/error.h"
 
 namespace relief::test {

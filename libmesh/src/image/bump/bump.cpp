@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: Apache-2.0
+// Normals, codes and slopes of a height field [Blinn 1978], its rows shared out among threads (the
+// rows themselves: bump_rows.cpp). Non-finite heights show in the slopes that they touch; only then
+// are they looked for, filled (height_holes.cpp) and counted, and all is done again. A bad image,
+// strength or texel throws. Tests: tests/mesh/image/bump/bump_test.cpp.
+#include "relief/mesh/bump.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+
+#include "image/bump/bump_rows.h"
+#include "image/heights/height_holes.h"
+#include "large_memory.h"
+#include "parallel.h"
+#include "relief/mesh/error.h"
+
+namespace relief {
+namespace {
+
+constexpr std::size_t texels_per_piece = 1 << 16;
+// Differences of floats reach 7e38; with these, slopes and their squares stay in double's range.
+constexpr double largest_strength = 1e30;
+constexpr double largest_texel = 1e30;
+
+void check(const Image& height, const BumpOptions& options) {
+    if (height.empty()) throw InvalidInput("an empty height field has no normals");
+    if (height.channels != 1)
+        throw InvalidInput(fmt::format("a height field has one channel, not {}", height.channels));
+    check_bump(options);
+}
+
+/// All rows, on all threads. False where a height is not finite.
+bool make_all_rows(const HeightRows& heights, const BumpOptions& options,
+                   const BumpTarget& target) {
+    const std::size_t grain =
+        std::max<std::size_t>(1, texels_per_piece / static_cast<std::size_t>(heights.width));
+    std::atomic<bool> finite = true;
+    parallel_for(static_cast<std::size_t>(heights.height), grain,
+                 [&](std::size_t begin, std::size_t end) {
+                     if (!make_bump_rows(heights, options, target, static_cast<int>(begin),
+                                         static_cast<int>(end)))
+                         finite = false;
+                 });
+    return finite;
+}
+
+template <typename Sample>
+std::function<const void*(int)> rows_of(std::span<const Sample> samples, int width) {
+    return [=](int row) { return samples.data() + static_cast<std::ptrdiff_t>(row) * width; };
+}
+
+/// From the image as it is; where that has holes, from a copy without.
+void make_image_rows(const Image& height, const BumpOptions& options, const BumpTarget& target,
+                     Report& report) {
+    check(height, options);
+    HeightRows heights{height.width, height.height, height.bits(), {}};
+    std::visit(
+        [&](const auto& samples) { heights.row = rows_of(std::span(samples), height.width); },
+        height.samples);
+    if (make_all_rows(heights, options, target)) return;
+    const std::vector<float> whole = filled_holes(height, options.wrap, report);
+    heights.row = rows_of(std::span(whole), height.width);
+    make_all_rows(heights, options, target);
+}
+
+/// Where the rows of an image are written to.
+template <typename Sample>
+std::function<void*(int)> target_rows(Image& image) {
+    Sample* const first = image.as<Sample>().data();
+    const std::ptrdiff_t row_size = static_cast<std::ptrdiff_t>(image.width) * image.channels;
+    return [=](int row) { return first + row * row_size; };
+}
+
+Image floats_from_height(const Image& height, int channels, BumpResult result,
+                         const BumpOptions& options, Report& report) {
+    check(height, options);
+    Image image = make_image(height.width, height.height, channels, 32, ColorSpace::data);
+    make_image_rows(height, options, {result, {}, target_rows<float>(image)}, report);
+    return image;
+}
+
+/// An image whose memory is asked for in large pages, since all of it will be written.
+template <typename Sample>
+Image image_to_fill(int width, int height, int channels) {
+    Image image{width, height, channels, ColorSpace::data, {}};
+    std::vector<Sample> samples;
+    reserve_to_fill(samples, image.sample_count());
+    samples.resize(image.sample_count());
+    image.samples = std::move(samples);
+    return image;
+}
+
+Image image_to_fill(int width, int height, int channels, int bits) {
+    if (bits == 8) return image_to_fill<std::uint8_t>(width, height, channels);
+    if (bits == 16) return image_to_fill<std::uint16_t>(width, height, channels);
+    if (bits == 32) return image_to_fill<float>(width, height, channels);
+    return make_image(width, height, channels, bits, ColorSpace::data);  // Which refuses.
+}
+
+}  // namespace
+
+void check_bump(const BumpOptions& options) {
+    if (!(std::abs(options.strength) <= largest_strength)) {
+        throw InvalidInput(
+            fmt::format("the strength {} is not within +-{}", options.strength, largest_strength));
+    }
+    for (const double size : {options.texel.x, options.texel.y}) {
+        if (!(size >= 1.0 / largest_texel && size <= largest_texel)) {
+            throw InvalidInput(fmt::format("the texel size {} is not within {} and {}", size,
+                                           1.0 / largest_texel, largest_texel));
+        }
+    }
+    gradient_kernel(options.kernel, options.gaussian_radius);
+}
+
+Image normals_from_height(const Image& height, const BumpOptions& options, Report& report) {
+    return floats_from_height(height, 3, BumpResult::normals, options, report);
+}
+
+Image slopes_from_height(const Image& height, const BumpOptions& options, Report& report) {
+    return floats_from_height(height, 2, BumpResult::slopes, options, report);
+}
+
+void normal_map_from_height(const Image& height, const BumpOptions& options,
+                            const NormalMapFormat& format, Image& result, Report& report) {
+    check(height, options);
+    const bool fits = result.width == height.width && result.height == height.height &&
+                      result.channels == 3 && result.bits() == format.bits;
+    if (!fits) result = image_to_fill(height.width, height.height, 3, format.bits);
+    result.color_space = ColorSpace::data;
+    BumpTarget target{BumpResult::codes, format, {}};
+    if (format.bits == 8)
+        target.row = target_rows<std::uint8_t>(result);
+    else if (format.bits == 16)
+        target.row = target_rows<std::uint16_t>(result);
+    else
+        target.row = target_rows<float>(result);
+    make_image_rows(height, options, target, report);
+}
+
+Image normal_map_from_height(const Image& height, const BumpOptions& options,
+                             const NormalMapFormat& format, Report& report) {
+    Image result;
+    normal_map_from_height(height, options, format, result, report);
+    return result;
+}
+
+}  // namespace relief

@@ -1,0 +1,280 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a map is, in steps: what a sample of its texels says of its meaning (curve, sign, content),
+// then all texels by that meaning, then what only surfaces show. The bounds are calibrated on the
+// maps and pictures of the shared data: normal_map_check_real_test.cpp has a row for each.
+// Lengths have no unit. An empty image throws.
+#include "relief/mesh/normal_map_check.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "image/check/green_direction.h"
+#include "image/check/map_statistics.h"
+#include "parallel.h"
+#include "relief/mesh/error.h"
+
+namespace relief {
+namespace {
+
+constexpr std::size_t most_samples = 1 << 18;  // To tell the meaning from.
+
+/// Another meaning is believed where it makes lengths this much truer.
+constexpr double largest_other_rms = 0.1;
+constexpr double least_gain = 2.0;
+
+bool is_grey(const MapStatistics& all) {
+    return static_cast<double>(all.equal) >= 0.995 * static_cast<double>(all.texels);
+}
+
+/// Directions that lean towards z: lengths near 1, or at least x and y around 0.
+bool are_tangent_normals(const MapStatistics& all) {
+    if (all.share(all.upwards) < 0.9 || all.mean.z < 0.4) return false;
+    if (all.lengths.rms_deviation <= 0.1) return true;
+    return all.lengths.rms_deviation <= 0.25 && std::abs(all.mean.x) <= 0.2 &&
+           std::abs(all.mean.y) <= 0.2;
+}
+
+/// Directions that face all ways: colours of that length do not.
+bool are_object_normals(const MapStatistics& all) {
+    return all.lengths.rms_deviation <= 0.12 && glm::length(all.mean) <= 0.6 &&
+           all.share(all.upwards) <= 0.98;
+}
+
+/// Two components within the unit disk, around 0, beside a third that says nothing.
+bool are_xy_normals(const Image& map, const MapStatistics& all) {
+    const bool has_no_z = map.channels == 2 || all.constant[2];
+    return has_no_z && !(all.constant[0] && all.constant[1]) && all.share(all.in_disk) >= 0.99 &&
+           std::abs(all.mean.x) <= 0.2 && std::abs(all.mean.y) <= 0.2;
+}
+
+MapContent content_of(const Image& map, const MapStatistics& all) {
+    if (map.channels == 1 || is_grey(all)) return MapContent::grey;
+    if (map.channels >= 3 && are_tangent_normals(all)) return MapContent::tangent_normals;
+    if (are_xy_normals(map, all)) return MapContent::xy_normals;
+    if (map.channels == 2) return MapContent::grey;
+    return are_object_normals(all) ? MapContent::object_normals : MapContent::other;
+}
+
+struct Meaning {
+    SampleMeaning samples;
+    MapContent content = MapContent::other;
+};
+
+/// The meaning under which the vectors are nearest to unit length. What is kept unless another is
+/// much better: samples as they are stored.
+Meaning meaning_of(const Image& map, FlatCode flat) {
+    const std::size_t count =
+        static_cast<std::size_t>(map.width) * static_cast<std::size_t>(map.height);
+    const std::size_t step = std::max<std::size_t>(1, count / most_samples);
+    SampleMeaning plain;
+    plain.flat = flat;
+    plain.z_is_stored = map.channels >= 3;
+    const MapStatistics as_stored = map_statistics(map, plain, step);
+    Meaning best{plain, content_of(map, as_stored)};
+    if (map.channels < 3 || is_grey(as_stored)) return best;
+    double least = as_stored.lengths.rms_deviation / least_gain;
+    const auto consider = [&](const SampleMeaning& other) {
+        const MapStatistics statistics = map_statistics(map, other, step);
+        const MapContent content = content_of(map, statistics);
+        if (content != MapContent::tangent_normals && content != MapContent::object_normals) return;
+        if (statistics.lengths.rms_deviation > std::min(least, largest_other_rms)) return;
+        least = statistics.lengths.rms_deviation;
+        best = {other, content};
+    };
+    for (const StoredCurve curve : {StoredCurve::srgb_encoded, StoredCurve::srgb_decoded}) {
+        SampleMeaning other = plain;
+        other.curve = curve;
+        consider(other);
+    }
+    if (map.bits() == 32) {
+        SampleMeaning other = plain;
+        other.is_signed = true;
+        consider(other);
+    }
+    return best;
+}
+
+/// One channel of a map, for the statistics of height maps.
+Image channel_of(const Image& map, int channel) {
+    Image one = make_image(map.width, map.height, 1, map.bits(), ColorSpace::data);
+    with_sample_type(map, [&](auto sample) {
+        using Sample = decltype(sample);
+        const std::span<const Sample> from = map.as<Sample>();
+        const std::span<Sample> to = one.as<Sample>();
+        parallel_for(to.size(), 1 << 16, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t texel = begin; texel < end; ++texel)
+                to[texel] = from[texel * static_cast<std::size_t>(map.channels) +
+                                 static_cast<std::size_t>(channel)];
+        });
+    });
+    return one;
+}
+
+/// Seams of x and y, the worse of the two, and the bits of every channel.
+void look_at_channels(const Image& map, NormalMapCheck& check) {
+    for (int channel = 0; channel < map.channels; ++channel) {
+        const Image one = channel_of(map, channel);
+        check.bits.push_back(height_depth(one).bits);
+        if (channel >= 2) continue;
+        const Tiling tiling = detect_tiling(one);
+        check.tiling.seam_x = std::max(check.tiling.seam_x, tiling.seam_x);
+        check.tiling.seam_y = std::max(check.tiling.seam_y, tiling.seam_y);
+    }
+}
+
+/// Collects conditions in the order of the enumeration.
+class Found {
+  public:
+    explicit Found(NormalMapCheck& check) : check_(check) {}
+
+    void if_so(bool is_so, MapCondition condition) {
+        if (is_so) check_.found.push_back({condition, 1, {}});
+    }
+    void texels(const FoundMapCondition& found) {
+        if (found.count > 0) check_.found.push_back(found);
+    }
+
+  private:
+    NormalMapCheck& check_;
+};
+
+bool has_directions(MapContent content) {
+    return content == MapContent::tangent_normals || content == MapContent::object_normals;
+}
+
+void find_meaning(const NormalMapCheck& check, const SampleMeaning& meaning,
+                  const MapStatistics& all, int channels, bool is_tagged, Found& found) {
+    using enum MapCondition;
+    found.if_so(check.content == MapContent::grey || check.content == MapContent::other,
+                not_normals);
+    found.if_so(check.content == MapContent::object_normals, object_space);
+    found.if_so(check.content == MapContent::xy_normals, z_missing);
+    const bool is_flat = all.constant[0] && all.constant[1];
+    found.if_so(check.content == MapContent::tangent_normals && channels >= 3 && all.constant[2] &&
+                    !is_flat,
+                z_constant);
+    found.if_so(check.curve == StoredCurve::srgb_encoded, stored_through_srgb);
+    found.if_so(check.curve == StoredCurve::srgb_decoded, decoded_from_srgb);
+    const bool is_color = check.content == MapContent::grey || check.content == MapContent::other;
+    found.if_so(is_tagged && !is_color, tagged_as_color);
+    found.if_so(meaning.is_signed, signed_samples);
+}
+
+void find_texels(const NormalMapCheck& check, const MapStatistics& all, Found& found) {
+    found.texels(all.not_finite);
+    if (!has_directions(check.content)) return;
+    found.texels(all.without_direction);
+    if (check.content == MapContent::tangent_normals) found.texels(all.facing_back);
+    found.texels({MapCondition::texel_grey, all.background, {}});
+    const double rms = check.lengths_uncurved.rms_deviation;
+    found.if_so(rms > 0.05, MapCondition::not_unit);
+    found.if_so(rms > 0.02 && rms <= 0.05, MapCondition::not_quite_unit);
+}
+
+void find_conventions(const Image& map, const NormalMapCheck& check,
+                      const std::map<std::string, std::string>& metadata, const MapStatistics& all,
+                      Found& found) {
+    using enum MapCondition;
+    const bool has_slopes =
+        (check.content == MapContent::tangent_normals || check.content == MapContent::xy_normals) &&
+        !(all.constant[0] && all.constant[1]);
+    if (has_slopes) {
+        const auto said = metadata.find("relief:green");
+        const bool says_up = said != metadata.end() && said->second == "up";
+        const bool says_down = said != metadata.end() && said->second == "down";
+        found.if_so((check.green.green == Green::down && says_up) ||
+                        (check.green.green == Green::up && says_down),
+                    green_contradicted);
+        found.if_so(check.green.green == Green::down, green_down);
+        found.if_so(!check.green.green, green_unknown);
+    }
+    // The other way round nothing shows: maps coded about 127.5 may well have 128 for flat.
+    if (has_directions(check.content) && metadata.contains("relief:flat") && map.bits() != 32)
+        found.if_so(detect_flat_code(map, metadata) == FlatCode::middle &&
+                        detect_flat_code(map) == FlatCode::half,
+                    flat_contradicted);
+}
+
+void find_channels(const Image& map, const NormalMapCheck& check, const MapStatistics& all,
+                   Found& found) {
+    using enum MapCondition;
+    if (check.content == MapContent::grey || check.content == MapContent::other) return;
+    const bool is_flat = all.constant[0] && all.constant[1];
+    found.if_so(is_flat, all_flat);
+    found.if_so(all.constant[0] && !is_flat, x_constant);
+    found.if_so(all.constant[1] && !is_flat, y_constant);
+    found.if_so(map.bits() > 8 && !is_flat &&
+                    std::all_of(check.bits.begin(),
+                                check.bits.begin() + std::min<std::ptrdiff_t>(3, map.channels),
+                                [](int bits) { return bits > 0 && bits <= 8; }),
+                bits_unused);
+    if (map.channels == 4) {
+        found.if_so(all.constant[3], alpha_opaque);
+        const bool are_heights = std::abs(check.alpha_correlation.value_or(0.0)) >= 0.5;
+        found.if_so(!all.constant[3] && are_heights, alpha_heights);
+        found.if_so(!all.constant[3] && !are_heights, alpha_other);
+    }
+    found.if_so(!check.tiling.tiles_x(), seam_x);
+    found.if_so(!check.tiling.tiles_y(), seam_y);
+}
+
+/// Lengths by the meaning found, and as they are stored.
+void measure_lengths(const Image& map, const SampleMeaning& meaning, const MapStatistics& all,
+                     NormalMapCheck& check) {
+    check.lengths = check.lengths_uncurved = all.lengths;
+    if (meaning.curve == StoredCurve::none) return;
+    SampleMeaning stored = meaning;
+    stored.curve = StoredCurve::none;
+    check.lengths = map_statistics(map, stored).lengths;
+}
+
+/// A surface in wrong numbers: vectors too short or too long, but their slopes are those of one.
+bool is_surface(const MapStatistics& all, const GreenEvidence& green) {
+    return all.share(all.upwards) >= 0.95 && all.mean.z >= 0.3 && std::abs(all.mean.x) <= 0.1 &&
+           std::abs(all.mean.y) <= 0.1 && green.green && std::abs(green.correlation) >= 0.3;
+}
+
+/// What only tangent-space normals show; says so if the map turns out to hold some.
+void look_at_surface(const Image& map, SampleMeaning meaning, const MapStatistics& all,
+                     NormalMapCheck& check) {
+    if (check.content == MapContent::grey || check.content == MapContent::object_normals) return;
+    meaning.z_is_stored = check.content != MapContent::xy_normals;
+    const SurfaceEvidence surface = surface_evidence(map, meaning);
+    if (check.content == MapContent::other) {
+        if (!is_surface(all, surface.green)) return;
+        check.content = MapContent::tangent_normals;
+    }
+    check.green = surface.green;
+    check.alpha_correlation = surface.alpha_correlation;
+}
+
+}  // namespace
+
+NormalMapCheck check_normal_map(const Image& map,
+                                const std::map<std::string, std::string>& metadata,
+                                std::string_view color_tag) {
+    if (map.empty()) throw InvalidInput("an empty image holds no normals");
+    NormalMapCheck check;
+    Found found(check);
+    look_at_channels(map, check);
+    if (map.channels == 1) {
+        check.content = MapContent::grey;
+        found.if_so(true, MapCondition::not_normals);
+        return check;
+    }
+    if (map.channels >= 3) check.flat = detect_flat_code(map);
+    const Meaning meaning = meaning_of(map, check.flat);
+    check.content = meaning.content;
+    check.curve = meaning.samples.curve;
+    const MapStatistics all = map_statistics(map, meaning.samples);
+    measure_lengths(map, meaning.samples, all, check);
+    look_at_surface(map, meaning.samples, all, check);
+    find_meaning(check, meaning.samples, all, map.channels, !color_tag.empty(), found);
+    find_texels(check, all, found);
+    find_conventions(map, check, metadata, all, found);
+    find_channels(map, check, all, found);
+    return check;
+}
+
+}  // namespace relief

@@ -1,0 +1,231 @@
+// SPDX-License-Identifier: Apache-2.0
+// De-staircasing: smoothed surfaces from fine to wide, each believed where its residual is that of
+// rounding [Lepski 1991], then back to the half step around the stored code. Heights are in steps
+// meanwhile. Holes stay; their filling serves their neighbours. A wrong image or step throws.
+// Tests: tests/mesh/image/heights/destaircase_test.cpp.
+#include "relief/mesh/destaircase.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "image/border.h"
+#include "image/heights/height_holes.h"
+#include "parallel.h"
+#include "relief/mesh/error.h"
+#include "relief/mesh/height_statistics.h"
+
+namespace relief {
+namespace {
+
+/// Scales, each twice the one before; the widest has a deviation of 37 texels.
+constexpr int scales = 6;
+/// Just less than half a step, so that rounding to float leaves the bound.
+constexpr float bound = 0.49F;
+/// Rounding has a mean square error of 1/12. A smooth surface that is this far from the codes in
+/// the mean is believed, ...
+constexpr float believed = 1.0F / 12.0F;
+/// ... and one that is so far is none of theirs.
+constexpr float refused = 1.7F / 12.0F;
+
+struct Plane {
+    int width = 0;
+    int height = 0;
+    std::vector<float> values;
+
+    [[nodiscard]] const float* row(int y) const {
+        return values.data() + static_cast<std::ptrdiff_t>(y) * width;
+    }
+    [[nodiscard]] float* row(int y) {
+        return values.data() + static_cast<std::ptrdiff_t>(y) * width;
+    }
+};
+
+template <typename WithRows>
+void for_rows(const Plane& plane, const WithRows& with_rows) {
+    const auto grain = static_cast<std::size_t>(std::max(1, (1 << 16) / plane.width));
+    parallel_for(static_cast<std::size_t>(plane.height), grain,
+                 [&](std::size_t begin, std::size_t end) {
+                     with_rows(static_cast<int>(begin), static_cast<int>(end));
+                 });
+}
+
+/// Five weights of the binomial (1 4 6 4 1) / 16 over rows, then over columns, `spacing` apart.
+class Binomial {
+  public:
+    Binomial(int width, int spacing) : width_(width), spacing_(spacing) {
+        line_.resize(static_cast<std::size_t>(width + 4 * spacing));
+    }
+
+    /// \param rows    at y - 2 s, y - s, y, y + s, y + 2 s
+    /// \param beyond  the value at a column outside, from the line of those inside
+    template <typename Beyond>
+    void row(const std::array<const float*, 5>& rows, const Beyond& beyond, float* result) {
+        const std::ptrdiff_t s = spacing_;
+        float* const line = line_.data() + 2 * s;
+        for (std::ptrdiff_t x = 0; x < width_; ++x)
+            line[x] = sum(rows[0][x], rows[1][x], rows[2][x], rows[3][x], rows[4][x]);
+        for (int x = 1; x <= 2 * spacing_; ++x) {
+            line[-x] = beyond(line, -x);
+            line[width_ - 1 + x] = beyond(line, width_ - 1 + x);
+        }
+        for (std::ptrdiff_t x = 0; x < width_; ++x)
+            result[x] = sum(line[x - 2 * s], line[x - s], line[x], line[x + s], line[x + 2 * s]);
+    }
+
+  private:
+    static float sum(float a, float b, float c, float d, float e) {
+        return 0.375F * c + 0.25F * (b + d) + 0.0625F * (a + e);
+    }
+
+    int width_;
+    int spacing_;
+    std::vector<float> line_;
+};
+
+/// Low frequencies of the next scale.
+void smooth(const Plane& from, const Wraps& wrap, int spacing, Plane& to) {
+    for_rows(from, [&](int begin, int end) {
+        Binomial binomial(from.width, spacing);
+        std::array<std::vector<float>, 5> rooms;
+        const auto beyond = [&](const float* line, int x) {
+            if (wrap.x != Wrap::clamp) return line[place_within(x, from.width, wrap.x)];
+            return reflected(x, from.width, [&](int column) { return line[column]; });
+        };
+        for (int y = begin; y < end; ++y) {
+            std::array<const float*, 5> rows{};
+            for (std::size_t k = 0; k < 5; ++k) {
+                const int place = y + (static_cast<int>(k) - 2) * spacing;
+                const bool is_made = wrap.y == Wrap::clamp && (place < 0 || place >= from.height);
+                rows[k] = is_made ? nullptr : from.row(place_within(place, from.height, wrap.y));
+                if (!is_made) continue;
+                rooms[k].resize(static_cast<std::size_t>(from.width));
+                for (int x = 0; x < from.width; ++x) {
+                    rooms[k][static_cast<std::size_t>(x)] =
+                        reflected(place, from.height, [&](int row) { return from.row(row)[x]; });
+                }
+                rows[k] = rooms[k].data();
+            }
+            binomial.row(rows, beyond, to.row(y));
+        }
+    });
+}
+
+/// A smooth surface of one scale without the bend that smoothing adds to curved ground: what two
+/// scales agree upon [Richardson 1911].
+struct Surface {
+    const Plane& low;
+    const Plane& lower;
+    float share;  ///< Of their difference.
+
+    void row(int y, float* to) const {
+        const float* const a = low.row(y);
+        const float* const b = lower.row(y);
+        for (std::ptrdiff_t x = 0; x < low.width; ++x)
+            to[x] = a[x] + share * (a[x] - b[x]);
+    }
+};
+
+/// Goes to the surface as far as it is believed: where it is as far from the codes as rounding is.
+void follow(const Surface& surface, const Plane& codes, const Wraps& wrap, int spacing,
+            Plane& trust, Plane& heights) {
+    const int width = codes.width;
+    // A power goes on beyond a clamped border as itself, not as its reflection.
+    const Wrap x_rule = wrap.x == Wrap::clamp ? Wrap::mirror : wrap.x;
+    const Wrap y_rule = wrap.y == Wrap::clamp ? Wrap::mirror : wrap.y;
+    for_rows(codes, [&](int begin, int end) {
+        Binomial binomial(width, spacing);
+        const auto beyond = [&](const float* line, int x) {
+            return line[place_within(x, width, x_rule)];
+        };
+        std::array<std::vector<float>, 5> squares;
+        for (std::vector<float>& row : squares)
+            row.resize(static_cast<std::size_t>(width));
+        std::vector<float> own(static_cast<std::size_t>(width));
+        std::vector<float> power(static_cast<std::size_t>(width));
+        for (int y = begin; y < end; ++y) {
+            std::array<const float*, 5> rows{};
+            for (std::size_t k = 0; k < 5; ++k) {
+                const int place =
+                    place_within(y + (static_cast<int>(k) - 2) * spacing, codes.height, y_rule);
+                surface.row(place, squares[k].data());
+                if (k == 2) std::copy(squares[k].begin(), squares[k].end(), own.begin());
+                const float* const code = codes.row(place);
+                float* const square = squares[k].data();
+                for (std::ptrdiff_t x = 0; x < width; ++x)
+                    square[x] = (square[x] - code[x]) * (square[x] - code[x]);
+                rows[k] = square;
+            }
+            binomial.row(rows, beyond, power.data());
+            float* const trusted = trust.row(y);
+            float* const height = heights.row(y);
+            for (std::ptrdiff_t x = 0; x < width; ++x) {
+                const float share =
+                    (refused - power[static_cast<std::size_t>(x)]) * (1.0F / (refused - believed));
+                // Who is not believed at one scale is not at the next.
+                trusted[x] = std::max(0.0F, std::min(share, trusted[x]));
+                height[x] += trusted[x] * (own[static_cast<std::size_t>(x)] - height[x]);
+            }
+        }
+    });
+}
+
+void check(const Image& height, const DestaircaseOptions& options) {
+    if (height.empty()) throw InvalidInput("an empty height field has no steps");
+    if (height.channels != 1)
+        throw InvalidInput(fmt::format("a height field has one channel, not {}", height.channels));
+    if (!(options.step >= 0.0 && std::isfinite(options.step)))
+        throw InvalidInput(fmt::format("the step {} is not 0 or more", options.step));
+}
+
+}  // namespace
+
+Destaircased destaircase(const Image& height, const DestaircaseOptions& options) {
+    check(height, options);
+    Destaircased result{to_float(height)};
+    const std::span<const float> stored = result.heights.as<float>();
+    result.step = options.step;
+    if (result.step == 0.0) {
+        const HeightDepth depth = height_depth(height);
+        // A constant map has one "step" only, and nothing to smooth.
+        result.step = depth.bits > 0 ? depth.step : 0.0;
+    }
+    if (result.step == 0.0) return result;
+
+    Report holes;  // Counted where the heights are used.
+    Plane codes{height.width, height.height, filled_holes(result.heights, options.wrap, holes)};
+    if (codes.values.empty()) codes.values.assign(stored.begin(), stored.end());
+    const auto per_step = static_cast<float>(1.0 / result.step);
+    for (float& code : codes.values)
+        code *= per_step;
+
+    Plane now = codes;
+    Plane trust{codes.width, codes.height, std::vector<float>(codes.values.size(), 1.0F)};
+    Plane low = codes;
+    Plane lower = codes;
+    smooth(codes, options.wrap, 1, low);
+    float variance = 1.0F;  // Of the smoothing so far, in texels squared.
+    for (int scale = 0; scale < scales; ++scale) {
+        const int spacing = 1 << scale;
+        const float more = 4.0F * static_cast<float>(spacing) * static_cast<float>(spacing);
+        smooth(low, options.wrap, 2 * spacing, lower);
+        follow({low, lower, variance / more}, codes, options.wrap, 2 * spacing, trust, now);
+        variance += more;
+        std::swap(low.values, lower.values);
+    }
+    const std::span<float> heights = result.heights.as<float>();
+    const auto step = static_cast<float>(result.step);
+    parallel_for(heights.size(), 1 << 16, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t texel = begin; texel < end; ++texel) {
+            const float code = codes.values[texel];
+            const float moved = std::min(std::max(now.values[texel], code - bound), code + bound);
+            // What has not moved stays to the bit.
+            if (std::isfinite(heights[texel]) && moved != code) heights[texel] = moved * step;
+        }
+    });
+    return result;
+}
+
+}  // namespace relief

@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: Apache-2.0
+// Channels of an image as heights, in parallel, each texel by itself. An empty image, and one
+// without the channel, throws. Source of luminance: [IEC 61966-2-1].
+// Tests: tests/mesh/image/heights/height_map_test.cpp.
+#include "relief/mesh/height_map.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include "large_memory.h"
+#include "parallel.h"
+#include "relief/mesh/error.h"
+#include "relief/mesh/image_channels.h"
+
+namespace relief {
+namespace {
+
+constexpr std::size_t texels_per_piece = 1 << 14;
+
+bool has_alpha(const Image& image) {
+    return image.channels == 2 || image.channels == 4;
+}
+
+bool is_grey(const Image& image) {
+    return image.channels < 3;
+}
+
+template <typename Sample>
+constexpr double largest_of() {
+    return std::is_same_v<Sample, float> ? 1.0
+                                         : static_cast<double>(std::numeric_limits<Sample>::max());
+}
+
+/// Makes every height by height(first sample of the texel).
+template <typename Sample, typename Height>
+std::vector<float> make_heights(const Image& image, const Height& height) {
+    const std::span<const Sample> samples = image.as<Sample>();
+    const auto channels = static_cast<std::size_t>(image.channels);
+    std::vector<float> heights;
+    reserve_to_fill(heights, samples.size() / channels);
+    heights.resize(samples.size() / channels);
+    parallel_for(heights.size(), texels_per_piece, [&](std::size_t begin, std::size_t end) {
+        const Sample* texel = samples.data() + begin * channels;
+        for (std::size_t i = begin; i < end; ++i, texel += channels)
+            heights[i] = height(texel);
+    });
+    return heights;
+}
+
+/// The number of channels is a constant, for the loop to become vector instructions.
+template <std::size_t channels, typename Sample>
+std::vector<float> mean_of_colors(std::span<const Sample> samples) {
+    std::vector<float> heights;
+    reserve_to_fill(heights, samples.size() / channels);
+    heights.resize(samples.size() / channels);
+    parallel_for(heights.size(), texels_per_piece, [&](std::size_t begin, std::size_t end) {
+        const Sample* const from = samples.data();
+        float* const to = heights.data();
+        for (std::size_t texel = begin; texel < end; ++texel) {
+            double sum = 0.0;
+            for (std::size_t color = 0; color < 3; ++color)
+                sum += static_cast<double>(from[texel * channels + color]);
+            to[texel] = static_cast<float>(sum / (3.0 * largest_of<Sample>()));
+        }
+    });
+    return heights;
+}
+
+/// Rec. 709's luminance; `linear(sample)` decodes.
+template <typename Sample, typename Linear>
+std::vector<float> luminance_by(const Image& image, const Linear& linear) {
+    return make_heights<Sample>(image, [&linear](const Sample* texel) {
+        return static_cast<float>(0.2126 * linear(texel[0]) + 0.7152 * linear(texel[1]) +
+                                  0.0722 * linear(texel[2]));
+    });
+}
+
+template <typename Sample>
+std::vector<float> luminance(const Image& image) {
+    if constexpr (std::is_same_v<Sample, float>) {
+        return luminance_by<Sample>(image,
+                                    [](float sample) { return static_cast<double>(sample); });
+    } else {
+        std::vector<double> table(std::numeric_limits<Sample>::max() + std::size_t{1});
+        for (std::size_t code = 0; code < table.size(); ++code) {
+            const double coded = static_cast<double>(code) / largest_of<Sample>();
+            table[code] = linear_from_srgb(static_cast<float>(coded));
+        }
+        return luminance_by<Sample>(image, [&table](Sample sample) { return table[sample]; });
+    }
+}
+
+std::vector<float> floats_of(Image&& image) {
+    return std::get<std::vector<float>>(std::move(image.samples));
+}
+
+template <typename Sample>
+std::vector<float> heights_of(const Image& image, HeightChannel channel) {
+    if (channel == HeightChannel::alpha) return floats_of(channel_of(image, image.channels - 1));
+    if (is_grey(image)) return floats_of(channel_of(image, 0));
+    switch (channel) {
+        case HeightChannel::luminance:
+            return luminance<Sample>(image);
+        case HeightChannel::red:
+            return floats_of(channel_of(image, 0));
+        case HeightChannel::green:
+            return floats_of(channel_of(image, 1));
+        case HeightChannel::blue:
+            return floats_of(channel_of(image, 2));
+        default:
+            return image.channels == 3 ? mean_of_colors<3>(image.as<Sample>())
+                                       : mean_of_colors<4>(image.as<Sample>());
+    }
+}
+
+void check(const Image& image, HeightChannel channel) {
+    if (image.empty()) throw InvalidInput("an empty image has no heights");
+    if (channel == HeightChannel::alpha && !has_alpha(image))
+        throw InvalidInput("the image has no alpha channel to take heights from");
+    const bool is_color = channel == HeightChannel::green || channel == HeightChannel::blue;
+    if (is_color && is_grey(image))
+        throw InvalidInput(fmt::format("a grey image has no {} channel to take heights from",
+                                       channel == HeightChannel::green ? "green" : "blue"));
+}
+
+/// Alpha in the depth of the image, and where it is 0.
+template <typename Sample>
+void take_alpha(const Image& image, HeightMap& map) {
+    const auto channels = static_cast<std::size_t>(image.channels);
+    const std::span<const Sample> samples = image.as<Sample>();
+    std::vector<Sample> alpha(samples.size() / channels);
+    bool any_transparent = false;
+    for (std::size_t texel = 0; texel < alpha.size(); ++texel) {
+        alpha[texel] = samples[texel * channels + channels - 1];
+        any_transparent |= alpha[texel] == Sample{0};
+    }
+    if (any_transparent) {
+        map.transparent.resize(alpha.size());
+        std::transform(alpha.begin(), alpha.end(), map.transparent.begin(),
+                       [](Sample value) { return static_cast<std::uint8_t>(value == Sample{0}); });
+    }
+    map.alpha = {image.width, image.height, 1, ColorSpace::data, std::move(alpha)};
+}
+
+}  // namespace
+
+std::size_t HeightMap::transparent_count() const {
+    return static_cast<std::size_t>(std::count(transparent.begin(), transparent.end(), 1));
+}
+
+Image height_field(const Image& image, HeightChannel channel) {
+    check(image, channel);
+    Image result{image.width, image.height, 1, ColorSpace::data, {}};
+    std::visit(
+        [&]<typename Sample>(const std::vector<Sample>&) {
+            result.samples = heights_of<Sample>(image, channel);
+        },
+        image.samples);
+    return result;
+}
+
+HeightMap height_map(Image&& image, HeightChannel channel) {
+    check(image, channel);
+    HeightMap map;
+    if (has_alpha(image) && channel != HeightChannel::alpha) {
+        std::visit(
+            [&]<typename Sample>(const std::vector<Sample>&) { take_alpha<Sample>(image, map); },
+            image.samples);
+    }
+    map.heights = image.channels == 1 ? std::move(image) : height_field(image, channel);
+    map.heights.color_space = ColorSpace::data;
+    return map;
+}
+
+}  // namespace relief

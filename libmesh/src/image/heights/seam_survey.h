@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// How a map changes across its seams and inside, from its rows in order: for maps that are not in
+/// memory. Tests: tests/mesh/image/heights/height_statistics_test.cpp.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "relief/mesh/height_statistics.h"
+
+namespace relief {
+
+class SeamSurvey {
+  public:
+    /// \param width, height  of the map
+    SeamSurvey(int width, int height);
+
+    /// Looks at the next row from the top; all rows of a map are of one type. Heights that are not
+    /// finite are left out.
+    template <typename Sample>
+    void add_row(std::span<const Sample> row);
+
+    /// What all rows together show.
+    [[nodiscard]] Tiling tiling() const;
+
+  private:
+    /// Root of the mean of squares.
+    struct Mean {
+        double squares = 0.0;
+        std::size_t count = 0;
+        void add(double difference);
+        [[nodiscard]] double root() const;
+    };
+    [[nodiscard]] static double seam_of(const std::vector<Mean>& lines);
+    [[nodiscard]] Mean change_to(std::span<const double> next) const;
+
+    int height_;
+    int rows_ = 0;
+    std::vector<std::size_t> columns_;  ///< Left ones of the pairs looked at; the last is the seam.
+    std::vector<int> row_pairs_;        ///< Upper ones.
+    std::vector<Mean> across_columns_, across_rows_;
+    std::vector<double> first_, previous_;
+};
+
+}  // namespace relief

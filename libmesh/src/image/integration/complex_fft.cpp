@@ -1,0 +1,261 @@
+// SPDX-License-Identifier: Apache-2.0
+// Stockham's self-sorting passes of radix 2, 3, 4, 5, 7, 11 and 13; a length with another prime
+// factor as a convolution with a chirp, of a length that is a power of two [Bluestein 1970]. Four
+// rows lie side by side, so that every loop is one over neighbours in memory. In double; the same
+// bits for any instruction set, since nothing is contracted. Tests:
+// tests/mesh/image/integration/real_transform_test.cpp.
+#include "image/integration/complex_fft.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <numbers>
+
+#include "vector_targets.h"
+
+namespace relief {
+
+/// One pass: `count` groups of `radix` samples at a distance, each sample `stride` lanes wide.
+struct ComplexFft::Pass {
+    std::size_t radix, groups, stride;
+    std::vector<double> cosines, sines;  ///< Of group g to the power k, at g * radix + k.
+};
+
+/// What turns a transform of any length into two of a power of two.
+struct ComplexFft::Chirp {
+    explicit Chirp(std::size_t padded) : fft(padded), padded_length(padded) {}
+    ComplexFft fft;
+    std::size_t padded_length;
+    std::vector<double> cosines, sines;            ///< exp(-pi i j^2 / n)
+    std::vector<double> filter_real, filter_imag;  ///< Its transform, over the padded length.
+};
+
+namespace {
+
+constexpr std::size_t lanes = ComplexFft::lanes;
+constexpr std::array<std::size_t, 7> radices = {4, 2, 3, 5, 7, 11, 13};
+
+/// What each of these is a multiple of, in order; empty if another factor is left.
+std::vector<std::size_t> factors_of(std::size_t length) {
+    std::vector<std::size_t> factors;
+    for (const std::size_t radix : radices) {
+        while (length % radix == 0) {
+            factors.push_back(radix);
+            length /= radix;
+        }
+    }
+    return length == 1 ? factors : std::vector<std::size_t>{};
+}
+
+struct PassArguments {
+    std::size_t groups, width;  ///< Width: samples side by side, lanes included.
+    const double* cosines;
+    const double* sines;
+    ComplexRows from, to;
+};
+
+RELIEF_INLINE void pass_of_2(const PassArguments& a) {
+    const std::size_t half = a.groups * a.width;
+    for (std::size_t g = 0; g < a.groups; ++g) {
+        const double c = a.cosines[g * 2 + 1], s = a.sines[g * 2 + 1];
+        const double* xr = a.from.real + g * a.width;
+        const double* xi = a.from.imag + g * a.width;
+        double* yr = a.to.real + 2 * g * a.width;
+        double* yi = a.to.imag + 2 * g * a.width;
+        for (std::size_t q = 0; q < a.width; ++q) {
+            const double dr = xr[q] - xr[q + half], di = xi[q] - xi[q + half];
+            yr[q] = xr[q] + xr[q + half];
+            yi[q] = xi[q] + xi[q + half];
+            yr[q + a.width] = dr * c - di * s;
+            yi[q + a.width] = dr * s + di * c;
+        }
+    }
+}
+
+RELIEF_INLINE void pass_of_4(const PassArguments& a) {
+    const std::size_t apart = a.groups * a.width;
+    for (std::size_t g = 0; g < a.groups; ++g) {
+        const double c1 = a.cosines[g * 4 + 1], s1 = a.sines[g * 4 + 1];
+        const double c2 = a.cosines[g * 4 + 2], s2 = a.sines[g * 4 + 2];
+        const double c3 = a.cosines[g * 4 + 3], s3 = a.sines[g * 4 + 3];
+        const double* xr = a.from.real + g * a.width;
+        const double* xi = a.from.imag + g * a.width;
+        double* yr = a.to.real + 4 * g * a.width;
+        double* yi = a.to.imag + 4 * g * a.width;
+        for (std::size_t q = 0; q < a.width; ++q) {
+            const double r0 = xr[q], r1 = xr[q + apart];
+            const double r2 = xr[q + 2 * apart], r3 = xr[q + 3 * apart];
+            const double i0 = xi[q], i1 = xi[q + apart];
+            const double i2 = xi[q + 2 * apart], i3 = xi[q + 3 * apart];
+            const double er = r0 + r2, ei = i0 + i2, fr = r0 - r2, fi = i0 - i2;
+            const double gr = r1 + r3, gi = i1 + i3, hr = r1 - r3, hi = i1 - i3;
+            const double b1r = fr + hi, b1i = fi - hr, b3r = fr - hi, b3i = fi + hr;
+            const double b2r = er - gr, b2i = ei - gi;
+            yr[q] = er + gr;
+            yi[q] = ei + gi;
+            yr[q + a.width] = b1r * c1 - b1i * s1;
+            yi[q + a.width] = b1r * s1 + b1i * c1;
+            yr[q + 2 * a.width] = b2r * c2 - b2i * s2;
+            yi[q + 2 * a.width] = b2r * s2 + b2i * c2;
+            yr[q + 3 * a.width] = b3r * c3 - b3i * s3;
+            yi[q + 3 * a.width] = b3r * s3 + b3i * c3;
+        }
+    }
+}
+
+/// Any radix, by the definition of the transform.
+template <std::size_t Radix>
+RELIEF_INLINE void pass_of(const PassArguments& a) {
+    std::array<double, Radix> unit_cos{}, unit_sin{};
+    for (std::size_t k = 0; k < Radix; ++k) {
+        const double angle = -2.0 * std::numbers::pi * static_cast<double>(k) / Radix;
+        unit_cos[k] = std::cos(angle);
+        unit_sin[k] = std::sin(angle);
+    }
+    const std::size_t apart = a.groups * a.width;
+    for (std::size_t g = 0; g < a.groups; ++g) {
+        const double* xr = a.from.real + g * a.width;
+        const double* xi = a.from.imag + g * a.width;
+        for (std::size_t k = 0; k < Radix; ++k) {
+            const double c = a.cosines[g * Radix + k], s = a.sines[g * Radix + k];
+            double* yr = a.to.real + (Radix * g + k) * a.width;
+            double* yi = a.to.imag + (Radix * g + k) * a.width;
+            for (std::size_t q = 0; q < a.width; ++q) {
+                double real = xr[q], imag = xi[q];
+                for (std::size_t j = 1; j < Radix; ++j) {
+                    const double uc = unit_cos[j * k % Radix], us = unit_sin[j * k % Radix];
+                    real += xr[q + j * apart] * uc - xi[q + j * apart] * us;
+                    imag += xr[q + j * apart] * us + xi[q + j * apart] * uc;
+                }
+                yr[q] = real * c - imag * s;
+                yi[q] = real * s + imag * c;
+            }
+        }
+    }
+}
+
+RELIEF_INLINE void any_pass(std::size_t radix, const PassArguments& arguments) {
+    switch (radix) {
+        case 2:
+            return pass_of_2(arguments);
+        case 3:
+            return pass_of<3>(arguments);
+        case 4:
+            return pass_of_4(arguments);
+        case 5:
+            return pass_of<5>(arguments);
+        case 7:
+            return pass_of<7>(arguments);
+        case 11:
+            return pass_of<11>(arguments);
+        default:
+            return pass_of<13>(arguments);
+    }
+}
+
+void pass_128(std::size_t radix, const PassArguments& arguments) {
+    any_pass(radix, arguments);
+}
+RELIEF_TARGET_256 void pass_256(std::size_t radix, const PassArguments& arguments) {
+    any_pass(radix, arguments);
+}
+RELIEF_TARGET_512 void pass_512(std::size_t radix, const PassArguments& arguments) {
+    any_pass(radix, arguments);
+}
+
+/// Each sample of every lane times a complex number of its own; `conjugate` turns the result
+/// round.
+void multiply(ComplexRows rows, std::size_t count, const double* real, const double* imag) {
+    for (std::size_t j = 0; j < count; ++j) {
+        for (std::size_t i = j * lanes; i < (j + 1) * lanes; ++i) {
+            const double r = rows.real[i], m = rows.imag[i];
+            rows.real[i] = r * real[j] - m * imag[j];
+            rows.imag[i] = r * imag[j] + m * real[j];
+        }
+    }
+}
+
+}  // namespace
+
+ComplexFft::ComplexFft(std::size_t length) : length_(length) {
+    std::size_t stride = 1, rest = length;
+    for (const std::size_t radix : factors_of(length)) {
+        Pass pass{radix, rest / radix, stride, {}, {}};
+        for (std::size_t g = 0; g < pass.groups; ++g) {
+            for (std::size_t k = 0; k < radix; ++k) {
+                const double angle = -2.0 * std::numbers::pi * static_cast<double>(g * k) /
+                                     static_cast<double>(rest);
+                pass.cosines.push_back(std::cos(angle));
+                pass.sines.push_back(std::sin(angle));
+            }
+        }
+        rest /= radix;
+        stride *= radix;
+        passes_.push_back(std::move(pass));
+    }
+    if (length <= 1 || !passes_.empty()) return;
+    chirp_ = std::make_unique<Chirp>(std::bit_ceil(2 * length - 1));
+    const std::size_t padded = chirp_->padded_length;
+    std::vector<double> real(padded * lanes), imag(padded * lanes);
+    for (std::size_t j = 0; j < length; ++j) {
+        // j^2 modulo 2n, so that the angle keeps its digits.
+        const auto angle = std::numbers::pi * static_cast<double>(j * j % (2 * length)) /
+                           static_cast<double>(length);
+        chirp_->cosines.push_back(std::cos(angle));
+        chirp_->sines.push_back(-std::sin(angle));
+        for (const std::size_t at : {j, (padded - j) % padded}) {
+            real[at * lanes] = std::cos(angle);
+            imag[at * lanes] = std::sin(angle);
+        }
+    }
+    std::vector<double> scratch(chirp_->fft.scratch_size());
+    chirp_->fft.transform({real.data(), imag.data()}, scratch.data());
+    for (std::size_t k = 0; k < padded; ++k) {
+        chirp_->filter_real.push_back(real[k * lanes] / static_cast<double>(padded));
+        chirp_->filter_imag.push_back(imag[k * lanes] / static_cast<double>(padded));
+    }
+}
+
+ComplexFft::~ComplexFft() = default;
+
+std::size_t ComplexFft::scratch_size() const {
+    if (!chirp_) return 2 * length_ * lanes;
+    return 2 * chirp_->padded_length * lanes + chirp_->fft.scratch_size();
+}
+
+void ComplexFft::transform(ComplexRows rows, double* scratch) const {
+    const std::size_t count = length_ * lanes;
+    if (!chirp_) {
+        const VectorTarget target = best_vector_target();
+        const auto run = target == VectorTarget::widest ? pass_512
+                         : target == VectorTarget::wide ? pass_256
+                                                        : pass_128;
+        ComplexRows from = rows, to{scratch, scratch + count};
+        for (const Pass& pass : passes_) {
+            run(pass.radix, {pass.groups, pass.stride * lanes, pass.cosines.data(),
+                             pass.sines.data(), from, to});
+            std::swap(from, to);
+        }
+        if (from.real == rows.real) return;
+        std::copy_n(from.real, count, rows.real);
+        std::copy_n(from.imag, count, rows.imag);
+        return;
+    }
+    const std::size_t padded = chirp_->padded_length * lanes;
+    const ComplexRows wide{scratch, scratch + padded};
+    double* rest = scratch + 2 * padded;
+    multiply(rows, length_, chirp_->cosines.data(), chirp_->sines.data());
+    std::copy_n(rows.real, count, wide.real);
+    std::copy_n(rows.imag, count, wide.imag);
+    std::fill(wide.real + count, wide.real + padded, 0.0);
+    std::fill(wide.imag + count, wide.imag + padded, 0.0);
+    chirp_->fft.transform(wide, rest);
+    multiply(wide, chirp_->padded_length, chirp_->filter_real.data(), chirp_->filter_imag.data());
+    chirp_->fft.transform({wide.imag, wide.real}, rest);
+    std::copy_n(wide.real, count, rows.real);
+    std::copy_n(wide.imag, count, rows.imag);
+    multiply(rows, length_, chirp_->cosines.data(), chirp_->sines.data());
+}
+
+}  // namespace relief

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// One component of a unit normal as a stored sample, and back: the only home of these formulas.
+/// Tests: tests/mesh/image/normals/normal_map_test.cpp.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+
+#include "relief/mesh/normal_map.h"
+#include "vector_targets.h"
+
+namespace relief {
+
+/// Codes of 8 or 16 bits under one of the two meanings of zero. Real: what to compute in.
+template <typename Code, typename Real = double>
+struct NormalCoding {
+    static constexpr Real largest = std::numeric_limits<Code>::max();
+    static constexpr Real middle = (largest + 1) / 2;
+    FlatCode flat;
+
+    /// What a component is multiplied by to count in codes.
+    static constexpr Real steps(FlatCode flat) {
+        return flat == FlatCode::half ? largest / 2 : middle - 1;
+    }
+
+    // The cast cuts off, which is a nearest code after adding a half. Without branches, so that
+    // loops become vector instructions.
+    RELIEF_INLINE static Code from_half_steps(Real steps) {
+        // Its zero lies between two codes, so that only a sum can be rounded.
+        return static_cast<Code>(
+            static_cast<std::int32_t>(largest / 2 + steps + static_cast<Real>(0.5)));
+    }
+    RELIEF_INLINE static Code from_middle_steps(Real steps) {
+        return static_cast<Code>(
+            static_cast<std::int32_t>(middle) +
+            static_cast<std::int32_t>(steps + std::copysign(static_cast<Real>(0.5), steps)));
+    }
+    RELIEF_INLINE static Code to_half(Real component) {
+        return from_half_steps(largest / 2 * component);
+    }
+    RELIEF_INLINE static Code to_middle(Real component) {
+        return from_middle_steps((middle - 1) * component);
+    }
+
+    [[nodiscard]] Code encoded(Real component) const {
+        return flat == FlatCode::half ? to_half(component) : to_middle(component);
+    }
+
+    /// One of the two codes around the component: the one farther from zero (with FlatCode::half,
+    /// the upper one) where what is left exceeds the threshold, which lies in (0,1). Opposite
+    /// components have mirrored codes; what a code says exactly has that code.
+    [[nodiscard]] RELIEF_INLINE Code dithered(Real component, Real threshold) const {
+        const bool is_middle = flat == FlatCode::middle;
+        const Real place =
+            is_middle ? (middle - 1) * std::abs(component) : largest / 2 + largest / 2 * component;
+        const auto below = static_cast<std::int32_t>(place);
+        const std::int32_t code = below + (place - static_cast<Real>(below) > threshold ? 1 : 0);
+        if (!is_middle) return static_cast<Code>(code);
+        return static_cast<Code>(static_cast<std::int32_t>(middle) +
+                                 (component < 0 ? -code : code));
+    }
+
+    [[nodiscard]] Real decoded(Code code) const {
+        if (flat == FlatCode::middle) return std::max((code - middle) / (middle - 1), Real{-1});
+        return 2 * code / largest - 1;
+    }
+};
+
+/// Float samples are scaled to [0,1], where zero is exactly 0.5 and no question of codes arises.
+template <typename Real>
+struct NormalCoding<float, Real> {
+    FlatCode flat;
+
+    RELIEF_INLINE static float encoded(Real component) {
+        return static_cast<float>((component + 1) / 2);
+    }
+    RELIEF_INLINE static float dithered(Real component, Real) { return encoded(component); }
+    [[nodiscard]] static Real decoded(float sample) {
+        return Real{2} * static_cast<Real>(sample) - 1;
+    }
+};
+
+}  // namespace relief

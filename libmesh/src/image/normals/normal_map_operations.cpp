@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: Apache-2.0
+// Normals one by one, see normal_map_operations.h: z from x and y, lengths, slopes. All in double,
+// rounded once; what is no direction is flat, and counted.
+// Tests: tests/mesh/image/normals/normal_map_operations_test.cpp.
+#include "relief/mesh/normal_map_operations.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <vector>
+
+#include "image/normals/normal_coding.h"
+#include "image/texel_loops.h"
+#include "relief/mesh/error.h"
+
+namespace relief {
+namespace {
+
+constexpr double largest_strength = 1e6;
+
+void check_xy_map(const Image& map, const XyChannels& channels) {
+    if (map.empty()) throw InvalidInput("an empty image holds no normals");
+    for (const int channel : {channels.x, channels.y}) {
+        if (channel < 0 || channel >= map.channels) {
+            throw InvalidInput(
+                fmt::format("there is no channel {}, but only {}", channel + 1, map.channels));
+        }
+    }
+}
+
+/// The normal with these coordinates that faces outwards.
+Direction facing_outwards(double x, double y, std::size_t texel, Report& found) {
+    const double square = x * x + y * y;
+    if (!std::isfinite(square)) {
+        found.add("normal without direction", "texel", texel, "read as flat");
+        return {0.0, 0.0, 1.0};
+    }
+    if (square <= 1.0) return {x, y, std::sqrt(1.0 - square)};
+    found.add("x and y longer than 1", "texel", texel, "shortened to 1, with z = 0");
+    const double length = std::sqrt(square);
+    return {x / length, y / length, 0.0};
+}
+
+/// How far rounding, or dithering, can move the end of a unit vector.
+template <typename Sample>
+double length_tolerance(FlatCode flat) {
+    if constexpr (std::is_same_v<Sample, float>)
+        return 1e-3;
+    else
+        return std::numbers::sqrt3 / NormalCoding<Sample>::steps(flat);
+}
+
+/// Of the vectors of a row.
+struct RowLengths {
+    double least = std::numeric_limits<double>::infinity();
+    double sum = 0.0;
+    double greatest = 0.0;
+    std::size_t count = 0;
+};
+
+template <typename Sample>
+RowLengths lengths_of_row(const Image& map, FlatCode flat, std::size_t row, Report& found) {
+    const auto width = static_cast<std::size_t>(map.width);
+    const auto stride = static_cast<std::size_t>(map.channels);
+    const NormalCoding<Sample> coding{flat};
+    const double tolerance = length_tolerance<Sample>(flat);
+    const Sample* sample = map.as<Sample>().data() + row * width * stride;
+    RowLengths result;
+    for (std::size_t texel = row * width; texel < (row + 1) * width; ++texel, sample += stride) {
+        const double x = coding.decoded(sample[0]);
+        const double y = coding.decoded(sample[1]);
+        const double z = coding.decoded(sample[2]);
+        const double length = std::sqrt(x * x + y * y + z * z);
+        if (!(std::abs(length - 1.0) <= tolerance))
+            found.add("normal not of unit length", "texel", texel, "scaled to length 1");
+        if (!std::isfinite(length)) continue;
+        result.least = std::min(result.least, length);
+        result.greatest = std::max(result.greatest, length);
+        result.sum += length;
+        ++result.count;
+    }
+    return result;
+}
+
+/// All rows together, in their order.
+LengthSpread spread_of(const std::vector<RowLengths>& rows) {
+    RowLengths all;
+    for (const RowLengths& row : rows) {
+        all.least = std::min(all.least, row.least);
+        all.greatest = std::max(all.greatest, row.greatest);
+        all.sum += row.sum;
+        all.count += row.count;
+    }
+    if (all.count == 0) return {};
+    return {all.least, all.sum / static_cast<double>(all.count), all.greatest};
+}
+
+}  // namespace
+
+Image decode_xy_map(const Image& map, const XyChannels& channels, Green green, FlatCode flat,
+                    Report& report) {
+    check_xy_map(map, channels);
+    Image result = make_image(map.width, map.height, 3, 32, ColorSpace::data);
+    float* const normals = result.as<float>().data();
+    const double up = green == Green::up ? 1.0 : -1.0;
+    const auto stride = static_cast<std::size_t>(map.channels);
+    const auto x = static_cast<std::size_t>(channels.x);
+    const auto y = static_cast<std::size_t>(channels.y);
+    with_sample_type(map, [&]<typename Sample>(Sample) {
+        const std::span<const Sample> samples = map.as<Sample>();
+        const NormalCoding<Sample> coding{flat};
+        for_each_texel(samples.size() / stride, report, [&](std::size_t texel, Report& found) {
+            const Sample* sample = &samples[texel * stride];
+            store(facing_outwards(coding.decoded(sample[x]), coding.decoded(sample[y]) * up, texel,
+                                  found),
+                  normals + texel * 3);
+        });
+    });
+    return result;
+}
+
+LengthSpread count_lengths(const Image& map, FlatCode flat, Report& report) {
+    if (map.empty()) throw InvalidInput("an empty image holds no normals");
+    if (map.channels < 3)
+        throw InvalidInput(fmt::format("a normal map has 3 or 4 channels, not {}", map.channels));
+    std::vector<RowLengths> rows(static_cast<std::size_t>(map.height));
+    with_sample_type(map, [&]<typename Sample>(Sample) {
+        for_each_row(map.width, map.height, report, [&](std::size_t row, Report& found) {
+            rows[row] = lengths_of_row<Sample>(map, flat, row, found);
+        });
+    });
+    return spread_of(rows);
+}
+
+void scale_slopes(Image& normals, double strength, Report& report) {
+    check_floats(normals, 3, "normals");
+    if (!(std::abs(strength) <= largest_strength)) {
+        throw InvalidInput(
+            fmt::format("the strength {} is not within +-{}", strength, largest_strength));
+    }
+    const std::span<float> all = normals.as<float>();
+    for_each_texel(all.size() / 3, report, [&](std::size_t texel, Report& found) {
+        float* const normal = &all[texel * 3];
+        if (!(normal[2] > 0.0F))
+            found.add("normal that does not face outwards", "texel", texel,
+                      "x and y multiplied all the same");
+        Direction scaled{normal[0] * strength, normal[1] * strength, normal[2]};
+        if (!make_unit(scaled)) found.add("normal without direction", "texel", texel, "made flat");
+        store(scaled, normal);
+    });
+}
+
+Image slopes_from_normals(const Image& normals, Report& report) {
+    check_floats(normals, 3, "normals");
+    Image result = make_image(normals.width, normals.height, 2, 32, ColorSpace::data);
+    const std::span<const float> from = normals.as<float>();
+    const std::span<float> to = result.as<float>();
+    for_each_texel(from.size() / 3, report, [&](std::size_t texel, Report& found) {
+        const double x = from[texel * 3];
+        const double y = from[texel * 3 + 1];
+        const double z = from[texel * 3 + 2];
+        const double across = std::sqrt(x * x + y * y);
+        double scale = -1.0 / z;
+        if (!(z > 0.0 && across <= largest_slope * z)) {
+            found.add("normal too steep for a slope", "texel", texel,
+                      fmt::format("its slope taken as {:g}", largest_slope));
+            scale = across > 0.0 ? -largest_slope / across : 0.0;
+        }
+        to[texel * 2] = static_cast<float>(x * scale + 0.0);
+        to[texel * 2 + 1] = static_cast<float>(y * scale + 0.0);
+    });
+    return result;
+}
+
+Image normals_from_slopes(const Image& slopes, Report& report) {
+    check_floats(slopes, 2, "slopes");
+    Image result = make_image(slopes.width, slopes.height, 3, 32, ColorSpace::data);
+    const std::span<const float> from = slopes.as<float>();
+    const std::span<float> to = result.as<float>();
+    for_each_texel(from.size() / 2, report, [&](std::size_t texel, Report& found) {
+        Direction normal{-static_cast<double>(from[texel * 2]),
+                         -static_cast<double>(from[texel * 2 + 1]), 1.0};
+        if (!make_unit(normal)) found.add("slope that is not finite", "texel", texel, "made flat");
+        store(normal, &to[texel * 3]);
+    });
+    return result;
+}
+
+}  // namespace relief

@@ -1,0 +1,261 @@
+// SPDX-License-Identifier: Apache-2.0
+// Separable resampling of normals or slopes, see normal_resize.h: for each row of the result the
+// rows around it are summed first, all columns alike, then the columns. Weights in double, sums in
+// float, in the order of the texels: the same bits for any number of threads.
+// Tests: tests/mesh/image/normals/normal_resize_test.cpp.
+#include "relief/mesh/normal_resize.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <vector>
+
+#include "image/border.h"
+#include "image/texel_loops.h"
+#include "relief/mesh/error.h"
+
+namespace relief {
+namespace {
+
+/// What a place of the result takes of a row or column.
+struct Tap {
+    std::size_t place;
+    float weight;
+};
+
+/// All taps along one axis: those of result i are [first[i], first[i + 1]).
+struct Taps {
+    std::vector<Tap> taps;
+    std::vector<std::size_t> first = {0};
+};
+
+double sinc(double x) {
+    if (x == 0.0) return 1.0;
+    return std::sin(std::numbers::pi * x) / (std::numbers::pi * x);
+}
+
+double radius_of(ResizeFilter filter) {
+    switch (filter) {
+        case ResizeFilter::box:
+            return 0.5;
+        case ResizeFilter::triangle:
+            return 1.0;
+        case ResizeFilter::cubic:
+            return 2.0;
+        case ResizeFilter::lanczos:
+        case ResizeFilter::best:
+            break;
+    }
+    return 3.0;
+}
+
+/// The filter at x texels from its middle; not the box, whose texels count by their share.
+double filter_at(ResizeFilter filter, double x) {
+    const double d = std::abs(x);
+    if (d >= radius_of(filter)) return 0.0;
+    if (filter == ResizeFilter::triangle) return 1.0 - d;
+    if (filter == ResizeFilter::lanczos) return sinc(d) * sinc(d / 3.0);
+    return d < 1.0 ? (1.5 * d - 2.5) * d * d + 1.0 : ((-0.5 * d + 2.5) * d - 4.0) * d + 2.0;
+}
+
+/// \param scale  texels of the source to one of the result
+double weight_of(ResizeFilter filter, double middle, int place, double scale) {
+    const double width = std::max(scale, 1.0);
+    if (filter != ResizeFilter::box) return filter_at(filter, (place + 0.5 - middle) / width);
+    if (scale <= 1.0) return place == static_cast<int>(std::floor(middle)) ? 1.0 : 0.0;
+    const double begin = std::max<double>(place, middle - width / 2.0);
+    const double end = std::min<double>(place + 1.0, middle + width / 2.0);
+    return std::max(end - begin, 0.0);
+}
+
+/// \param from, to  texels of the source and of the result; `repeat` times the source on these
+Taps taps_of(int from, int to, double repeat, ResizeFilter filter, Wrap wrap) {
+    Taps result;
+    const double scale = from * repeat / to;
+    if (filter == ResizeFilter::best)
+        filter = scale > 1.0 ? ResizeFilter::lanczos : ResizeFilter::cubic;
+    const double reach = radius_of(filter) * std::max(scale, 1.0);
+    for (int i = 0; i < to; ++i) {
+        const double middle = (i + 0.5) * scale;
+        const int begin = static_cast<int>(std::floor(middle - reach));
+        const int end = static_cast<int>(std::ceil(middle + reach));
+        double sum = 0.0;
+        for (int place = begin; place <= end; ++place)
+            sum += weight_of(filter, middle, place, scale);
+        for (int place = begin; place <= end; ++place) {
+            const double weight = weight_of(filter, middle, place, scale) / sum;
+            if (weight == 0.0) continue;
+            result.taps.push_back({static_cast<std::size_t>(place_within(place, from, wrap)),
+                                   static_cast<float>(weight)});
+        }
+        result.first.push_back(result.taps.size());
+    }
+    return result;
+}
+
+/// Makes rows of float samples at another size.
+class Resampling {
+  public:
+    Resampling(const Image& source, int width, int height, const ResizeOptions& options)
+        : source_(source),
+          across_(taps_of(source.width, width, options.repeat.x, options.filter, options.wrap.x)),
+          down_(taps_of(source.height, height, options.repeat.y, options.filter, options.wrap.y)) {}
+
+    void make_row(std::size_t row, float* result) const {
+        const auto channels = static_cast<std::size_t>(source_.channels);
+        const std::vector<float> sums = sum_of_rows(row);
+        for (std::size_t x = 0; x + 1 < across_.first.size(); ++x) {
+            for (std::size_t c = 0; c < channels; ++c) {
+                float sum = 0.0F;
+                for (std::size_t t = across_.first[x]; t < across_.first[x + 1]; ++t)
+                    sum += across_.taps[t].weight * sums[across_.taps[t].place * channels + c];
+                result[x * channels + c] = sum;
+            }
+        }
+    }
+
+    /// The mean of vectors that lie as the samples do, at one place of the result.
+    [[nodiscard]] Direction mean_vector(const Image& vectors, std::size_t row,
+                                        std::size_t column) const {
+        const float* const all = vectors.as<float>().data();
+        Direction sum{0.0, 0.0, 0.0};
+        for (std::size_t j = down_.first[row]; j < down_.first[row + 1]; ++j) {
+            for (std::size_t i = across_.first[column]; i < across_.first[column + 1]; ++i) {
+                const float* const vector =
+                    all + (down_.taps[j].place * static_cast<std::size_t>(vectors.width) +
+                           across_.taps[i].place) *
+                              3;
+                const double weight = static_cast<double>(down_.taps[j].weight) *
+                                      static_cast<double>(across_.taps[i].weight);
+                sum = {sum.x + weight * vector[0], sum.y + weight * vector[1],
+                       sum.z + weight * vector[2]};
+            }
+        }
+        return sum;
+    }
+
+  private:
+    /// The rows around one of the result, weighed, all columns alike.
+    [[nodiscard]] std::vector<float> sum_of_rows(std::size_t row) const {
+        const float* const samples = source_.as<float>().data();
+        std::vector<float> sums(static_cast<std::size_t>(source_.width) *
+                                static_cast<std::size_t>(source_.channels));
+        for (std::size_t t = down_.first[row]; t < down_.first[row + 1]; ++t) {
+            const float* const from = samples + down_.taps[t].place * sums.size();
+            const float weight = down_.taps[t].weight;
+            for (std::size_t i = 0; i < sums.size(); ++i)
+                sums[i] += weight * from[i];
+        }
+        return sums;
+    }
+
+    const Image& source_;
+    Taps across_;
+    Taps down_;
+};
+
+bool is_own_size(const Image& image, int width, int height, const ResizeOptions& options) {
+    return width == image.width && height == image.height && options.repeat == glm::dvec2(1.0);
+}
+
+void check(int width, int height, const ResizeOptions& options) {
+    if (width < 1 || height < 1)
+        throw InvalidInput(fmt::format("there is no image of {} x {} texels", width, height));
+    for (const double repeat : {options.repeat.x, options.repeat.y}) {
+        if (!(repeat > 0.0 && repeat <= 1e4))
+            throw InvalidInput(
+                fmt::format("a map cannot be repeated {} times, but up to 1e4", repeat));
+    }
+}
+
+/// Slopes of normals, two floats a texel; not a number where there is none to be averaged.
+Image slopes_to_average(const Image& normals, Report& report) {
+    Image result = make_image(normals.width, normals.height, 2, 32, ColorSpace::data);
+    const std::span<const float> from = normals.as<float>();
+    const std::span<float> to = result.as<float>();
+    for_each_texel(from.size() / 3, report, [&](std::size_t texel, Report& found) {
+        const float* const n = &from[texel * 3];
+        const bool is_steep = !(std::hypot(n[0], n[1]) <= steepest_averaged_slope * n[2]);
+        if (is_steep)
+            found.add("normal too steep to average slopes", "texel", texel,
+                      "vectors averaged around it");
+        to[texel * 2] = is_steep ? std::numeric_limits<float>::quiet_NaN() : -n[0] / n[2];
+        to[texel * 2 + 1] = is_steep ? std::numeric_limits<float>::quiet_NaN() : -n[1] / n[2];
+    });
+    return result;
+}
+
+/// A row of means as unit normals. \param mean_vector  of a texel whose slopes are not numbers
+template <typename MeanVector>
+void store_row(const std::vector<float>& means, ResizeDomain domain, std::size_t first_texel,
+               float* normals, Report& found, const MeanVector& mean_vector) {
+    const std::size_t channels = domain == ResizeDomain::slopes ? 2 : 3;
+    for (std::size_t x = 0; x < means.size() / channels; ++x) {
+        const float* const mean = &means[x * channels];
+        Direction normal{mean[0], mean[1], channels == 3 ? mean[2] : 0.0};
+        if (domain == ResizeDomain::slopes) normal = {-normal.x, -normal.y, 1.0};
+        if (std::isnan(normal.x)) normal = mean_vector(x);
+        if (!make_unit(normal))
+            found.add("normals that cancel", "texel", first_texel + x, "made flat");
+        store(normal, normals + x * 3);
+    }
+}
+
+}  // namespace
+
+Image resize_normals(const Image& normals, int width, int height, const ResizeOptions& options,
+                     Report& report) {
+    check_floats(normals, 3, "normals");
+    check(width, height, options);
+    if (is_own_size(normals, width, height, options)) return normals;
+    const bool has_slopes = options.domain == ResizeDomain::slopes;
+    const Image slopes = has_slopes ? slopes_to_average(normals, report) : Image{};
+    const Resampling resampling(has_slopes ? slopes : normals, width, height, options);
+
+    Image result = make_image(width, height, 3, 32, ColorSpace::data);
+    float* const to = result.as<float>().data();
+    const auto columns = static_cast<std::size_t>(width);
+    for_each_row(width, height, report, [&](std::size_t row, Report& found) {
+        std::vector<float> means(columns * (has_slopes ? 2 : 3));
+        resampling.make_row(row, means.data());
+        store_row(means, options.domain, row * columns, to + row * columns * 3, found,
+                  [&](std::size_t x) { return resampling.mean_vector(normals, row, x); });
+    });
+    return result;
+}
+
+Image resize_samples(const Image& image, int width, int height, const ResizeOptions& options) {
+    check_floats(image, image.channels, "samples");
+    check(width, height, options);
+    if (is_own_size(image, width, height, options)) return image;
+    const Resampling resampling(image, width, height, options);
+    Image result = make_image(width, height, image.channels, 32, image.color_space);
+    float* const to = result.as<float>().data();
+    const std::size_t row_size =
+        static_cast<std::size_t>(width) * static_cast<std::size_t>(image.channels);
+    Report unused;
+    for_each_row(width, height, unused,
+                 [&](std::size_t row, Report&) { resampling.make_row(row, to + row * row_size); });
+    return result;
+}
+
+Image fitted_detail(const Image& detail, int base_width, int base_height,
+                    const ResizeOptions& options, Report& report) {
+    const auto period = [](int size, double repeat) {
+        const double texels = size / repeat;
+        return texels >= 1.0 && texels == std::floor(texels) ? static_cast<int>(texels) : size;
+    };
+    check_floats(detail, 3, "normals of a detail");
+    check(base_width, base_height, options);
+    ResizeOptions fitted = options;
+    fitted.wrap = Wrap::repeat;
+    const int width = period(base_width, options.repeat.x);
+    const int height = period(base_height, options.repeat.y);
+    fitted.repeat = {width < base_width ? 1.0 : options.repeat.x,
+                     height < base_height ? 1.0 : options.repeat.y};
+    return resize_normals(detail, width, height, fitted, report);
+}
+
+}  // namespace relief

@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: Apache-2.0
+// PNG's filters, see png_filter.h. Undoing is compiled for each step that occurs: the samples of a
+// texel then stand in registers and go forward side by side, which matters, since every texel waits
+// for the one on its left. Filtering goes by whole vector registers. Arithmetic is modulo 256. Any
+// bytes are good input. Source: [ISO/IEC 15948], clause 9. Tests: tests/mesh/io/png/png_test.cpp.
+#include "io/png/png_filter.h"
+
+#include <algorithm>
+#include <array>
+
+#include "vector_targets.h"
+
+namespace relief {
+namespace {
+
+int magnitude(int value) {
+    return value < 0 ? -value : value;
+}
+
+/// Whichever of left, above and upper left is nearest to left + above - upper left.
+int paeth_prediction(int left, int above, int upper_left) {
+    const int from_left = magnitude(above - upper_left);
+    const int from_above = magnitude(left - upper_left);
+    const int from_corner = magnitude(left + above - 2 * upper_left);
+    const int other = from_above <= from_corner ? above : upper_left;
+    const int other_distance = from_above <= from_corner ? from_above : from_corner;
+    return from_left <= other_distance ? left : other;
+}
+
+/// Walks a row texel by texel; `predict(left, above, upper left)` for every byte.
+template <std::size_t Step, typename Predict>
+void add_prediction(std::uint8_t* row, const std::uint8_t* above, std::size_t size,
+                    Predict predict) {
+    std::array<int, Step> left{};
+    std::array<int, Step> corner{};
+    for (std::size_t at = 0; at < size; at += Step) {
+        for (std::size_t k = 0; k < Step; ++k) {
+            const int up = above[at + k];
+            left[k] = (row[at + k] + predict(left[k], up, corner[k])) & 0xFF;
+            corner[k] = up;
+            row[at + k] = static_cast<std::uint8_t>(left[k]);
+        }
+    }
+}
+
+template <std::size_t Step>
+bool undo(std::uint8_t filter, std::uint8_t* row, const std::uint8_t* above, std::size_t size) {
+    switch (filter) {
+        case 0:
+            return true;
+        case 1:
+            add_prediction<Step>(row, above, size, [](int left, int, int) { return left; });
+            return true;
+        case 2:
+            for (std::size_t i = 0; i < size; ++i)
+                row[i] = static_cast<std::uint8_t>(row[i] + above[i]);
+            return true;
+        case 3:
+            add_prediction<Step>(row, above, size,
+                                 [](int left, int up, int) { return (left + up) >> 1; });
+            return true;
+        case paeth_filter:
+            add_prediction<Step>(row, above, size, paeth_prediction);
+            return true;
+        default:
+            return false;
+    }
+}
+
+// ---------------------------------------------------------------------------------------------
+// Filtering: no byte waits for another, so that they go by whole registers
+
+using Byte = std::uint8_t;
+
+/// Paeth's prediction within bytes: where left and above lie on either side of the corner, their
+/// distances from it take from each other, and else they add up, to 255 at most, which no one of
+/// the others exceeds.
+RELIEF_INLINE Byte paeth_of(Byte left, Byte up, Byte corner) {
+    const auto from_left = static_cast<Byte>(up > corner ? up - corner : corner - up);
+    const auto from_up = static_cast<Byte>(left > corner ? left - corner : corner - left);
+    const auto sum = static_cast<Byte>(from_left + from_up);
+    const Byte apart = sum < from_left ? Byte{255} : sum;
+    const auto together =
+        static_cast<Byte>(from_left > from_up ? from_left - from_up : from_up - from_left);
+    const Byte from_corner = (left > corner) == (up > corner) ? apart : together;
+    const Byte other = from_up <= from_corner ? up : corner;
+    const Byte nearest = from_up <= from_corner ? from_up : from_corner;
+    return from_left <= nearest ? left : other;
+}
+
+struct Rows {
+    const Byte* here;
+    const Byte* left;
+    const Byte* up;
+    const Byte* corner;
+    Byte* filtered;
+    std::size_t size;
+};
+
+RELIEF_INLINE void subtract_loop(Byte filter, const Rows& rows) {
+    const Byte* __restrict const here = rows.here;
+    const Byte* __restrict const left = rows.left;
+    const Byte* __restrict const up = rows.up;
+    const Byte* __restrict const corner = rows.corner;
+    Byte* __restrict const to = rows.filtered;
+    const std::size_t size = rows.size;
+    switch (filter) {
+        case 0:
+            for (std::size_t i = 0; i < size; ++i)
+                to[i] = here[i];
+            return;
+        case 1:
+            for (std::size_t i = 0; i < size; ++i)
+                to[i] = static_cast<Byte>(here[i] - left[i]);
+            return;
+        case 2:
+            for (std::size_t i = 0; i < size; ++i)
+                to[i] = static_cast<Byte>(here[i] - up[i]);
+            return;
+        case 3:  // The mean, rounded down, without a ninth bit.
+            for (std::size_t i = 0; i < size; ++i) {
+                const auto mean = static_cast<Byte>((left[i] & up[i]) + ((left[i] ^ up[i]) >> 1));
+                to[i] = static_cast<Byte>(here[i] - mean);
+            }
+            return;
+        default:
+            for (std::size_t i = 0; i < size; ++i)
+                to[i] = static_cast<Byte>(here[i] - paeth_of(left[i], up[i], corner[i]));
+    }
+}
+
+void subtract_any(Byte filter, const Rows& rows) {
+    subtract_loop(filter, rows);
+}
+RELIEF_TARGET_256 void subtract_256(Byte filter, const Rows& rows) {
+    subtract_loop(filter, rows);
+}
+RELIEF_TARGET_512 void subtract_512(Byte filter, const Rows& rows) {
+    subtract_loop(filter, rows);
+}
+
+}  // namespace
+
+bool undo_filter(std::uint8_t filter, std::size_t step, std::span<std::uint8_t> row,
+                 std::span<const std::uint8_t> above) {
+    switch (step) {
+        case 1:
+            return undo<1>(filter, row.data(), above.data(), row.size());
+        case 2:
+            return undo<2>(filter, row.data(), above.data(), row.size());
+        case 3:
+            return undo<3>(filter, row.data(), above.data(), row.size());
+        case 4:
+            return undo<4>(filter, row.data(), above.data(), row.size());
+        case 6:
+            return undo<6>(filter, row.data(), above.data(), row.size());
+        default:
+            return undo<8>(filter, row.data(), above.data(), row.size());
+    }
+}
+
+void apply_filter(std::uint8_t filter, std::size_t step, std::span<const std::uint8_t> row,
+                  std::span<const std::uint8_t> above, std::span<std::uint8_t> filtered) {
+    const std::array<Byte, 8> nothing{};  // Left of the first texel.
+    const std::size_t first = std::min(step, row.size());
+    subtract_loop(
+        filter, {row.data(), nothing.data(), above.data(), nothing.data(), filtered.data(), first});
+    const Rows rest{row.data() + first,      row.data(),        above.data() + first, above.data(),
+                    filtered.data() + first, row.size() - first};
+    switch (best_vector_target()) {
+        case VectorTarget::any:
+            return subtract_any(filter, rest);
+        case VectorTarget::wide:
+            return subtract_256(filter, rest);
+        case VectorTarget::widest:
+            return subtract_512(filter, rest);
+    }
+}
+
+}  // namespace relief

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: Apache-2.0
+// Words, table and JSON of accuracy. Tests: tests/tools/bump_accuracy_test.cpp.
+#include "bump/bump_accuracy_summary.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "common/map_choices.h"
+#include "common/text.h"
+
+namespace relief::tools {
+namespace {
+
+std::string kernel_words(const BumpMethod& method) {
+    const std::string name = name_of(method.kernel, kernel_choices());
+    return method.kernel == Kernel::gaussian ? fmt::format("{} {}", name, method.gaussian_radius)
+                                             : name;
+}
+
+std::string precision_words(const BumpMethod& method) {
+    return method.arithmetic == Arithmetic::float64 ? "float64" : "float32";
+}
+
+/// The table of --compare, best first.
+std::vector<std::string> table(const BumpExperiment& experiment) {
+    std::vector<const BumpMeasurement*> rows;
+    for (const BumpMeasurement& one : experiment.measurements)
+        rows.push_back(&one);
+    std::stable_sort(rows.begin(), rows.end(),
+                     [](const auto* a, const auto* b) { return a->error.rms < b->error.rms; });
+    std::vector<std::string> lines = {
+        fmt::format("{:<12} {:<9} {:<4} {:<6} {:>9} {:>9} {:>9} {:>9}", "kernel", "precision",
+                    "bits", "steps", "RMS deg", "max deg", "time", "MPixel/s")};
+    for (const BumpMeasurement* row : rows) {
+        lines.push_back(fmt::format("{:<12} {:<9} {:<4} {:<6} {:>9.3g} {:>9.3g} {:>9} {:>9.0f} {}",
+                                    kernel_words(row->method), precision_words(row->method),
+                                    row->method.bits, row->method.destaircased ? "smooth" : "as is",
+                                    row->error.rms, row->error.max,
+                                    duration(1000.0 * row->seconds.median),
+                                    row->megapixels_per_second, row->is_efficient ? "*" : ""));
+    }
+    lines.push_back("* none is both truer and faster");
+    for (std::string& line : lines)
+        line.erase(line.find_last_not_of(' ') + 1);
+    return lines;
+}
+
+std::string where_words(const BumpExperiment& experiment) {
+    return fmt::format("measured on {} of the map, against {}",
+                       experiment.is_whole ? "all" : fmt::format("{} texels", experiment.texels),
+                       experiment.reference.words);
+}
+
+nlohmann::ordered_json measurement_json(const BumpMeasurement& one) {
+    const BumpMethod& method = one.method;
+    return {{"kernel", name_of(method.kernel, kernel_choices())},
+            {"kernel_radius", method.kernel == Kernel::gaussian
+                                  ? nlohmann::ordered_json(method.gaussian_radius)
+                                  : nullptr},
+            {"precision", precision_words(method)},
+            {"bits", method.bits},
+            {"destaircased", method.destaircased},
+            {"degrees",
+             {{"rms", one.error.rms},
+              {"mean", one.error.mean},
+              {"p99", one.error.p99},
+              {"max", one.error.max}}},
+            {"milliseconds",
+             {{"median", 1000.0 * one.seconds.median},
+              {"p10", 1000.0 * one.seconds.p10},
+              {"p90", 1000.0 * one.seconds.p90}}},
+            {"megapixels_per_second", one.megapixels_per_second},
+            {"efficient", one.is_efficient}};
+}
+
+}  // namespace
+
+std::string method_words(const BumpMethod& method) {
+    return fmt::format("{} in {}, {} bit{}", kernel_words(method), precision_words(method),
+                       method.bits, method.destaircased ? ", steps smoothed away" : "");
+}
+
+void print_accuracy(const AccuracyFound& found) {
+    // What keeps within a bound was not taken for being the truest.
+    if (found.choice && !found.kept) print_entry("because", found.choice->reason);
+    if (found.step > 0.0) {
+        print_entry("steps",
+                    fmt::format("smoothed away: of 1/{:.0f}, heights moved by half of that at most",
+                                1.0 / found.step));
+    }
+    if (found.kept) {
+        print_entry("kept", fmt::format("{}: {:.3g} degrees RMS, {:.3g} at most, {:.0f} MPixel/s",
+                                        method_words(found.kept->method), found.kept->error.rms,
+                                        found.kept->error.max, found.kept->megapixels_per_second));
+    }
+    if (!found.experiment) return;
+    print_entry("errors", where_words(*found.experiment));
+    if (!found.kept) print_entry("", table(*found.experiment));
+}
+
+void add_accuracy(const AccuracyFound& found, nlohmann::ordered_json& report) {
+    if (found.choice && !found.kept) report["kernel_reason"] = found.choice->reason;
+    report["destaircased_step"] =
+        found.step > 0.0 ? nlohmann::ordered_json(found.step) : nlohmann::ordered_json(nullptr);
+    if (!found.experiment) return;
+    const BumpExperiment& experiment = *found.experiment;
+    report["reference"] = {{"what", experiment.reference.words},
+                           {"own_degrees", experiment.reference.own_degrees},
+                           {"texels", experiment.texels},
+                           {"whole", experiment.is_whole}};
+    if (found.kept) report["kept"] = measurement_json(*found.kept);
+    nlohmann::ordered_json all = nlohmann::ordered_json::array();
+    for (const BumpMeasurement& one : experiment.measurements)
+        all.push_back(measurement_json(one));
+    report["comparison"] = all;
+}
+
+}  // namespace relief::tools

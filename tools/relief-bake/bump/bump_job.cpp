@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+// The steps of a conversion: open, look at the map where it is to decide, convert and write.
+// Tests: tests/tools/relief_bake_test.cpp.
+#include "bump/bump_job.h"
+
+namespace relief::tools {
+namespace {
+
+/// The depths that are open to choice.
+std::vector<int> open_depths(const BumpRequest& request, const Job& job) {
+    if (request.output.bits) return {*request.output.bits};
+    std::vector<int> depths = depths_of(job.output);
+    // What is said of codes has no effect on floats.
+    if (request.output.flat || request.output.dither) std::erase(depths, 32);
+    return depths;
+}
+
+/// Fills in what the command line leaves to the map.
+void settle(HeightMapFile& map, const Job& job, const BumpRequest& request, Stages& stages,
+            Baked& baked) {
+    const std::vector<ImagePart> parts = parts_wanted(request.accuracy, map.info());
+    HeightMapFile::Survey survey;
+    if (!request.wrap_x || !request.wrap_y || !parts.empty()) {
+        survey = stages.run("look", [&] { return map.survey(parts); });
+        if (!request.wrap_x || !request.wrap_y) baked.tiling = survey.tiling;
+    }
+    const Wraps found = baked.tiling.value_or(Tiling{}).wraps();
+    baked.bump.wrap = {request.wrap_x.value_or(found.x), request.wrap_y.value_or(found.y)};
+    if (parts.empty() && !request.accuracy.destaircase && !request.accuracy.kernel) return;
+    stages.run("choose", [&] {
+        baked.accuracy =
+            settle_accuracy(request.accuracy, map.info(), survey.parts, open_depths(request, job),
+                            baked.bump, baked.format.normals);
+        destaircase_map(request.accuracy, baked.bump.wrap, map, baked.accuracy);
+    });
+}
+
+void convert(const HeightMapFile& map, const Job& job, Stages& stages, Baked& baked) {
+    Report report;
+    const BumpFileTimes times =
+        write_bump_file(map, baked.bump, job.output, baked.format, report,
+                        [&](double part) { stages.show_progress("convert", part); });
+    stages.clear_progress();
+    if (map.is_streamed()) stages.book("read", times.read);
+    stages.book("convert", times.convert);
+    stages.book("write", times.write);
+    baked.findings.add("", report);
+}
+
+}  // namespace
+
+Baked bake_bump(const Job& job, const BumpRequest& request, Stages& stages) {
+    Baked baked;
+    baked.bump = bump_of(request);
+    baked.format = file_format_of(request, job.output);
+    about(job.input, [&] {
+        HeightMapFile map = stages.run("read", [&] {
+            return HeightMapFile(job.input, {request.channel, request.ignore_alpha});
+        });
+        baked.input = map.info();
+        baked.is_streamed = map.is_streamed();
+        baked.transparent = map.map().transparent_count();
+        settle(map, job, request, stages, baked);
+        convert(map, job, stages, baked);
+    });
+    return baked;
+}
+
+}  // namespace relief::tools

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "check/map_remedies.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace relief::tools {
+namespace {
+
+/// As it is typed in a shell.
+std::string quoted(const std::filesystem::path& file) {
+    const std::string name = file.string();
+    const bool is_plain = std::all_of(name.begin(), name.end(), [](unsigned char letter) {
+        return std::isalnum(letter) != 0 || letter > 127 ||
+               std::string_view("/._-+=,:@%").find(static_cast<char>(letter)) !=
+                   std::string_view::npos;
+    });
+    if (is_plain) return name;
+    std::string result = "'";
+    for (const char letter : name)
+        result += letter == '\'' ? std::string("'\\''") : std::string(1, letter);
+    return result + "'";
+}
+
+}  // namespace
+
+std::string remedy_for(MapCondition condition, MapContent content,
+                       const std::filesystem::path& file) {
+    using enum MapCondition;
+    const auto convert = [&](const char* options) {
+        return fmt::format("relief-bake convert {} out.png{}", quoted(file), options);
+    };
+    switch (condition) {
+        case not_normals:
+            if (content != MapContent::grey) return "";
+            return fmt::format("relief-bake bump {} out.png", quoted(file));
+        case object_space:
+            return convert(" --to-tangent mesh.glb");
+        case z_missing:
+        case z_constant:
+            return convert(" --rebuild-z rg");
+        case signed_samples:
+            return convert(" --input-signed");
+        case tagged_as_color:
+            return convert("");
+        case texel_not_finite:
+        case texel_without_direction:
+        case not_unit:
+        case not_quite_unit:
+            return convert(" --normalize");
+        case green_contradicted:
+        case green_down:
+            return convert(" --flip green");
+        case flat_contradicted:
+            return convert(" --input-flat half --flat middle");
+        case bits_unused:
+            return convert(" --bits 8");
+        case alpha_opaque:
+            return convert(" --alpha drop");
+        default:
+            return "";
+    }
+}
+
+}  // namespace relief::tools

@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: Apache-2.0
+// Rows go from the baker to codes to the file as they are made, so that no image is ever in memory.
+// Tests: tests/tools/relief_bake_mesh_test.cpp.
+#include "mesh/mesh_job.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "common/map_choices.h"
+#include "mesh/mesh_models.h"
+#include "relief/mesh/image_rows.h"
+
+namespace relief::tools {
+namespace {
+
+std::map<std::string, std::string> metadata_of(const MeshBakeRequest& request,
+                                               const NormalMapFormat& format) {
+    std::map<std::string, std::string> metadata = normal_map_metadata(format);
+    if (request.space == SpaceChoice::object)
+        metadata["relief:content"] = "normal map, object space";
+    if (request.space == SpaceChoice::world) metadata["relief:content"] = "normal map, world space";
+    return metadata;
+}
+
+/// Three channels and a fourth, full where there is a normal.
+template <typename Sample>
+std::vector<Sample> with_alpha(std::span<const Sample> codes, std::span<const TexelState> states) {
+    const Sample full =
+        std::is_floating_point_v<Sample> ? Sample{1} : std::numeric_limits<Sample>::max();
+    std::vector<Sample> result(4 * states.size());
+    for (std::size_t i = 0; i < states.size(); ++i) {
+        std::copy_n(&codes[3 * i], 3, &result[4 * i]);
+        const bool is_there = states[i] == TexelState::baked || states[i] == TexelState::padded;
+        result[4 * i + 3] = is_there ? full : Sample{0};
+    }
+    return result;
+}
+
+/// Codes rows of normals and writes them.
+class MapWriter {
+  public:
+    MapWriter(const MeshBakeRequest& request, const NormalMapFormat& format, Report& report)
+        : format_(format),
+          has_alpha_(request.background == Background::transparent),
+          report_(report),
+          writer_(
+              request.output,
+              {request.size.x, request.size.y, has_alpha_ ? 4 : 3, format.bits, ColorSpace::data},
+              metadata_of(request, format), write_options_of(request.map, request.output)) {}
+
+    void write(const BakedRows& rows) {
+        const auto width =
+            static_cast<int>(rows.states.size() / static_cast<std::size_t>(rows.row_count));
+        Image normals;
+        normals.width = width;
+        normals.height = rows.row_count;
+        normals.channels = 3;
+        normals.color_space = ColorSpace::data;
+        normals.samples = std::vector<float>(rows.normals.begin(), rows.normals.end());
+        // Row counts are multiples of the dither tile's, so that its pattern goes on.
+        const Image codes = encode_normal_map(normals, format_, report_);
+        if (format_.bits == 8) write(codes.as<std::uint8_t>(), rows.states);
+        if (format_.bits == 16) write(codes.as<std::uint16_t>(), rows.states);
+        if (format_.bits == 32) write(codes.as<float>(), rows.states);
+    }
+
+    void finish() { writer_.finish(report_); }
+
+  private:
+    template <typename Sample>
+    void write(std::span<const Sample> codes, std::span<const TexelState> states) {
+        if (!has_alpha_) return writer_.write(std::as_bytes(codes));
+        const std::vector<Sample> all = with_alpha(codes, states);
+        writer_.write(std::as_bytes(std::span(all)));
+    }
+
+    const NormalMapFormat& format_;
+    bool has_alpha_;
+    Report& report_;
+    ImageRowWriter writer_;
+};
+
+glm::dmat3 output_axes(const MeshBakeRequest& request, const BakeModel& low) {
+    if (request.space != SpaceChoice::object) return glm::dmat3(1.0);
+    if (!low.world_from_object) {
+        throw failure(request.low, "has several primitives, so no axes of its own",
+                      "use --space world or tangent");
+    }
+    // Normals go by the inverse transpose of what positions go by.
+    return glm::transpose(*low.world_from_object);
+}
+
+struct Models {
+    std::vector<Mesh> high;
+    BakeModel low;
+    std::optional<BakeModel> cage;
+};
+
+Models read_models(const MeshBakeRequest& request, Findings& findings) {
+    Models models;
+    models.low = read_bake_model(request.low, findings);
+    if (models.low.mesh.texcoords.empty()) {
+        throw failure(request.low, "no texture coordinates, by which a map lies on a mesh",
+                      "unwrap it in a modelling program");
+    }
+    for (const std::filesystem::path& file : request.high) {
+        BakeModel high = read_bake_model(file, findings);
+        move_to(high, models.low.origin);
+        models.high.push_back(std::move(high.mesh));
+    }
+    if (request.cage) {
+        models.cage = read_bake_model(*request.cage, findings);
+        move_to(*models.cage, models.low.origin);
+    }
+    return models;
+}
+
+}  // namespace
+
+BakedMap bake_map(const MeshBakeRequest& request, Stages& stages) {
+    BakedMap baked;
+    baked.format = format_of(request.map, request.output);
+    const Models models = stages.run("read", [&] { return read_models(request, baked.findings); });
+    for (const Mesh& mesh : models.high)
+        baked.high_triangles += mesh.triangles.size();
+    baked.low_triangles = models.low.mesh.triangles.size();
+    baked.has_own_tangents = !models.low.mesh.tangents.empty();
+
+    BakeOptions options = bake_options_of(request);
+    options.output_from_mesh = output_axes(request, models.low);
+    if (models.cage) options.cage = &models.cage->mesh;
+    Report report;
+    about(request.low, [&] {
+        MapWriter writer(request, baked.format, report);
+        baked.result = stages.run("bake", [&] {
+            const auto take = [&](const BakedRows& rows) { writer.write(rows); };
+            BakeResult result = bake_normals(models.high, models.low.mesh, options, take, report);
+            writer.finish();
+            return result;
+        });
+    });
+    baked.findings.add("", report);
+    return baked;
+}
+
+}  // namespace relief::tools

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+// Words and JSON of a bake. Tests: tests/tools/relief_bake_mesh_test.cpp.
+#include "mesh/mesh_summary.h"
+
+#include <fmt/format.h>
+
+#include "common/map_choices.h"
+#include "common/text.h"
+
+namespace relief::tools {
+namespace {
+
+/// Through the whole bake, coding and writing among it.
+double megarays_per_second(const BakedMap& baked, const Stages& stages) {
+    const double milliseconds = stages.milliseconds("bake");
+    return milliseconds > 0 ? static_cast<double>(baked.result.rays) / milliseconds / 1000 : 0;
+}
+
+std::string distance_words(const MeshBakeRequest& request, const BakeResult& result) {
+    const std::string found = result.texels_baked == 0
+                                  ? ""
+                                  : fmt::format("; the surface lies {:.4g} to {:.4g} outside",
+                                                result.least_height, result.greatest_height);
+    if (request.cage) return "from the cage" + found;
+    const bool is_told = request.offset && request.max_distance;
+    return fmt::format("from {:.4g} outside to {:.4g} inside{}{}", result.distances.offset,
+                       result.distances.max_distance, is_told ? "" : " (found)", found);
+}
+
+std::string space_words(const MeshBakeRequest& request, const BakedMap& baked) {
+    if (request.space == SpaceChoice::object) return "object space";
+    if (request.space == SpaceChoice::world) return "world space";
+    return baked.has_own_tangents ? "tangent space, by the model's own tangents"
+                                  : "tangent space, by MikkTSpace's tangents";
+}
+
+const char* space_name(SpaceChoice space) {
+    return space == SpaceChoice::tangent  ? "tangent"
+           : space == SpaceChoice::object ? "object"
+                                          : "world";
+}
+
+std::vector<std::string> read_lines(const MeshBakeRequest& request, const BakedMap& baked) {
+    const std::string high =
+        request.high.size() == 1 ? request.high[0].string() : counted(request.high.size(), "model");
+    return {fmt::format("{}: {}", high, counted(baked.high_triangles, "triangle")),
+            fmt::format("{}: {}", request.low.string(), counted(baked.low_triangles, "triangle"))};
+}
+
+}  // namespace
+
+void print_summary(const MeshBakeRequest& request, const BakedMap& baked, const Stages& stages) {
+    const BakeResult& result = baked.result;
+    print_entry("read", read_lines(request, baked));
+    print_entry("rays", {distance_words(request, result),
+                         fmt::format("{} for {}, {:.2f} million a second", result.rays,
+                                     counted(result.samples, "sample"),
+                                     megarays_per_second(baked, stages))});
+    print_entry("map", fmt::format("{} x {}: {} baked, {} missed", request.size.x, request.size.y,
+                                   counted(result.texels_baked, "texel"), result.texels_missed));
+    print_entry("coded",
+                fmt::format("{}, {}", space_words(request, baked), format_words(baked.format)));
+    print_entry("findings",
+                baked.findings.empty() ? std::vector<std::string>{"none"} : baked.findings.lines());
+    print_entry("time", durations(stages.finished()));
+    print_entry("wrote", file_and_size(request.output));
+}
+
+nlohmann::ordered_json results_json(const MeshBakeRequest& request, const BakedMap& baked,
+                                    const Stages& stages) {
+    const BakeResult& result = baked.result;
+    nlohmann::ordered_json high = nlohmann::ordered_json::array();
+    for (const std::filesystem::path& file : request.high)
+        high.push_back(file.string());
+    return {{"high", high},
+            {"low", request.low.string()},
+            {"output", request.output.string()},
+            {"width", request.size.x},
+            {"height", request.size.y},
+            {"space", space_name(request.space)},
+            {"bits", baked.format.bits},
+            {"green", name_of(baked.format.green, green_choices())},
+            {"flat", name_of(baked.format.flat, flat_choices())},
+            {"dither", name_of(baked.format.dither, dither_choices())},
+            {"high_triangles", baked.high_triangles},
+            {"low_triangles", baked.low_triangles},
+            {"offset", result.distances.offset},
+            {"max_distance", result.distances.max_distance},
+            {"least_height", result.least_height},
+            {"greatest_height", result.greatest_height},
+            {"texels_baked", result.texels_baked},
+            {"texels_missed", result.texels_missed},
+            {"samples", result.samples},
+            {"rays", result.rays},
+            {"rays_per_second", megarays_per_second(baked, stages) * 1e6},
+            {"findings", baked.findings.json()},
+            {"milliseconds", durations_json(stages.finished())}};
+}
+
+}  // namespace relief::tools
