@@ -437,9 +437,9 @@ INSTANTIATE_TEST_SUITE_P(
         Refused{"relief-bake bump flat.png out/n.'<UDIM>'.png", 2,
                 "flat.png, out/n.<UDIM>.png: <UDIM> must be in both names or in none"},
         Refused{"relief-bake bump flat.png", 2, "OUT is missing (see relief-bake bump --help)"},
-        Refused{
-            "relief-bake", 2,
-            "a command is missing: bump or convert or check or heights (see relief-bake --help)"}));
+        Refused{"relief-bake", 2,
+                "a command is missing: bump or mesh or convert or check or heights (see "
+                "relief-bake --help)"}));
 
 }  // namespace
 }  // namespace relief::tools
