@@ -108,6 +108,9 @@ TEST(HeightsCommand, RefusesToGuessGreenAndWhatCannotHoldHeights) {
                         "out/old.jpg: no format to write heights in (use .png, .tif or .exr)"},
           test::Refused{"relief-bake heights flat.png out/old.png --wrap auto,clamp,repeat", 2,
                         "--wrap auto,clamp,repeat: names more than two axes"},
+          test::Refused{"relief-bake heights flat.png flat.png", 2,
+                        "flat.png: would replace the normal map (write to another folder, or by "
+                        "another name)"},
           test::Refused{"relief-bake heights data/bricks-height.png out/old.png", 1,
                         "data/bricks-height.png: has 1 channel, which holds no normals"}}) {
         expect_refusal(workplace, "relief-bake", {line, code, message}, "old.png");

@@ -277,6 +277,8 @@ TEST(BumpCommand, HalfFloatsTakeLessRoomAndHoldElevenBits) {
     const Image half = read_image(workplace / "out/half.exr", ImageUse::data);
     for (std::size_t i = 0; i < exact.sample_count(); ++i)
         ASSERT_NEAR(half.as<float>()[i], exact.as<float>()[i], 0x1p-12);
+    EXPECT_THAT(workplace.run(line + "moments.exr --slope-moments --half").out,
+                HasSubstr("slope moments, 32 bit float, dh/dy up, halves\n"));
 }
 
 TEST(BumpCommand, EveryEffortWritesTheSameImage) {
@@ -403,6 +405,8 @@ INSTANTIATE_TEST_SUITE_P(
                 "--fast, --small: contradict each other"},
         Refused{"relief-bake bump flat.png out/n.png --strength abc", 2,
                 "--strength abc: not a number"},
+        Refused{"relief-bake bump flat.png out/n.png --strength 1e31", 2,
+                "--strength 1e31: not between -1e+30 and 1e+30"},
         Refused{"relief-bake bump flat.png out/n.png --kernel sobel", 2,
                 "--kernel sobel: not one of auto, forward, central3, prewitt3, sobel3, scharr3, "
                 "sobel5, "

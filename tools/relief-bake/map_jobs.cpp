@@ -83,6 +83,13 @@ void add_map_folder(CLI::App& app, MapFiles& files) {
         ->group("Output");
 }
 
+void refuse_to_replace(const std::filesystem::path& file, const std::string& kind, const Job& job) {
+    std::error_code error;
+    if (!std::filesystem::equivalent(file, job.output, error)) return;
+    throw UsageError(fmt::format("{}: would replace the {}", job.output.string(), kind),
+                     "write to another folder, or by another name");
+}
+
 ExitCode run_map_jobs(const CLI::App& app, const MapFiles& files, const MapWork& work) {
     const JobList list = jobs_of(files.words, "map", name_in_folder);
     check(files, work, list);

@@ -4,6 +4,7 @@
 /// Tests: tests/tools/relief_bake_test.cpp, convert_test.cpp.
 #pragma once
 
+#include <filesystem>
 #include <functional>
 #include <string>
 #include <vector>
@@ -39,6 +40,10 @@ void add_map_files(CLI::App& app, MapFiles& files, const std::string& inputs,
 
 /// -o, which is best told beside the other options about output.
 void add_map_folder(CLI::App& app, MapFiles& files);
+
+/// \param file  of a kind that the command reads and does not make: "height map"
+/// \throws UsageError if the job's output would be written over it
+void refuse_to_replace(const std::filesystem::path& file, const std::string& kind, const Job& job);
 
 /// Does one map with a summary, or many with a line for each.
 /// \throws UsageError, FileError before anything is read where something is wrong by then

@@ -34,8 +34,8 @@ std::vector<KernelPrediction> all_predictions(const KernelRehearsal& rehearsal) 
     for (const int radius : radii) {
         all.push_back(rehearsal.predict(Kernel::gaussian, radius));
         least = std::min(least, all.back().rms_degrees);
-        // Wider ones only get worse from here.
-        if (radius >= 3 && all.back().rms_degrees > 1.3 * least) break;
+        // Wider ones only get worse from here; and none is better than exact.
+        if (radius >= 3 && (least == 0.0 || all.back().rms_degrees > 1.3 * least)) break;
     }
     return all;
 }

@@ -100,6 +100,9 @@ FileReplacement::FileReplacement(std::filesystem::path file)
         throw FileError(file_, fmt::format("the folder {} does not exist", folder.string()));
     }
     if (std::filesystem::is_directory(file_)) throw FileError(file_, "is a folder");
+    // Renaming would put a file in the place of /dev/null, or of the pipe behind /dev/stdout.
+    if (std::filesystem::exists(file_) && !std::filesystem::is_regular_file(file_))
+        throw FileError(file_, "is a device or a pipe, which would be replaced by a file");
     // Unique among the processes and threads that may write here at once.
     static std::atomic<unsigned> counter = 0;
     temporary_ = folder / fmt::format(".{}.{}-{}{}", file_.stem().string(), ::getpid(), counter++,

@@ -16,7 +16,7 @@ namespace relief {
 /// The temporary name keeps the extension, by which writers choose their format.
 class FileReplacement {
   public:
-    /// \throws FileError if the folder does not exist or `file` is a folder
+    /// \throws FileError if the folder does not exist, or `file` is a folder, a device or a pipe
     explicit FileReplacement(std::filesystem::path file);
     ~FileReplacement();
     FileReplacement(const FileReplacement&) = delete;

@@ -134,6 +134,8 @@ TEST(KernelChoice, OfAConstantMapIsTheCheapestAndOfTinyMapsSomeKernel) {
     EXPECT_EQ(choice.kernel, Kernel::central3);
     EXPECT_EQ(choice.rms_degrees, 0.0);
     EXPECT_THAT(choice.reason, HasSubstr("every kernel is exact"));
+    // The eight others and three radii: what is exact is not sought by wider and wider ones.
+    EXPECT_EQ(choice.predictions.size(), 11U);
     for (const auto& [width, height] : {std::pair(1, 1), {1, 40}, {40, 1}, {7, 3}, {9, 11}}) {
         const KernelChoice tiny = choose_kernel(test::rough(width, height), {});
         EXPECT_TRUE(std::isfinite(tiny.rms_degrees)) << width << " x " << height;

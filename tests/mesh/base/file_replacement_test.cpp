@@ -3,6 +3,7 @@
 #include "file_replacement.h"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <fstream>
 #include <iterator>
@@ -48,6 +49,19 @@ TEST(FileReplacement, AMissingFolderAndAFolderInTheWayAreFileErrors) {
     const test::TemporaryDirectory folder;
     EXPECT_THROW(FileReplacement(folder / "none/a.txt"), FileError);
     EXPECT_THROW(FileReplacement(folder.path()), FileError);
+}
+
+TEST(FileReplacement, ADeviceOrPipeIsAFileErrorAndStays) {
+    // A pipe of its own, since who may rename in /dev would lose a device if this failed.
+    const test::TemporaryDirectory folder;
+    const std::filesystem::path pipe = folder / "pipe.txt";
+    ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+    const std::string text = "new";
+    EXPECT_THROW(replace_file(pipe, std::as_bytes(std::span(text))), FileError);
+    EXPECT_TRUE(std::filesystem::is_fifo(pipe));
+    std::filesystem::create_symlink(pipe, folder / "link.txt");
+    EXPECT_THROW(FileReplacement(folder / "link.txt"), FileError);
+    EXPECT_EQ(file_count(folder.path()), 2U);
 }
 
 }  // namespace

@@ -21,11 +21,7 @@ struct BumpCommand {
 void check_job(const Job& job, const BumpRequest& request) {
     bump_of(request);
     file_format_of(request, job.output);
-    std::error_code error;
-    if (std::filesystem::equivalent(job.input, job.output, error)) {
-        throw UsageError(job.output.string() + ": would replace the height map",
-                         "write to another folder, or by another name");
-    }
+    refuse_to_replace(job.input, "height map", job);
 }
 
 FileOutcome bake(const Job& job, const BumpRequest& request, Stages& stages, bool prints_summary) {

@@ -51,11 +51,12 @@ void add_height_options(CLI::App& app, BumpRequest& request) {
 
 void add_depth_options(CLI::App& app, BumpRequest& request) {
     const std::string group = "Slopes";
-    add_number(app, "--strength", "S", request.strength, {},
+    const Range depths{-1e30, 1e30, ""};  // As normals_from_height() takes them.
+    add_number(app, "--strength", "S", request.strength, depths,
                "Height in texels that the value 1.0 (white) stands for; negative turns bumps into "
                "dents. Default: 16.")
         ->group(group);
-    add_number(app, "--height", "H", request.height, {},
+    add_number(app, "--height", "H", request.height, depths,
                "Instead of --strength: the height of white in a unit of length; with "
                "--texel-size.")
         ->group(group);

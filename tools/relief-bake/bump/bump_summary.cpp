@@ -61,8 +61,9 @@ std::string input_words(const Job& job, const Baked& baked) {
 /// What stands in the file.
 std::string content_words(const BumpFileFormat& format) {
     if (format.content == BumpContent::slope_moments) {
-        return "slope moments, 32 bit float, dh/dy " +
-               name_of(format.normals.green, green_choices());
+        return fmt::format("slope moments, 32 bit float, dh/dy {}{}",
+                           name_of(format.normals.green, green_choices()),
+                           format.write.half ? ", halves" : "");
     }
     std::string words = format_words(format.normals);
     if (format.xy_only) words += ", without z";

@@ -21,12 +21,7 @@ struct ConvertCommand {
 
 /// The conversion itself may replace its input, but not the map laid over it.
 void check_files(const Job& job, const ConvertRequest& request) {
-    std::error_code error;
-    if (request.detail.file &&
-        std::filesystem::equivalent(*request.detail.file, job.output, error)) {
-        throw UsageError(job.output.string() + ": would replace the detail map",
-                         "write to another folder, or by another name");
-    }
+    if (request.detail.file) refuse_to_replace(*request.detail.file, "detail map", job);
 }
 
 void check_job(const Job& job, const ConvertRequest& request) {

@@ -25,7 +25,10 @@ FileOutcome convert(const Job& job, const HeightsRequest& request, Stages& stage
 ExitCode run(const CLI::App& app, const HeightsCommand& command) {
     MapWork work;
     work.head = {{"tool", "relief-bake heights"}, {"version", version()}};
-    work.check = [&](const Job& job) { bits_of(command.request, job.output); };
+    work.check = [&](const Job& job) {
+        bits_of(command.request, job.output);
+        refuse_to_replace(job.input, "normal map", job);
+    };
     work.work = [&](const Job& job, Stages& stages, bool prints_summary) {
         return convert(job, command.request, stages, prints_summary);
     };
