@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Height maps that are constant, tiny, stepped, with holes, or far too steep.
 #include <fmt/format.h>
 
 #include <array>

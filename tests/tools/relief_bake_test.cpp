@@ -393,7 +393,7 @@ INSTANTIATE_TEST_SUITE_P(
         Refused{"relief-bake bump flat.png out/n.png --bits 32", 2,
                 "--bits 32: .png holds 16 or 8 bits"},
         Refused{"relief-bake bump flat.png out/n.exr --bits 16", 2,
-                "--bits 16: .exr holds 32 bits"},
+                "--bits 16: .exr holds 32 bits (--half stores halves)"},
         Refused{"relief-bake bump flat.png out/n.png --bits 12", 2,
                 "--bits 12: not one of 8, 16, 32"},
         Refused{"relief-bake bump flat.png out/n.exr --flat half", 2,

@@ -81,8 +81,10 @@ NormalMapFormat format_of(const MapOutputOptions& options, const std::filesystem
     const int usual = defaults.bits && holds(*defaults.bits) ? *defaults.bits : depths.front();
     const int bits = options.bits.value_or(usual);
     if (!holds(bits)) {
+        const bool wants_halves = bits == 16 && extension_of(output) == ".exr";
         throw UsageError(fmt::format("--bits {}: {} holds {} bits", bits, extension_of(output),
-                                     fmt::join(depths, " or ")));
+                                     fmt::join(depths, " or ")),
+                         wants_halves ? "--half stores halves" : "");
     }
     if (bits == 32 && options.flat)
         throw UsageError("--flat: has no effect on 32-bit output, where flat is exact");

@@ -27,12 +27,18 @@ void settle(HeightMapFile& map, const Job& job, const BumpRequest& request, Stag
     const Wraps found = baked.tiling.value_or(Tiling{}).wraps();
     baked.bump.wrap = {request.wrap_x.value_or(found.x), request.wrap_y.value_or(found.y)};
     if (parts.empty() && !request.accuracy.destaircase && !request.accuracy.kernel) return;
-    stages.run("choose", [&] {
+    // Where the kernel is given, there is nothing to time.
+    const bool chooses = !parts.empty() || request.accuracy.destaircase;
+    const auto choose = [&] {
         baked.accuracy =
             settle_accuracy(request.accuracy, map.info(), survey.parts, open_depths(request, job),
                             baked.bump, baked.format.normals);
         destaircase_map(request.accuracy, baked.bump.wrap, map, baked.accuracy);
-    });
+    };
+    if (chooses)
+        stages.run("choose", choose);
+    else
+        choose();
 }
 
 void convert(const HeightMapFile& map, const Job& job, Stages& stages, Baked& baked) {
