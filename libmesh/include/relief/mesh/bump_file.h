@@ -57,7 +57,8 @@ class HeightMapFile {
         Tiling tiling;
         std::vector<Image> parts;
     };
-    /// Looks at the seams, and takes out parts; a streamed map is read once for both.
+    /// Looks at the seams, and takes out parts; a streamed map is read once for both. What a
+    /// transparent texel hides counts for neither: in parts, the surface beside goes on there.
     /// \param parts  within the map, from top to bottom
     /// \throws FileError
     [[nodiscard]] Survey survey(std::span<const ImagePart> parts) const;

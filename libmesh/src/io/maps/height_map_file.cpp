@@ -2,8 +2,11 @@
 // A height map in memory, or its file in hand; what is asked about either is answered from rows in
 // order. Tests: tests/mesh/io/maps/bump_file_test.cpp.
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <utility>
 
+#include "image/heights/height_holes.h"
 #include "image/heights/seam_survey.h"
 #include "io/maps/height_window.h"
 #include "relief/mesh/bump_file.h"
@@ -68,6 +71,52 @@ void add_rows(SeamSurvey& survey, const Image& band) {
         band.samples);
 }
 
+/// The map in float, with NaN for what a transparent texel hides.
+Image without_hidden(const HeightMap& map) {
+    Image floats = to_float(map.heights);
+    const std::span<float> heights = floats.as<float>();
+    for (std::size_t texel = 0; texel < heights.size(); ++texel) {
+        if (map.transparent[texel] != 0) heights[texel] = std::numeric_limits<float>::quiet_NaN();
+    }
+    return floats;
+}
+
+/// Puts what the surface beside suggests in the place of hidden heights, rounded as those of the
+/// file are: the bits that the map uses stay what they are. Heights beside alpha are floats.
+void fill_hidden(const Image& transparent, int file_bits, Image& part) {
+    constexpr int reach = 128;  // As wide as parts that a kernel is chosen by.
+    const double largest = std::exp2(file_bits) - 1.0;
+    const std::span<const std::uint8_t> hidden = transparent.as<std::uint8_t>();
+    Report ignored;  // The conversion counts holes.
+    const std::vector<float> filled = filled_holes(part, Wrap::clamp, ignored, {hidden, reach});
+    const std::span<float> heights = part.as<float>();
+    for (std::size_t texel = 0; texel < heights.size(); ++texel) {
+        if (hidden[texel] == 0) continue;
+        const auto height = static_cast<double>(filled[texel]);
+        heights[texel] = file_bits == 32
+                             ? filled[texel]
+                             : static_cast<float>(std::round(height * largest) / largest);
+    }
+}
+
+/// What a map in memory shows, whatever colours its transparent texels hide.
+HeightMapFile::Survey survey_of(const HeightMap& map, int file_bits,
+                                std::span<const ImagePart> places) {
+    HeightMapFile::Survey survey;
+    for (const ImagePart& place : places)
+        survey.parts.push_back(part_of(map.heights, place));
+    if (map.transparent.empty()) {
+        survey.tiling = detect_tiling(map.heights);
+        return survey;
+    }
+    survey.tiling = detect_tiling(without_hidden(map));
+    const Image transparent{map.heights.width, map.heights.height, 1, ColorSpace::data,
+                            map.transparent};
+    for (std::size_t i = 0; i < places.size(); ++i)
+        fill_hidden(part_of(transparent, places[i]), file_bits, survey.parts[i]);
+    return survey;
+}
+
 }  // namespace
 
 HeightMapFile::HeightMapFile(const std::filesystem::path& file, const HeightMapChoice& choice)
@@ -86,13 +135,8 @@ int HeightMapFile::rows_per_band() const {
 }
 
 HeightMapFile::Survey HeightMapFile::survey(std::span<const ImagePart> parts) const {
+    if (!is_streamed_) return survey_of(map_, info_.bits, parts);
     SeamSurvey seams(info_.width, info_.height);
-    if (!is_streamed_) {
-        Survey survey{detect_tiling(map_.heights), {}};
-        for (const ImagePart& part : parts)
-            survey.parts.push_back(part_of(map_.heights, part));
-        return survey;
-    }
     PartCollector collector(parts, info_.channels == 1 ? info_.bits : 32);
     HeightBandReader reader(*this);
     const int band_rows = rows_per_band();

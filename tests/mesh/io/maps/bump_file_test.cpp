@@ -251,6 +251,30 @@ TEST_F(BumpFile, TransparentTexelsAreFlatAndHideNoCliff) {
     EXPECT_NEAR(slope(ignored, 7), -3.0, 1e-6);
 }
 
+TEST_F(BumpFile, WhatATransparentTexelHidesDecidesNothing) {
+    // Level ground on the left; hidden on the right noise, which would be a seam and detail.
+    Image image = noise(48, 32, 2, 8);
+    for (std::size_t i = 0; i < image.sample_count() / 2; ++i) {
+        const bool is_hidden = i % 48 >= 24;
+        if (!is_hidden) image.as<std::uint8_t>()[2 * i] = 100;
+        image.as<std::uint8_t>()[2 * i + 1] = is_hidden ? 0 : 255;
+    }
+    const std::filesystem::path file = written(image, "h.png");
+    const std::vector<ImagePart> parts = {{0, 0, 32, 32}, {16, 0, 32, 32}};
+    const HeightMapFile::Survey survey = HeightMapFile(file).survey(parts);
+    EXPECT_EQ(survey.tiling.seam_x, 0.0);
+    EXPECT_EQ(survey.tiling.seam_y, 0.0);
+    ASSERT_THAT(survey.parts, SizeIs(2));
+    for (const Image& part : survey.parts) {
+        // To the bit, so that the map has 8 bits and no more.
+        EXPECT_THAT(samples_of<float>(part), AllOf(SizeIs(1024), testing::Each(100.0F / 255.0F)));
+        EXPECT_EQ(height_depth(part).bits, 1);
+    }
+    const HeightMapFile::Survey seen =
+        HeightMapFile(file, {HeightChannel::mean, true}).survey(parts);
+    EXPECT_GT(seen.tiling.seam_x, 0.5);
+}
+
 TEST(BumpBand, MomentsAreHeightSlopesAndTheirProducts) {
     const Image heights = noise(9, 7, 1, 16);
     const BumpOptions options{Kernel::sobel3, Wrap::repeat, 3.0};
