@@ -432,6 +432,8 @@ TEST_P(ConvertRefusal, SaysWhyAndLeavesNothingBehind) {
     const Workplace workplace;
     write_image(workplace / "map.png", make_image(4, 3, 3, 8, ColorSpace::data));
     write_image(workplace / "grey.png", make_image(4, 3, 1, 8, ColorSpace::data));
+    for (const char* name : {"n.png", "n-mip01.png", "n-roughness.png"})
+        write_image(workplace / name, make_image(4, 3, 3, 8, ColorSpace::data));
     expect_refusal(workplace, "relief-bake", GetParam(), "old.png");
 }
 
@@ -475,6 +477,16 @@ INSTANTIATE_TEST_SUITE_P(
         Refused{"relief-bake convert map.png out/n.png --detail missing.png", 1, "missing.png: "},
         Refused{"relief-bake convert map.png out/old.png --detail out/old.png", 2,
                 "out/old.png: would replace the detail map"},
+        Refused{"relief-bake convert map.png n.png --mips --detail n-mip01.png", 2,
+                "n-mip01.png: would replace the detail map"},
+        Refused{"relief-bake convert n-mip01.png n.png --mips", 2,
+                "n-mip01.png: would replace the normal map"},
+        Refused{"relief-bake convert n.png n-mip01.png -o out/ --mips", 2,
+                "n.png and n-mip01.png: would both be written to out/n-mip01.png (convert them by "
+                "separate calls, to different folders)"},
+        Refused{"relief-bake convert n-roughness.png n.png -o out/ --mips "
+                "--roughness-from-variance 0.4",
+                2, "n-roughness.png and n.png: would both be written to out/n-roughness.png"},
         Refused{"relief-bake convert map.png", 2, ""}));
 
 }  // namespace

@@ -3,6 +3,8 @@
 // report out. Tests: tests/tools/convert_test.cpp.
 #include <fmt/format.h>
 
+#include <filesystem>
+#include <map>
 #include <memory>
 
 #include "commands.h"
@@ -19,15 +21,28 @@ struct ConvertCommand {
     ConvertRequest request;
 };
 
-/// The conversion itself may replace its input, but not the map laid over it.
-void check_files(const Job& job, const ConvertRequest& request) {
-    if (request.detail.file) refuse_to_replace(*request.detail.file, "detail map", job);
+/// Whose result each file is.
+using Owners = std::map<std::filesystem::path, std::filesystem::path>;
+
+/// The conversion itself may replace its input, but not the map laid over it; and no level the
+/// input, or what becomes of another map.
+void check_files(const Job& job, const ConvertRequest& request, Owners& owners) {
+    for (const std::filesystem::path& file : files_of(job.output, request.mips)) {
+        const Job written{job.input, file};
+        if (request.detail.file) refuse_to_replace(*request.detail.file, "detail map", written);
+        if (file != job.output) refuse_to_replace(job.input, "normal map", written);
+        const auto [known, is_new] = owners.emplace(weakly_canonical(absolute(file)), job.input);
+        if (is_new) continue;
+        throw UsageError(fmt::format("{} and {}: would both be written to {}",
+                                     known->second.string(), job.input.string(), file.string()),
+                         "convert them by separate calls, to different folders");
+    }
 }
 
-void check_job(const Job& job, const ConvertRequest& request) {
+void check_job(const Job& job, const ConvertRequest& request, Owners& owners) {
     format_of(request.output, job.output);
     write_options_of(request.output, job.output);
-    check_files(job, request);
+    check_files(job, request, owners);
 }
 
 FileOutcome convert(const Job& job, const ConvertRequest& request, Stages& stages,
@@ -41,7 +56,8 @@ ExitCode run(const CLI::App& app, const ConvertCommand& command) {
     check_convert_options(command.request);
     MapWork work;
     work.head = {{"tool", "relief-bake convert"}, {"version", version()}};
-    work.check = [&](const Job& job) { check_job(job, command.request); };
+    Owners owners;
+    work.check = [&](const Job& job) { check_job(job, command.request, owners); };
     work.work = [&](const Job& job, Stages& stages, bool prints_summary) {
         return convert(job, command.request, stages, prints_summary);
     };

@@ -50,4 +50,8 @@ Converted convert_map(const Job& job, const ConvertRequest& request, Stages& sta
 std::filesystem::path level_file(const std::filesystem::path& output, std::size_t level,
                                  bool is_roughness);
 
+/// All files that a map may be written to: of levels, as many as the largest has.
+std::vector<std::filesystem::path> files_of(const std::filesystem::path& output,
+                                            const MipChoice& mips);
+
 }  // namespace relief::tools

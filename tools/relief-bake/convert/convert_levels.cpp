@@ -61,6 +61,17 @@ std::filesystem::path level_file(const std::filesystem::path& output, std::size_
     return output.parent_path() / (name + output.extension().string());
 }
 
+std::vector<std::filesystem::path> files_of(const std::filesystem::path& output,
+                                            const MipChoice& mips) {
+    std::vector<std::filesystem::path> files = {output};
+    constexpr std::size_t most_levels = 31;  // Of a side that an int can hold.
+    for (std::size_t level = 0; mips.wanted && level <= most_levels; ++level) {
+        if (level > 0) files.push_back(level_file(output, level, false));
+        if (mips.roughness) files.push_back(level_file(output, level, true));
+    }
+    return files;
+}
+
 LevelWriter::LevelWriter(const Job& job, const ConvertRequest& request,
                          const std::map<std::string, std::string>& input_metadata, Converted& done)
     : job_(job), request_(request), kept_(kept_metadata(input_metadata)), done_(done) {}
