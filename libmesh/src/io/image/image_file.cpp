@@ -16,7 +16,7 @@
 #include "io/image/image_file_container.h"
 #include "io/image/image_file_direct.h"
 #include "io/image/module_source.h"
-#include "io/image/row_source.h"
+#include "io/image/streamed_rows.h"
 #include "relief/mesh/error.h"
 
 namespace relief {

@@ -174,10 +174,10 @@ OIIO::ImageSpec spec_to_write(const std::string& format, const ImageModulePictur
                                             : std::vector<std::string>{"R", "G", "B", "A"};
     spec.channelnames.resize(static_cast<std::size_t>(header.channels));
     if (picture.channel_names != nullptr)
-        spec.channelnames.assign(picture.channel_names,
-                                 picture.channel_names + header.channels);
+        spec.channelnames.assign(picture.channel_names, picture.channel_names + header.channels);
     const bool is_color = picture.channel_names == nullptr;
-    spec.alpha_channel = is_color && header.channels % 2 == 0 ? static_cast<int>(header.channels) - 1 : -1;
+    spec.alpha_channel =
+        is_color && header.channels % 2 == 0 ? static_cast<int>(header.channels) - 1 : -1;
     spec["oiio:UnassociatedAlpha"] = 1;
     if (picture.srgb) spec["oiio:ColorSpace"] = "sRGB";
     if (format == "tiff" || format == "openexr") spec["compression"] = "zip";

@@ -2,7 +2,7 @@
 // Image files read by rows. Tests: tests/mesh/io/image/image_rows_test.cpp.
 #include <fmt/format.h>
 
-#include "io/image/row_source.h"
+#include "io/image/streamed_rows.h"
 #include "relief/mesh/error.h"
 #include "relief/mesh/image_rows.h"
 

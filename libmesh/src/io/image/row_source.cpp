@@ -1,19 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which source reads a file, and what all sources share. Tests:
-// tests/mesh/io/image/image_rows_test.cpp.
+// What all sources of rows share, and the one that an image in memory is.
+// Tests: tests/mesh/io/image/image_rows_test.cpp.
 #include "io/image/row_source.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cstring>
-#include <string_view>
 #include <utility>
 
-#include "io/image/image_file_container.h"
-#include "io/image/module_source.h"
-#include "random_access_file.h"
 #include "relief/mesh/error.h"
 #include "relief/mesh/image_rows.h"
 
@@ -102,20 +97,6 @@ Image read_all(RowSource& rows, const std::filesystem::path& name) {
 
 std::unique_ptr<RowSource> rows_of_image(Image image, ImageInfo info) {
     return std::make_unique<ImageSource>(std::move(image), std::move(info));
-}
-
-std::unique_ptr<RowSource> open_streamed_rows(const std::filesystem::path& file) {
-    std::array<char, 16> start{};
-    {
-        const RandomAccessFile opened(file);
-        const auto size = std::min<std::uint64_t>(opened.size(), start.size());
-        opened.read(0, std::as_writable_bytes(std::span(start)).first(size));
-    }
-    const char* const format = format_by_signature({start.data(), start.size()});
-    const std::string_view kind = format == nullptr ? "" : format;
-    if (kind == "png") return open_png_rows(file);
-    if (kind == "tiff" || kind == "openexr") return open_module_rows(file);
-    return nullptr;
 }
 
 }  // namespace relief

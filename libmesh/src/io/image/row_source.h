@@ -34,17 +34,7 @@ void check_streamed_size(const ImageInfo& info, const std::filesystem::path& nam
 /// as they come, so that a header that lies costs nothing. \throws FileError
 Image read_all(RowSource& rows, const std::filesystem::path& name);
 
-/// The source for a file that can be read by rows; nothing where it has to be read whole.
-/// \throws FileError as read_image() does
-std::unique_ptr<RowSource> open_streamed_rows(const std::filesystem::path& file);
-
 /// Rows of an image in memory.
 std::unique_ptr<RowSource> rows_of_image(Image image, ImageInfo info);
-
-/// A PNG file that is plain (png_decoder.h), read as it is asked for; nothing where it is of
-/// another kind. Damage that is met on the way is left to the image module to judge, which then
-/// reads the file from its beginning. \throws FileError if it is cut short, or announces more than
-/// it can hold
-std::unique_ptr<RowSource> open_png_rows(const std::filesystem::path& file);
 
 }  // namespace relief

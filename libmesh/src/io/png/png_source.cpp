@@ -4,6 +4,8 @@
 // left to the image module to judge, as with whole images: it reads the file from its beginning,
 // which is why such a file may not be larger than images that are read whole. Source: [ISO/IEC
 // 15948]. Tests: tests/mesh/io/image/image_rows_test.cpp.
+#include "io/png/png_source.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -14,7 +16,6 @@
 
 #include "io/image/image_file_container.h"
 #include "io/image/module_source.h"
-#include "io/image/row_source.h"
 #include "io/png/deflate.h"
 #include "io/png/inflate_stream.h"
 #include "io/png/png_decoder.h"
