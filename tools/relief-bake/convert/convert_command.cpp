@@ -71,6 +71,7 @@ Command add_convert_command(CLI::App& tool) {
         tool, "convert", "Converts normal maps: conventions, size, strength, details, mip levels.");
     const auto command = std::make_shared<ConvertCommand>();
     add_map_files(app, command->files, "normal map",
+                  "OUT may be IN itself: it is replaced only once the new map is complete. "
                   "Whatever order the options are given in, z comes first, then axes, size, "
                   "slopes, detail, mip levels, codes.");
     add_convert_options(app, command->request);

@@ -35,7 +35,8 @@ Tiling detect_tiling(const Image& height);
 /// How fine the heights are.
 struct HeightDepth {
     /// The least n for which every height is a multiple of 1 / (2^n - 1), or of 1 / 2^n, to within
-    /// float's rounding; 1 to 16, or 0 where there is none (float maps).
+    /// float's rounding: 1 to 16; 10 for multiples of 1 / 765, the means of three 8-bit colours; 0
+    /// where there is none (float maps).
     int bits = 0;
     /// The step between the values that occur, in the unit of heights (1.0 is white): 257 / 65535
     /// for 8 bits stored as 16. 0 where `bits` is.

@@ -91,6 +91,9 @@ HeightDepth depth_of(const Heights<float>& heights) {
             if (are_multiples(heights.samples(), 1.0 / levels)) return {bits, 1.0 / levels};
         }
     }
+    // The mean of three colours of 8 bits.
+    constexpr double mean_levels = 3 * 255;
+    if (are_multiples(heights.samples(), 1.0 / mean_levels)) return {10, 1.0 / mean_levels};
     return {};
 }
 

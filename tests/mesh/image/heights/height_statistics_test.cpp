@@ -93,6 +93,11 @@ TEST(HeightDepth, IsThatOfTheValuesNotOfTheFile) {
     EXPECT_EQ(height_depth(waves(16).codes).bits, 16);
     EXPECT_EQ(height_depth(height_field(narrow)).bits, 8);
     EXPECT_EQ(height_depth(height_field(waves(16).codes)).bits, 16);
+    Image colors = make_image(64, 64, 3, 8, ColorSpace::data);
+    for (std::size_t i = 0; i < colors.sample_count(); ++i)
+        colors.as<std::uint8_t>()[i] = static_cast<std::uint8_t>(i * i % 251);
+    EXPECT_EQ(height_depth(height_field(colors)).bits, 10);
+    EXPECT_DOUBLE_EQ(height_depth(height_field(colors)).step, 1.0 / 765.0);
     EXPECT_EQ(
         height_depth(wave_heights(96, 64, tiling_waves(96, 64, 12, 16.0, 0.3, 2)).heights).bits, 0);
     EXPECT_EQ(height_depth(heights_of(3, 3, [](int, int) { return 0.4; })).bits, 1);
