@@ -156,6 +156,7 @@ class BitWriter {
     }
     void to_whole_byte() { put(0, (8 - count_) & 7); }
     void put_bytes(Bytes bytes) {
+        if (bytes.empty()) return;  // Whose data may be null, which memcpy may not be given.
         std::memcpy(to_, bytes.data(), bytes.size());
         to_ += bytes.size();
     }
