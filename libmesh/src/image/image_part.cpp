@@ -27,12 +27,12 @@ Image part_of(const Image& image, const ImagePart& part) {
             const auto channels = static_cast<std::size_t>(image.channels);
             const std::size_t row = static_cast<std::size_t>(part.width) * channels;
             for (int y = 0; y < part.height; ++y) {
-                const std::size_t texel = static_cast<std::size_t>(part.y + y) *
-                                              static_cast<std::size_t>(image.width) +
-                                          static_cast<std::size_t>(part.x);
+                const std::size_t texel =
+                    static_cast<std::size_t>(part.y + y) * static_cast<std::size_t>(image.width) +
+                    static_cast<std::size_t>(part.x);
                 std::copy_n(all.begin() + static_cast<std::ptrdiff_t>(texel * channels), row,
-                            samples.begin() + static_cast<std::ptrdiff_t>(
-                                                  static_cast<std::size_t>(y) * row));
+                            samples.begin() +
+                                static_cast<std::ptrdiff_t>(static_cast<std::size_t>(y) * row));
             }
         },
         result.samples);
