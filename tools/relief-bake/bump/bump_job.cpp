@@ -20,12 +20,11 @@ void settle(HeightMapFile& map, const Job& job, const BumpRequest& request, Stag
             Baked& baked) {
     const std::vector<ImagePart> parts = parts_wanted(request.accuracy, map.info());
     HeightMapFile::Survey survey;
-    if (!request.wrap_x || !request.wrap_y || !parts.empty()) {
+    if (!request.wrap.is_settled() || !parts.empty()) {
         survey = stages.run("look", [&] { return map.survey(parts); });
-        if (!request.wrap_x || !request.wrap_y) baked.tiling = survey.tiling;
+        if (!request.wrap.is_settled()) baked.tiling = survey.tiling;
     }
-    const Wraps found = baked.tiling.value_or(Tiling{}).wraps();
-    baked.bump.wrap = {request.wrap_x.value_or(found.x), request.wrap_y.value_or(found.y)};
+    baked.bump.wrap = request.wrap.value_or(baked.tiling.value_or(Tiling{}).wraps());
     if (parts.empty() && !request.accuracy.destaircase && !request.accuracy.kernel) return;
     // Where the kernel is given, there is nothing to time.
     const bool chooses = !parts.empty() || request.accuracy.destaircase;

@@ -8,14 +8,6 @@
 namespace relief::tools {
 namespace {
 
-Choices<WrapChoice> wrap_or_auto() {
-    Choices<WrapChoice> choices;
-    for (const auto& [name, wrap] : wrap_choices())
-        choices.emplace_back(name, wrap);
-    choices.emplace_back("auto", std::nullopt);
-    return choices;
-}
-
 /// "W" or "WxH".
 glm::dvec2 parse_texel(const std::string& subject, const std::string& text) {
     const Range sizes{1e-30, 1e30, ""};
@@ -23,15 +15,6 @@ glm::dvec2 parse_texel(const std::string& subject, const std::string& text) {
     const double width = parse_number(subject, text.substr(0, cross), sizes);
     if (cross == std::string::npos) return {width, width};
     return {width, parse_number(subject, text.substr(cross + 1), sizes)};
-}
-
-/// "W" for both axes, or "W,W" for x and y.
-void parse_wraps(const std::string& subject, const std::string& text, BumpRequest& request) {
-    const std::size_t comma = text.find(',');
-    request.wrap_x = parse_choice(subject, text.substr(0, comma), wrap_or_auto());
-    request.wrap_y = comma == std::string::npos
-                         ? request.wrap_x
-                         : parse_choice(subject, text.substr(comma + 1), wrap_or_auto());
 }
 
 void add_height_options(CLI::App& app, BumpRequest& request) {
@@ -76,15 +59,12 @@ void add_slope_options(CLI::App& app, BumpRequest& request) {
                   request.gaussian_radius = parse_integer(subject, text, 1, largest_kernel_radius);
               })
         ->group("Accuracy");
-    add_value(
-        app, "--wrap", "WORD[,WORD]",
+    add_wrap(
+        app, request.wrap,
         "What lies beyond the border: the opposite edge, for maps that tile (repeat), "
         "nothing, so that slopes there are one-sided (clamp), the map mirrored (mirror); or by "
         "whether it goes on smoothly across the seam, repeat or clamp (auto). Two words: left "
-        "and right, then top and bottom. Default: auto.",
-        [&](const std::string& subject, const std::string& text) {
-            parse_wraps(subject, text, request);
-        })
+        "and right, then top and bottom. Default: auto.")
         ->group(group);
 }
 

@@ -11,11 +11,9 @@
 #include "common/options.h"
 #include "map_output.h"
 #include "relief/mesh/bump_file.h"
+#include "wrap_option.h"
 
 namespace relief::tools {
-
-/// Absent: by what the map itself shows.
-using WrapChoice = std::optional<Wrap>;
 
 /// How to convert a height map; the same for every map of a call.
 struct BumpRequest {
@@ -28,8 +26,7 @@ struct BumpRequest {
     std::optional<double> height;
     std::optional<glm::dvec2> texel;
     std::optional<int> gaussian_radius;
-    WrapChoice wrap_x;
-    WrapChoice wrap_y;
+    WrapsOrAuto wrap;
     bool slope_moments = false;
     bool xy_only = false;
     MapAlpha alpha = MapAlpha::none;

@@ -11,12 +11,6 @@
 namespace relief::tools {
 namespace {
 
-/// "repeat", or "repeat,clamp" where the axes differ.
-std::string wrap_words(const Wraps& wrap) {
-    const std::string x = name_of(wrap.x, wrap_choices());
-    return wrap.x == wrap.y ? x : x + "," + name_of(wrap.y, wrap_choices());
-}
-
 /// "gaussian of radius 2", or the plain name.
 std::string kernel_words(const BumpOptions& bump) {
     const std::string name = name_of(bump.kernel, kernel_choices());

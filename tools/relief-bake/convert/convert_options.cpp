@@ -8,6 +8,7 @@
 #include "common/map_choices.h"
 #include "common/options.h"
 #include "convert/convert_words.h"
+#include "wrap_option.h"
 
 namespace relief::tools {
 namespace {
@@ -53,14 +54,6 @@ glm::dvec2 parse_repeat(const std::string& subject, const std::string& text) {
     if (parts.size() == 1) return {x, x};
     if (parts.size() > 2) throw UsageError(subject + ": not a number like 4, or two like 4x2");
     return {x, parse_number(subject, parts[1], range)};
-}
-
-Wraps parse_wraps(const std::string& subject, const std::string& text) {
-    const std::vector<std::string> parts = split(text, ',');
-    const Wrap x = parse_choice(subject, parts[0], wrap_choices());
-    if (parts.size() == 1) return x;
-    if (parts.size() > 2) throw UsageError(subject + ": names more than two axes");
-    return {x, parse_choice(subject, parts[1], wrap_choices())};
 }
 
 /// "up", "down" or "auto"
@@ -135,13 +128,10 @@ void add_resize_options(CLI::App& app, ResizeChoice& resize) {
                "the normals themselves (vectors), by which steep texels count for less. Default: "
                "slopes.")
         ->group(group);
-    add_value(app, "--wrap", "WORD[,WORD]",
-              "What lies beyond the border: the opposite edge (repeat), the last texel (clamp), or "
-              "the map mirrored (mirror). Two words: left and right, then top and bottom. Default: "
-              "repeat.",
-              [&](const std::string& subject, const std::string& text) {
-                  resize.wrap = parse_wraps(subject, text);
-              })
+    add_wrap(app, resize.wrap,
+             "What lies beyond the border: the opposite edge (repeat), the last texel (clamp), or "
+             "the map mirrored (mirror). Two words: left and right, then top and bottom. Default: "
+             "repeat.")
         ->group(group);
 }
 

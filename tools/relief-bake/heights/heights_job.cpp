@@ -32,12 +32,12 @@ void settle_green(const Job& job, const InputMap& input, MadeHeights& made) {
 }
 
 Wraps settled_wraps(const HeightsRequest& request, const Image& normals) {
-    Wraps wraps{request.wrap_x.value_or(Wrap::repeat), request.wrap_y.value_or(Wrap::repeat)};
+    Wraps wraps = request.wrap.value_or(Wrap::repeat);
     for (const int channel : {0, 1}) {
-        if (request.wrap_x && request.wrap_y) break;
+        if (request.wrap.is_settled()) break;
         const Wraps shown = detect_tiling(channel_of(normals, channel)).wraps();
-        if (!request.wrap_x && shown.x == Wrap::clamp) wraps.x = Wrap::clamp;
-        if (!request.wrap_y && shown.y == Wrap::clamp) wraps.y = Wrap::clamp;
+        if (!request.wrap.x && shown.x == Wrap::clamp) wraps.x = Wrap::clamp;
+        if (!request.wrap.y && shown.y == Wrap::clamp) wraps.y = Wrap::clamp;
     }
     return wraps;
 }
@@ -63,11 +63,6 @@ Image stored(MadeHeights& made) {
                                  : coded<std::uint16_t>(made.result.heights, made.result.highest);
     made.result.heights = Image{};
     return codes;
-}
-
-std::string wrap_words(const Wraps& wrap) {
-    const std::string x = name_of(wrap.x, wrap_choices());
-    return wrap.x == wrap.y ? x : x + "," + name_of(wrap.y, wrap_choices());
 }
 
 std::map<std::string, std::string> metadata_of(const MadeHeights& made) {

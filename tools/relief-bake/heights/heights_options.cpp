@@ -22,16 +22,6 @@ std::vector<int> depths_of(const std::filesystem::path& output) {
     throw UsageError(output.string() + ": no format to write heights in", "use .png, .tif or .exr");
 }
 
-void parse_wraps(const std::string& subject, const std::string& text, HeightsRequest& request) {
-    Choices<std::optional<Wrap>> words = {{"auto", std::nullopt}};
-    for (const auto& [name, wrap] : wrap_choices())
-        words.emplace_back(name, wrap);
-    const std::vector<std::string> parts = split(text, ',');
-    if (parts.size() > 2) throw UsageError(subject + ": names more than two axes");
-    request.wrap_x = parse_choice(subject, parts.front(), words);
-    request.wrap_y = parse_choice(subject, parts.back(), words);
-}
-
 }  // namespace
 
 void add_heights_options(CLI::App& app, HeightsRequest& request) {
@@ -52,15 +42,11 @@ void add_heights_options(CLI::App& app, HeightsRequest& request) {
                "The kernel by which relief-bake bump will give the normals back. central7 knows "
                "the slopes of smooth maps best. Default: central7.")
         ->group(group);
-    add_value(
-        app, "--wrap", "WORD[,WORD]",
-        "What lies beyond the border: the opposite edge, for maps that tile (repeat), nothing "
-        "(clamp), the map mirrored (mirror); or repeat or clamp by whether the map goes on "
-        "smoothly across the seam (auto). Two words: left and right, then top and bottom. "
-        "Default: auto.",
-        [&](const std::string& subject, const std::string& text) {
-            parse_wraps(subject, text, request);
-        })
+    add_wrap(app, request.wrap,
+             "What lies beyond the border: the opposite edge, for maps that tile (repeat), nothing "
+             "(clamp), the map mirrored (mirror); or repeat or clamp by whether the map goes on "
+             "smoothly across the seam (auto). Two words: left and right, then top and bottom. "
+             "Default: auto.")
         ->group(group);
     add_number(app, "--steepest", "S", request.integration.steepest, {1e-3, 1e6, ""},
                "Cut steeper slopes to this, and those of normals that face sideways or back; they "

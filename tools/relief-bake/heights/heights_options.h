@@ -9,6 +9,7 @@
 #include "common/command.h"
 #include "normal_map_input.h"
 #include "relief/mesh/heights_from_normals.h"
+#include "wrap_option.h"
 
 namespace relief::tools {
 
@@ -16,8 +17,7 @@ namespace relief::tools {
 struct HeightsRequest {
     MapInputOptions input;
     IntegrationOptions integration;  ///< But for the wraps.
-    std::optional<Wrap> wrap_x{};    ///< Absent: by what the map shows.
-    std::optional<Wrap> wrap_y{};
+    WrapsOrAuto wrap{};
     std::optional<int> bits{};
 };
 
