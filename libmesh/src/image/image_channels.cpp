@@ -7,8 +7,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
+#include "image/largest_sample.h"
 #include "image/texel_loops.h"
 #include "relief/mesh/error.h"
 
@@ -16,18 +16,13 @@ namespace relief {
 namespace {
 
 template <typename Sample>
-constexpr float largest_of() {
-    if constexpr (std::is_same_v<Sample, float>) return 1.0F;
-    return static_cast<float>(std::numeric_limits<Sample>::max());
-}
-
-template <typename Sample>
 Sample sample_of(float value) {
     if constexpr (std::is_same_v<Sample, float>) {
         return value;
     } else {
         const float inside = value > 0.0F ? std::min(value, 1.0F) : 0.0F;
-        return static_cast<Sample>(std::lround(inside * largest_of<Sample>()));
+        return static_cast<Sample>(
+            std::lround(inside * static_cast<float>(largest_sample<Sample>)));
     }
 }
 
@@ -45,7 +40,8 @@ Image channel_of(const Image& image, int channel) {
         const Sample* const samples = image.as<Sample>().data() + channel;
         Report unused;
         for_each_texel(values.size(), unused, [&](std::size_t texel, Report&) {
-            values[texel] = static_cast<float>(samples[texel * channels]) / largest_of<Sample>();
+            values[texel] = static_cast<float>(samples[texel * channels]) /
+                            static_cast<float>(largest_sample<Sample>);
         });
     });
     return result;

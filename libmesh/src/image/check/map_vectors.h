@@ -10,6 +10,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "image/largest_sample.h"
 #include "image/normals/normal_coding.h"
 #include "relief/mesh/image.h"
 #include "relief/mesh/normal_map_check.h"
@@ -32,10 +33,7 @@ float component_of(Sample sample, const SampleMeaning& meaning) {
     }
     if (meaning.curve == StoredCurve::none)
         return static_cast<float>(NormalCoding<Sample>{meaning.flat}.decoded(sample));
-    const float stored =
-        std::is_same_v<Sample, float>
-            ? static_cast<float>(sample)
-            : static_cast<float>(sample) / static_cast<float>(std::numeric_limits<Sample>::max());
+    const float stored = static_cast<float>(sample) / static_cast<float>(largest_sample<Sample>);
     const float meant = meaning.curve == StoredCurve::srgb_encoded ? linear_from_srgb(stored)
                                                                    : srgb_from_linear(stored);
     return 2.0F * meant - 1.0F;

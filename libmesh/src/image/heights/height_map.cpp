@@ -10,6 +10,7 @@
 #include <limits>
 #include <utility>
 
+#include "image/largest_sample.h"
 #include "large_memory.h"
 #include "parallel.h"
 #include "relief/mesh/error.h"
@@ -26,12 +27,6 @@ bool has_alpha(const Image& image) {
 
 bool is_grey(const Image& image) {
     return image.channels < 3;
-}
-
-template <typename Sample>
-constexpr double largest_of() {
-    return std::is_same_v<Sample, float> ? 1.0
-                                         : static_cast<double>(std::numeric_limits<Sample>::max());
 }
 
 /// Makes every height by height(first sample of the texel).
@@ -63,7 +58,7 @@ std::vector<float> mean_of_colors(std::span<const Sample> samples) {
             double sum = 0.0;
             for (std::size_t color = 0; color < 3; ++color)
                 sum += static_cast<double>(from[texel * channels + color]);
-            to[texel] = static_cast<float>(sum / (3.0 * largest_of<Sample>()));
+            to[texel] = static_cast<float>(sum / (3.0 * largest_sample<Sample>));
         }
     });
     return heights;
@@ -86,7 +81,7 @@ std::vector<float> luminance(const Image& image) {
     } else {
         std::vector<double> table(std::numeric_limits<Sample>::max() + std::size_t{1});
         for (std::size_t code = 0; code < table.size(); ++code) {
-            const double coded = static_cast<double>(code) / largest_of<Sample>();
+            const double coded = static_cast<double>(code) / largest_sample<Sample>;
             table[code] = linear_from_srgb(static_cast<float>(coded));
         }
         return luminance_by<Sample>(image, [&table](Sample sample) { return table[sample]; });

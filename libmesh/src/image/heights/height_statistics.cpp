@@ -13,6 +13,7 @@
 #include <numeric>
 
 #include "image/heights/seam_survey.h"
+#include "image/largest_sample.h"
 #include "parallel.h"
 #include "relief/mesh/error.h"
 
@@ -33,9 +34,7 @@ class Heights {
     }
     [[nodiscard]] std::span<const Sample> samples() const { return samples_; }
 
-    static constexpr double largest = std::is_same_v<Sample, float>
-                                          ? 1.0
-                                          : static_cast<double>(std::numeric_limits<Sample>::max());
+    static constexpr double largest = largest_sample<Sample>;
     int width, height;
 
   private:

@@ -7,7 +7,8 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
-#include <type_traits>
+
+#include "image/largest_sample.h"
 
 namespace relief {
 namespace {
@@ -52,9 +53,7 @@ SeamSurvey::Mean SeamSurvey::change_to(std::span<const double> next) const {
 
 template <typename Sample>
 void SeamSurvey::add_row(std::span<const Sample> row) {
-    constexpr double largest = std::is_same_v<Sample, float>
-                                   ? 1.0
-                                   : static_cast<double>(std::numeric_limits<Sample>::max());
+    constexpr double largest = largest_sample<Sample>;
     const auto at = [&](std::size_t x) { return static_cast<double>(row[x]) / largest; };
     for (std::size_t i = 0; i < columns_.size(); ++i)
         across_columns_[i].add(at((columns_[i] + 1) % row.size()) - at(columns_[i]));

@@ -7,10 +7,10 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <limits>
 #include <type_traits>
 #include <vector>
 
+#include "image/largest_sample.h"
 #include "image/normals/normal_coding.h"
 #include "parallel.h"
 
@@ -19,16 +19,11 @@ namespace {
 
 constexpr std::size_t texels_per_piece = 1 << 16;
 
-template <typename Sample>
-constexpr double largest_of() {
-    return std::is_same_v<Sample, float> ? 1.0
-                                         : static_cast<double>(std::numeric_limits<Sample>::max());
-}
-
 /// A sample of any depth, 1.0 being white.
 double value_at(const void* row, int bits, std::size_t x) {
-    if (bits == 8) return static_cast<const std::uint8_t*>(row)[x] / largest_of<std::uint8_t>();
-    if (bits == 16) return static_cast<const std::uint16_t*>(row)[x] / largest_of<std::uint16_t>();
+    if (bits == 8) return static_cast<const std::uint8_t*>(row)[x] / largest_sample<std::uint8_t>;
+    if (bits == 16)
+        return static_cast<const std::uint16_t*>(row)[x] / largest_sample<std::uint16_t>;
     return static_cast<double>(static_cast<const float*>(row)[x]);
 }
 
@@ -45,7 +40,7 @@ class UnitCoding {
             found_.add(kind_, "texel", texel, "is written as the nearest of 0 and 1");
             value = value > 1.0 ? 1.0 : 0.0;
         }
-        return static_cast<Sample>(value * largest_of<Sample>() + 0.5);
+        return static_cast<Sample>(value * largest_sample<Sample> + 0.5);
     }
 
   private:
