@@ -8,11 +8,11 @@
 #include <memory>
 
 #include "commands.h"
+#include "common/frame_choices.h"
 #include "common/options.h"
 #include "common/report_options.h"
 #include "common/text.h"
 #include "process_batch.h"
-#include "common/frame_choices.h"
 #include "process_jobs.h"
 #include "process_summary.h"
 #include "processing.h"

@@ -7,9 +7,9 @@
 #include <functional>
 #include <map>
 
+#include "common/frame_choices.h"
 #include "common/options.h"
 #include "common/text.h"
-#include "common/frame_choices.h"
 
 namespace relief::tools {
 namespace {
