@@ -8,10 +8,10 @@
 #include "common/frame_choices.h"
 #include "common/options.h"
 #include "convert/convert_steps.h"
+#include "map_models.h"
 #include "relief/mesh/error.h"
 #include "relief/mesh/normal_map_operations.h"
 #include "relief/mesh/normal_space.h"
-#include "target_mesh.h"
 
 namespace relief::tools {
 namespace {
@@ -40,9 +40,36 @@ MapPlacement placement_of(const SpaceChoice& choice) {
             choice.outside.value_or(UvOutside::ignore) == UvOutside::repeat};
 }
 
+struct TargetMesh {
+    Mesh mesh;
+    bool has_own_tangents = true;  ///< All that it has are the file's.
+};
+
+/// The mesh that the map belongs to, in object space, with normals and tangents.
+TargetMesh read_target(const std::filesystem::path& file, std::optional<TangentMode> tangents,
+                       Report& report) {
+    TargetMesh target;
+    MapModel model = read_map_model(file, ModelSpace::object, report);
+    require_texcoords(file, model, "no texture coordinates", "unwrap it first");
+    about(file, [&] {
+        for (MapModelPart& part : model.parts) {
+            const bool keeps =
+                !tangents && !part.mesh.tangents.empty() && !part.mesh.normals.empty();
+            target.has_own_tangents = target.has_own_tangents && keeps;
+            FrameOptions options;
+            options.tangents =
+                keeps ? TangentMode::keep : tangents.value_or(TangentMode::mikktspace);
+            part.mesh = with_frames(std::move(part.mesh), options, report).mesh;
+        }
+        target.mesh = joined(std::move(model.parts));
+    });
+    if (target.mesh.triangles.empty()) throw FileError(file, "holds no triangles");
+    return target;
+}
+
 TargetMesh mesh_of(const std::filesystem::path& file, const SpaceChoice& choice, Report& report) {
     Report found;
-    TargetMesh target = read_target_mesh(file, choice.tangents, found);
+    TargetMesh target = read_target(file, choice.tangents, found);
     for (Finding finding : found.findings()) {
         finding.kind += " in the mesh";
         report.add(finding);

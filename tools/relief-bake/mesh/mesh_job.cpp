@@ -8,7 +8,7 @@
 #include <algorithm>
 
 #include "common/map_choices.h"
-#include "mesh/mesh_models.h"
+#include "map_models.h"
 #include "relief/mesh/image_rows.h"
 
 namespace relief::tools {
@@ -81,38 +81,47 @@ class MapWriter {
     ImageRowWriter writer_;
 };
 
-glm::dmat3 output_axes(const MeshBakeRequest& request, const BakeModel& low) {
+glm::dmat3 output_axes(const MeshBakeRequest& request,
+                       const std::optional<glm::dmat3>& world_from_low) {
     if (request.space != SpaceChoice::object) return glm::dmat3(1.0);
-    if (!low.world_from_object) {
+    if (!world_from_low) {
         throw failure(request.low, "has several primitives, so no axes of its own",
                       "use --space world or tangent");
     }
     // Normals go by the inverse transpose of what positions go by.
-    return glm::transpose(*low.world_from_object);
+    return glm::transpose(*world_from_low);
 }
 
 struct Models {
     std::vector<Mesh> high;
-    BakeModel low;
-    std::optional<BakeModel> cage;
+    Mesh low;
+    std::optional<glm::dmat3> world_from_low;
+    std::optional<Mesh> cage;
 };
+
+MapModel read(const std::filesystem::path& file, Findings& findings) {
+    Report report;
+    MapModel model = read_map_model(file, ModelSpace::world, report);
+    findings.add(file.string(), report);
+    return model;
+}
+
+Mesh read_beside(const MapModel& low, const std::filesystem::path& file, Findings& findings) {
+    MapModel model = read(file, findings);
+    move_to(model, low.origin);
+    return about(file, [&] { return joined(std::move(model.parts)); });
+}
 
 Models read_models(const MeshBakeRequest& request, Findings& findings) {
     Models models;
-    models.low = read_bake_model(request.low, findings);
-    if (models.low.mesh.texcoords.empty()) {
-        throw failure(request.low, "no texture coordinates, by which a map lies on a mesh",
+    MapModel low = read(request.low, findings);
+    require_texcoords(request.low, low, "no texture coordinates, by which a map lies on a mesh",
                       "unwrap it in a modelling program");
-    }
-    for (const std::filesystem::path& file : request.high) {
-        BakeModel high = read_bake_model(file, findings);
-        move_to(high, models.low.origin);
-        models.high.push_back(std::move(high.mesh));
-    }
-    if (request.cage) {
-        models.cage = read_bake_model(*request.cage, findings);
-        move_to(*models.cage, models.low.origin);
-    }
+    for (const std::filesystem::path& file : request.high)
+        models.high.push_back(read_beside(low, file, findings));
+    if (request.cage) models.cage = read_beside(low, *request.cage, findings);
+    models.world_from_low = low.world_from_object;
+    models.low = about(request.low, [&] { return joined(std::move(low.parts)); });
     return models;
 }
 
@@ -124,18 +133,18 @@ BakedMap bake_map(const MeshBakeRequest& request, Stages& stages) {
     const Models models = stages.run("read", [&] { return read_models(request, baked.findings); });
     for (const Mesh& mesh : models.high)
         baked.high_triangles += mesh.triangles.size();
-    baked.low_triangles = models.low.mesh.triangles.size();
-    baked.has_own_tangents = !models.low.mesh.tangents.empty();
+    baked.low_triangles = models.low.triangles.size();
+    baked.has_own_tangents = !models.low.tangents.empty();
 
     BakeOptions options = bake_options_of(request);
-    options.output_from_mesh = output_axes(request, models.low);
-    if (models.cage) options.cage = &models.cage->mesh;
+    options.output_from_mesh = output_axes(request, models.world_from_low);
+    if (models.cage) options.cage = &*models.cage;
     Report report;
     about(request.low, [&] {
         MapWriter writer(request, baked.format, report);
         baked.result = stages.run("bake", [&] {
             const auto take = [&](const BakedRows& rows) { writer.write(rows); };
-            BakeResult result = bake_normals(models.high, models.low.mesh, options, take, report);
+            BakeResult result = bake_normals(models.high, models.low, options, take, report);
             writer.finish();
             return result;
         });

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: Apache-2.0
+// Tests: tests/tools/map_models_test.cpp.
+#include "map_models.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "common/model_file.h"
+#include "relief/mesh/error.h"
+#include "relief/mesh/frames.h"
+#include "relief/mesh/placed.h"
+
+namespace relief::tools {
+namespace {
+
+MapModelPart part_of(const GltfDocument& document, GltfPrimitiveId id, Report& report) {
+    Mesh mesh = document.mesh(id, document.tangent_texcoords(id).set);
+    if (mesh.normals.empty()) {
+        if (!mesh.tangents.empty()) {
+            report.add("tangents without normals", "primitive", id.primitive,
+                       "are ignored, as glTF asks");
+        }
+        FrameOptions options;
+        options.if_missing = NormalMode::flat;
+        options.tangents = TangentMode::none;
+        mesh = with_frames(std::move(mesh), options, report).mesh;
+    }
+    return {document.describe(id), std::move(mesh)};
+}
+
+MapModel model_of(const GltfDocument& document, ModelSpace space, Report& report) {
+    MapModel model;
+    if (space == ModelSpace::object) {
+        for (const GltfPrimitiveId id : document.triangle_primitives())
+            model.parts.push_back(part_of(document, id, report));
+        return model;
+    }
+    const GltfView view = document.view();
+    for (const auto& primitive : view.primitives) {
+        MapModelPart part = part_of(document, primitive.what, report);
+        part.mesh = placed(std::move(part.mesh), primitive.world_from_object);
+        model.parts.push_back(std::move(part));
+    }
+    if (view.primitives.size() == 1)
+        model.world_from_object = glm::dmat3(glm::dmat4(view.primitives[0].world_from_object));
+    return model;
+}
+
+/// One attribute of all parts, or nothing where one of them has none.
+template <typename Value>
+std::vector<Value> joined(const std::vector<MapModelPart>& parts,
+                          std::vector<Value> Mesh::*attribute) {
+    std::vector<Value> all;
+    for (const MapModelPart& part : parts) {
+        const std::vector<Value>& values = part.mesh.*attribute;
+        if (values.empty() && !part.mesh.positions.empty()) return {};
+        all.insert(all.end(), values.begin(), values.end());
+    }
+    return all;
+}
+
+}  // namespace
+
+MapModel read_map_model(const std::filesystem::path& file, ModelSpace space, Report& report) {
+    Model read = read_model(file, report);
+    return about(file, [&] {
+        if (const auto* document = std::get_if<GltfDocument>(&read))
+            return model_of(*document, space, report);
+        auto& contents = std::get<MeshFile>(read);
+        MapModel model;
+        model.parts.push_back({"", std::move(contents.mesh)});
+        model.origin = contents.origin;
+        model.world_from_object = glm::dmat3(1.0);
+        return model;
+    });
+}
+
+void require_texcoords(const std::filesystem::path& file, const MapModel& model,
+                       const std::string& problem, const std::string& remedy) {
+    for (const MapModelPart& part : model.parts) {
+        if (!part.mesh.texcoords.empty()) continue;
+        throw failure(file, part.name.empty() ? problem : part.name + ": " + problem, remedy);
+    }
+}
+
+Mesh joined(std::vector<MapModelPart> parts) {
+    if (parts.size() == 1) return std::move(parts.front().mesh);
+    Mesh all;
+    all.positions = joined(parts, &Mesh::positions);
+    all.normals = joined(parts, &Mesh::normals);
+    all.tangents = joined(parts, &Mesh::tangents);
+    all.texcoords = joined(parts, &Mesh::texcoords);
+    if (all.positions.size() > std::numeric_limits<std::uint32_t>::max()) {
+        throw InvalidInput(
+            fmt::format("{} vertices are too many for one mesh", all.positions.size()));
+    }
+    std::uint32_t first = 0;
+    for (const MapModelPart& part : parts) {
+        for (const glm::uvec3& triangle : part.mesh.triangles)
+            all.triangles.push_back(triangle + first);
+        first += static_cast<std::uint32_t>(part.mesh.positions.size());
+    }
+    return all;
+}
+
+void move_to(MapModel& model, const glm::dvec3& origin) {
+    const glm::dvec3 by = model.origin - origin;
+    model.origin = origin;
+    if (by == glm::dvec3(0.0)) return;
+    for (MapModelPart& part : model.parts) {
+        for (glm::vec3& position : part.mesh.positions)
+            position = glm::vec3(glm::dvec3(position) + by);
+    }
+}
+
+}  // namespace relief::tools
