@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Strips of the map from the top: who owns each sample, what its ray meets, what its texel becomes.
-// Tests: tests/mesh/bake/bake_test.cpp, bake_sphere_test.cpp.
+// Tests: tests/mesh/bake/bake_test.cpp, baker_test.cpp, bake_sphere_test.cpp.
 #include "relief/mesh/bake.h"
 
 #include <fmt/format.h>
@@ -12,7 +12,6 @@
 #include <mutex>
 #include <numbers>
 
-#include "bake/bake_distances.h"
 #include "bake/band_bake.h"
 #include "bake/dilation.h"
 #include "parallel.h"
@@ -39,39 +38,49 @@ void check_distance(const std::optional<double>& distance, const char* what) {
         throw InvalidInput(fmt::format("{} of {} is negative or not finite", what, *distance));
 }
 
-void check(const BakeOptions& options) {
+void check_surfaces(const BakeOptions& options) {
     check_distance(options.offset, "an offset");
     check_distance(options.max_distance, "a largest distance");
     if (!(options.hardness >= 0.0 && options.hardness <= 1.0))
         throw InvalidInput(fmt::format("a hardness of {} is not within 0 to 1", options.hardness));
-    if (options.padding < 0 || options.padding > most_padding) {
-        throw InvalidInput(fmt::format("a padding of {} texels is not within 0 to {}",
-                                       options.padding, most_padding));
+}
+
+void check_triangle_numbers(std::span<const std::uint32_t> numbers, std::size_t count) {
+    for (std::size_t i = 0; i < numbers.size(); ++i) {
+        if (numbers[i] >= count)
+            throw InvalidInput(fmt::format("there is no triangle {} in the low mesh", numbers[i]));
+        if (i > 0 && numbers[i] <= numbers[i - 1])
+            throw InvalidInput("the triangles of a map are not in ascending order");
     }
-    if (options.sample_angle &&
-        !(*options.sample_angle >= 0.0 && *options.sample_angle <= std::numbers::pi)) {
+}
+
+void check_map(const BakeMapOptions& map, const Mesh& low) {
+    const int side = side_of(map.samples);
+    // Coverage has a limit of its own, which is of samples.
+    for (const int texels : {map.width, map.height}) {
+        if (texels < 1 || texels > TexelCover::largest_side / side) {
+            throw InvalidInput(
+                fmt::format("a map of {} x {} texels of {} samples is not within 1 to {}",
+                            map.width, map.height, map.samples, TexelCover::largest_side / side));
+        }
+    }
+    if (map.padding < 0 || map.padding > most_padding) {
         throw InvalidInput(
-            fmt::format("an angle of {} is not within 0 to pi", *options.sample_angle));
+            fmt::format("a padding of {} texels is not within 0 to {}", map.padding, most_padding));
     }
+    if (map.sample_angle && !(*map.sample_angle >= 0.0 && *map.sample_angle <= std::numbers::pi))
+        throw InvalidInput(fmt::format("an angle of {} is not within 0 to pi", *map.sample_angle));
+    if (map.triangles) check_triangle_numbers(*map.triangles, low.triangles.size());
 }
 
-BakeDistances distances_of(std::span<const Mesh> high, const HighSurface& surface, const Mesh& low,
-                           const BakeOptions& options) {
-    const bool all_known = options.cage != nullptr || (options.offset && options.max_distance);
-    BakeDistances distances;
-    if (!all_known) distances = distances_between(high, surface.scene(), low);
-    distances.offset = options.offset.value_or(distances.offset);
-    distances.max_distance = options.max_distance.value_or(distances.max_distance);
-    return distances;
-}
-
-CoverageOptions coverage_options(const BakeOptions& options, int side) {
+CoverageOptions coverage_options(const BakeMapOptions& map, int side) {
     CoverageOptions coverage;
-    // Of a map too large for so many samples, coverage says so itself.
-    coverage.width = options.width * side;
-    coverage.height = options.height * side;
-    coverage.tile = options.placement.tile;
-    coverage.repeat = options.placement.repeat;
+    coverage.width = map.width * side;
+    coverage.height = map.height * side;
+    coverage.samples_across = side;
+    coverage.tile = map.placement.tile;
+    coverage.repeat = map.placement.repeat;
+    coverage.only = map.triangles;
     return coverage;
 }
 
@@ -123,25 +132,59 @@ void bake_strip(const BakeWork& work, const TexelCover& cover, Strip& strip, int
 
 }  // namespace
 
-BakeResult bake_normals(std::span<const Mesh> high, const Mesh& low, const BakeOptions& options,
-                        const std::function<void(const BakedRows& rows)>& take, Report& report) {
-    check(options);
-    const int side = side_of(options.samples);
-    const LowSurface low_surface(low, options, report);
-    const TexelCover cover(low_surface.mesh().texcoords, low_surface.mesh().triangles,
-                           coverage_options(options, side), report);
-    const HighSurface high_surface(high, report);
+struct Baker::Implementation {
+    template <typename High>
+    Implementation(std::span<High> high, const Mesh& mesh, const BakeOptions& given, Report& report)
+        : options(given), low(mesh, options, report), parts(high, low.mesh(), options, report) {}
+
+    BakeOptions options;
+    LowSurface low;
+    BakeParts parts;
+};
+
+Baker::Baker(std::span<const Mesh> high, const Mesh& low, const BakeOptions& options,
+             Report& report) {
+    check_surfaces(options);
+    implementation_ = std::make_unique<Implementation>(high, low, options, report);
+}
+
+Baker::Baker(std::span<const BakePart> parts, const Mesh& low, const BakeOptions& options,
+             Report& report) {
+    check_surfaces(options);
+    implementation_ = std::make_unique<Implementation>(parts, low, options, report);
+}
+
+Baker::~Baker() = default;
+Baker::Baker(Baker&&) noexcept = default;
+Baker& Baker::operator=(Baker&&) noexcept = default;
+
+const Mesh& Baker::low() const {
+    return implementation_->low.mesh();
+}
+
+BakeDistances Baker::distances() const {
+    return implementation_->parts.largest_distances();
+}
+
+BakeResult Baker::bake(const BakeMapOptions& map,
+                       const std::function<void(const BakedRows& rows)>& take,
+                       Report& report) const {
+    check_map(map, low());
+    BakeOptions options = implementation_->options;
+    static_cast<BakeMapOptions&>(options) = map;
+    const int side = side_of(map.samples);
+    const TexelCover cover(low().texcoords, low().triangles, coverage_options(map, side), report);
     BakeResult result;
-    result.distances = distances_of(high, high_surface, low, options);
-    const BakeWork work{high_surface, low_surface, options, result.distances, side};
-    const int rows = rows_of_strip(options.width, options.height);
-    Strip strip(static_cast<std::size_t>(options.width), static_cast<std::size_t>(rows));
-    Dilation dilation(options.width, options.height, options.padding, take);
+    result.distances = distances();
+    const BakeWork work{implementation_->parts, implementation_->low, options, side};
+    const int rows = rows_of_strip(map.width, map.height);
+    Strip strip(static_cast<std::size_t>(map.width), static_cast<std::size_t>(rows));
+    Dilation dilation(map.width, map.height, map.padding, take);
     BakeCounts counts;
-    for (int first = 0; first < options.height; first += rows) {
-        const int last = std::min(first + rows, options.height);
+    for (int first = 0; first < map.height; first += rows) {
+        const int last = std::min(first + rows, map.height);
         bake_strip(work, cover, strip, first, last, result, counts, report);
-        dilation.push(strip.rows(options.width, first, 0, last - first));
+        dilation.push(strip.rows(map.width, first, 0, last - first));
     }
     result.samples = counts.samples;
     result.rays = counts.rays;
@@ -152,6 +195,13 @@ BakeResult bake_normals(std::span<const Mesh> high, const Mesh& low, const BakeO
         result.greatest_height = counts.greatest_height;
     }
     return result;
+}
+
+BakeResult bake_normals(std::span<const Mesh> high, const Mesh& low, const BakeOptions& options,
+                        const std::function<void(const BakedRows& rows)>& take, Report& report) {
+    // What is wrong with the map is said before the meshes are made ready, which takes a while.
+    check_map(options, low);
+    return Baker(high, low, options, report).bake(options, take, report);
 }
 
 }  // namespace relief

@@ -40,7 +40,6 @@ class Piece {
     Piece(const BakeWork& work, int first_row, std::span<const CoveredTexel> owners,
           const BakedRows& rows, int begin, int end, Report& found)
         : work_(work),
-          projection_(work.high.scene(), work.options.back_faces),
           owners_(owners),
           rows_(rows),
           first_row_(first_row),
@@ -107,14 +106,21 @@ class Piece {
     }
 
     void add(const CoveredTexel& owner, std::size_t texel) {
-        lines_.push_back(work_.low.line(owner, work_.distances, map_index(texel), found_));
+        const SeenSurface& seen = work_.parts.seen_by(owner.triangle);
+        if (&seen != seen_) {
+            flush();
+            seen_ = &seen;
+        }
+        lines_.push_back(work_.low.line(owner, seen.distances, map_index(texel), found_));
         samples_.push_back({owner, texel});
         ++sums_[texel].cast;
     }
 
     void flush() {
+        if (lines_.empty()) return;
         points_.resize(lines_.size());
-        counts_.rays += projection_.find(lines_, points_);
+        const Projection projection(seen_->high.scene(), work_.options.back_faces);
+        counts_.rays += projection.find(lines_, points_);
         counts_.samples += lines_.size();
         for (std::size_t i = 0; i < lines_.size(); ++i) {
             if (points_[i].hit.is_hit()) take(samples_[i], points_[i]);
@@ -129,7 +135,7 @@ class Piece {
     };
 
     void take(const Sample& sample, const ProjectedPoint& point) {
-        glm::dvec3 normal = work_.high.normal(point.hit, map_index(sample.texel), found_);
+        glm::dvec3 normal = seen_->high.normal(point.hit, map_index(sample.texel), found_);
         if (!point.hit.faces_origin) normal = -normal;
         normal = in_output_space(normal, sample);
         TexelSum& sum = sums_[sample.texel];
@@ -187,7 +193,7 @@ class Piece {
     }
 
     const BakeWork& work_;
-    Projection projection_;
+    const SeenSurface* seen_ = nullptr;  ///< By the lines that wait.
     std::span<const CoveredTexel> owners_;
     const BakedRows& rows_;
     int first_row_, begin_, end_, width_;

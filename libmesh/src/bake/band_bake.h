@@ -6,7 +6,7 @@
 
 #include <limits>
 
-#include "bake/high_surface.h"
+#include "bake/bake_parts.h"
 #include "bake/low_surface.h"
 #include "relief/mesh/bake.h"
 
@@ -14,10 +14,9 @@ namespace relief {
 
 /// What all rows have in common.
 struct BakeWork {
-    const HighSurface& high;
+    const BakeParts& parts;
     const LowSurface& low;
     const BakeOptions& options;
-    BakeDistances distances;
     int side = 1;  ///< Samples along each side of a texel.
 };
 

@@ -21,7 +21,7 @@ namespace relief {
 namespace {
 
 constexpr int rows_per_band = TexelCover::band_rows;
-constexpr int largest_side = 65536;
+constexpr int largest_side = TexelCover::largest_side;
 constexpr double most_turns = 64.0;  // Of a texture that repeats, across one triangle.
 
 /// The triangles of a map, found by index.
@@ -34,7 +34,12 @@ class Triangles {
           options_(options),
           scale_(std::max(options.width, options.height)) {}
 
-    [[nodiscard]] std::size_t count() const { return triangles_.size(); }
+    [[nodiscard]] std::size_t count() const {
+        return options_.only ? options_.only->size() : triangles_.size();
+    }
+    [[nodiscard]] std::size_t index(std::size_t place) const {
+        return options_.only ? (*options_.only)[place] : place;
+    }
 
     TexelTriangle::Trouble make(std::size_t index, TexelTriangle& triangle) const {
         std::array<glm::dvec2, 3> corners;
@@ -107,7 +112,8 @@ class Bands {
     void for_each_reach(const Triangles& triangles, const CoverageOptions& options, Report* report,
                         const Reach& reach) const {
         std::vector<std::size_t> reached;
-        for (std::size_t index = 0; index < triangles.count(); ++index) {
+        for (std::size_t place = 0; place < triangles.count(); ++place) {
+            const std::size_t index = triangles.index(place);
             TexelTriangle triangle;
             const TexelTriangle::Trouble trouble = triangles.make(index, triangle);
             if (trouble != TexelTriangle::Trouble::none) {
@@ -179,22 +185,35 @@ class Band {
 
     Coverage finish(Report& report) const {
         Coverage coverage;
-        const std::size_t first_texel =
-            static_cast<std::size_t>(first_row_) * static_cast<std::size_t>(options_.width);
         for (std::size_t i = 0; i < texels_.size(); ++i) {
             ++(texels_[i].is_inside      ? coverage.inside
                : texels_[i].is_covered() ? coverage.touched
                                          : coverage.empty);
-            if (!shared_[i]) continue;
-            ++coverage.shared;
-            report.add("texel of several triangles", "texel", first_texel + i,
-                       "belongs to one of them, by a fixed rule");
+            if (shared_[i]) ++coverage.shared;
         }
+        if (coverage.shared > 0) report_shared(report);
         return coverage;
     }
     [[nodiscard]] std::span<const CoveredTexel> texels() const { return texels_; }
 
   private:
+    /// Texels once each, of however many samples.
+    void report_shared(Report& report) const {
+        const auto side = static_cast<std::size_t>(options_.samples_across);
+        const std::size_t columns = static_cast<std::size_t>(options_.width);
+        const std::size_t width = columns / side;
+        std::vector<bool> said(texels_.size() / (side * side), false);
+        const std::size_t first_texel = static_cast<std::size_t>(first_row_) / side * width;
+        for (std::size_t i = 0; i < texels_.size(); ++i) {
+            if (!shared_[i]) continue;
+            const std::size_t texel = i / columns / side * width + i % columns / side;
+            if (said[texel]) continue;
+            said[texel] = true;
+            report.add("texel of several triangles", "texel", first_texel + texel,
+                       "belongs to one of them, by a fixed rule");
+        }
+    }
+
     void draw_row(std::uint32_t index, const TexelTriangle& triangle, std::int64_t row,
                   std::int64_t row_there) {
         const std::size_t first =
@@ -279,7 +298,13 @@ void check(std::span<const glm::vec2> texcoords, std::span<const glm::uvec3> tri
             throw InvalidInput(fmt::format("a map of {} x {} texels is not within 1 to {}",
                                            options.width, options.height, largest_side));
     }
+    const int across = options.samples_across;
+    const bool is_known = across == 1 || across == 2 || across == 4 || across == 8;
+    if (!is_known || options.width % across != 0 || options.height % across != 0)
+        throw InvalidInput(fmt::format("{} samples across a texel are not 1, 2, 4 or 8", across));
     check_triangles(triangles, texcoords.size());
+    if (options.only && !options.only->empty() && options.only->back() >= triangles.size())
+        throw InvalidInput(fmt::format("there is no triangle {}", options.only->back()));
 }
 
 }  // namespace

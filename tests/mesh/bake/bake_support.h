@@ -24,14 +24,16 @@ struct BakedImage {
     }
 };
 
+inline void append(BakedImage& image, const BakedRows& rows) {
+    image.normals.insert(image.normals.end(), rows.normals.begin(), rows.normals.end());
+    image.heights.insert(image.heights.end(), rows.heights.begin(), rows.heights.end());
+    image.states.insert(image.states.end(), rows.states.begin(), rows.states.end());
+}
+
 inline BakedImage bake(const std::vector<Mesh>& high, const Mesh& low, const BakeOptions& options) {
     BakedImage image;
-    const auto take = [&](const BakedRows& rows) {
-        image.normals.insert(image.normals.end(), rows.normals.begin(), rows.normals.end());
-        image.heights.insert(image.heights.end(), rows.heights.begin(), rows.heights.end());
-        image.states.insert(image.states.end(), rows.states.begin(), rows.states.end());
-    };
-    image.result = bake_normals(high, low, options, take, image.report);
+    image.result = bake_normals(
+        high, low, options, [&](const BakedRows& rows) { append(image, rows); }, image.report);
     return image;
 }
 

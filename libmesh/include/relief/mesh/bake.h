@@ -1,15 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// Normal maps of detailed meshes for a simple one: what rays from its surface meet. In the library
-/// relief::bake. Tests: tests/mesh/bake/bake_test.cpp, bake_sphere_test.cpp.
+/// relief::bake. Tests: tests/mesh/bake/bake_test.cpp, baker_test.cpp, bake_sphere_test.cpp.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <glm/glm.hpp>
+#include <memory>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "relief/mesh/mesh.h"
 #include "relief/mesh/normal_space.h"
@@ -38,10 +40,27 @@ enum class BackFaces {
     take,  ///< Either; normals are turned to where the ray comes from.
 };
 
-struct BakeOptions {
-    int width = 0;  ///< Of the map, in texels.
+/// One map of a bake. There may be many on the same meshes, each with options of its own.
+struct BakeMapOptions {
+    int width = 0;  ///< In texels.
     int height = 0;
     MapPlacement placement{};
+    /// Those triangles of the low mesh that the map is for, ascending: a material's, a tile's.
+    /// Absent: all. The span must outlive the call.
+    std::optional<std::span<const std::uint32_t>> triangles{};
+    /// A texel's mean of 1, 4, 16 or 64 samples, the centres of as many equal squares of it. Each
+    /// has an owner of its own (texel_coverage.h); those that no chart reaches have no say.
+    int samples = 1;
+    /// With several samples: a quarter of them is cast first (of 4: the upper left and the lower
+    /// right one), and the others only where two of those are further apart than this, radians.
+    std::optional<double> sample_angle{};
+    /// How far around charts, in texels, what is not baked is filled from the nearest texels that
+    /// are: the mean of them, where several are equally near. 0 to 1024.
+    int padding = 0;
+};
+
+/// What is alike for all maps, and one map's options.
+struct BakeOptions : BakeMapOptions {
     BakeSpace space = BakeSpace::tangent;
     RayDirections directions = RayDirections::averaged;
     /// Of averaged directions: 0 to 1, how far they are drawn to the shading normals, vertex by
@@ -56,15 +75,6 @@ struct BakeOptions {
     std::optional<double> offset;
     std::optional<double> max_distance;
     BackFaces back_faces = BackFaces::skip;
-    /// A texel's mean of 1, 4, 16 or 64 samples, the centres of as many equal squares of it. Each
-    /// has an owner of its own (texel_coverage.h); those that no chart reaches have no say.
-    int samples = 1;
-    /// With several samples: a quarter of them is cast first (of 4: the upper left and the lower
-    /// right one), and the others only where two of those are further apart than this, radians.
-    std::optional<double> sample_angle;
-    /// How far around charts, in texels, what is not baked is filled from the nearest texels that
-    /// are: the mean of them, where several are equally near. 0 to 1024.
-    int padding = 0;
     /// Turns normals of object space into the axes that they are wanted in, from those of the
     /// meshes; made unit afterwards.
     glm::dmat3 output_from_mesh{1.0};
@@ -98,7 +108,7 @@ struct BakeResult {
     std::size_t texels_missed = 0;
     std::size_t samples = 0;  ///< Places that rays were cast for.
     std::size_t rays = 0;
-    BakeDistances distances;  ///< As used; with a cage, the inner one, or 0 where that varies.
+    BakeDistances distances;  ///< Baker::distances().
     /// Of the surface outside of the low mesh, over all samples that hit; 0 where none did.
     double least_height = 0.0;
     double greatest_height = 0.0;
@@ -112,19 +122,15 @@ struct BakeResult {
 /// half of the longest side of the low mesh's box.
 BakeDistances automatic_distances(std::span<const Mesh> high, const Mesh& low);
 
-/// Bakes the normals of the high meshes into a map for the low one.
-///
-/// \param high    in the same space as `low`; those without normals get averaged ones (frames.h)
-/// \param low     with texture coordinates; without normals it gets averaged ones, without tangents
-///                those of MikkTSpace, which is what a renderer would do
-/// \param take    gets the map from the top, some rows at a time, on the calling thread; it may
-///                change them. Row counts are multiples of 64, but for the last
-/// \param report  counts texels that are missed, have no frame, face away from the surface baked,
-/// or
-///                have several owners; triangles that own no texel; rays without a direction, which
-///                run along the triangle's normal; normals without one, which are the triangle's
-/// \throws InvalidInput if a size or an option is out of range, a mesh is not valid, `low` has no
-///         texture coordinates, or the cage has other triangles
+/// High meshes that only some of the low mesh's triangles see: the rays of others pass through
+/// them. So neighbours do not catch each other's rays.
+struct BakePart {
+    std::span<const Mesh> high;
+    std::vector<std::uint32_t> triangles;  ///< Of the low mesh.
+};
+
+/// The meshes of a bake made ready for any number of maps: the high ones for rays; directions over
+/// the whole low one, so that rays do not part where materials or tiles do; distances.
 ///
 /// *Which surface.* Each ray runs from outside, through a texel's point on the low mesh, to inside,
 /// and what it meets first counts, if nothing lies between the two that faces the low mesh. So of
@@ -135,9 +141,57 @@ BakeDistances automatic_distances(std::span<const Mesh> high, const Mesh& low);
 /// outermost side counts. See projection.h.
 ///
 /// Computed in double, from the triangles that Embree finds. The same bits for any number of
-/// threads. Memory: the high meshes' rays (some 100 bytes a triangle), what cover_texels() takes,
-/// and some 64 MB or 64 rows, and twice
-/// the padding, for what is being baked; never the map.
+/// threads. Memory: the high meshes' rays (some 100 bytes a triangle), and while a map is baked
+/// what cover_texels() takes, some 64 MB or 64 rows, and twice the padding; never the map.
+class Baker {
+  public:
+    /// \param high    in the same space as `low`; those without normals get averaged ones
+    ///                (frames.h)
+    /// \param low     with texture coordinates; without normals it gets averaged ones, without
+    ///                tangents those of MikkTSpace, which is what a renderer would do
+    /// \param options  all but those of a map
+    /// \param report  counts what is wrong with the meshes
+    /// 	hrows InvalidInput if an option is out of range, a mesh is not valid, `low` has no
+    /// texture
+    ///         coordinates, or the cage has other triangles
+    ///
+    /// High meshes and the cage must outlive this.
+    Baker(std::span<const Mesh> high, const Mesh& low, const BakeOptions& options, Report& report);
+
+    /// The same for parts that do not see each other, each with distances of its own.
+    /// 	hrows InvalidInput also if a triangle of `low` is not in exactly one part
+    Baker(std::span<const BakePart> parts, const Mesh& low, const BakeOptions& options,
+          Report& report);
+
+    ~Baker();
+    Baker(Baker&&) noexcept;
+    Baker& operator=(Baker&&) noexcept;
+
+    /// The low mesh with the frames that its maps will be seen with.
+    [[nodiscard]] const Mesh& low() const;
+
+    /// As used; the largest of all parts. With a cage, the inner one, or 0 where that varies.
+    [[nodiscard]] BakeDistances distances() const;
+
+    /// Bakes a map.
+    ///
+    /// \param take    gets the map from the top, some rows at a time, on the calling thread; it may
+    ///                change them. Row counts are multiples of 64, but for the last
+    /// \param report  counts texels that are missed, have no frame, face away from the surface
+    ///                baked, or have several owners; triangles that own no texel; rays without a
+    ///                direction, which run along the triangle's normal; normals without one, which
+    ///                are the triangle's
+    /// 	hrows InvalidInput if a size or an option is out of range, or a triangle is not
+    /// there
+    BakeResult bake(const BakeMapOptions& map,
+                    const std::function<void(const BakedRows& rows)>& take, Report& report) const;
+
+  private:
+    struct Implementation;
+    std::unique_ptr<Implementation> implementation_;
+};
+
+/// Bakes the normals of the high meshes into one map for the low one: a Baker and its bake().
 BakeResult bake_normals(std::span<const Mesh> high, const Mesh& low, const BakeOptions& options,
                         const std::function<void(const BakedRows& rows)>& take, Report& report);
 

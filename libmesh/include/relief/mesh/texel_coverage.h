@@ -9,6 +9,7 @@
 #include <functional>
 #include <glm/glm.hpp>
 #include <memory>
+#include <optional>
 #include <span>
 
 #include "relief/mesh/report.h"
@@ -42,6 +43,12 @@ struct CoverageOptions {
     /// Texels whose centre no triangle holds belong to the nearest triangle that has a part in
     /// their square; so that no chart is lost for being small.
     bool touched = true;
+    /// For maps of several samples a texel, 1, 2, 4 or 8 along each of its sides: "texels" here are
+    /// samples then, and those of a whole texel are reported once, by the index of the texel.
+    int samples_across = 1;
+    /// Only these triangles, ascending; indices stay as they are. Absent: all. The span must
+    /// outlive what it is given to.
+    std::optional<std::span<const std::uint32_t>> only{};
 };
 
 /// What there was, over the whole map.
@@ -95,6 +102,7 @@ class TexelCover {
   public:
     /// First rows are multiples of this, last ones too or the map's end.
     static constexpr int band_rows = 64;
+    static constexpr int largest_side = 65536;
 
     /// \param texcoords, triangles, options, report  as above; spans must outlive this. The report
     ///        gets what is said of triangles
