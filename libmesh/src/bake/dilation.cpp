@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // First how far the next baked texel of each column is, then the nearest of those along a row.
+// Only baked texels are read and only others are written, so rows are filled where they are.
 // Tests: tests/mesh/bake/dilation_test.cpp.
 #include "bake/dilation.h"
 
 #include <algorithm>
+#include <array>
 
+#include "bake/nearest_columns.h"
 #include "geometry/direction.h"
 #include "parallel.h"
 
@@ -12,27 +15,59 @@ namespace relief {
 namespace {
 
 constexpr int row_step = 64;
+constexpr std::size_t columns_at_once = 256;
+
+/// What a layer of rows is, so that padding knows how to average it.
+struct Layer {
+    std::span<float> BakedRows::*values;
+    std::size_t channels;
+    bool has_directions;
+};
+constexpr std::array all_layers = {Layer{&BakedRows::normals, 3, true},
+                                   Layer{&BakedRows::heights, 1, false}};
 
 template <typename T>
 void append(std::vector<T>& all, std::span<const T> more) {
     all.insert(all.end(), more.begin(), more.end());
 }
 
-template <typename T>
-void drop(std::vector<T>& all, std::size_t count) {
-    all.erase(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(count));
+/// The mean of a layer's values at some texels, into one that is none of them.
+void average(const Layer& layer, std::span<float> values, std::span<const std::size_t> from,
+             std::size_t to) {
+    if (!layer.has_directions) {
+        for (std::size_t channel = 0; channel < layer.channels; ++channel) {
+            double sum = 0.0;
+            for (const std::size_t texel : from)
+                sum += values[layer.channels * texel + channel];
+            values[layer.channels * to + channel] =
+                static_cast<float>(sum / static_cast<double>(from.size()));
+        }
+        return;
+    }
+    const auto direction = [&](std::size_t texel) {
+        return glm::dvec3(values[3 * texel], values[3 * texel + 1], values[3 * texel + 2]);
+    };
+    glm::dvec3 sum(0.0);
+    for (const std::size_t texel : from)
+        sum += direction(texel);
+    const bool cancels = glm::length(sum) < 1e-6 * static_cast<double>(from.size());
+    const glm::vec3 mean = rounded(cancels ? direction(from.front()) : direction_or_zero(sum));
+    for (int axis = 0; axis < 3; ++axis)
+        values[3 * to + static_cast<std::size_t>(axis)] = mean[axis];
 }
 
 }  // namespace
 
 Dilation::Dilation(int width, int height, int texels, std::function<void(const BakedRows&)> take)
-    : width_(width), height_(height), texels_(texels), take_(std::move(take)) {}
+    : width_(width), height_(height), texels_(texels), take_(std::move(take)) {
+    window_.layers.resize(all_layers.size());
+}
 
 void Dilation::push(const BakedRows& rows) {
     if (texels_ == 0) return take_(rows);
-    append<float>(normals_, rows.normals);
-    append<float>(heights_, rows.heights);
-    append<TexelState>(states_, rows.states);
+    for (std::size_t i = 0; i < all_layers.size(); ++i)
+        append<float>(window_.layers[i], rows.*all_layers[i].values);
+    append<TexelState>(window_.states, rows.states);
     end_row_ += rows.row_count;
     const int complete = (end_row_ - texels_) / row_step * row_step;
     const int last = end_row_ == height_ ? height_ : complete;
@@ -40,92 +75,117 @@ void Dilation::push(const BakedRows& rows) {
 }
 
 void Dilation::hand_on(int last_row) {
-    measure_columns();
-    const auto count = static_cast<std::size_t>(last_row - next_row_);
-    const std::size_t first = at(next_row_, 0);
-    const std::size_t texels = count * static_cast<std::size_t>(width_);
-    const auto part = [&](auto& all, std::size_t channels) {
-        const auto begin = all.begin() + static_cast<std::ptrdiff_t>(first * channels);
-        return std::vector(begin, begin + static_cast<std::ptrdiff_t>(texels * channels));
-    };
-    std::vector<float> normals = part(normals_, 3), heights = part(heights_, 1);
-    std::vector<TexelState> states = part(states_, 1);
-    const BakedRows filled{next_row_, static_cast<int>(count), normals, heights, states};
-    parallel_for(count, 4, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i)
-            fill_row(next_row_ + static_cast<int>(i), filled);
-    });
-    take_(filled);
+    measure_columns(last_row);
+    const BakedRows rows = rows_of(first_row_, end_row_);
+    parallel_for(static_cast<std::size_t>(last_row - next_row_), 4,
+                 [&](std::size_t begin, std::size_t end) {
+                     NearestColumns nearest;
+                     for (std::size_t i = begin; i < end; ++i)
+                         fill_row(next_row_ + static_cast<int>(i), rows, nearest);
+                 });
+    // What is needed further on is copied first, as rows handed on may be changed.
+    const int kept = std::max(last_row - texels_, first_row_);
+    Window rest = last_row < height_ ? copy_from(kept) : Window{};
+    take_(rows_of(next_row_, last_row));
+    window_ = std::move(rest);
     next_row_ = last_row;
-    forget(std::max(next_row_ - texels_, first_row_));
+    first_row_ = kept;
 }
 
-void Dilation::measure_columns() {
+/// By columns side by side: what goes on from row to row fits a cache.
+void Dilation::measure_columns(int last_row) {
     const auto beyond = static_cast<std::uint16_t>(texels_ + 1);
     const auto width = static_cast<std::size_t>(width_);
-    const std::size_t count = states_.size();
-    upwards_.resize(count);
-    downwards_.resize(count);
-    const auto next = [&](std::size_t i, std::uint16_t before) {
-        if (states_[i] == TexelState::baked) return std::uint16_t{0};
-        return std::min<std::uint16_t>(static_cast<std::uint16_t>(before + 1), beyond);
-    };
-    for (std::size_t i = 0; i < count; ++i)
-        upwards_[i] = next(i, i < width ? beyond : upwards_[i - width]);
-    for (std::size_t i = count; i-- > 0;)
-        downwards_[i] = next(i, i + width >= count ? beyond : downwards_[i + width]);
+    const int begin_row = std::max(next_row_ - texels_, first_row_);
+    const int end_row = std::min(last_row + texels_, end_row_);
+    upwards_.resize(texels_in(last_row - next_row_));
+    downwards_.resize(upwards_.size());
+    parallel_for(width, columns_at_once, [&](std::size_t begin, std::size_t end) {
+        std::vector<std::uint16_t> distance;
+        const auto pass = [&](int row, std::vector<std::uint16_t>& found) {
+            const TexelState* states = &window_.states[texels_in(row - first_row_)];
+            for (std::size_t x = begin; x < end; ++x) {
+                const auto further = static_cast<std::uint16_t>(distance[x - begin] + 1);
+                distance[x - begin] =
+                    states[x] == TexelState::baked ? std::uint16_t{0} : std::min(further, beyond);
+            }
+            if (row < next_row_ || row >= last_row) return;
+            const auto to = found.begin() + static_cast<std::ptrdiff_t>(texels_in(row - next_row_));
+            std::copy(distance.begin(), distance.end(), to + static_cast<std::ptrdiff_t>(begin));
+        };
+        distance.assign(end - begin, beyond);
+        for (int row = begin_row; row < last_row; ++row)
+            pass(row, upwards_);
+        distance.assign(end - begin, beyond);
+        for (int row = end_row; row-- > next_row_;)
+            pass(row, downwards_);
+    });
 }
 
-void Dilation::fill_row(int row, const BakedRows& filled) const {
-    const std::size_t out_row =
-        static_cast<std::size_t>(row - filled.first_row) * static_cast<std::size_t>(width_);
+void Dilation::fill_row(int row, const BakedRows& rows, NearestColumns& nearest) {
+    const std::size_t out = texels_in(row - next_row_);
+    const std::size_t here = texels_in(row - first_row_);
+    const auto up = [&](int column) { return upwards_[out + static_cast<std::size_t>(column)]; };
+    const auto down = [&](int column) {
+        return downwards_[out + static_cast<std::size_t>(column)];
+    };
+    const auto is_baked = [&](int column) {
+        return column < 0 || column == width_ || up(column) == 0;
+    };
+    nearest.clear();
     for (int column = 0; column < width_; ++column) {
-        if (states_[at(row, column)] == TexelState::baked) continue;
-        const int begin = std::max(column - texels_, 0);
-        const int end = std::min(column + texels_ + 1, width_);
-        const auto squared = [&](int other, const std::vector<std::uint16_t>& vertical) {
-            const int across = other - column;
-            const int along = vertical[at(row, other)];
-            return across * across + along * along;
-        };
-        const int limit = texels_ * texels_;
-        int nearest = limit + 1;
-        for (int other = begin; other < end; ++other)
-            nearest = std::min({nearest, squared(other, upwards_), squared(other, downwards_)});
-        if (nearest > limit) continue;
-        glm::dvec3 sum(0.0), first(0.0);
-        double height = 0.0;
-        int count = 0;
-        const auto add = [&](int other_row, int other) {
-            const std::size_t texel = at(other_row, other);
-            const glm::dvec3 normal(normals_[3 * texel], normals_[3 * texel + 1],
-                                    normals_[3 * texel + 2]);
-            if (count++ == 0) first = normal;
-            sum += normal;
-            height += heights_[texel];
-        };
-        for (int other = begin; other < end; ++other) {
-            const int up = upwards_[at(row, other)];
-            const int down = downwards_[at(row, other)];
-            if (squared(other, upwards_) == nearest) add(row - up, other);
-            if (down != 0 && squared(other, downwards_) == nearest) add(row + down, other);
+        const int distance = std::min(up(column), down(column));
+        // Between two that are baked, a texel is nearest to none that is not.
+        if (distance == 0 && is_baked(column - 1) && is_baked(column + 1)) continue;
+        if (distance <= texels_) nearest.add(column, distance);
+    }
+    if (nearest.is_empty()) return;
+    std::vector<std::size_t> from;
+    for (int column = 0; column < width_; ++column) {
+        if (up(column) == 0) continue;
+        if (nearest.squared_distance(column) > std::int64_t{texels_} * texels_) continue;
+        from.clear();
+        nearest.for_nearest(column, [&](int other) {
+            const std::size_t texel = here + static_cast<std::size_t>(other);
+            const int above = up(other), below = down(other);
+            if (above <= below) from.push_back(texel - texels_in(above));
+            if (below <= above && below != 0) from.push_back(texel + texels_in(below));
+        });
+        const std::size_t to = here + static_cast<std::size_t>(column);
+        for (const Layer& layer : all_layers) {
+            if (!(rows.*layer.values).empty()) average(layer, rows.*layer.values, from, to);
         }
-        glm::dvec3 mean = direction_or_zero(sum);
-        if (glm::length(sum) < 1e-6 * count) mean = first;
-        const std::size_t out = out_row + static_cast<std::size_t>(column);
-        for (std::size_t axis = 0; axis < 3; ++axis)
-            filled.normals[3 * out + axis] = rounded(mean)[static_cast<int>(axis)];
-        filled.heights[out] = static_cast<float>(height / count);
-        filled.states[out] = TexelState::padded;
+        rows.states[to] = TexelState::padded;
     }
 }
 
-void Dilation::forget(int first_row) {
-    const std::size_t count = at(first_row, 0);
-    drop(normals_, 3 * count);
-    drop(heights_, count);
-    drop(states_, count);
-    first_row_ = first_row;
+BakedRows Dilation::rows_of(int first_row, int last_row) {
+    BakedRows rows;
+    rows.first_row = first_row;
+    rows.row_count = last_row - first_row;
+    const std::size_t first = texels_in(first_row - first_row_);
+    const std::size_t texels = texels_in(rows.row_count);
+    for (std::size_t i = 0; i < all_layers.size(); ++i) {
+        const std::size_t channels = all_layers[i].channels;
+        if (window_.layers[i].empty()) continue;
+        rows.*all_layers[i].values =
+            std::span(window_.layers[i]).subspan(channels * first, channels * texels);
+    }
+    rows.states = std::span(window_.states).subspan(first, texels);
+    return rows;
+}
+
+Dilation::Window Dilation::copy_from(int first_row) const {
+    const auto first = static_cast<std::ptrdiff_t>(texels_in(first_row - first_row_));
+    Window rest;
+    for (std::size_t i = 0; i < all_layers.size(); ++i) {
+        const std::vector<float>& values = window_.layers[i];
+        const auto skipped = static_cast<std::ptrdiff_t>(all_layers[i].channels) * first;
+        rest.layers.emplace_back(values.empty() ? values.end() : values.begin() + skipped,
+                                 values.end());
+    }
+    rest.states.assign(window_.states.begin() + first, window_.states.end());
+    return rest;
 }
 
 }  // namespace relief

@@ -97,5 +97,41 @@ TEST(Dilation, IsTheSameInStripsOfAnySize) {
     EXPECT_EQ(dilated(map, 0, 64).normals, map.normals);
 }
 
+/// A layer that nobody asked for is not made, and the others are as with it.
+TEST(Dilation, FillsTheLayersThatThereAre) {
+    Map map = sparse(50, 130, 80);
+    const Map all = dilated(map, 9, 64);
+    std::vector<float> heights;
+    Dilation dilation(map.width, map.height, 9, [&](const BakedRows& rows) {
+        EXPECT_TRUE(rows.normals.empty());
+        heights.insert(heights.end(), rows.heights.begin(), rows.heights.end());
+    });
+    dilation.push({0, map.height, {}, map.heights, map.states});
+    EXPECT_EQ(heights, all.heights);
+}
+
+/// Rows may be changed by whoever takes them; those that follow are filled from what was baked.
+TEST(Dilation, DoesNotReadWhatItHandedOn) {
+    const Map map = sparse(40, 400, 300);
+    std::vector<float> heights;
+    Dilation dilation(map.width, map.height, 50, [&](const BakedRows& rows) {
+        heights.insert(heights.end(), rows.heights.begin(), rows.heights.end());
+        std::fill(rows.heights.begin(), rows.heights.end(), -1.0F);
+        std::fill(rows.states.begin(), rows.states.end(), TexelState::empty);
+    });
+    Map pushed = map;
+    for (int row = 0; row < map.height; row += 64) {
+        const int count = std::min(64, map.height - row);
+        const auto first = static_cast<std::size_t>(row * map.width);
+        const auto texels = static_cast<std::size_t>(count * map.width);
+        dilation.push({row,
+                       count,
+                       {},
+                       std::span(pushed.heights).subspan(first, texels),
+                       std::span(pushed.states).subspan(first, texels)});
+    }
+    EXPECT_EQ(heights, dilated(map, 50, 400).heights);
+}
+
 }  // namespace
 }  // namespace relief
