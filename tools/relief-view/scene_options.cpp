@@ -10,17 +10,12 @@
 #include "environment_options.h"
 #include "material_options.h"
 #include "material_overrides.h"
+#include "relief/shade/default_view.h"
 #include "relief/shade/framing.h"
 #include "relief/shade/scene_file.h"
 
 namespace relief::tools {
 namespace {
-
-constexpr float default_fov = 0.610865238F;  // 35 degrees
-constexpr CameraOption default_camera{.azimuth = 0.523598776F, .elevation = 0.34906585F};
-constexpr float default_ambient = 0.08F;
-// #1e2126, linear.
-constexpr glm::vec4 default_background{0.01299F, 0.01521F, 0.01938F, 1.0F};
 
 bool is_physical(const Material& material) {
     return material.metallic_roughness.has_value() && !material.unlit;
@@ -68,10 +63,12 @@ Camera camera_for(const Scene& scene, const ViewOptions& options) {
         camera.vertical_fov = options.vertical_fov.value_or(camera.vertical_fov);
         return camera;
     }
-    const CameraOption view = options.camera.value_or(default_camera);
+    const CameraOption view = options.camera.value_or(
+        CameraOption{.azimuth = default_azimuth, .elevation = default_elevation});
     const float aspect = static_cast<float>(options.size.x) / static_cast<float>(options.size.y);
-    return framed(scene, view.azimuth, view.elevation, options.vertical_fov.value_or(default_fov),
-                  aspect, view.distance_factor);
+    return framed(scene, view.azimuth, view.elevation,
+                  options.vertical_fov.value_or(default_vertical_fov), aspect,
+                  view.distance_factor);
 }
 
 std::size_t light_count(const Scene& scene) {
@@ -96,19 +93,6 @@ void replace_lights(Scene& scene, const std::vector<LightOption>& lights,
     scene.spot_lights.clear();
     for (const LightOption& light : lights)
         add_light(scene, light);
-}
-
-/// A warm key light from the upper left of the viewer, slanting so that relief shows, and a dim
-/// cool one from the right.
-void add_default_lights(Scene& scene, const Camera& camera) {
-    const glm::mat3 world_from_view(camera.world_from_view);
-    const glm::vec3 to_key_view{-0.7F, 0.64F, 0.32F};
-    const glm::vec3 to_fill_view{0.85F, 0.05F, 0.5F};
-    scene.directional_lights.push_back(
-        {.direction_world = world_from_view * -to_key_view, .irradiance = {1.0F, 0.97F, 0.92F}});
-    scene.directional_lights.push_back(
-        {.direction_world = world_from_view * -to_fill_view, .irradiance = {0.18F, 0.2F, 0.23F}});
-    scene.ambient = glm::vec3(default_ambient);
 }
 
 void set_lights(ComposedScene& composed, const ViewOptions& options) {

@@ -6,15 +6,14 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <memory>
-#include <span>
 
 #include "common/findings.h"
 #include "common/text.h"
 #include "effect_options.h"
 #include "effects_text.h"
 #include "picture_reference.h"
+#include "relief/mesh/image_channels.h"
 #include "relief/mesh/image_file.h"
 #include "relief/mesh/threads.h"
 #include "relief/shade/renderer.h"
@@ -37,26 +36,11 @@ FrameSettings settings_of(const ViewOptions& options) {
             .output = coding_of(options)};
 }
 
-/// Without its last channel: where the whole picture is covered, alpha says nothing.
-Image without_alpha(const Image& image) {
-    Image opaque =
-        make_image(image.width, image.height, image.channels - 1, image.bits(), image.color_space);
-    std::visit(
-        [&](const auto& samples) {
-            using Samples = std::decay_t<decltype(samples)>;
-            auto& kept = std::get<Samples>(opaque.samples);
-            const auto channels = static_cast<std::ptrdiff_t>(image.channels);
-            auto to = kept.begin();
-            for (auto texel = samples.begin(); texel != samples.end(); texel += channels)
-                to = std::copy(texel, texel + channels - 1, to);
-        },
-        image.samples);
-    return opaque;
-}
-
 /// Alpha is kept only where it was asked for, since viewers disagree about what to show behind it.
 Image picture_of(const Frame& frame, const Scene& scene) {
-    return scene.background.a == 1.0F ? without_alpha(frame.image) : frame.image;
+    Image picture = frame.image;
+    if (scene.background.a == 1.0F) drop_alpha(picture);
+    return picture;
 }
 
 /// Draws every picture that is asked for, writes them where they are to go, and compares.

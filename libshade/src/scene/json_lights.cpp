@@ -10,6 +10,7 @@
 #include <algorithm>
 
 #include "relief/mesh/error.h"
+#include "relief/shade/default_view.h"
 #include "relief/shade/environment_files.h"
 #include "relief/shade/framing.h"
 
@@ -188,8 +189,7 @@ Camera node_camera_from(const JsonCursor& object, bool& sees_all) {
 Camera camera_from(const JsonCursor& object, const Scene& scene, float aspect, bool& sees_all) {
     object.allow(
         {"eye", "target", "azimuth", "elevation", "distance_factor", "fov", "near", "far"});
-    constexpr float default_fov = 0.610865238F;  // 35 degrees, as relief-view has it.
-    const float fov = degrees_in(object, "fov", default_fov);
+    const float fov = degrees_in(object, "fov", default_vertical_fov);
     Camera camera;
     float depth = 0.0F;  // From the eye to what it looks at.
     if (object.find("eye") || object.find("target")) {

@@ -27,6 +27,8 @@ void check(MeshCommand& command) {
     std::vector<std::filesystem::path> files = command.files;
     if (command.request.cage) files.push_back(*command.request.cage);
     check(command.report, files);
+    if (command.report.file) files.push_back(*command.report.file);
+    check(command.request.preview, files);
     require_folder_of(command.request.output);
 }
 
@@ -50,9 +52,9 @@ Command add_mesh_command(CLI::App& tool) {
     add_mesh_options(app, command->request, command->files);
     add_report_options(app, command->report);
     add_general_options(app, command->general);
-    set_examples(app,
-                 {"relief-mesh subdivide data/vase.obj out/high.obj --levels 2",
-                  "relief-bake mesh out/high.obj data/vase.obj out/vase-baked.png --size 512"});
+    set_examples(app, {"relief-mesh subdivide data/vase.obj out/high.obj --levels 2",
+                       "relief-bake mesh out/high.obj data/vase.obj out/vase-baked.png --size 512 "
+                       "--preview out/vase-preview.png"});
     return {&app, [&app, command] { return run(app, *command); }};
 }
 

@@ -9,6 +9,7 @@
 
 #include "common/map_choices.h"
 #include "map_models.h"
+#include "mesh/mesh_preview.h"
 #include "relief/mesh/image_rows.h"
 
 namespace relief::tools {
@@ -125,12 +126,29 @@ Models read_models(const MeshBakeRequest& request, Findings& findings) {
     return models;
 }
 
+void draw(MeshPreview& preview, const MeshBakeRequest& request, const BakedMap& baked,
+          Models models) {
+    const bool is_tangent = request.space == SpaceChoice::tangent;
+    const bool has_own_axes = request.space == SpaceChoice::object && models.world_from_low;
+    preview.draw(request.preview,
+                 {.high = std::move(models.high),
+                  .low = std::move(models.low),
+                  .world_from_low = has_own_axes ? *models.world_from_low : glm::dmat3(1.0),
+                  .shows_back_faces = request.back_faces == BackFaces::take},
+                 {.file = request.output,
+                  .format = baked.format,
+                  .space = is_tangent ? NormalSpace::tangent : NormalSpace::object,
+                  .repeats = request.outside == OutsideChoice::repeat});
+}
+
 }  // namespace
 
 BakedMap bake_map(const MeshBakeRequest& request, Stages& stages) {
     BakedMap baked;
     baked.format = format_of(request.map, request.output);
-    const Models models = stages.run("read", [&] { return read_models(request, baked.findings); });
+    std::optional<MeshPreview> preview;
+    if (request.preview.file) preview.emplace();
+    Models models = stages.run("read", [&] { return read_models(request, baked.findings); });
     for (const Mesh& mesh : models.high)
         baked.high_triangles += mesh.triangles.size();
     baked.low_triangles = models.low.triangles.size();
@@ -150,6 +168,7 @@ BakedMap bake_map(const MeshBakeRequest& request, Stages& stages) {
         });
     });
     baked.findings.add("", report);
+    if (preview) stages.run("preview", [&] { draw(*preview, request, baked, std::move(models)); });
     return baked;
 }
 

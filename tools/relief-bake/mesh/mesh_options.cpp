@@ -121,6 +121,7 @@ void add_mesh_options(CLI::App& app, MeshBakeRequest& request,
     add_ray_options(app, request);
     add_map_options(app, request);
     add_map_output_options(app, request.map);
+    add_preview_options(app, request.preview);
 }
 
 void check_mesh_options(MeshBakeRequest& request, const std::vector<std::filesystem::path>& files) {

@@ -10,6 +10,7 @@
 
 #include "common/command.h"
 #include "map_output.h"
+#include "mesh/preview_options.h"
 #include "relief/mesh/bake.h"
 
 namespace relief::tools {
@@ -45,6 +46,7 @@ struct MeshBakeRequest {
     int padding = 16;
     Background background = Background::flat;
     MapOutputOptions map;
+    PreviewOptions preview;
 };
 
 /// \param files  gets the file arguments, for check_mesh_options() to part

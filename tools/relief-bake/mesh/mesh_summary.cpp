@@ -63,7 +63,11 @@ void print_summary(const MeshBakeRequest& request, const BakedMap& baked, const 
     print_entry("findings",
                 baked.findings.empty() ? std::vector<std::string>{"none"} : baked.findings.lines());
     print_entry("time", durations(stages.finished()));
-    print_entry("wrote", file_and_size(request.output));
+    std::vector<std::string> written = {file_and_size(request.output)};
+    if (request.preview.file)
+        written.push_back(file_and_size(*request.preview.file) +
+                          " (high, low with the map, low without)");
+    print_entry("wrote", written);
 }
 
 nlohmann::ordered_json results_json(const MeshBakeRequest& request, const BakedMap& baked,
@@ -72,29 +76,31 @@ nlohmann::ordered_json results_json(const MeshBakeRequest& request, const BakedM
     nlohmann::ordered_json high = nlohmann::ordered_json::array();
     for (const std::filesystem::path& file : request.high)
         high.push_back(file.string());
-    return {{"high", high},
-            {"low", request.low.string()},
-            {"output", request.output.string()},
-            {"width", request.size.x},
-            {"height", request.size.y},
-            {"space", space_name(request.space)},
-            {"bits", baked.format.bits},
-            {"green", name_of(baked.format.green, green_choices())},
-            {"flat", name_of(baked.format.flat, flat_choices())},
-            {"dither", name_of(baked.format.dither, dither_choices())},
-            {"high_triangles", baked.high_triangles},
-            {"low_triangles", baked.low_triangles},
-            {"offset", result.distances.offset},
-            {"max_distance", result.distances.max_distance},
-            {"least_height", result.least_height},
-            {"greatest_height", result.greatest_height},
-            {"texels_baked", result.texels_baked},
-            {"texels_missed", result.texels_missed},
-            {"samples", result.samples},
-            {"rays", result.rays},
-            {"rays_per_second", megarays_per_second(baked, stages) * 1e6},
-            {"findings", baked.findings.json()},
-            {"milliseconds", durations_json(stages.finished())}};
+    nlohmann::ordered_json results = {{"high", high},
+                                      {"low", request.low.string()},
+                                      {"output", request.output.string()},
+                                      {"width", request.size.x},
+                                      {"height", request.size.y},
+                                      {"space", space_name(request.space)},
+                                      {"bits", baked.format.bits},
+                                      {"green", name_of(baked.format.green, green_choices())},
+                                      {"flat", name_of(baked.format.flat, flat_choices())},
+                                      {"dither", name_of(baked.format.dither, dither_choices())},
+                                      {"high_triangles", baked.high_triangles},
+                                      {"low_triangles", baked.low_triangles},
+                                      {"offset", result.distances.offset},
+                                      {"max_distance", result.distances.max_distance},
+                                      {"least_height", result.least_height},
+                                      {"greatest_height", result.greatest_height},
+                                      {"texels_baked", result.texels_baked},
+                                      {"texels_missed", result.texels_missed},
+                                      {"samples", result.samples},
+                                      {"rays", result.rays},
+                                      {"rays_per_second", megarays_per_second(baked, stages) * 1e6},
+                                      {"findings", baked.findings.json()},
+                                      {"milliseconds", durations_json(stages.finished())}};
+    if (request.preview.file) results["preview"] = request.preview.file->string();
+    return results;
 }
 
 }  // namespace relief::tools

@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: Apache-2.0
+// relief-bake mesh --preview: what its panels show, from where, and what it costs those who do not
+// ask for it.
+#include "mesh/mesh_preview.h"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <array>
+#include <nlohmann/json.hpp>
+
+#include "relief/mesh/image_file.h"
+#include "relief/mesh/shapes.h"
+#include "relief/shade/default_view.h"
+#include "tools/refusal.h"
+#include "tools/workplace.h"
+
+namespace relief::tools {
+namespace {
+
+using nlohmann::json;
+using test::expect_refusal;
+using test::Refused;
+using test::Workplace;
+using testing::HasSubstr;
+using testing::StartsWith;
+
+/// The low square of Workplace, and one above it that is tilted by its normals, as high model.
+void write_pair(const Workplace& workplace) {
+    workplace.write_square("low.obj");
+    workplace.write("high.obj",
+                    "v -1 -1 0.05\nv 1 -1 0.05\nv 1 1 0.05\nv -1 1 0.05\nvn -0.48 0.36 0.8\n"
+                    "f 1//1 2//1 3//1 4//1\n");
+}
+
+/// Red, green and blue in the middle of each panel.
+std::vector<std::array<int, 3>> middles(const std::filesystem::path& file) {
+    const Image picture = read_image(file, ImageUse::color);
+    EXPECT_EQ(picture.width, 96);
+    EXPECT_EQ(picture.height, 24);
+    EXPECT_EQ(picture.channels, 3);
+    std::vector<std::array<int, 3>> result;
+    for (const std::size_t x : {16U, 48U, 80U}) {
+        const std::uint8_t* code = &picture.as<std::uint8_t>()[3 * (12 * 96 + x)];
+        result.push_back({code[0], code[1], code[2]});
+    }
+    return result;
+}
+
+/// The low square with its map looks like the high one, and without it does not.
+void expect_alike(const std::filesystem::path& file) {
+    const auto panels = middles(file);
+    ASSERT_EQ(panels.size(), 3U);
+    for (std::size_t i = 0; i < 3; ++i) {
+        EXPECT_NEAR(panels[0][i], panels[1][i], 2) << i;
+        EXPECT_GT(panels[0][i], panels[2][i] + 20) << i;
+    }
+}
+
+TEST(MeshPreview, TheMapMakesTheLowModelLookLikeTheHighOne) {
+    const Workplace workplace;
+    write_pair(workplace);
+    for (const std::string options :
+         {"map.png", "map.png --green down --bits 8 --flat half", "map.exr",
+          "map.png --space world", "map.tif --space object --bits 8",
+          "map.png --background transparent"}) {
+        SCOPED_TRACE(options);
+        const auto result =
+            workplace.run("relief-bake mesh high.obj low.obj out/" + options +
+                          " --size 16 --preview out/preview.png --preview-size 32x24");
+        ASSERT_EQ(result.exit_code, 0) << result.error;
+        EXPECT_THAT(result.out, HasSubstr("out/preview.png: "));
+        EXPECT_THAT(result.out, HasSubstr("(high, low with the map, low without)\n"));
+        expect_alike(workplace / "out/preview.png");
+    }
+}
+
+TEST(MeshPreview, AnObjectSpaceMapTurnsWithItsNode) {
+    const Workplace workplace;
+    write_pair(workplace);
+    ASSERT_EQ(workplace.run("relief-mesh process low.obj out/low.gltf").exit_code, 0);
+    // A quarter turn about z, twice as large in y and moved: the high model is as it was.
+    json document = json::parse(workplace.read("out/low.gltf"));
+    document["nodes"][0]["rotation"] = {0, 0, 0.70710678, 0.70710678};
+    document["nodes"][0]["scale"] = {1, 2, 1};
+    document["nodes"][0]["translation"] = {0.25, 0, 0.01};
+    workplace.write("out/low.gltf", document.dump());
+    for (const std::string space : {"object", "world", "tangent"}) {
+        SCOPED_TRACE(space);
+        const auto result = workplace.run(
+            "relief-bake mesh high.obj out/low.gltf out/map.png --size 32 --quiet --space " +
+            space + " --preview out/preview.png --preview-size 32x24 --report out/report.json");
+        ASSERT_EQ(result.exit_code, 0) << result.error;
+        expect_alike(workplace / "out/preview.png");
+        EXPECT_EQ(json::parse(workplace.read("out/report.json"))["preview"], "out/preview.png");
+    }
+}
+
+TEST(MeshPreview, LooksFromWhereMostOfTheModelIsSeen) {
+    const ViewDirection round = telling_view(make_sphere());
+    EXPECT_EQ(round.azimuth, default_azimuth);
+    EXPECT_EQ(round.elevation, default_elevation);
+    Mesh quad = make_quad();  // Faces +z, where the default view stands.
+    EXPECT_EQ(telling_view(quad).azimuth, default_azimuth);
+    EXPECT_EQ(telling_view(quad).elevation, default_elevation);
+    for (glm::vec3& position : quad.positions)
+        position.x = -position.x;  // Faces -z: seen best after half a turn.
+    EXPECT_FLOAT_EQ(telling_view(quad).azimuth, default_azimuth + 3.14159265F);
+    EXPECT_EQ(telling_view(quad).elevation, default_elevation);
+    for (glm::vec3& position : quad.positions)
+        position = {position.x, 0.0F, position.y};  // Faces up.
+    EXPECT_FLOAT_EQ(telling_view(quad).elevation, 2.5F * default_elevation);
+    for (glm::vec3& position : quad.positions)
+        position.x = -position.x;  // Faces down.
+    EXPECT_FLOAT_EQ(telling_view(quad).elevation, -2.5F * default_elevation);
+    EXPECT_EQ(telling_view(Mesh{}).azimuth, default_azimuth);
+}
+
+TEST(MeshPreview, LargeMapsAreMadeSmallerByMeansOfNormals) {
+    const Workplace workplace;
+    // 7 x 3 texels of 32 bits: 0.6 0 0.8 and 0 0.6 0.8 in turns, the last column flat.
+    Image normals = make_image(7, 3, 3, 32, ColorSpace::data);
+    for (std::size_t i = 0; i < 21; ++i) {
+        float* texel = &normals.as<float>()[3 * i];
+        const bool is_flat = i % 7 == 6;
+        texel[i % 2] = is_flat ? 0.0F : 0.6F;
+        texel[2] = is_flat ? 1.0F : 0.8F;
+    }
+    Report report;
+    const NormalMapFormat format{.bits = 16, .green = Green::down};
+    const PreviewMap map{.file = workplace / "out/map.png", .format = format};
+    write_image(map.file, encode_normal_map(normals, format, report));
+    EXPECT_EQ(std::get<std::filesystem::path>(preview_image(map, 7).source), map.file);
+    const ImageSource smaller = preview_image(map, 4);
+    const Image& image = std::get<Image>(smaller.source);
+    ASSERT_EQ(image.width, 4);
+    ASSERT_EQ(image.height, 2);
+    // Of two and two: (0.3, 0.3, 0.8), made unit; green up again, and (n + 1) / 2.
+    const float length = std::sqrt(0.09F + 0.09F + 0.64F);
+    EXPECT_NEAR(image.as<float>()[0], 0.5F + 0.15F / length, 1e-4F);
+    EXPECT_NEAR(image.as<float>()[1], 0.5F + 0.15F / length, 1e-4F);
+    EXPECT_NEAR(image.as<float>()[2], 0.5F + 0.4F / length, 1e-4F);
+    // The corner has one column and one row alone.
+    EXPECT_NEAR(image.as<float>()[3 * 7], 0.5F, 1e-4F);
+    EXPECT_NEAR(image.as<float>()[3 * 7 + 2], 1.0F, 1e-4F);
+}
+
+TEST(MeshPreview, OpenGLIsLookedForWhereAPreviewIsAskedForAndFirst) {
+    const Workplace workplace;
+    write_pair(workplace);
+    const std::string line =
+        "RELIEF_OSMESA_LIBRARY=/none RELIEF_EGL_LIBRARY=/none "
+        "relief-bake mesh high.obj low.obj out/map.png --size 8 --quiet";
+    const auto without_gl = workplace.run(line + " --preview out/preview.png");
+    EXPECT_EQ(without_gl.exit_code, 1);
+    EXPECT_THAT(without_gl.error, StartsWith("relief-bake: error: "));
+    EXPECT_EQ(workplace.outputs(), "");
+    EXPECT_EQ(workplace.run(line).exit_code, 0);
+}
+
+TEST(MeshPreview, AFailureSaysThatTheMapIsComplete) {
+    const Workplace workplace;
+    write_pair(workplace);
+    const auto result = workplace.run(
+        "mkdir out/preview.png && relief-bake mesh high.obj low.obj out/map.png --size 8 --quiet "
+        "--preview out/preview.png --preview-size 8x8");
+    EXPECT_EQ(result.exit_code, 1);
+    EXPECT_THAT(result.error, StartsWith("relief-bake: error: no preview: out/preview.png: "));
+    EXPECT_THAT(result.error, HasSubstr("(out/map.png is complete)\n"));
+    EXPECT_EQ(read_image(workplace / "out/map.png", ImageUse::data).width, 8);
+}
+
+class MeshPreviewRefusal : public testing::TestWithParam<Refused> {};
+
+TEST_P(MeshPreviewRefusal, LeavesEverythingAsItWas) {
+    const Workplace workplace;
+    write_pair(workplace);
+    expect_refusal(workplace, "relief-bake", GetParam(), "map.png");
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    All, MeshPreviewRefusal,
+    testing::Values(
+        Refused{"relief-bake mesh high.obj low.obj out/map.png --preview-size 64x64", 2,
+                "--preview-size: has no effect without --preview"},
+        Refused{"relief-bake mesh high.obj low.obj out/map.png --preview out/map.png", 2,
+                "--preview out/map.png: is also the input or the output"},
+        Refused{"relief-bake mesh high.obj low.obj out/map.png --preview out/p.jpg", 2,
+                "--preview out/p.jpg: no format to write it in (use .png)"},
+        Refused{"relief-bake mesh high.obj low.obj out/map.png --report out/r.png --preview "
+                "out/r.png",
+                2, "--preview out/r.png: is also the input or the output"},
+        Refused{"relief-bake mesh high.obj low.obj out/map.png --preview out/no/p.png", 1,
+                "out/no/p.png: the folder out/no does not exist"}));
+
+}  // namespace
+}  // namespace relief::tools

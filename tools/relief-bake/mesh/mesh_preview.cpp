@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: Apache-2.0
+// Three scenes with one camera; grey surfaces, so that nothing but relief shows.
+// Tests: tests/tools/mesh_preview_test.cpp.
+#include "mesh/mesh_preview.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "relief/mesh/error.h"
+#include "relief/mesh/image_channels.h"
+#include "relief/mesh/image_file.h"
+#include "relief/shade/default_view.h"
+#include "relief/shade/framing.h"
+#include "relief/shade/renderer.h"
+
+namespace relief::tools {
+namespace {
+
+constexpr glm::ivec2 default_size{512, 512};
+constexpr int panels = 3;
+/// Texels along a side of the map for each pixel of the panel's longer side: a chart seldom has
+/// more than half of that before the camera.
+constexpr int texels_per_pixel = 4;
+constexpr int least_map_size = 2048;  ///< Smaller maps are never made smaller.
+
+/// The area of a mesh that faces each direction, and nothing hides.
+std::vector<double> seen_areas(const Mesh& mesh, const std::vector<glm::dvec3>& directions) {
+    std::vector<double> areas(directions.size(), 0.0);
+    for (const glm::uvec3& triangle : mesh.triangles) {
+        const glm::dvec3 a(mesh.positions[triangle.x]);
+        const glm::dvec3 b(mesh.positions[triangle.y]);
+        const glm::dvec3 c(mesh.positions[triangle.z]);
+        const glm::dvec3 normal = glm::cross(b - a, c - a);
+        for (std::size_t i = 0; i < directions.size(); ++i) {
+            const double seen = glm::dot(normal, directions[i]);
+            if (seen > 0.0 && std::isfinite(seen)) areas[i] += seen;
+        }
+    }
+    return areas;
+}
+
+glm::dvec3 towards_eye(const ViewDirection& view) {
+    return {std::cos(view.elevation) * std::sin(view.azimuth), std::sin(view.elevation),
+            std::cos(view.elevation) * std::cos(view.azimuth)};
+}
+
+Material grey() {
+    Material material;
+    material.ambient = material.diffuse = glm::vec3(0.6F);
+    material.specular = glm::vec3(0.15F);
+    material.shininess = 40.0F;
+    return material;
+}
+
+/// Nothing but shape: no colours of its own, one material.
+void add(Scene& scene, Mesh mesh, const glm::mat4& world_from_object = glm::mat4(1.0F)) {
+    mesh.colors.clear();
+    mesh.material_ranges = {{0, static_cast<std::uint32_t>(mesh.triangles.size()), 0}};
+    scene.meshes.push_back(std::move(mesh));
+    scene.instances.push_back({scene.meshes.size() - 1, world_from_object, ""});
+}
+
+/// As the file has it, which is what the numbers of an object-space map are relative to.
+Mesh in_own_axes(Mesh mesh, const glm::dmat3& world_from_object) {
+    const glm::dmat3 object_from_world = glm::inverse(world_from_object);
+    for (glm::vec3& position : mesh.positions)
+        position = glm::vec3(object_from_world * glm::dvec3(position));
+    for (glm::vec3& normal : mesh.normals)
+        normal = glm::vec3(glm::normalize(glm::transpose(world_from_object) * glm::dvec3(normal)));
+    mesh.tangents.clear();
+    return mesh;
+}
+
+Scene low_scene(PreviewModels& models, const PreviewMap& map) {
+    Scene scene;
+    scene.materials.push_back(grey());
+    if (map.space == NormalSpace::object && models.world_from_low != glm::dmat3(1.0)) {
+        add(scene, in_own_axes(std::move(models.low), models.world_from_low),
+            glm::mat4(glm::mat3(models.world_from_low)));
+    } else {
+        add(scene, std::move(models.low));
+    }
+    return scene;
+}
+
+Scene high_scene(PreviewModels& models) {
+    Scene scene;
+    scene.materials.push_back(grey());
+    scene.materials[0].double_sided = models.shows_back_faces;
+    for (Mesh& mesh : models.high)
+        add(scene, std::move(mesh));
+    return scene;
+}
+
+/// Sees all of both; the meshes are lent to a scene for it, as copies would cost more than the
+/// picture.
+Camera camera_for(Scene& high, Scene& low, const ViewDirection& view, float aspect) {
+    Scene both = std::move(high);
+    const std::size_t count = both.meshes.size();
+    both.meshes.push_back(std::move(low.meshes[0]));
+    both.instances.push_back({count, low.instances[0].world_from_object, ""});
+    const Camera camera = framed(both, view.azimuth, view.elevation, default_vertical_fov, aspect);
+    low.meshes[0] = std::move(both.meshes.back());
+    both.meshes.pop_back();
+    both.instances.pop_back();
+    high = std::move(both);
+    return camera;
+}
+
+/// One panel beside the others.
+void put(Image& picture, const Image& panel, int index) {
+    const auto from = panel.as<std::uint8_t>();
+    const auto to = picture.as<std::uint8_t>();
+    const auto row = static_cast<std::size_t>(panel.width * panel.channels);
+    for (std::size_t y = 0; y < static_cast<std::size_t>(panel.height); ++y) {
+        std::copy_n(from.begin() + static_cast<std::ptrdiff_t>(y * row), row,
+                    to.begin() + static_cast<std::ptrdiff_t>(
+                                     (y * panels + static_cast<std::size_t>(index)) * row));
+    }
+}
+
+void use(Scene& scene, const PreviewMap& map, const glm::ivec2& size) {
+    const int most = std::max(least_map_size, texels_per_pixel * std::max(size.x, size.y));
+    const TextureWrap wrap = map.repeats ? TextureWrap::repeat : TextureWrap::clamp;
+    scene.images = {preview_image(map, most)};
+    const bool is_file = std::holds_alternative<std::filesystem::path>(scene.images[0].source);
+    scene.materials[0].normal_map = NormalMap{.texture = {0, wrap, wrap},
+                                              .green = is_file ? map.format.green : Green::up,
+                                              .flat = map.format.flat,
+                                              .space = map.space};
+}
+
+/// What drawing finds odd about the models, the bake has found and reported before.
+Image drawn(const Context& context, const Scene& scene, const Camera& camera,
+            const glm::ivec2& size) {
+    Report known;
+    Renderer renderer(context, scene, {.width = size.x, .height = size.y}, known);
+    Image image = renderer.draw(camera).image;
+    drop_alpha(image);
+    return image;
+}
+
+}  // namespace
+
+ViewDirection telling_view(const Mesh& mesh) {
+    constexpr double worth_turning = 1.25;
+    const float steep = 2.5F * default_elevation;
+    std::vector<ViewDirection> views;
+    for (const float elevation : {default_elevation, steep, -default_elevation, -steep}) {
+        for (int quarter = 0; quarter < 4; ++quarter)
+            views.push_back(
+                {default_azimuth + 0.5F * std::numbers::pi_v<float> * static_cast<float>(quarter),
+                 elevation});
+    }
+    std::vector<glm::dvec3> directions;
+    for (const ViewDirection& view : views)
+        directions.push_back(towards_eye(view));
+    const std::vector<double> areas = seen_areas(mesh, directions);
+    const auto best = std::max_element(areas.begin(), areas.end());
+    if (!(*best > worth_turning * areas.front())) return views.front();
+    return views[static_cast<std::size_t>(best - areas.begin())];
+}
+
+MeshPreview::MeshPreview() : context_(std::make_unique<Context>()) {}
+
+void MeshPreview::draw(const PreviewOptions& options, PreviewModels models, const PreviewMap& map) {
+    const glm::ivec2 size = options.size.value_or(default_size);
+    try {
+        const ViewDirection view = telling_view(models.low);
+        Scene high = high_scene(models);
+        Scene low = low_scene(models, map);
+        const float aspect = static_cast<float>(size.x) / static_cast<float>(size.y);
+        const Camera camera = camera_for(high, low, view, aspect);
+        Image picture = make_image(panels * size.x, size.y, 3, 8, ColorSpace::srgb);
+        for (Scene* scene : {&high, &low}) {
+            scene->background = default_background;
+            add_default_lights(*scene, camera);
+        }
+        put(picture, drawn(*context_, high, camera, size), 0);
+        high = {};
+        put(picture, drawn(*context_, low, camera, size), 2);
+        use(low, map, size);
+        put(picture, drawn(*context_, low, camera, size), 1);
+        write_image(*options.file, picture);
+    } catch (const Error& error) {
+        throw Error(
+            fmt::format("no preview: {} ({} is complete)", error.what(), map.file.string()));
+    }
+}
+
+}  // namespace relief::tools
