@@ -13,9 +13,10 @@
 #include <cstddef>
 #include <cstdint>
 #include <glm/glm.hpp>
-#include <memory>
 #include <span>
 #include <vector>
+
+#include "rays/embree_scene.h"
 
 namespace relief {
 
@@ -23,22 +24,6 @@ namespace relief {
 struct RayMesh {
     std::span<const glm::vec3> positions;
     std::span<const glm::uvec3> triangles;
-};
-
-/// Sixteen rays in the scene's own space, filled by RayScene::set(), and what they hit. The layout
-/// is Embree's (RTCRayHit16), so that nothing is copied on the way.
-struct alignas(64) RayPacket {
-    static constexpr std::size_t size = 16;
-    static constexpr std::uint32_t nothing = 0xffffffff;
-
-    std::array<float, size> origin_x, origin_y, origin_z, near;
-    std::array<float, size> direction_x, direction_y, direction_z, time;
-    std::array<float, size> far;  ///< Of a hit: where it is.
-    std::array<std::uint32_t, size> mask, id, flags;
-    std::array<float, size> normal_x, normal_y, normal_z, second, third;
-    std::array<std::uint32_t, size> triangle, mesh, instance;
-
-    [[nodiscard]] bool hits(std::size_t lane) const { return mesh[lane] != nothing; }
 };
 
 /// A ray in the space of the meshes.
@@ -63,9 +48,6 @@ struct RayHit {
 class RayScene {
   public:
     explicit RayScene(std::vector<RayMesh> meshes);
-    ~RayScene();
-    RayScene(const RayScene&) = delete;
-    RayScene& operator=(const RayScene&) = delete;
 
     /// Puts a ray into a lane of a packet.
     void set(RayPacket& packet, std::size_t lane, const Ray& ray) const;
@@ -100,8 +82,6 @@ class RayScene {
                                                     std::uint32_t triangle) const;
 
   private:
-    struct EmbreeScene;
-
     void settle_edges(RayPacket& packet, std::size_t lane) const;
     [[nodiscard]] RayHit exact(std::uint32_t mesh, std::uint32_t triangle, const Ray& ray) const;
 
@@ -109,7 +89,7 @@ class RayScene {
     glm::dvec3 centre_{0.0};
     double half_size_ = 1.0;
     bool is_empty_ = true;
-    std::unique_ptr<EmbreeScene> embree_;
+    EmbreeScene embree_;
 };
 
 }  // namespace relief

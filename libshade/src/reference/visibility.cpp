@@ -4,60 +4,15 @@
 // Tests: tests/shade/reference/visibility_test.cpp.
 #include "reference/visibility.h"
 
-#include <embree3/rtcore.h>
-
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <new>
 #include <tuple>
+
+#include "rays/embree_scene.h"
 
 namespace relief::reference {
 
 namespace {
-
-/// What Embree's filter gets: a place to put every hit. The context comes first, as Embree casts.
-struct Collector {
-    RTCIntersectContext context;
-    std::vector<std::pair<std::uint32_t, std::uint32_t>> found;  ///< Instance and triangle.
-};
-
-/// Keeps the hit in mind and sends the ray on.
-void collect(const RTCFilterFunctionNArguments* arguments) {
-    auto* collector = reinterpret_cast<Collector*>(arguments->context);
-    for (unsigned i = 0; i < arguments->N; ++i) {
-        if (arguments->valid[i] == 0) continue;
-        collector->found.emplace_back(RTCHitN_geomID(arguments->hit, arguments->N, i),
-                                      RTCHitN_primID(arguments->hit, arguments->N, i));
-        arguments->valid[i] = 0;
-    }
-}
-
-/// Positions in Embree's scale; what is too far away for it, or not finite, it leaves out.
-void fill_vertices(RTCGeometry geometry, std::span<const glm::dvec3> positions, double scale) {
-    auto* vertices = static_cast<float*>(
-        rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                3 * sizeof(float), positions.size()));
-    if (vertices == nullptr) throw std::bad_alloc();
-    for (std::size_t i = 0; i < positions.size(); ++i) {
-        for (int axis = 0; axis < 3; ++axis) {
-            vertices[3 * i + static_cast<std::size_t>(axis)] =
-                static_cast<float>(positions[i][axis] * scale);
-        }
-    }
-}
-
-void fill_triangles(RTCGeometry geometry, std::span<const glm::uvec3> triangles) {
-    auto* indices = static_cast<std::uint32_t*>(
-        rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
-                                3 * sizeof(std::uint32_t), triangles.size()));
-    if (indices == nullptr) throw std::bad_alloc();
-    for (std::size_t i = 0; i < triangles.size(); ++i) {
-        indices[3 * i] = triangles[i].x;
-        indices[3 * i + 1] = triangles[i].y;
-        indices[3 * i + 2] = triangles[i].z;
-    }
-}
 
 /// Where the ray meets the plane of a triangle: weights of the corners, and the depth. For a ray d
 /// from the origin the weights are as d.(b x c) : d.(c x a) : d.(a x b), and neighbours see exactly
@@ -78,33 +33,20 @@ bool intersect(const glm::dvec3& ray, const glm::dvec3& a, const glm::dvec3& b, 
 
 }  // namespace
 
-struct Visibility::EmbreeScene {
-    EmbreeScene() : device(rtcNewDevice(nullptr)), scene(rtcNewScene(device)) {}
-    ~EmbreeScene() {
-        rtcReleaseScene(scene);
-        rtcReleaseDevice(device);
-    }
-    EmbreeScene(const EmbreeScene&) = delete;
-    EmbreeScene& operator=(const EmbreeScene&) = delete;
-
-    RTCDevice device;
-    RTCScene scene;
-};
-
 Visibility::Visibility(std::vector<ViewMesh> meshes, double near, double far)
     : meshes_(std::move(meshes)), near_(near), far_(far), embree_(std::make_unique<EmbreeScene>()) {
-    rtcSetSceneFlags(embree_->scene, RTC_SCENE_FLAG_ROBUST);
     for (std::size_t i = 0; i < meshes_.size(); ++i) {
         if (meshes_[i].triangles.empty()) continue;
-        RTCGeometry geometry = rtcNewGeometry(embree_->device, RTC_GEOMETRY_TYPE_TRIANGLE);
-        fill_vertices(geometry, meshes_[i].positions_view, 1.0 / far);
-        fill_triangles(geometry, meshes_[i].triangles);
-        rtcSetGeometryIntersectFilterFunction(geometry, collect);
-        rtcCommitGeometry(geometry);
-        rtcAttachGeometryByID(embree_->scene, geometry, static_cast<unsigned>(i));
-        rtcReleaseGeometry(geometry);
+        const std::span<const glm::dvec3> positions = meshes_[i].positions_view;
+        const auto fill = [&](std::size_t begin, std::size_t end, float* xyz) {
+            for (std::size_t v = begin; v < end; ++v) {
+                for (int axis = 0; axis < 3; ++axis)
+                    *xyz++ = static_cast<float>(positions[v][axis] * (1.0 / far));
+            }
+        };
+        embree_->add(static_cast<std::uint32_t>(i), positions.size(), fill, meshes_[i].triangles);
     }
-    rtcCommitScene(embree_->scene);
+    embree_->build();
 }
 
 Visibility::~Visibility() = default;
@@ -140,22 +82,15 @@ bool Visibility::is_outside(const std::vector<Hit>& all, std::size_t index) cons
 }
 
 std::vector<Hit> Visibility::hits(double x, double y) const {
-    Collector collector{};
-    rtcInitIntersectContext(&collector.context);
-    RTCRayHit query{};
-    query.ray.dir_x = static_cast<float>(x);
-    query.ray.dir_y = static_cast<float>(y);
-    query.ray.dir_z = -1.0F;
     // A little beyond both ends, for the exact test to decide.
-    query.ray.tnear = static_cast<float>(near_ / far_ * 0.999);
-    query.ray.tfar = 1.001F;
-    query.ray.mask = std::numeric_limits<unsigned>::max();
-    query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-    rtcIntersect1(embree_->scene, &collector.context, &query);
+    const RaySegment segment{glm::vec3(0.0F), glm::vec3(x, y, -1.0),
+                             static_cast<float>(near_ / far_ * 0.999), 1.001F};
+    std::vector<MetTriangle> found;
+    embree_->find_all(segment, found);
 
     const glm::dvec3 ray(x, y, -1.0);
     std::vector<Hit> all;
-    for (const auto& [instance, triangle] : collector.found) {
+    for (const auto& [instance, triangle] : found) {
         const ViewMesh& mesh = meshes_[instance];
         const glm::uvec3& corners = mesh.triangles[triangle];
         Hit hit{instance, triangle};

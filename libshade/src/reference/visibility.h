@@ -13,6 +13,10 @@
 #include <span>
 #include <vector>
 
+namespace relief {
+class EmbreeScene;
+}
+
 namespace relief::reference {
 
 /// Triangles of one instance; both spans must outlive their use.
@@ -42,8 +46,6 @@ class Visibility {
     [[nodiscard]] std::vector<Hit> hits(double x, double y) const;
 
   private:
-    struct EmbreeScene;
-
     [[nodiscard]] bool shares_edge(const Hit& a, int opposite_corner, const Hit& b) const;
     [[nodiscard]] bool is_outside(const std::vector<Hit>& all, std::size_t index) const;
 

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+// What Embree is asked for: the nearest triangle of each ray, every triangle of one, distances.
+#include "rays/embree_scene.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
+
+namespace relief {
+namespace {
+
+using testing::UnorderedElementsAre;
+
+/// A right triangle in the plane of this z, from (0, 0) to (1, 0) and (0, 1).
+void add_triangle(EmbreeScene& scene, std::uint32_t name, float z) {
+    const std::array<glm::vec3, 3> corners = {glm::vec3(0, 0, z), {1, 0, z}, {0, 1, z}};
+    const std::array<glm::uvec3, 1> triangles = {glm::uvec3(0, 1, 2)};
+    const auto fill = [&](std::size_t begin, std::size_t end, float* xyz) {
+        for (std::size_t i = begin; i < end; ++i)
+            xyz = std::copy_n(&corners[i].x, 3, xyz);
+    };
+    scene.add(name, corners.size(), fill, triangles);
+}
+
+/// Downwards from z = 1, as far as z = -far.
+void aim(RayPacket& packet, std::size_t lane, float x, float y, float far) {
+    packet.origin_x[lane] = x;
+    packet.origin_y[lane] = y;
+    packet.origin_z[lane] = 1.0F;
+    packet.near[lane] = packet.time[lane] = 0.0F;
+    packet.direction_x[lane] = packet.direction_y[lane] = 0.0F;
+    packet.direction_z[lane] = -1.0F;
+    packet.far[lane] = 1.0F + far;
+    packet.mask[lane] = std::numeric_limits<std::uint32_t>::max();
+    packet.id[lane] = packet.flags[lane] = 0;
+    packet.mesh[lane] = packet.instance[lane] = RayPacket::nothing;
+}
+
+TEST(EmbreeScene, FindsTheNearestTriangleOfEachRayThatItIsAskedFor) {
+    EmbreeScene scene;
+    add_triangle(scene, 7, 0.0F);
+    add_triangle(scene, 3, -0.5F);
+    scene.build();
+    RayPacket packet;
+    aim(packet, 0, 0.25F, 0.25F, 1.0F);
+    aim(packet, 1, 0.75F, 0.75F, 1.0F);
+    aim(packet, 2, 0.25F, 0.25F, 1.0F);
+    packet.origin_z[2] = -0.25F;  // Between the two.
+    aim(packet, 3, 0.25F, 0.25F, -0.1F);
+    aim(packet, 4, 0.25F, 0.25F, 1.0F);
+    scene.find_nearest(packet, 4);
+    EXPECT_EQ(packet.mesh[0], 7U);
+    EXPECT_EQ(packet.triangle[0], 0U);
+    EXPECT_FLOAT_EQ(packet.far[0], 1.0F);
+    EXPECT_FALSE(packet.hits(1));
+    EXPECT_EQ(packet.mesh[2], 3U);
+    EXPECT_FLOAT_EQ(packet.far[2], 0.25F);
+    EXPECT_FALSE(packet.hits(3)) << "ends above the first";
+    EXPECT_FALSE(packet.hits(4)) << "was not asked for";
+}
+
+TEST(EmbreeScene, FindsEveryTriangleOfASegmentAndAppendsThem) {
+    EmbreeScene scene;
+    for (const std::uint32_t name : {0U, 1U, 2U})
+        add_triangle(scene, name, -static_cast<float>(name));
+    scene.build();
+    std::vector<MetTriangle> found = {{9, 9}};
+    // Of direction -2, so that 0.75 is z = -0.5.
+    scene.find_all({{0.25F, 0.25F, 1.0F}, {0, 0, -2}, 0.0F, 1.25F}, found);
+    EXPECT_THAT(found,
+                UnorderedElementsAre(MetTriangle{9, 9}, MetTriangle{0, 0}, MetTriangle{1, 0}));
+    scene.find_all({{0.25F, 0.25F, 1.0F}, {0, 0, 1}, 0.0F, 9.0F}, found);
+    EXPECT_EQ(found.size(), 3U);
+}
+
+TEST(EmbreeScene, KnowsHowFarTheNearestTriangleIs) {
+    EmbreeScene scene;
+    add_triangle(scene, 0, 0.0F);
+    add_triangle(scene, 1, -2.0F);
+    scene.build();
+    EXPECT_FLOAT_EQ(scene.distance_from({0.25F, 0.25F, 0.75F}), 0.75F);
+    EXPECT_FLOAT_EQ(scene.distance_from({0.25F, 0.25F, -1.5F}), 0.5F);
+    EXPECT_FLOAT_EQ(scene.distance_from({-3.0F, -4.0F, 0.0F}), 5.0F);
+    EXPECT_FLOAT_EQ(scene.distance_from({2.0F, 0.0F, 0.0F}), 1.0F);
+    EXPECT_FLOAT_EQ(scene.distance_from({1.0F, 1.0F, 0.0F}), 0.70710678F);
+}
+
+TEST(EmbreeScene, LeavesOutWhatIsNotFiniteAndMayBeEmpty) {
+    EmbreeScene scene;
+    add_triangle(scene, 0, std::numeric_limits<float>::quiet_NaN());
+    scene.build();
+    EmbreeScene empty;
+    empty.build();
+    for (const EmbreeScene* nothing : {&scene, &empty}) {
+        std::vector<MetTriangle> found;
+        nothing->find_all({{0.25F, 0.25F, 1.0F}, {0, 0, -1}, 0.0F, 9.0F}, found);
+        EXPECT_TRUE(found.empty());
+        EXPECT_EQ(nothing->distance_from({0, 0, 0}), std::numeric_limits<float>::infinity());
+    }
+}
+
+}  // namespace
+}  // namespace relief
