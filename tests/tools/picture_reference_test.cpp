@@ -6,6 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "relief/mesh/heat_picture.h"
 #include "relief/mesh/image_file.h"
 #include "relief/shade/image_compare.h"
 #include "tools/refusal.h"

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "common/text.h"
+#include "relief/mesh/heat_picture.h"
 #include "relief/mesh/image_file.h"
 
 namespace relief::tools {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "relief/mesh/error.h"
-#include "relief/shade/image_compare.h"
+#include "relief/mesh/heat_picture.h"
 
 namespace relief {
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Values as colours: 8-bit sRGB, between five colours on the way from black to pale yellow that
 // follow the map "magma" of matplotlib, so that error maps look as those of other tools do. NaN is
-// green, which nothing else is. Tests: tests/shade/compare/heat_picture_test.cpp.
+// green, which nothing else is. Tests: tests/mesh/image/heat_picture_test.cpp.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -10,7 +10,7 @@
 #include <glm/glm.hpp>
 
 #include "relief/mesh/error.h"
-#include "relief/shade/image_compare.h"
+#include "relief/mesh/heat_picture.h"
 
 namespace relief {
 
