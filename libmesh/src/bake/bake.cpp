@@ -27,10 +27,10 @@ constexpr int least_rows = 64;  // A tile of dither, and of coverage.
 constexpr int most_padding = 1024;
 
 int side_of(int samples) {
-    for (const int side : {1, 2, 4, 8}) {
+    for (const int side : {1, 2, 4, 8, 16}) {
         if (side * side == samples) return side;
     }
-    throw InvalidInput(fmt::format("{} samples are not 1, 4, 16 or 64", samples));
+    throw InvalidInput(fmt::format("{} samples are not 1, 4, 16, 64 or 256", samples));
 }
 
 void check_distance(const std::optional<double>& distance, const char* what) {
@@ -54,6 +54,16 @@ void check_triangle_numbers(std::span<const std::uint32_t> numbers, std::size_t 
     }
 }
 
+void check_rows(const BakeRowRange& rows, const BakeMapOptions& map) {
+    const bool ends_well = rows.last == map.height || rows.last % TexelCover::band_rows == 0;
+    if (rows.first < 0 || rows.first % TexelCover::band_rows != 0 || rows.last <= rows.first ||
+        rows.last > map.height || !ends_well) {
+        throw InvalidInput(fmt::format("rows {} to {} are no multiples of {} within a map of {}",
+                                       rows.first, rows.last, TexelCover::band_rows, map.height));
+    }
+    if (map.padding > 0) throw InvalidInput("some rows of a map have no padding");
+}
+
 void check_map(const BakeMapOptions& map, const Mesh& low) {
     const int side = side_of(map.samples);
     // Coverage has a limit of its own, which is of samples.
@@ -70,6 +80,7 @@ void check_map(const BakeMapOptions& map, const Mesh& low) {
     }
     if (map.sample_angle && !(*map.sample_angle >= 0.0 && *map.sample_angle <= std::numbers::pi))
         throw InvalidInput(fmt::format("an angle of {} is not within 0 to pi", *map.sample_angle));
+    if (map.rows) check_rows(*map.rows, map);
     if (map.triangles) check_triangle_numbers(*map.triangles, low.triangles.size());
 }
 
@@ -162,6 +173,10 @@ const Mesh& Baker::low() const {
     return implementation_->low.mesh();
 }
 
+const BakeOptions& Baker::options() const {
+    return implementation_->options;
+}
+
 BakeDistances Baker::distances() const {
     return implementation_->parts.largest_distances();
 }
@@ -173,16 +188,19 @@ BakeResult Baker::bake(const BakeMapOptions& map,
     BakeOptions options = implementation_->options;
     static_cast<BakeMapOptions&>(options) = map;
     const int side = side_of(map.samples);
-    const TexelCover cover(low().texcoords, low().triangles, coverage_options(map, side), report);
+    const BakeRowRange range = map.rows.value_or(BakeRowRange{0, map.height});
+    Report said_before;
+    const TexelCover cover(low().texcoords, low().triangles, coverage_options(map, side),
+                           range.first == 0 ? report : said_before);
     BakeResult result;
     result.distances = distances();
     const BakeWork work{implementation_->parts, implementation_->low, options, side};
-    const int rows = rows_of_strip(map.width, map.height);
+    const int rows = rows_of_strip(map.width, range.last - range.first);
     Strip strip(static_cast<std::size_t>(map.width), static_cast<std::size_t>(rows));
     Dilation dilation(map.width, map.height, map.padding, take);
     BakeCounts counts;
-    for (int first = 0; first < map.height; first += rows) {
-        const int last = std::min(first + rows, map.height);
+    for (int first = range.first; first < range.last; first += rows) {
+        const int last = std::min(first + rows, range.last);
         bake_strip(work, cover, strip, first, last, result, counts, report);
         dilation.push(strip.rows(map.width, first, 0, last - first));
     }

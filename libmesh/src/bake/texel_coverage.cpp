@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <tuple>
 #include <vector>
@@ -299,9 +300,11 @@ void check(std::span<const glm::vec2> texcoords, std::span<const glm::uvec3> tri
                                            options.width, options.height, largest_side));
     }
     const int across = options.samples_across;
-    const bool is_known = across == 1 || across == 2 || across == 4 || across == 8;
+    constexpr std::array known = {1, 2, 4, 8, 16};
+    const bool is_known = std::find(known.begin(), known.end(), across) != known.end();
     if (!is_known || options.width % across != 0 || options.height % across != 0)
-        throw InvalidInput(fmt::format("{} samples across a texel are not 1, 2, 4 or 8", across));
+        throw InvalidInput(
+            fmt::format("{} samples across a texel are not 1, 2, 4, 8 or 16", across));
     check_triangles(triangles, texcoords.size());
     if (options.only && !options.only->empty() && options.only->back() >= triangles.size())
         throw InvalidInput(fmt::format("there is no triangle {}", options.only->back()));

@@ -265,7 +265,7 @@ TEST(Bake, SaysWhatIsWrong) {
     BakeOptions options = sized(4, 4);
     options.samples = 3;
     EXPECT_EQ(test::message_of<InvalidInput>([&] { bake({make_quad()}, make_quad(), options); }),
-              "3 samples are not 1, 4, 16 or 64");
+              "3 samples are not 1, 4, 16, 64 or 256");
     options = sized(4, 4);
     options.offset = -1.0;
     EXPECT_EQ(test::message_of<InvalidInput>([&] { bake({make_quad()}, make_quad(), options); }),

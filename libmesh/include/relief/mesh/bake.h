@@ -40,6 +40,12 @@ enum class BackFaces {
     take,  ///< Either; normals are turned to where the ray comes from.
 };
 
+/// Rows [first, last) of a map.
+struct BakeRowRange {
+    int first = 0;  ///< A multiple of 64.
+    int last = 0;   ///< Likewise, or the map's height.
+};
+
 /// One map of a bake. There may be many on the same meshes, each with options of its own.
 struct BakeMapOptions {
     int width = 0;  ///< In texels.
@@ -48,8 +54,11 @@ struct BakeMapOptions {
     /// Those triangles of the low mesh that the map is for, ascending: a material's, a tile's.
     /// Absent: all. The span must outlive the call.
     std::optional<std::span<const std::uint32_t>> triangles{};
-    /// A texel's mean of 1, 4, 16 or 64 samples, the centres of as many equal squares of it. Each
-    /// has an owner of its own (texel_coverage.h); those that no chart reaches have no say.
+    /// Only these rows, for those who want several maps side by side; there is no padding then.
+    /// What is said of triangles is said with row 0.
+    std::optional<BakeRowRange> rows;
+    /// A texel's mean of 1, 4, 16, 64 or 256 samples, the centres of as many equal squares of it.
+    /// Each has an owner of its own (texel_coverage.h); those that no chart reaches have no say.
     int samples = 1;
     /// With several samples: a quarter of them is cast first (of 4: the upper left and the lower
     /// right one), and the others only where two of those are further apart than this, radians.
@@ -151,7 +160,7 @@ class Baker {
     ///                tangents those of MikkTSpace, which is what a renderer would do
     /// \param options  all but those of a map
     /// \param report  counts what is wrong with the meshes
-    /// 	hrows InvalidInput if an option is out of range, a mesh is not valid, `low` has no
+    /// \throws InvalidInput if an option is out of range, a mesh is not valid, `low` has no
     /// texture
     ///         coordinates, or the cage has other triangles
     ///
@@ -159,7 +168,7 @@ class Baker {
     Baker(std::span<const Mesh> high, const Mesh& low, const BakeOptions& options, Report& report);
 
     /// The same for parts that do not see each other, each with distances of its own.
-    /// 	hrows InvalidInput also if a triangle of `low` is not in exactly one part
+    /// \throws InvalidInput also if a triangle of `low` is not in exactly one part
     Baker(std::span<const BakePart> parts, const Mesh& low, const BakeOptions& options,
           Report& report);
 
@@ -169,6 +178,8 @@ class Baker {
 
     /// The low mesh with the frames that its maps will be seen with.
     [[nodiscard]] const Mesh& low() const;
+
+    [[nodiscard]] const BakeOptions& options() const;
 
     /// As used; the largest of all parts. With a cage, the inner one, or 0 where that varies.
     [[nodiscard]] BakeDistances distances() const;
@@ -181,7 +192,7 @@ class Baker {
     ///                baked, or have several owners; triangles that own no texel; rays without a
     ///                direction, which run along the triangle's normal; normals without one, which
     ///                are the triangle's
-    /// 	hrows InvalidInput if a size or an option is out of range, or a triangle is not
+    /// \throws InvalidInput if a size or an option is out of range, or a triangle is not
     /// there
     BakeResult bake(const BakeMapOptions& map,
                     const std::function<void(const BakedRows& rows)>& take, Report& report) const;

@@ -43,8 +43,8 @@ struct CoverageOptions {
     /// Texels whose centre no triangle holds belong to the nearest triangle that has a part in
     /// their square; so that no chart is lost for being small.
     bool touched = true;
-    /// For maps of several samples a texel, 1, 2, 4 or 8 along each of its sides: "texels" here are
-    /// samples then, and those of a whole texel are reported once, by the index of the texel.
+    /// For maps of several samples a texel, 1, 2, 4, 8 or 16 along each of its sides: "texels" here
+    /// are samples then, and those of a whole texel are reported once, by the index of the texel.
     int samples_across = 1;
     /// Only these triangles, ascending; indices stay as they are. Absent: all. The span must
     /// outlive what it is given to.

@@ -1,0 +1,315 @@
+// SPDX-License-Identifier: Apache-2.0
+// Readings of a map tried one after another on some of its texels, the best one kept, part by part.
+// In double, in the axes of the meshes, degrees. Tests: tests/mesh/bake/map_convention_test.cpp.
+#include "relief/mesh/map_convention.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+
+#include "geometry/direction.h"
+#include "parallel.h"
+#include "relief/mesh/direction_error.h"
+#include "relief/mesh/tangents.h"
+
+namespace relief {
+namespace {
+
+constexpr std::size_t most_texels = 4096;
+constexpr double kept_share = 0.98;  // Of texels, the best ones: silhouettes say nothing.
+constexpr double sure_degrees = 0.02;
+constexpr double least_gain = 0.8;  // A round must bring the error below so much of what it was.
+constexpr double alike = 0.98;      // Readings this close to each other fit alike.
+constexpr int most_rounds = 3;
+
+constexpr std::array curves = {StoredCurve::none, StoredCurve::srgb_encoded,
+                               StoredCurve::srgb_decoded};
+constexpr std::array flats = {FlatCode::middle, FlatCode::half};
+constexpr std::array turns = {MapTurn::upright, MapTurn::upside_down, MapTurn::mirrored,
+                              MapTurn::half_turn};
+constexpr std::array spaces = {MapAxes::tangent, MapAxes::object, MapAxes::world};
+constexpr std::array bases = {MapBasis::used, MapBasis::mikktspace, MapBasis::area_weighted,
+                              MapBasis::lengyel};
+constexpr std::array frames = {MapFrame::interpolated, MapFrame::unit, MapFrame::orthonormal,
+                               MapFrame::vertex_bitangent};
+
+/// Every signed permutation, or those that leave z alone; plain signs first.
+std::vector<AxisMapping> mappings(bool keeps_z) {
+    std::vector<AxisMapping> all;
+    std::array<int, 3> order = {0, 1, 2};
+    do {
+        if (keeps_z && order[2] != 2) continue;
+        for (int signs = 0; signs < (keeps_z ? 4 : 8); ++signs) {
+            AxisMapping mapping;
+            for (std::size_t i = 0; i < 3; ++i)
+                mapping[i] = {order[i], (signs >> i & 1) != 0};
+            all.push_back(mapping);
+        }
+    } while (std::next_permutation(order.begin(), order.end()));
+    return all;
+}
+
+/// Tangents by corner.
+using Corners = std::vector<glm::vec4>;
+
+Corners corners_of(const Mesh& mesh) {
+    Corners corners;
+    corners.reserve(3 * mesh.triangles.size());
+    for (const glm::uvec3& triangle : mesh.triangles) {
+        for (int i = 0; i < 3; ++i)
+            corners.push_back(mesh.tangents[triangle[i]]);
+    }
+    return corners;
+}
+
+Corners corners_by(const Mesh& mesh, MapBasis basis) {
+    Report unsaid;  // What is wrong with the mesh, the bake has said.
+    const auto make = basis == MapBasis::area_weighted ? area_weighted_tangents
+                      : basis == MapBasis::lengyel     ? lengyel_tangents
+                                                       : mikktspace_tangents;
+    return make(mesh.positions, mesh.normals, mesh.texcoords, mesh.triangles, unsaid);
+}
+
+class Readings {
+  public:
+    Readings(const Image& map, std::span<const KnownTexel> texels, const ConventionSearch& search)
+        : map_(map), search_(search) {
+        const std::size_t step = (texels.size() + most_texels - 1) / most_texels;
+        for (std::size_t i = 0; i < texels.size(); i += step)
+            texels_.push_back(texels[i]);
+    }
+
+    /// How far off the map is, read so.
+    double error(const MapConvention& convention) {
+        ++tried;
+        const Corners* tangents =
+            convention.space == MapAxes::tangent ? &tangents_by(convention.basis) : nullptr;
+        std::vector<double> degrees(texels_.size());
+        parallel_for(texels_.size(), 512, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) {
+                const glm::dvec3 shown =
+                    in_mesh(texels_[i], stored(texels_[i], convention), convention, tangents);
+                const double angle = degrees_between(shown, texels_[i].truth);
+                degrees[i] = std::isnan(angle) ? 180.0 : angle;
+            }
+        });
+        return trimmed(std::move(degrees));
+    }
+    [[nodiscard]] double expected() const {
+        std::vector<double> degrees;
+        for (const KnownTexel& texel : texels_)
+            degrees.push_back(texel.expected);
+        return trimmed(std::move(degrees));
+    }
+
+    std::size_t tried = 0;
+
+  private:
+    static double trimmed(std::vector<double> degrees) {
+        std::sort(degrees.begin(), degrees.end());
+        const auto count =
+            static_cast<std::size_t>(std::ceil(kept_share * static_cast<double>(degrees.size())));
+        double squares = 0.0;
+        for (std::size_t i = 0; i < count; ++i)
+            squares += degrees[i] * degrees[i];
+        return count > 0 ? std::sqrt(squares / static_cast<double>(count)) : 0.0;
+    }
+
+    const Corners& tangents_by(MapBasis basis) {
+        const auto known = corners_.find(basis);
+        if (known != corners_.end()) return known->second;
+        const Mesh& low = *search_.low;
+        const bool has_own = search_.given != nullptr && !search_.given->tangents.empty();
+        Corners made;
+        if (basis == MapBasis::used && !low.tangents.empty())
+            made = corners_of(low);
+        else if (basis == MapBasis::used && has_own)
+            made = corners_of(*search_.given);
+        else
+            made = corners_by(low, basis);
+        return corners_.emplace(basis, std::move(made)).first->second;
+    }
+
+    /// A sample of the map, 0 to 1, and how many codes there are above 0.
+    [[nodiscard]] double sample(std::size_t index) const {
+        if (map_.bits() == 8) return map_.as<std::uint8_t>()[index] / 255.0;
+        if (map_.bits() == 16) return map_.as<std::uint16_t>()[index] / 65535.0;
+        return map_.as<float>()[index];
+    }
+
+    [[nodiscard]] double decoded(double value, const MapConvention& convention) const {
+        if (convention.curve == StoredCurve::srgb_encoded)
+            value = linear_from_srgb(static_cast<float>(value));
+        if (convention.curve == StoredCurve::srgb_decoded)
+            value = srgb_from_linear(static_cast<float>(value));
+        if (map_.bits() == 32 || convention.flat == FlatCode::half) return 2.0 * value - 1.0;
+        const double half = map_.bits() == 8 ? 127.0 : 32767.0;
+        return std::max((value * (2.0 * half + 1.0) - (half + 1.0)) / half, -1.0);
+    }
+
+    [[nodiscard]] glm::dvec3 stored(const KnownTexel& texel,
+                                    const MapConvention& convention) const {
+        const bool turns_x =
+            convention.turn == MapTurn::mirrored || convention.turn == MapTurn::half_turn;
+        const bool turns_y =
+            convention.turn == MapTurn::upside_down || convention.turn == MapTurn::half_turn;
+        const int x = turns_x ? map_.width - 1 - texel.x : texel.x;
+        const int y = turns_y ? map_.height - 1 - texel.y : texel.y;
+        const std::size_t first =
+            (static_cast<std::size_t>(y) * static_cast<std::size_t>(map_.width) +
+             static_cast<std::size_t>(x)) *
+            static_cast<std::size_t>(map_.channels);
+        glm::dvec3 vector;
+        for (int i = 0; i < 3; ++i)
+            vector[i] = decoded(sample(first + static_cast<std::size_t>(i)), convention);
+        if (search_.green == Green::down) vector.y = -vector.y;
+        glm::dvec3 result;
+        for (int i = 0; i < 3; ++i) {
+            const SignedAxis& from = convention.axes[static_cast<std::size_t>(i)];
+            result[i] = from.is_negative ? -vector[from.axis] : vector[from.axis];
+        }
+        return result;
+    }
+
+    [[nodiscard]] glm::dvec3 in_mesh(const KnownTexel& texel, const glm::dvec3& vector,
+                                     const MapConvention& convention,
+                                     const Corners* tangents) const {
+        if (convention.space == MapAxes::world) return vector;
+        // Normals go back by the transpose of what takes them there, where that is a rotation.
+        if (convention.space == MapAxes::object)
+            return glm::inverse(search_.object_from_mesh) * vector;
+        glm::dvec3 n(0.0), t(0.0), b(0.0);
+        double w = 0.0;
+        for (int i = 0; i < 3; ++i) {
+            const glm::dvec3 corner_n(
+                search_.low->normals[search_.low->triangles[texel.triangle][i]]);
+            const glm::dvec4 corner_t(
+                (*tangents)[3 * std::size_t{texel.triangle} + static_cast<std::size_t>(i)]);
+            const double corner_w = convention.ignores_mirroring ? 1.0 : corner_t.w;
+            n += texel.weights[i] * corner_n;
+            t += texel.weights[i] * glm::dvec3(corner_t);
+            w += texel.weights[i] * corner_w;
+            b += texel.weights[i] * corner_w * glm::cross(corner_n, glm::dvec3(corner_t));
+        }
+        if (convention.frame != MapFrame::interpolated) {
+            n = direction_or_zero(n);
+            if (convention.frame == MapFrame::orthonormal) t = in_plane(t, n);
+            t = direction_or_zero(t);
+        }
+        if (convention.frame == MapFrame::vertex_bitangent)
+            b = direction_or_zero(b);
+        else
+            b = w * glm::cross(n, t);
+        return vector.x * t + vector.y * b + vector.z * n;
+    }
+
+    const Image& map_;
+    const ConventionSearch& search_;
+    std::vector<KnownTexel> texels_;
+    std::map<MapBasis, Corners> corners_;
+};
+
+/// All readings one step from another, the simplest first.
+std::vector<MapConvention> neighbours_of(const MapConvention& from) {
+    static const std::vector<AxisMapping> in_plane_mappings = mappings(true);
+    static const std::vector<AxisMapping> all_mappings = mappings(false);
+    const auto mappings_of = [](MapAxes space) -> const std::vector<AxisMapping>& {
+        return space == MapAxes::tangent ? in_plane_mappings : all_mappings;
+    };
+    std::vector<MapConvention> all;
+    const auto add = [&](const auto& change) {
+        MapConvention one = from;
+        change(one);
+        all.push_back(one);
+    };
+    for (const AxisMapping& axes : mappings_of(from.space))
+        add([&](MapConvention& c) { c.axes = axes; });
+    for (const StoredCurve curve : curves)
+        add([&](MapConvention& c) { c.curve = curve; });
+    for (const FlatCode flat : flats)
+        add([&](MapConvention& c) { c.flat = flat; });
+    if (from.space == MapAxes::tangent) {
+        for (const bool ignores : {false, true}) {
+            for (const MapBasis basis : bases) {
+                for (const MapFrame frame : frames) {
+                    add([&](MapConvention& c) {
+                        c.ignores_mirroring = ignores;
+                        c.basis = basis;
+                        c.frame = frame;
+                    });
+                }
+            }
+        }
+    }
+    for (const MapAxes space : spaces) {
+        for (const AxisMapping& axes : mappings_of(space)) {
+            if (space == from.space) break;
+            add([&](MapConvention& c) {
+                c.space = space;
+                c.axes = axes;
+            });
+        }
+    }
+    for (const MapTurn turn : turns) {
+        for (const AxisMapping& axes : mappings_of(from.space)) {
+            add([&](MapConvention& c) {
+                c.turn = turn;
+                c.axes = axes;
+            });
+        }
+    }
+    return all;
+}
+
+std::vector<ConventionPart> changes_between(const MapConvention& a, const MapConvention& b) {
+    using enum ConventionPart;
+    std::vector<ConventionPart> parts;
+    const auto note = [&](bool differs, ConventionPart part) {
+        if (differs) parts.push_back(part);
+    };
+    note(a.curve != b.curve, curve);
+    note(a.flat != b.flat, flat);
+    note(a.turn != b.turn, turn);
+    note(a.axes != b.axes, axes);
+    note(a.space != b.space, space);
+    note(a.basis != b.basis, basis);
+    note(a.frame != b.frame, frame);
+    note(a.ignores_mirroring != b.ignores_mirroring, mirroring);
+    return parts;
+}
+
+}  // namespace
+
+ConventionFit find_convention(const Image& map, std::span<const KnownTexel> texels,
+                              const ConventionSearch& search) {
+    ConventionFit fit;
+    fit.convention = search.told;
+    if (texels.empty()) return fit;
+    Readings readings(map, texels, search);
+    fit.expected_degrees = readings.expected();
+    fit.told_degrees = readings.error(search.told);
+    fit.found_degrees = fit.told_degrees;
+    const double fine = std::max(2.0 * fit.expected_degrees, fit.expected_degrees + sure_degrees);
+    fit.was_searched = fit.told_degrees > fine;
+    for (int round = 0; round < most_rounds && fit.found_degrees > fine; ++round) {
+        MapConvention best = fit.convention;
+        double least = fit.found_degrees;
+        for (const MapConvention& one : neighbours_of(fit.convention)) {
+            const double degrees = readings.error(one);
+            if (degrees >= alike * least) continue;
+            best = one;
+            least = degrees;
+        }
+        if (least > least_gain * fit.found_degrees) break;
+        fit.convention = best;
+        fit.found_degrees = least;
+    }
+    fit.tried = readings.tried;
+    fit.changes = changes_between(search.told, fit.convention);
+    fit.is_explained = fit.was_searched && fit.found_degrees < fit.told_degrees / 2.0 &&
+                       fit.told_degrees - fit.found_degrees > sure_degrees;
+    return fit;
+}
+
+}  // namespace relief

@@ -1,0 +1,286 @@
+// SPDX-License-Identifier: Apache-2.0
+// Maps baked by relief and altered in every way that others go by: each is recognised, and nothing
+// else is.
+#include "relief/mesh/map_convention.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+
+#include "mesh/bake/bake_support.h"
+#include "relief/mesh/bake_check.h"
+#include "relief/mesh/frames.h"
+#include "relief/mesh/shapes.h"
+#include "relief/mesh/split.h"
+#include "relief/mesh/tangents.h"
+
+namespace relief {
+namespace {
+
+using test::sized;
+
+constexpr int width = 128;
+constexpr int height = 128;
+
+/// A torus whose image is uneven, and mirrored on its right half.
+Mesh torus(int slices, int sides) {
+    const Mesh even = make_torus(0.4F, slices, sides);
+    Mesh mesh;
+    for (const glm::uvec3& triangle : even.triangles) {
+        const float middle = (even.texcoords[triangle.x].x + even.texcoords[triangle.y].x +
+                              even.texcoords[triangle.z].x) /
+                             3.0F;
+        for (int i = 0; i < 3; ++i) {
+            glm::vec2 uv = even.texcoords[triangle[i]];
+            const float x = uv.x;
+            uv.x += 0.25F / static_cast<float>(slices) * std::sin(40.0F * uv.y) *
+                    std::sin(12.566371F * x);
+            uv.y += 0.25F / static_cast<float>(sides) * std::sin(100.0F * x) *
+                    std::sin(6.2831853F * uv.y);
+            if (middle > 0.5F) uv.x = 1.5F - uv.x;
+            mesh.positions.push_back(even.positions[triangle[i]]);
+            mesh.normals.push_back(even.normals[triangle[i]]);
+            mesh.texcoords.push_back(uv);
+        }
+        const auto end = static_cast<std::uint32_t>(mesh.positions.size());
+        mesh.triangles.emplace_back(end - 3, end - 2, end - 1);
+    }
+    return mesh;
+}
+
+Mesh bumpy(Mesh mesh, double bumps) {
+    for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
+        const glm::vec3 p = mesh.positions[i];
+        mesh.positions[i] +=
+            mesh.normals[i] *
+            static_cast<float>(0.2 / bumps * std::sin(bumps * p.x) *
+                               std::cos(0.7 * bumps * p.y + 0.3) * std::sin(1.3 * bumps * p.z));
+    }
+    mesh.normals.clear();
+    mesh.texcoords.clear();
+    return mesh;
+}
+
+struct Pair {
+    Mesh high, low;
+    Pair() {
+        Report report;
+        high = bumpy(make_torus(0.4F, 400, 200), 9.0);
+        low = with_frames(torus(24, 12), {.tangents = TangentMode::mikktspace}, report).mesh;
+    }
+};
+
+const Pair& pair() {
+    static const Pair made;
+    return made;
+}
+
+BakeOptions options_of(BakeSpace space = BakeSpace::tangent) {
+    BakeOptions options = sized(width, height);
+    options.space = space;
+    return options;
+}
+
+Image baked(const Mesh& high, const Mesh& low, const BakeOptions& options) {
+    Image image = make_image(width, height, 3, 32, ColorSpace::data);
+    const auto normals = test::bake({high}, low, options).normals;
+    std::copy(normals.begin(), normals.end(), image.as<float>().begin());
+    return image;
+}
+
+Image encoded(const Image& normals, const NormalMapFormat& format = {.bits = 16}) {
+    Report report;
+    return encode_normal_map(normals, format, report);
+}
+
+ConventionFit fit(const Image& map, BakeSpace space = BakeSpace::tangent,
+                  const Mesh& low = pair().low) {
+    Report report;
+    const Baker baker(std::span(&pair().high, 1), low, options_of(space), report);
+    BakeCheckOptions check;
+    check.map = baker.options();
+    check.given = &low;
+    return check_bake(baker, map, check, {}, report).convention;
+}
+
+/// Each vector of a map of normals changed by its place and value.
+Image changed(Image normals, const std::function<glm::vec3(glm::vec3)>& change) {
+    const auto samples = normals.as<float>();
+    for (std::size_t i = 0; i < samples.size(); i += 3) {
+        const glm::vec3 n = change({samples[i], samples[i + 1], samples[i + 2]});
+        for (int axis = 0; axis < 3; ++axis)
+            samples[i + static_cast<std::size_t>(axis)] = n[axis];
+    }
+    return normals;
+}
+
+const Image& tangent_normals() {
+    static const Image normals = baked(pair().high, pair().low, options_of());
+    return normals;
+}
+
+void expect_explained(const ConventionFit& found, const std::vector<ConventionPart>& changes) {
+    EXPECT_TRUE(found.was_searched);
+    EXPECT_TRUE(found.is_explained)
+        << found.told_degrees << " to " << found.found_degrees << " degrees";
+    EXPECT_EQ(found.changes, changes);
+    EXPECT_LT(found.found_degrees, 1.5 * found.expected_degrees + 0.02);
+}
+
+TEST(MapConvention, WhatReliefBakesIsAsTold) {
+    for (const int bits : {8, 16, 32}) {
+        const ConventionFit found = fit(encoded(tangent_normals(), {.bits = bits}));
+        EXPECT_FALSE(found.was_searched) << bits;
+        EXPECT_EQ(found.tried, 1U);
+        EXPECT_TRUE(found.changes.empty());
+        EXPECT_NEAR(found.told_degrees, found.expected_degrees, 1e-4);
+    }
+    const Image object = baked(pair().high, pair().low, options_of(BakeSpace::object));
+    EXPECT_FALSE(fit(encoded(object), BakeSpace::object).was_searched);
+}
+
+TEST(MapConvention, TurnedAxesAreRecognised) {
+    const SignedAxis x{0, false}, y{1, false}, z{2, false}, minus_x{0, true}, minus_y{1, true};
+    const auto axes_of = [](const std::function<glm::vec3(glm::vec3)>& change) {
+        const ConventionFit found = fit(encoded(changed(tangent_normals(), change)));
+        expect_explained(found, {ConventionPart::axes});
+        return found.convention.axes;
+    };
+    EXPECT_EQ(axes_of([](glm::vec3 n) { return glm::vec3(n.x, -n.y, n.z); }),
+              (AxisMapping{x, minus_y, z}));
+    EXPECT_EQ(axes_of([](glm::vec3 n) { return glm::vec3(-n.x, n.y, n.z); }),
+              (AxisMapping{minus_x, y, z}));
+    EXPECT_EQ(axes_of([](glm::vec3 n) { return glm::vec3(-n.x, -n.y, n.z); }),
+              (AxisMapping{minus_x, minus_y, z}));
+    EXPECT_EQ(axes_of([](glm::vec3 n) { return glm::vec3(n.y, n.x, n.z); }),
+              (AxisMapping{y, x, z}));
+    EXPECT_EQ(axes_of([](glm::vec3 n) { return glm::vec3(-n.y, n.x, n.z); }),
+              (AxisMapping{y, minus_x, z}));
+}
+
+TEST(MapConvention, SpacesAreRecognised) {
+    const Image object = baked(pair().high, pair().low, options_of(BakeSpace::object));
+    const ConventionFit told_tangent = fit(encoded(object));
+    expect_explained(told_tangent, {ConventionPart::space});
+    EXPECT_EQ(told_tangent.convention.space, MapAxes::object);
+    const ConventionFit told_object = fit(encoded(tangent_normals()), BakeSpace::object);
+    expect_explained(told_object, {ConventionPart::space});
+    EXPECT_EQ(told_object.convention.space, MapAxes::tangent);
+    // Another up axis: y becomes z, z becomes -y.
+    const Image z_up = changed(object, [](glm::vec3 n) { return glm::vec3(n.x, -n.z, n.y); });
+    const ConventionFit turned = fit(encoded(z_up), BakeSpace::object);
+    expect_explained(turned, {ConventionPart::axes});
+    EXPECT_EQ(turned.convention.axes, (AxisMapping{{{0, false}, {2, false}, {1, true}}}));
+    expect_explained(fit(encoded(z_up)), {ConventionPart::axes, ConventionPart::space});
+}
+
+TEST(MapConvention, CurvesAreRecognised) {
+    Image bright = encoded(tangent_normals());
+    for (std::uint16_t& code : bright.as<std::uint16_t>()) {
+        code = static_cast<std::uint16_t>(
+            std::lround(65535.0F * srgb_from_linear(static_cast<float>(code) / 65535.0F)));
+    }
+    const ConventionFit found = fit(bright);
+    expect_explained(found, {ConventionPart::curve});
+    EXPECT_EQ(found.convention.curve, StoredCurve::srgb_encoded);
+}
+
+TEST(MapConvention, ImagesLyingOtherwiseAreRecognised) {
+    Image turned = tangent_normals();
+    const auto from = tangent_normals().as<float>();
+    for (std::size_t y = 0; y < height; ++y) {
+        std::copy_n(&from[(height - 1 - y) * width * 3], width * 3,
+                    &turned.as<float>()[y * width * 3]);
+    }
+    const ConventionFit found = fit(encoded(turned));
+    expect_explained(found, {ConventionPart::turn});
+    EXPECT_EQ(found.convention.turn, MapTurn::upside_down);
+    const Image down = changed(turned, [](glm::vec3 n) { return glm::vec3(n.x, -n.y, n.z); });
+    expect_explained(fit(encoded(down)), {ConventionPart::turn, ConventionPart::axes});
+}
+
+/// The low mesh with other tangents.
+Mesh low_by(TangentMode mode) {
+    Report report;
+    return with_frames(pair().low, {.tangents = mode}, report).mesh;
+}
+
+TEST(MapConvention, BasesOfTangentsAreRecognised) {
+    const auto basis_of = [](TangentMode mode) {
+        const ConventionFit found = fit(encoded(baked(pair().high, low_by(mode), options_of())));
+        expect_explained(found, {ConventionPart::basis});
+        return found.convention.basis;
+    };
+    EXPECT_EQ(basis_of(TangentMode::area_weighted), MapBasis::area_weighted);
+    EXPECT_EQ(basis_of(TangentMode::lengyel), MapBasis::lengyel);
+    // The model has tangents of another kind, and the map was baked with MikkTSpace's.
+    const ConventionFit found =
+        fit(encoded(tangent_normals()), BakeSpace::tangent, low_by(TangentMode::area_weighted));
+    expect_explained(found, {ConventionPart::basis});
+    EXPECT_EQ(found.convention.basis, MapBasis::mikktspace);
+}
+
+/// Components of the true normals in a frame that another baker uses.
+Image baked_by(const std::function<glm::dmat3(glm::dvec3 n, glm::dvec4 t, glm::dvec3 b)>& frame) {
+    const Image object = baked(pair().high, pair().low, options_of(BakeSpace::object));
+    Image result = object;
+    const Mesh& low = pair().low;
+    Report report;
+    cover_texels(
+        low.texcoords, low.triangles, {.width = width, .height = height},
+        [&](int first_row, std::span<const CoveredTexel> texels) {
+            for (std::size_t i = 0; i < texels.size(); ++i) {
+                if (!texels[i].is_covered()) continue;
+                glm::dvec3 n(0.0), b(0.0);
+                glm::dvec4 t(0.0);
+                for (int corner = 0; corner < 3; ++corner) {
+                    const auto vertex = low.triangles[texels[i].triangle][corner];
+                    const double weight = texels[i].weights()[corner];
+                    const glm::dvec3 vertex_n(low.normals[vertex]);
+                    const glm::dvec4 vertex_t(low.tangents[vertex]);
+                    n += weight * vertex_n;
+                    t += weight * vertex_t;
+                    b += weight * vertex_t.w * glm::cross(vertex_n, glm::dvec3(vertex_t));
+                }
+                const std::size_t at = 3 * (static_cast<std::size_t>(first_row) * width + i);
+                const auto from = object.as<float>();
+                const glm::dvec3 components =
+                    glm::normalize(glm::inverse(frame(n, t, b)) *
+                                   glm::dvec3(from[at], from[at + 1], from[at + 2]));
+                for (int axis = 0; axis < 3; ++axis)
+                    result.as<float>()[at + static_cast<std::size_t>(axis)] =
+                        static_cast<float>(components[axis]);
+            }
+        },
+        report);
+    return result;
+}
+
+TEST(MapConvention, FramesOfOtherShadersAreRecognised) {
+    const ConventionFit unit = fit(encoded(baked_by([](glm::dvec3 n, glm::dvec4 t, glm::dvec3) {
+        const glm::dvec3 unit_n = glm::normalize(n), unit_t = glm::normalize(glm::dvec3(t));
+        return glm::dmat3(unit_t, t.w * glm::cross(unit_n, unit_t), unit_n);
+    })));
+    expect_explained(unit, {ConventionPart::frame});
+    EXPECT_EQ(unit.convention.frame, MapFrame::unit);
+    const ConventionFit mirrored = fit(encoded(baked_by([](glm::dvec3 n, glm::dvec4 t, glm::dvec3) {
+        return glm::dmat3(glm::dvec3(t), glm::cross(n, glm::dvec3(t)), n);
+    })));
+    expect_explained(mirrored, {ConventionPart::mirroring});
+    EXPECT_TRUE(mirrored.convention.ignores_mirroring);
+}
+
+TEST(MapConvention, AMapOfAnotherModelIsExplainedByNone) {
+    const Mesh other = bumpy(make_torus(0.4F, 400, 200), 14.0);
+    const ConventionFit found = fit(encoded(baked(other, pair().low, options_of())));
+    EXPECT_TRUE(found.was_searched);
+    EXPECT_FALSE(found.is_explained);
+    EXPECT_GT(found.found_degrees, 5.0);
+    EXPECT_GT(found.tried, 100U);
+}
+
+}  // namespace
+}  // namespace relief
