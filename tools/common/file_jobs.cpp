@@ -18,27 +18,14 @@ namespace {
 namespace fs = std::filesystem;
 using NameInFolder = std::function<fs::path(const fs::path&)>;
 
-constexpr std::string_view tile_word = "<UDIM>";
 constexpr std::string_view first_tile = "1001";
-
-/// A path by which the same file has the same name, whether it exists or not.
-fs::path identity_of(const fs::path& file) {
-    return fs::weakly_canonical(fs::absolute(file));
-}
 
 bool is_folder(const std::string& output) {
     return output.ends_with('/') || fs::is_directory(output);
 }
 
 bool names_tiles(const fs::path& file) {
-    return file.filename().string().find(tile_word) != std::string::npos;
-}
-
-/// The name of one tile.
-fs::path with_tile(const fs::path& file, const std::string& tile) {
-    std::string name = file.filename().string();
-    name.replace(name.find(tile_word), tile_word.size(), tile);
-    return file.parent_path() / name;
+    return names_word(file, tile_word);
 }
 
 /// The four digits that stand for "<UDIM>" in a name, or nothing where the name is another.
@@ -81,7 +68,8 @@ JobList in_tiles(const Job& job) {
     if (!has_tiles) return {{job}, std::nullopt, false};
     JobList list{{}, std::nullopt, true};
     for (const std::string& tile : tiles_of(job.input))
-        list.jobs.push_back({with_tile(job.input, tile), with_tile(job.output, tile)});
+        list.jobs.push_back(
+            {with_word(job.input, tile_word, tile), with_word(job.output, tile_word, tile)});
     return list;
 }
 
@@ -142,6 +130,22 @@ JobList into_folder(const FileWords& words, const NameInFolder& name_in_folder) 
 }
 
 }  // namespace
+
+fs::path identity_of(const fs::path& file) {
+    return fs::weakly_canonical(fs::absolute(file));
+}
+
+fs::path with_word(const fs::path& file, std::string_view word, const std::string& replacement) {
+    std::string name = file.filename().string();
+    const std::size_t place = name.find(word);
+    if (place == std::string::npos) return file;
+    name.replace(place, word.size(), replacement);
+    return file.parent_path() / name;
+}
+
+bool names_word(const fs::path& file, std::string_view word) {
+    return file.filename().string().find(word) != std::string::npos;
+}
 
 JobList jobs_of(const FileWords& words, const std::string& kind,
                 const NameInFolder& name_in_folder) {

@@ -12,9 +12,23 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace relief::tools {
+
+/// What stands for the number of a tile in a name.
+inline constexpr std::string_view tile_word = "<UDIM>";
+
+/// A path by which the same file has the same name, whether it exists or not.
+std::filesystem::path identity_of(const std::filesystem::path& file);
+
+/// A file's name with something else in place of a word, if the word is in it; folders stay.
+std::filesystem::path with_word(const std::filesystem::path& file, std::string_view word,
+                                const std::string& replacement);
+
+/// Whether a file's name has a word in it; folders do not count.
+bool names_word(const std::filesystem::path& file, std::string_view word);
 
 /// The command line's words on files.
 struct FileWords {

@@ -38,6 +38,8 @@ MapModel model_of(const GltfDocument& document, ModelSpace space, Report& report
         return model;
     }
     const GltfView view = document.view();
+    for (const GltfMaterial& material : view.materials)
+        model.materials.push_back(material.name);
     for (const auto& primitive : view.primitives) {
         MapModelPart part = part_of(document, primitive.what, report);
         part.mesh = placed(std::move(part.mesh), primitive.world_from_object);
@@ -61,6 +63,18 @@ std::vector<Value> joined(const std::vector<MapModelPart>& parts,
     return all;
 }
 
+/// The material ranges of triangles that are about to be added.
+void append_ranges(Mesh& all, const Mesh& part) {
+    const auto first = static_cast<std::uint32_t>(all.triangles.size());
+    const auto count = static_cast<std::uint32_t>(part.triangles.size());
+    if (part.material_ranges.empty() && count > 0)
+        all.material_ranges.push_back({first, count, std::nullopt});
+    for (MaterialRange range : part.material_ranges) {
+        range.first_triangle += first;
+        all.material_ranges.push_back(range);
+    }
+}
+
 }  // namespace
 
 MapModel read_map_model(const std::filesystem::path& file, ModelSpace space, Report& report) {
@@ -71,6 +85,8 @@ MapModel read_map_model(const std::filesystem::path& file, ModelSpace space, Rep
         auto& contents = std::get<MeshFile>(read);
         MapModel model;
         model.parts.push_back({"", std::move(contents.mesh)});
+        for (const MtlMaterial& material : contents.materials)
+            model.materials.push_back(material.name);
         model.origin = contents.origin;
         model.world_from_object = glm::dmat3(1.0);
         return model;
@@ -98,6 +114,7 @@ Mesh joined(std::vector<MapModelPart> parts) {
     }
     std::uint32_t first = 0;
     for (const MapModelPart& part : parts) {
+        append_ranges(all, part.mesh);
         for (const glm::uvec3& triangle : part.mesh.triangles)
             all.triangles.push_back(triangle + first);
         first += static_cast<std::uint32_t>(part.mesh.positions.size());

@@ -26,7 +26,8 @@ struct MapModelPart {
 
 struct MapModel {
     std::vector<MapModelPart> parts;
-    glm::dvec3 origin{0.0};  ///< Positions are relative to it (mesh_file.h).
+    std::vector<std::string> materials;  ///< Names, by the numbers in the parts' material ranges.
+    glm::dvec3 origin{0.0};              ///< Positions are relative to it (mesh_file.h).
     /// How the only primitive of a scene is placed; absent where there are several. Mesh files: as
     /// they are.
     std::optional<glm::dmat3> world_from_object;
@@ -46,7 +47,8 @@ MapModel read_map_model(const std::filesystem::path& file, ModelSpace space, Rep
 void require_texcoords(const std::filesystem::path& file, const MapModel& model,
                        const std::string& problem, const std::string& remedy);
 
-/// The parts as one mesh, in their order, with those attributes that all of them have.
+/// The parts as one mesh, in their order, with those attributes that all of them have, and their
+/// material ranges.
 /// \throws InvalidInput if there are more vertices than indices can name
 Mesh joined(std::vector<MapModelPart> parts);
 

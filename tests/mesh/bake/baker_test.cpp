@@ -50,8 +50,6 @@ Mesh two_tiles() {
     return joined(make_quad(), right);
 }
 
-const glm::dvec3 flat(0, 0, 1);
-
 TEST(Baker, BakesAsManyMapsAsAreAskedForEachAsAlone) {
     const Mesh low = make_torus();
     const std::vector<Mesh> high = {make_torus(0.43F, 100, 50)};

@@ -36,8 +36,10 @@ ExitCode run(const CLI::App& app, MeshCommand& command) {
     check(command);
     set_thread_limit(command.general.threads);
     Stages stages(command.general.quiet);
-    const BakedMap baked = bake_map(command.request, stages);
+    const MeshBake baked = bake_maps(command.request, stages);
     if (!command.general.quiet) print_summary(command.request, baked, stages);
+    const std::string remedy = remedy_for_shared_texels(command.request, baked);
+    if (!remedy.empty()) warn(app, remedy);
     nlohmann::ordered_json report = {{"tool", "relief-bake mesh"}, {"version", version()}};
     report.update(results_json(command.request, baked, stages));
     return finish(app, command.report, command.request.low, baked.findings, report);
@@ -54,7 +56,8 @@ Command add_mesh_command(CLI::App& tool) {
     add_general_options(app, command->general);
     set_examples(app, {"relief-mesh subdivide data/vase.obj out/high.obj --levels 2",
                        "relief-bake mesh out/high.obj data/vase.obj out/vase-baked.png --size 512 "
-                       "--preview out/vase-preview.png"});
+                       "--preview out/vase-preview.png",
+                       "relief-bake mesh out/high.obj data/vase.obj 'out/<material>-<UDIM>.png'"});
     return {&app, [&app, command] { return run(app, *command); }};
 }
 

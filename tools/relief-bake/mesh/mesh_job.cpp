@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rows go from the baker to codes to the file as they are made, so that no image is ever in memory.
-// Tests: tests/tools/relief_bake_mesh_test.cpp.
+// Maps one after another; rows go from the baker to codes to the file as they are made, so that no
+// image is ever in memory. Tests: tests/tools/relief_bake_mesh_test.cpp.
 #include "mesh/mesh_job.h"
 
 #include <fmt/format.h>
@@ -41,14 +41,15 @@ std::vector<Sample> with_alpha(std::span<const Sample> codes, std::span<const Te
 /// Codes rows of normals and writes them.
 class MapWriter {
   public:
-    MapWriter(const MeshBakeRequest& request, const NormalMapFormat& format, Report& report)
+    MapWriter(const MeshBakeRequest& request, const std::filesystem::path& output,
+              const NormalMapFormat& format, Report& report)
         : format_(format),
           has_alpha_(request.background == Background::transparent),
           report_(report),
           writer_(
-              request.output,
+              output,
               {request.size.x, request.size.y, has_alpha_ ? 4 : 3, format.bits, ColorSpace::data},
-              metadata_of(request, format), write_options_of(request.map, request.output)) {}
+              metadata_of(request, format), write_options_of(request.map, output)) {}
 
     void write(const BakedRows& rows) {
         const auto width =
@@ -96,6 +97,7 @@ glm::dmat3 output_axes(const MeshBakeRequest& request,
 struct Models {
     std::vector<Mesh> high;
     Mesh low;
+    std::vector<std::string> materials;  ///< Of the low mesh.
     std::optional<glm::dmat3> world_from_low;
     std::optional<Mesh> cage;
 };
@@ -121,12 +123,13 @@ Models read_models(const MeshBakeRequest& request, Findings& findings) {
     for (const std::filesystem::path& file : request.high)
         models.high.push_back(read_beside(low, file, findings));
     if (request.cage) models.cage = read_beside(low, *request.cage, findings);
+    models.materials = low.materials;
     models.world_from_low = low.world_from_object;
     models.low = about(request.low, [&] { return joined(std::move(low.parts)); });
     return models;
 }
 
-void draw(MeshPreview& preview, const MeshBakeRequest& request, const BakedMap& baked,
+void draw(MeshPreview& preview, const MeshBakeRequest& request, const MeshBake& baked,
           Models models) {
     const bool is_tangent = request.space == SpaceChoice::tangent;
     const bool has_own_axes = request.space == SpaceChoice::object && models.world_from_low;
@@ -141,10 +144,66 @@ void draw(MeshPreview& preview, const MeshBakeRequest& request, const BakedMap& 
                   .repeats = request.outside == OutsideChoice::repeat});
 }
 
+/// Adds what one map had to what all have.
+void add(BakeResult& all, const BakeResult& more) {
+    if (more.texels_baked > 0) {
+        const bool is_first = all.texels_baked == 0;
+        all.least_height =
+            is_first ? more.least_height : std::min(all.least_height, more.least_height);
+        all.greatest_height =
+            is_first ? more.greatest_height : std::max(all.greatest_height, more.greatest_height);
+    }
+    all.distances = more.distances;
+    all.coverage += more.coverage;
+    all.texels_baked += more.texels_baked;
+    all.texels_missed += more.texels_missed;
+    all.samples += more.samples;
+    all.rays += more.rays;
+}
+
+BakedMap bake_map(const MeshBakeRequest& request, const Baker& baker, MapPlan plan,
+                  const BakeOptions& options, MeshBake& baked) {
+    Report report;
+    BakeMapOptions map = options;
+    map.placement.tile = plan.tile;
+    if (plan.triangles) map.triangles = *plan.triangles;
+    BakedMap result;
+    MapWriter writer(request, plan.output, baked.format, report);
+    const auto take = [&](const BakedRows& rows) { writer.write(rows); };
+    result.result = baker.bake(map, take, report);
+    writer.finish();
+    baked.findings.add(plan.name(), report);
+    result.plan = std::move(plan);
+    return result;
+}
+
+/// Which maps are there when another one fails.
+FileError failure_after(const MeshBake& baked, const Error& error, const std::size_t count) {
+    std::string done;
+    for (const BakedMap& map : baked.maps)
+        done += (done.empty() ? "" : ", ") + map.plan.output.string();
+    return {baked.maps.back().plan.output.parent_path(),
+            fmt::format("only {} of {} maps are written: {}; {}", baked.maps.size(), count, done,
+                        error.what())};
+}
+
+void bake_all(const MeshBakeRequest& request, const Baker& baker, MapPlans plans,
+              const BakeOptions& options, MeshBake& baked) {
+    for (MapPlan& plan : plans.maps) {
+        try {
+            baked.maps.push_back(bake_map(request, baker, std::move(plan), options, baked));
+        } catch (const Error& error) {
+            if (baked.maps.empty()) throw;
+            throw failure_after(baked, error, plans.maps.size());
+        }
+        add(baked.all, baked.maps.back().result);
+    }
+}
+
 }  // namespace
 
-BakedMap bake_map(const MeshBakeRequest& request, Stages& stages) {
-    BakedMap baked;
+MeshBake bake_maps(const MeshBakeRequest& request, Stages& stages) {
+    MeshBake baked;
     baked.format = format_of(request.map, request.output);
     std::optional<MeshPreview> preview;
     if (request.preview.file) preview.emplace();
@@ -153,21 +212,20 @@ BakedMap bake_map(const MeshBakeRequest& request, Stages& stages) {
         baked.high_triangles += mesh.triangles.size();
     baked.low_triangles = models.low.triangles.size();
     baked.has_own_tangents = !models.low.tangents.empty();
-
-    BakeOptions options = bake_options_of(request);
-    options.output_from_mesh = output_axes(request, models.world_from_low);
-    if (models.cage) options.cage = &*models.cage;
-    Report report;
     about(request.low, [&] {
-        MapWriter writer(request, baked.format, report);
-        baked.result = stages.run("bake", [&] {
-            const auto take = [&](const BakedRows& rows) { writer.write(rows); };
-            BakeResult result = bake_normals(models.high, models.low, options, take, report);
-            writer.finish();
-            return result;
+        MapPlans plans = plan_maps(request, models.low, models.materials);
+        baked.materials = plans.materials;
+        baked.findings.add("", plans.report);
+        BakeOptions options = bake_options_of(request);
+        options.output_from_mesh = output_axes(request, models.world_from_low);
+        if (models.cage) options.cage = &*models.cage;
+        stages.run("bake", [&] {
+            Report report;
+            const Baker baker(models.high, models.low, options, report);
+            baked.findings.add("", report);
+            bake_all(request, baker, std::move(plans), options, baked);
         });
     });
-    baked.findings.add("", report);
     if (preview) stages.run("preview", [&] { draw(*preview, request, baked, std::move(models)); });
     return baked;
 }

@@ -1,26 +1,35 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Detailed models and a simple one to a normal map, from files to file.
+/// Detailed models and a simple one to normal maps, from files to files.
 /// Tests: tests/tools/relief_bake_mesh_test.cpp.
 #pragma once
 
 #include "common/findings.h"
 #include "mesh/mesh_options.h"
+#include "mesh/mesh_sets.h"
 
 namespace relief::tools {
 
-/// What was baked.
+/// One map of a bake.
 struct BakedMap {
+    MapPlan plan;
+    BakeResult result;
+};
+
+/// What was baked.
+struct MeshBake {
     std::size_t high_triangles = 0;
     std::size_t low_triangles = 0;
     bool has_own_tangents = false;
-    BakeResult result;
+    std::size_t materials = 0;  ///< Of the low mesh.
     NormalMapFormat format;
+    std::vector<BakedMap> maps;
+    BakeResult all;  ///< Sums over all maps, and the least and greatest.
     Findings findings;
 };
 
 /// Reads, bakes and writes; the stages are "read" and "bake", which writes as well.
 /// \throws FileError, UsageError
-BakedMap bake_map(const MeshBakeRequest& request, Stages& stages);
+MeshBake bake_maps(const MeshBakeRequest& request, Stages& stages);
 
 }  // namespace relief::tools

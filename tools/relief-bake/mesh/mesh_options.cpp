@@ -6,6 +6,7 @@
 
 #include "common/model_file.h"
 #include "common/options.h"
+#include "mesh/mesh_sets.h"
 
 namespace relief::tools {
 namespace {
@@ -117,7 +118,8 @@ void add_mesh_options(CLI::App& app, MeshBakeRequest& request,
     add_files(app, "FILE...", files,
               "HIGH... LOW OUT: the detailed models (.glb .gltf .obj .ply .stl .off), one or "
               "several; the simple model, with texture coordinates; the map to write (.png .tif "
-              ".exr).");
+              ".exr). <material> in its name gives a map for each material of LOW, <UDIM> one for "
+              "each tile that its texture coordinates enter.");
     add_ray_options(app, request);
     add_map_options(app, request);
     add_map_output_options(app, request.map);
@@ -136,6 +138,7 @@ void check_mesh_options(MeshBakeRequest& request, const std::vector<std::filesys
     readable_format(request.low);
     format_of(request.map, request.output);
     write_options_of(request.map, request.output);
+    check_map_names(request);
     check_cage(request);
     if (request.hardness &&
         request.directions.value_or(RayDirections::averaged) != RayDirections::averaged)

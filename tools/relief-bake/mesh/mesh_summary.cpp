@@ -11,9 +11,9 @@ namespace relief::tools {
 namespace {
 
 /// Through the whole bake, coding and writing among it.
-double megarays_per_second(const BakedMap& baked, const Stages& stages) {
+double megarays_per_second(const MeshBake& baked, const Stages& stages) {
     const double milliseconds = stages.milliseconds("bake");
-    return milliseconds > 0 ? static_cast<double>(baked.result.rays) / milliseconds / 1000 : 0;
+    return milliseconds > 0 ? static_cast<double>(baked.all.rays) / milliseconds / 1000 : 0;
 }
 
 std::string distance_words(const MeshBakeRequest& request, const BakeResult& result) {
@@ -27,7 +27,7 @@ std::string distance_words(const MeshBakeRequest& request, const BakeResult& res
                        result.distances.max_distance, is_told ? "" : " (found)", found);
 }
 
-std::string space_words(const MeshBakeRequest& request, const BakedMap& baked) {
+std::string space_words(const MeshBakeRequest& request, const MeshBake& baked) {
     if (request.space == SpaceChoice::object) return "object space";
     if (request.space == SpaceChoice::world) return "world space";
     return baked.has_own_tangents ? "tangent space, by the model's own tangents"
@@ -40,42 +40,79 @@ const char* space_name(SpaceChoice space) {
                                           : "world";
 }
 
-std::vector<std::string> read_lines(const MeshBakeRequest& request, const BakedMap& baked) {
+std::vector<std::string> read_lines(const MeshBakeRequest& request, const MeshBake& baked) {
     const std::string high =
         request.high.size() == 1 ? request.high[0].string() : counted(request.high.size(), "model");
     return {fmt::format("{}: {}", high, counted(baked.high_triangles, "triangle")),
             fmt::format("{}: {}", request.low.string(), counted(baked.low_triangles, "triangle"))};
 }
 
+std::vector<std::string> map_lines(const MeshBakeRequest& request, const MeshBake& baked) {
+    std::vector<std::string> lines;
+    for (const BakedMap& map : baked.maps) {
+        const std::string name = map.plan.name();
+        lines.push_back(fmt::format(
+            "{}{}{} x {}: {} baked, {} missed", name, name.empty() ? "" : ": ", request.size.x,
+            request.size.y, counted(map.result.texels_baked, "texel"), map.result.texels_missed));
+    }
+    return lines;
+}
+
+nlohmann::ordered_json map_json(const BakedMap& map) {
+    nlohmann::ordered_json json = {{"output", map.plan.output.string()}};
+    if (map.plan.material) json["material"] = *map.plan.material;
+    if (map.plan.udim) json["tile"] = *map.plan.udim;
+    json.update({{"texels_baked", map.result.texels_baked},
+                 {"texels_missed", map.result.texels_missed},
+                 {"least_height", map.result.least_height},
+                 {"greatest_height", map.result.greatest_height},
+                 {"samples", map.result.samples},
+                 {"rays", map.result.rays}});
+    return json;
+}
+
 }  // namespace
 
-void print_summary(const MeshBakeRequest& request, const BakedMap& baked, const Stages& stages) {
-    const BakeResult& result = baked.result;
+std::string remedy_for_shared_texels(const MeshBakeRequest& request, const MeshBake& baked) {
+    if (baked.materials < 2 || baked.all.coverage.shared == 0 || baked.maps.front().plan.material)
+        return "";
+    return fmt::format(
+        "{}: {} share one map, in which some texels belong to several triangles "
+        "(<material> in the map's name gives each a map of its own)",
+        request.low.string(), counted(baked.materials, "material"));
+}
+
+void print_summary(const MeshBakeRequest& request, const MeshBake& baked, const Stages& stages) {
+    const BakeResult& result = baked.all;
     print_entry("read", read_lines(request, baked));
     print_entry("rays", {distance_words(request, result),
                          fmt::format("{} for {}, {:.2f} million a second", result.rays,
                                      counted(result.samples, "sample"),
                                      megarays_per_second(baked, stages))});
-    print_entry("map", fmt::format("{} x {}: {} baked, {} missed", request.size.x, request.size.y,
-                                   counted(result.texels_baked, "texel"), result.texels_missed));
+    print_entry(baked.maps.size() == 1 ? "map" : "maps", map_lines(request, baked));
     print_entry("coded",
                 fmt::format("{}, {}", space_words(request, baked), format_words(baked.format)));
     print_entry("findings",
                 baked.findings.empty() ? std::vector<std::string>{"none"} : baked.findings.lines());
     print_entry("time", durations(stages.finished()));
-    std::vector<std::string> written = {file_and_size(request.output)};
+    std::vector<std::string> written;
+    for (const BakedMap& map : baked.maps)
+        written.push_back(file_and_size(map.plan.output));
     if (request.preview.file)
         written.push_back(file_and_size(*request.preview.file) +
                           " (high, low with the map, low without)");
     print_entry("wrote", written);
 }
 
-nlohmann::ordered_json results_json(const MeshBakeRequest& request, const BakedMap& baked,
+nlohmann::ordered_json results_json(const MeshBakeRequest& request, const MeshBake& baked,
                                     const Stages& stages) {
-    const BakeResult& result = baked.result;
+    const BakeResult& result = baked.all;
     nlohmann::ordered_json high = nlohmann::ordered_json::array();
     for (const std::filesystem::path& file : request.high)
         high.push_back(file.string());
+    nlohmann::ordered_json maps = nlohmann::ordered_json::array();
+    for (const BakedMap& map : baked.maps)
+        maps.push_back(map_json(map));
     nlohmann::ordered_json results = {{"high", high},
                                       {"low", request.low.string()},
                                       {"output", request.output.string()},
@@ -97,6 +134,7 @@ nlohmann::ordered_json results_json(const MeshBakeRequest& request, const BakedM
                                       {"samples", result.samples},
                                       {"rays", result.rays},
                                       {"rays_per_second", megarays_per_second(baked, stages) * 1e6},
+                                      {"maps", maps},
                                       {"findings", baked.findings.json()},
                                       {"milliseconds", durations_json(stages.finished())}};
     if (request.preview.file) results["preview"] = request.preview.file->string();

@@ -10,9 +10,12 @@
 
 namespace relief::tools {
 
-void print_summary(const MeshBakeRequest& request, const BakedMap& baked, const Stages& stages);
+void print_summary(const MeshBakeRequest& request, const MeshBake& baked, const Stages& stages);
 
-nlohmann::ordered_json results_json(const MeshBakeRequest& request, const BakedMap& baked,
+/// What to do where several materials share a map and texels of it; empty where they do not.
+std::string remedy_for_shared_texels(const MeshBakeRequest& request, const MeshBake& baked);
+
+nlohmann::ordered_json results_json(const MeshBakeRequest& request, const MeshBake& baked,
                                     const Stages& stages);
 
 }  // namespace relief::tools

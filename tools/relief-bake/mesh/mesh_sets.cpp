@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: Apache-2.0
+// Triangles by material, then by tile. Tests: tests/tools/relief_bake_sets_test.cpp.
+#include "mesh/mesh_sets.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <map>
+#include <utility>
+
+#include "common/file_jobs.h"
+#include "relief/mesh/map_tiles.h"
+
+namespace relief::tools {
+namespace {
+
+using Triangles = std::vector<std::uint32_t>;
+
+/// The triangles of a material, and its names.
+struct MaterialPart {
+    std::string name;
+    std::string file_name;  ///< As in names of files.
+    Triangles triangles;
+};
+
+std::string safe_name(const std::string& name) {
+    std::string safe = name;
+    for (char& letter : safe) {
+        const auto code = static_cast<unsigned char>(letter);
+        const bool stays = code >= 0x80 || std::isalnum(code) != 0 || letter == '-' ||
+                           letter == '_' || letter == '.';
+        if (!stays) letter = '_';
+    }
+    if (safe.starts_with('.')) safe.front() = '_';
+    return safe;
+}
+
+MaterialPart part_of(std::optional<std::uint32_t> material, const std::vector<std::string>& names) {
+    if (!material) return {"no-material", "no-material", {}};
+    std::string name = *material < names.size() ? names[*material] : "";
+    if (name.empty()) name = fmt::format("material-{}", *material);
+    return {name, safe_name(name), {}};
+}
+
+/// In order of their numbers, those without one first.
+std::vector<MaterialPart> parts_of(const Mesh& low, const std::vector<std::string>& names) {
+    std::map<std::optional<std::uint32_t>, MaterialPart> parts;
+    std::vector<MaterialRange> ranges = low.material_ranges;
+    if (ranges.empty())
+        ranges.push_back({0, static_cast<std::uint32_t>(low.triangles.size()), std::nullopt});
+    for (const MaterialRange& range : ranges) {
+        if (range.triangle_count == 0) continue;
+        Triangles& triangles =
+            parts.emplace(range.material, part_of(range.material, names)).first->second.triangles;
+        for (std::uint32_t i = 0; i < range.triangle_count; ++i)
+            triangles.push_back(range.first_triangle + i);
+    }
+    std::vector<MaterialPart> result;
+    for (auto& [number, part] : parts) {
+        std::sort(part.triangles.begin(), part.triangles.end());
+        result.push_back(std::move(part));
+    }
+    return result;
+}
+
+void count_outside(const MapTiles& tiles, const std::string& remedy, Report& report) {
+    for (const std::uint32_t triangle : tiles.outside)
+        report.add("triangle outside of the map", "triangle", triangle, "is not baked" + remedy);
+    for (const std::uint32_t triangle : tiles.partly_outside) {
+        report.add("triangle partly outside of the map", "triangle", triangle,
+                   "is baked where it is inside" + remedy);
+    }
+}
+
+/// The one map, or tiles, of some triangles.
+void add_maps(const MeshBakeRequest& request, const Mesh& low, const MapPlan& one,
+              MapPlans& plans) {
+    const bool has_tiles = names_word(request.output, tile_word);
+    if (!has_tiles && request.outside == OutsideChoice::repeat) {
+        plans.maps.push_back(one);
+        return;
+    }
+    const std::optional<std::span<const std::uint32_t>> only =
+        one.triangles ? std::optional<std::span<const std::uint32_t>>(*one.triangles)
+                      : std::nullopt;
+    MapTiles tiles =
+        tiles_of(low.texcoords, low.triangles, only, has_tiles ? udim_tiles : TileRange{});
+    count_outside(tiles, has_tiles ? "" : "; <UDIM> in the map's name gives a map for each tile",
+                  plans.report);
+    if (!has_tiles) {
+        plans.maps.push_back(one);
+        return;
+    }
+    for (const std::uint32_t triangle : tiles.not_finite)
+        plans.report.add("texture not finite", "triangle", triangle, "covers no texel");
+    for (MapTile& tile : tiles.tiles) {
+        MapPlan plan = one;
+        plan.tile = tile.tile;
+        plan.udim = udim_of(tile.tile);
+        plan.triangles = std::move(tile.triangles);
+        plan.output = with_word(one.output, tile_word, fmt::format("{}", *plan.udim));
+        plans.maps.push_back(std::move(plan));
+    }
+}
+
+/// Each map has a file of its own, which is none of the models.
+void check_files(const MeshBakeRequest& request, const std::vector<MapPlan>& maps) {
+    std::map<std::filesystem::path, std::string> taken;
+    for (const std::filesystem::path& file : request.high)
+        taken[identity_of(file)] = "a model";
+    taken[identity_of(request.low)] = "a model";
+    if (request.cage) taken[identity_of(*request.cage)] = "the cage";
+    for (const MapPlan& map : maps) {
+        const auto [other, is_new] = taken.emplace(identity_of(map.output), map.name());
+        if (is_new) continue;
+        throw failure(request.low,
+                      fmt::format("{} and {} would be the same file {}", other->second,
+                                  map.name().empty() ? "the map" : map.name(), map.output.string()),
+                      "give one of them another name");
+    }
+}
+
+bool names_twice(const std::filesystem::path& file, std::string_view word) {
+    return names_word(with_word(file, word, ""), word);
+}
+
+}  // namespace
+
+std::string MapPlan::name() const {
+    const std::string number = udim ? fmt::format("tile {}", *udim) : "";
+    if (!material) return number;
+    return fmt::format("material '{}'{}", *material, udim ? ", " + number : "");
+}
+
+void check_map_names(const MeshBakeRequest& request) {
+    for (const std::string_view word : {material_word, tile_word}) {
+        if (request.output.parent_path().string().find(word) != std::string::npos) {
+            throw UsageError(
+                fmt::format("{}: {} is in a folder's name", request.output.string(), word),
+                "use it in the file's name alone");
+        }
+        if (names_twice(request.output, word)) {
+            throw UsageError(fmt::format("{}: {} is there twice", request.output.string(), word),
+                             "use it once");
+        }
+    }
+    const bool has_sets =
+        names_word(request.output, material_word) || names_word(request.output, tile_word);
+    if (has_sets && request.preview.file) {
+        throw UsageError("--preview: shows one map, not those of <material> or <UDIM>",
+                         "leave it out; relief-view shows each");
+    }
+    if (names_word(request.output, tile_word) && request.outside == OutsideChoice::repeat)
+        throw UsageError("--outside repeat: has no effect with <UDIM>, which has tiles for all");
+}
+
+MapPlans plan_maps(const MeshBakeRequest& request, const Mesh& low,
+                   const std::vector<std::string>& materials) {
+    MapPlans plans;
+    std::vector<MaterialPart> parts = parts_of(low, materials);
+    plans.materials = parts.size();
+    if (names_word(request.output, material_word)) {
+        for (MaterialPart& part : parts) {
+            MapPlan plan;
+            plan.output = with_word(request.output, material_word, part.file_name);
+            plan.material = part.name;
+            plan.triangles = std::move(part.triangles);
+            add_maps(request, low, plan, plans);
+        }
+    } else {
+        MapPlan plan;
+        plan.output = request.output;
+        add_maps(request, low, plan, plans);
+    }
+    if (plans.maps.empty()) {
+        throw failure(request.low, "no triangle lies in a UDIM tile",
+                      "leave <UDIM> out of the map's name, or move the texture coordinates");
+    }
+    check_files(request, plans.maps);
+    return plans;
+}
+
+}  // namespace relief::tools
