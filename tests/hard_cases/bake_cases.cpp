@@ -35,6 +35,7 @@ Map baked(const std::vector<Mesh>& high, const Mesh& low, int padding = 0) {
     options.width = side;
     options.height = side;
     options.padding = padding;
+    options.layers.heights = true;
     map.result = bake_normals(
         high, low, options,
         [&](const BakedRows& rows) {

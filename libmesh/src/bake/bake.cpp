@@ -12,6 +12,7 @@
 #include <mutex>
 #include <numbers>
 
+#include "bake/baked_layers.h"
 #include "bake/band_bake.h"
 #include "bake/dilation.h"
 #include "parallel.h"
@@ -21,10 +22,11 @@ namespace relief {
 namespace {
 
 /// Rows of a strip: its texels take 64 MB at most, or it is as narrow as can be.
-constexpr std::size_t strip_texels = 3'000'000;
+constexpr std::size_t strip_bytes = 60'000'000;
 constexpr int least_rows = 64;  // A tile of dither, and of coverage.
 
 constexpr int most_padding = 1024;
+constexpr int most_occlusion_rays = 65536;
 
 int side_of(int samples) {
     for (const int side : {1, 2, 4, 8, 16}) {
@@ -36,6 +38,15 @@ int side_of(int samples) {
 void check_distance(const std::optional<double>& distance, const char* what) {
     if (distance && !(*distance >= 0.0 && std::isfinite(*distance)))
         throw InvalidInput(fmt::format("{} of {} is negative or not finite", what, *distance));
+}
+
+void check_occlusion(const BakeLayers& layers) {
+    if (!layers.occlusion) return;
+    check_distance(layers.occlusion->distance, "a distance of occlusion");
+    if (const int rays = layers.occlusion->rays; rays < 1 || rays > most_occlusion_rays) {
+        throw InvalidInput(
+            fmt::format("{} rays of occlusion are not within 1 to {}", rays, most_occlusion_rays));
+    }
 }
 
 void check_surfaces(const BakeOptions& options) {
@@ -84,6 +95,13 @@ void check_map(const BakeMapOptions& map, const Mesh& low) {
     if (map.triangles) check_triangle_numbers(*map.triangles, low.triangles.size());
 }
 
+void check_layers(const BakeLayers& wanted, const BakeLayers& ready) {
+    if ((wanted.normals && !ready.normals) || (wanted.curvature && !ready.curvature) ||
+        (wanted.colors && !ready.colors))
+        throw InvalidInput("a map wants a layer that its baker was not made for");
+    check_occlusion(wanted);
+}
+
 CoverageOptions coverage_options(const BakeMapOptions& map, int side) {
     CoverageOptions coverage;
     coverage.width = map.width * side;
@@ -95,26 +113,43 @@ CoverageOptions coverage_options(const BakeMapOptions& map, int side) {
     return coverage;
 }
 
-/// A strip of the map in memory.
+/// A strip of the map in memory: the layers that are wanted.
 struct Strip {
-    std::vector<float> normals, heights;
+    std::array<std::vector<float>, baked_layers.size()> layers;
     std::vector<TexelState> states;
 
-    Strip(std::size_t width, std::size_t rows)
-        : normals(3 * width * rows), heights(width * rows), states(width * rows) {}
+    Strip(const BakeLayers& wanted, std::size_t width, std::size_t rows) : states(width * rows) {
+        for (std::size_t i = 0; i < layers.size(); ++i) {
+            if (baked_layers[i].is_wanted(wanted))
+                layers[i].resize(baked_layers[i].channels * width * rows);
+        }
+    }
 
     /// Some of its rows, counted within it.
     BakedRows rows(int width, int first_row, int begin, int count) {
         const auto first = static_cast<std::size_t>(begin) * static_cast<std::size_t>(width);
         const auto texels = static_cast<std::size_t>(count) * static_cast<std::size_t>(width);
-        return {first_row, count, std::span(normals).subspan(3 * first, 3 * texels),
-                std::span(heights).subspan(first, texels),
-                std::span(states).subspan(first, texels)};
+        BakedRows result;
+        result.first_row = first_row;
+        result.row_count = count;
+        result.states = std::span(states).subspan(first, texels);
+        for (std::size_t i = 0; i < layers.size(); ++i) {
+            const std::size_t channels = baked_layers[i].channels;
+            if (layers[i].empty()) continue;
+            result.*baked_layers[i].values =
+                std::span(layers[i]).subspan(channels * first, channels * texels);
+        }
+        return result;
     }
 };
 
-int rows_of_strip(int width, int height) {
-    const auto fitting = static_cast<int>(strip_texels / static_cast<std::size_t>(width));
+int rows_of_strip(const BakeLayers& wanted, int width, int height) {
+    std::size_t texel_bytes = sizeof(TexelState);
+    for (const BakedLayer& layer : baked_layers) {
+        if (layer.is_wanted(wanted)) texel_bytes += sizeof(float) * layer.channels;
+    }
+    const auto fitting =
+        static_cast<int>(strip_bytes / texel_bytes / static_cast<std::size_t>(width));
     const int rows = std::max(fitting / least_rows, 1) * least_rows;
     return std::min(rows, height);
 }
@@ -185,6 +220,7 @@ BakeResult Baker::bake(const BakeMapOptions& map,
                        const std::function<void(const BakedRows& rows)>& take,
                        Report& report) const {
     check_map(map, low());
+    check_layers(map.layers, implementation_->options.layers);
     BakeOptions options = implementation_->options;
     static_cast<BakeMapOptions&>(options) = map;
     const int side = side_of(map.samples);
@@ -195,8 +231,9 @@ BakeResult Baker::bake(const BakeMapOptions& map,
     BakeResult result;
     result.distances = distances();
     const BakeWork work{implementation_->parts, implementation_->low, options, side};
-    const int rows = rows_of_strip(map.width, range.last - range.first);
-    Strip strip(static_cast<std::size_t>(map.width), static_cast<std::size_t>(rows));
+    const int rows = rows_of_strip(options.layers, map.width, range.last - range.first);
+    Strip strip(options.layers, static_cast<std::size_t>(map.width),
+                static_cast<std::size_t>(rows));
     Dilation dilation(map.width, map.height, map.padding, take);
     BakeCounts counts;
     for (int first = range.first; first < range.last; first += rows) {
@@ -206,6 +243,7 @@ BakeResult Baker::bake(const BakeMapOptions& map,
     }
     result.samples = counts.samples;
     result.rays = counts.rays;
+    result.occlusion_rays = counts.occlusion_rays;
     result.texels_baked = counts.baked;
     result.texels_missed = counts.missed;
     if (counts.baked > 0) {

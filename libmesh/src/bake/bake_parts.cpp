@@ -66,7 +66,7 @@ std::vector<std::uint32_t> parts_of_triangles(std::span<const BakePart> parts, c
 
 SeenSurface::SeenSurface(std::span<const Mesh> meshes, const Mesh& low, const BakeOptions& options,
                          Report& report)
-    : high(meshes, report), distances(distances_of(meshes, high, low, options)) {}
+    : high(meshes, options, report), distances(distances_of(meshes, high, low, options)) {}
 
 BakeParts::BakeParts(std::span<const Mesh> high, const Mesh& low, const BakeOptions& options,
                      Report& report) {

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <mutex>
 
+#include "bake/layer_bake.h"
 #include "geometry/direction.h"
 #include "parallel.h"
 
@@ -47,11 +48,18 @@ class Piece {
           end_(end),
           width_(work.options.width),
           found_(found),
-          sums_(static_cast<std::size_t>(width_) * static_cast<std::size_t>(end - begin)) {}
+          needs_normals_(work.options.layers.normals || work.options.sample_angle),
+          sums_(static_cast<std::size_t>(width_) * static_cast<std::size_t>(end - begin)) {
+        const int samples = work.side * work.side;
+        if (LayerBake::is_wanted(work.options.layers)) {
+            layers_.emplace(
+                work.options.layers, map_index(0), sums_.size(),
+                is_adaptive_bake() ? first_count() : static_cast<std::uint32_t>(samples));
+        }
+    }
 
     BakeCounts bake() {
-        const bool is_adaptive = work_.side > 1 && work_.options.sample_angle.has_value();
-        if (is_adaptive) {
+        if (is_adaptive_bake()) {
             cast([&](int x, int y, std::size_t) {
                 return is_first(x % work_.side, y % work_.side, work_.side);
             });
@@ -74,6 +82,9 @@ class Piece {
     }
 
   private:
+    [[nodiscard]] bool is_adaptive_bake() const {
+        return work_.side > 1 && work_.options.sample_angle.has_value();
+    }
     [[nodiscard]] std::uint32_t first_count() const {
         const int count = work_.side == 2 ? 2 : work_.side * work_.side / block;
         return static_cast<std::uint32_t>(count);
@@ -96,7 +107,8 @@ class Piece {
                             owners_[(static_cast<std::size_t>(begin_ * side + y)) *
                                         static_cast<std::size_t>(columns) +
                                     static_cast<std::size_t>(x)];
-                        if (owner.is_covered() && wanted(x, y, texel)) add(owner, texel);
+                        if (owner.is_covered() && wanted(x, y, texel))
+                            add(owner, texel, (y % side) * side + x % side);
                     }
                 }
                 if (lines_.size() + block * block > rays_at_once) flush();
@@ -105,14 +117,14 @@ class Piece {
         flush();
     }
 
-    void add(const CoveredTexel& owner, std::size_t texel) {
+    void add(const CoveredTexel& owner, std::size_t texel, int index) {
         const SeenSurface& seen = work_.parts.seen_by(owner.triangle);
         if (&seen != seen_) {
             flush();
             seen_ = &seen;
         }
         lines_.push_back(work_.low.line(owner, seen.distances, map_index(texel), found_));
-        samples_.push_back({owner, texel});
+        samples_.push_back({owner, texel, static_cast<std::uint32_t>(index)});
         ++sums_[texel].cast;
     }
 
@@ -125,6 +137,7 @@ class Piece {
         for (std::size_t i = 0; i < lines_.size(); ++i) {
             if (points_[i].hit.is_hit()) take(samples_[i], points_[i]);
         }
+        if (layers_) add_layers();
         lines_.clear();
         samples_.clear();
     }
@@ -132,20 +145,34 @@ class Piece {
     struct Sample {
         CoveredTexel owner;
         std::size_t texel;
+        std::uint32_t index;  ///< Of those of the texel.
     };
 
+    void add_layers() {
+        std::vector<LayerHit> hits;
+        for (std::size_t i = 0; i < lines_.size(); ++i) {
+            if (points_[i].hit.is_hit())
+                hits.push_back({points_[i].hit, samples_[i].texel, samples_[i].index});
+        }
+        counts_.occlusion_rays += layers_->add(seen_->high, hits, found_);
+    }
+
     void take(const Sample& sample, const ProjectedPoint& point) {
-        glm::dvec3 normal = seen_->high.normal(point.hit, map_index(sample.texel), found_);
-        if (!point.hit.faces_origin) normal = -normal;
-        normal = in_output_space(normal, sample);
         TexelSum& sum = sums_[sample.texel];
-        if (sum.hits == 0) sum.first = normal;
-        sum.widest = std::min(sum.widest, glm::dot(sum.first, normal));
-        sum.normal += normal;
+        if (needs_normals_) take_normal(sample, point, sum);
         sum.height += point.height;
         ++sum.hits;
         counts_.least_height = std::min(counts_.least_height, point.height);
         counts_.greatest_height = std::max(counts_.greatest_height, point.height);
+    }
+
+    void take_normal(const Sample& sample, const ProjectedPoint& point, TexelSum& sum) {
+        glm::dvec3 normal = seen_->high.normal(point.hit, map_index(sample.texel), found_);
+        if (!point.hit.faces_origin) normal = -normal;
+        normal = in_output_space(normal, sample);
+        if (sum.hits == 0) sum.first = normal;
+        sum.widest = std::min(sum.widest, glm::dot(sum.first, normal));
+        sum.normal += normal;
     }
 
     [[nodiscard]] glm::dvec3 in_output_space(const glm::dvec3& normal, const Sample& sample) {
@@ -169,20 +196,27 @@ class Piece {
         const std::size_t at =
             static_cast<std::size_t>(begin_) * static_cast<std::size_t>(width_) + texel;
         TexelState state = sum.cast == 0 ? TexelState::empty : TexelState::missed;
-        glm::dvec3 normal(0.0, 0.0, 1.0);
         if (sum.hits > 0) {
             state = TexelState::baked;
-            normal = direction_or_zero(sum.normal);
-            if (normal == glm::dvec3(0.0)) normal = sum.first;
-        }
-        if (state == TexelState::baked) ++counts_.baked;
-        if (state == TexelState::missed) {
+            ++counts_.baked;
+        } else if (state == TexelState::missed) {
             ++counts_.missed;
             found_.add("texel missed by its rays", "texel", map_index(texel),
                        "is filled from its neighbours");
         }
         rows_.states[at] = state;
-        rows_.heights[at] = sum.hits > 0 ? static_cast<float>(sum.height / sum.hits) : 0.0F;
+        if (work_.options.layers.normals) store_normal(sum, at);
+        if (work_.options.layers.heights)
+            rows_.heights[at] = sum.hits > 0 ? static_cast<float>(sum.height / sum.hits) : 0.0F;
+        if (layers_) layers_->store(texel, rows_, at);
+    }
+
+    void store_normal(const TexelSum& sum, std::size_t at) {
+        glm::dvec3 normal(0.0, 0.0, 1.0);
+        if (sum.hits > 0) {
+            normal = direction_or_zero(sum.normal);
+            if (normal == glm::dvec3(0.0)) normal = sum.first;
+        }
         for (std::size_t axis = 0; axis < 3; ++axis)
             rows_.normals[3 * at + axis] = rounded(normal)[static_cast<int>(axis)];
     }
@@ -198,7 +232,9 @@ class Piece {
     const BakedRows& rows_;
     int first_row_, begin_, end_, width_;
     Report& found_;
+    bool needs_normals_;  ///< To be stored, or for whether samples disagree.
     BakeCounts counts_;
+    std::optional<LayerBake> layers_;
     std::vector<TexelSum> sums_;
     std::vector<ProjectionLine> lines_;
     std::vector<ProjectedPoint> points_;
@@ -210,6 +246,7 @@ class Piece {
 BakeCounts& BakeCounts::operator+=(const BakeCounts& other) {
     samples += other.samples;
     rays += other.rays;
+    occlusion_rays += other.occlusion_rays;
     baked += other.baked;
     missed += other.missed;
     least_height = std::min(least_height, other.least_height);

@@ -24,6 +24,7 @@ struct BakeWork {
 struct BakeCounts {
     std::size_t samples = 0;
     std::size_t rays = 0;
+    std::size_t occlusion_rays = 0;
     std::size_t baked = 0;
     std::size_t missed = 0;
     double least_height = std::numeric_limits<double>::infinity();

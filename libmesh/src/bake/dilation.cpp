@@ -5,8 +5,8 @@
 #include "bake/dilation.h"
 
 #include <algorithm>
-#include <array>
 
+#include "bake/baked_layers.h"
 #include "bake/nearest_columns.h"
 #include "geometry/direction.h"
 #include "parallel.h"
@@ -17,22 +17,13 @@ namespace {
 constexpr int row_step = 64;
 constexpr std::size_t columns_at_once = 256;
 
-/// What a layer of rows is, so that padding knows how to average it.
-struct Layer {
-    std::span<float> BakedRows::*values;
-    std::size_t channels;
-    bool has_directions;
-};
-constexpr std::array all_layers = {Layer{&BakedRows::normals, 3, true},
-                                   Layer{&BakedRows::heights, 1, false}};
-
 template <typename T>
 void append(std::vector<T>& all, std::span<const T> more) {
     all.insert(all.end(), more.begin(), more.end());
 }
 
 /// The mean of a layer's values at some texels, into one that is none of them.
-void average(const Layer& layer, std::span<float> values, std::span<const std::size_t> from,
+void average(const BakedLayer& layer, std::span<float> values, std::span<const std::size_t> from,
              std::size_t to) {
     if (!layer.has_directions) {
         for (std::size_t channel = 0; channel < layer.channels; ++channel) {
@@ -60,13 +51,13 @@ void average(const Layer& layer, std::span<float> values, std::span<const std::s
 
 Dilation::Dilation(int width, int height, int texels, std::function<void(const BakedRows&)> take)
     : width_(width), height_(height), texels_(texels), take_(std::move(take)) {
-    window_.layers.resize(all_layers.size());
+    window_.layers.resize(baked_layers.size());
 }
 
 void Dilation::push(const BakedRows& rows) {
     if (texels_ == 0) return take_(rows);
-    for (std::size_t i = 0; i < all_layers.size(); ++i)
-        append<float>(window_.layers[i], rows.*all_layers[i].values);
+    for (std::size_t i = 0; i < baked_layers.size(); ++i)
+        append<float>(window_.layers[i], rows.*baked_layers[i].values);
     append<TexelState>(window_.states, rows.states);
     end_row_ += rows.row_count;
     const int complete = (end_row_ - texels_) / row_step * row_step;
@@ -152,7 +143,7 @@ void Dilation::fill_row(int row, const BakedRows& rows, NearestColumns& nearest)
             if (below <= above && below != 0) from.push_back(texel + texels_in(below));
         });
         const std::size_t to = here + static_cast<std::size_t>(column);
-        for (const Layer& layer : all_layers) {
+        for (const BakedLayer& layer : baked_layers) {
             if (!(rows.*layer.values).empty()) average(layer, rows.*layer.values, from, to);
         }
         rows.states[to] = TexelState::padded;
@@ -165,10 +156,10 @@ BakedRows Dilation::rows_of(int first_row, int last_row) {
     rows.row_count = last_row - first_row;
     const std::size_t first = texels_in(first_row - first_row_);
     const std::size_t texels = texels_in(rows.row_count);
-    for (std::size_t i = 0; i < all_layers.size(); ++i) {
-        const std::size_t channels = all_layers[i].channels;
+    for (std::size_t i = 0; i < baked_layers.size(); ++i) {
+        const std::size_t channels = baked_layers[i].channels;
         if (window_.layers[i].empty()) continue;
-        rows.*all_layers[i].values =
+        rows.*baked_layers[i].values =
             std::span(window_.layers[i]).subspan(channels * first, channels * texels);
     }
     rows.states = std::span(window_.states).subspan(first, texels);
@@ -178,9 +169,9 @@ BakedRows Dilation::rows_of(int first_row, int last_row) {
 Dilation::Window Dilation::copy_from(int first_row) const {
     const auto first = static_cast<std::ptrdiff_t>(texels_in(first_row - first_row_));
     Window rest;
-    for (std::size_t i = 0; i < all_layers.size(); ++i) {
+    for (std::size_t i = 0; i < baked_layers.size(); ++i) {
         const std::vector<float>& values = window_.layers[i];
-        const auto skipped = static_cast<std::ptrdiff_t>(all_layers[i].channels) * first;
+        const auto skipped = static_cast<std::ptrdiff_t>(baked_layers[i].channels) * first;
         rest.layers.emplace_back(values.empty() ? values.end() : values.begin() + skipped,
                                  values.end());
     }

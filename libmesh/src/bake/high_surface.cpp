@@ -1,58 +1,190 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tests: tests/mesh/bake/bake_test.cpp.
+// Tests: tests/mesh/bake/bake_test.cpp, high_detail_test.cpp.
 #include "bake/high_surface.h"
 
+#include <algorithm>
+#include <cmath>
+
+#include "bake/surface_texture.h"
+#include "bake/texel_frame.h"
 #include "geometry/direction.h"
+#include "relief/mesh/curvature.h"
 #include "relief/mesh/frames.h"
 
 namespace relief {
 namespace {
 
-/// Copies with normals of the meshes that have none.
-std::vector<Mesh> with_missing_normals(std::span<const Mesh> meshes, Report& report) {
-    std::vector<Mesh> made(meshes.size());
-    for (std::size_t i = 0; i < meshes.size(); ++i) {
-        validate(meshes[i]);
-        if (!meshes[i].normals.empty() || meshes[i].triangles.empty()) continue;
-        FrameOptions frames;
-        frames.tangents = TangentMode::none;
-        made[i] = with_frames(meshes[i], frames, report).mesh;
+const HighDetail* detail_of(const Mesh& mesh, const BakeOptions& options) {
+    for (const HighDetail& detail : options.details) {
+        if (detail.mesh != &mesh) continue;
+        check(detail);
+        return &detail;
     }
-    return made;
+    return nullptr;
 }
 
-std::vector<const Mesh*> chosen(std::span<const Mesh> meshes, const std::vector<Mesh>& made) {
-    std::vector<const Mesh*> result;
-    for (std::size_t i = 0; i < meshes.size(); ++i)
-        result.push_back(made[i].normals.empty() ? &meshes[i] : &made[i]);
-    return result;
+bool has_normal_map(const HighDetail* detail) {
+    return detail != nullptr &&
+           std::any_of(detail->materials.begin(), detail->materials.end(),
+                       [](const HighMaterial& material) { return material.normal_map; });
 }
 
-std::vector<RayMesh> ray_meshes(const std::vector<const Mesh*>& meshes) {
-    std::vector<RayMesh> result;
-    for (const Mesh* mesh : meshes)
-        result.push_back({mesh->positions, mesh->triangles});
-    return result;
+/// What is asked of a mesh that it does not have.
+void count_missing(const Mesh& mesh, const HighDetail* detail, std::size_t index,
+                   const BakeLayers& layers, Report& report) {
+    if (layers.colors && mesh.colors.empty() && (detail == nullptr || detail->materials.empty()))
+        report.add("high mesh without colours", "mesh", index, "is white");
+    if (!mesh.texcoords.empty() || detail == nullptr) return;
+    if (layers.normals && has_normal_map(detail))
+        report.add("normal map without texture coordinates", "mesh", index, "is left out");
+    if (!layers.colors || !detail->color_texcoords.empty()) return;
+    for (const HighMaterial& material : detail->materials) {
+        if (!material.color_texture) continue;
+        report.add("colour texture without texture coordinates", "mesh", index, "is left out");
+        break;
+    }
+}
+
+template <typename Value, typename Wide>
+Wide interpolated(std::span<const Value> values, const glm::uvec3& corners, const RayHit& hit,
+                  Wide sum) {
+    for (int i = 0; i < 3; ++i)
+        sum += hit.weights[i] * Wide(values[corners[i]]);
+    return sum;
 }
 
 }  // namespace
 
-HighSurface::HighSurface(std::span<const Mesh> meshes, Report& report)
-    : made_(with_missing_normals(meshes, report)),
-      meshes_(chosen(meshes, made_)),
-      scene_(ray_meshes(meshes_)) {}
+HighSurface::HighSurface(std::span<const Mesh> meshes, const BakeOptions& options, Report& report)
+    : made_(meshes.size()) {
+    std::vector<RayMesh> ray_meshes;
+    for (std::size_t i = 0; i < meshes.size(); ++i) {
+        validate(meshes[i]);
+        entries_.push_back(entry(meshes[i], i, options, report));
+        ray_meshes.push_back({entries_[i].mesh->positions, entries_[i].mesh->triangles});
+    }
+    scene_ = std::make_unique<RayScene>(std::move(ray_meshes));
+}
 
-glm::dvec3 HighSurface::normal(const RayHit& hit, std::size_t sample, Report& found) const {
-    const Mesh& mesh = *meshes_[hit.mesh];
-    const glm::uvec3 corners = mesh.triangles[hit.triangle];
-    glm::dvec3 sum(0.0);
-    for (int i = 0; i < 3; ++i)
-        sum += hit.weights[i] * glm::dvec3(mesh.normals[corners[i]]);
-    const glm::dvec3 unit = direction_or_zero(sum);
+HighSurface::Entry HighSurface::entry(const Mesh& mesh, std::size_t index,
+                                      const BakeOptions& options, Report& report) {
+    const BakeLayers& layers = options.layers;
+    Entry result;
+    result.mesh = &mesh;
+    const HighDetail* detail = detail_of(mesh, options);
+    count_missing(mesh, detail, index, layers, report);
+    if (layers.normals || layers.colors) result.detail = detail;
+    if (layers.colors && detail != nullptr) {
+        result.color_texcoords =
+            detail->color_texcoords.empty() ? mesh.texcoords : detail->color_texcoords;
+    }
+    const bool needs_tangents = layers.normals && has_normal_map(detail) &&
+                                !mesh.texcoords.empty() &&
+                                (mesh.tangents.empty() || mesh.normals.empty());
+    if (!mesh.triangles.empty() && (mesh.normals.empty() || needs_tangents)) {
+        FrameOptions frames;
+        frames.tangents = needs_tangents ? TangentMode::mikktspace : TangentMode::none;
+        FramedMesh framed = with_frames(mesh, frames, report);
+        made_[index] = std::move(framed.mesh);
+        result.mesh = &made_[index];
+        for (const std::uint32_t vertex : framed.source_vertex) {
+            if (!result.color_texcoords.empty())
+                result.split_texcoords.push_back(result.color_texcoords[vertex]);
+        }
+        if (!result.split_texcoords.empty()) result.color_texcoords = result.split_texcoords;
+    }
+    if (layers.curvature)
+        result.curvature = mean_curvatures(result.mesh->positions, result.mesh->triangles, report);
+    return result;
+}
+
+const HighMaterial* HighSurface::material(const RayHit& hit) const {
+    const Entry& entry = entries_[hit.mesh];
+    if (entry.detail == nullptr || entry.detail->materials.empty()) return nullptr;
+    const std::vector<MaterialRange>& ranges = entry.mesh->material_ranges;
+    // One material and nothing said of triangles: it is that of all.
+    if (ranges.empty()) return &entry.detail->materials.front();
+    const auto next = std::upper_bound(ranges.begin(), ranges.end(), hit.triangle,
+                                       [](std::uint32_t triangle, const MaterialRange& range) {
+                                           return triangle < range.first_triangle;
+                                       });
+    const MaterialRange& range = *std::prev(next);
+    return range.material ? &entry.detail->materials[*range.material] : nullptr;
+}
+
+glm::dvec3 HighSurface::face_normal(const RayHit& hit) const {
+    const auto place = scene_->corners(hit.mesh, hit.triangle);
+    return direction_or_zero(glm::cross(place[1] - place[0], place[2] - place[0]));
+}
+
+glm::dvec3 HighSurface::smooth_normal(const RayHit& hit, std::size_t sample, Report& found) const {
+    const Mesh& mesh = *entries_[hit.mesh].mesh;
+    const glm::dvec3 unit = direction_or_zero(
+        interpolated<glm::vec3>(mesh.normals, mesh.triangles[hit.triangle], hit, glm::dvec3(0.0)));
     if (unit != glm::dvec3(0.0)) return unit;
     found.add("high normal without direction", "texel", sample, "is its triangle's");
-    const auto place = scene_.corners(hit.mesh, hit.triangle);
-    return direction_or_zero(glm::cross(place[1] - place[0], place[2] - place[0]));
+    return face_normal(hit);
+}
+
+glm::dvec3 HighSurface::normal(const RayHit& hit, std::size_t sample, Report& found) const {
+    const HighMaterial* what = material(hit);
+    const Mesh& mesh = *entries_[hit.mesh].mesh;
+    if (what == nullptr || !what->normal_map || mesh.tangents.empty() || mesh.texcoords.empty())
+        return smooth_normal(hit, sample, found);
+    TexelFrame frame(mesh, hit.triangle, hit.weights);
+    const GltfTextureTransform& transform = what->normal_map->texture.transform;
+    if (transform != GltfTextureTransform{}) frame = frame.transformed_by(transform);
+    const glm::dvec2 texcoord =
+        interpolated<glm::vec2>(mesh.texcoords, mesh.triangles[hit.triangle], hit, glm::dvec2(0.0));
+    const glm::dvec3 unit =
+        direction_or_zero(frame.to_object(normal_at(*what->normal_map, texcoord)));
+    if (frame.is_usable() && unit != glm::dvec3(0.0)) return unit;
+    found.add("high normal map without a frame or a direction", "texel", sample, "is left out");
+    return smooth_normal(hit, sample, found);
+}
+
+glm::dvec3 HighSurface::position(const RayHit& hit) const {
+    const auto corners = scene_->corners(hit.mesh, hit.triangle);
+    return hit.weights.x * corners[0] + hit.weights.y * corners[1] + hit.weights.z * corners[2];
+}
+
+double HighSurface::curvature(const RayHit& hit) const {
+    const Entry& entry = entries_[hit.mesh];
+    const glm::uvec3& corners = entry.mesh->triangles[hit.triangle];
+    const double value = interpolated<float>(entry.curvature, corners, hit, 0.0);
+    return hit.faces_origin ? value : -value;
+}
+
+glm::dvec3 HighSurface::color(const RayHit& hit) const {
+    const Entry& entry = entries_[hit.mesh];
+    const glm::uvec3& corners = entry.mesh->triangles[hit.triangle];
+    glm::dvec3 color(1.0);
+    if (!entry.mesh->colors.empty()) {
+        color =
+            glm::dvec3(interpolated<glm::vec4>(entry.mesh->colors, corners, hit, glm::dvec4(0.0)));
+    }
+    const HighMaterial* what = material(hit);
+    if (what == nullptr) return color;
+    color *= glm::dvec3(what->color);
+    if (!what->color_texture || entry.color_texcoords.empty()) return color;
+    const glm::dvec2 texcoord =
+        interpolated<glm::vec2>(entry.color_texcoords, corners, hit, glm::dvec2(0.0));
+    return color * color_at(*what->color_texture, texcoord);
+}
+
+HighSurface::CurvatureRange HighSurface::curvature_range() const {
+    std::vector<float> sizes;
+    for (const Entry& entry : entries_) {
+        for (const float value : entry.curvature)
+            sizes.push_back(std::abs(value));
+    }
+    if (sizes.empty()) return {};
+    CurvatureRange range;
+    range.greatest = static_cast<double>(*std::max_element(sizes.begin(), sizes.end()));
+    const auto usual = sizes.begin() + static_cast<std::ptrdiff_t>((sizes.size() - 1) * 99 / 100);
+    std::nth_element(sizes.begin(), usual, sizes.end());
+    range.usual = static_cast<double>(*usual);
+    return range;
 }
 
 }  // namespace relief

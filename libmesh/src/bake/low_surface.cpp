@@ -49,7 +49,8 @@ std::vector<glm::vec3> directions_of(const Mesh& mesh, const BakeOptions& option
 LowSurface::LowSurface(const Mesh& low, const BakeOptions& options, Report& report) {
     validate(low);
     if (low.texcoords.empty()) throw InvalidInput("the low mesh has no texture coordinates");
-    const bool to_tangent = options.space == BakeSpace::tangent;
+    const bool to_tangent =
+        options.space == BakeSpace::tangent && (options.layers.normals || options.sample_angle);
     FrameOptions frames;
     frames.tangents = !to_tangent            ? TangentMode::none
                       : low.tangents.empty() ? TangentMode::mikktspace

@@ -99,6 +99,10 @@ void RayScene::find(RayPacket& packet, std::size_t count) const {
     }
 }
 
+void RayScene::find_any(RayPacket& packet, std::size_t count) const {
+    embree_.find_any(packet, count);
+}
+
 /// Of all triangles at the place of a hit, the one that comes first.
 void RayScene::settle_edges(RayPacket& packet, std::size_t lane) const {
     const RaySegment around{

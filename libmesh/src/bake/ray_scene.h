@@ -61,6 +61,10 @@ class RayScene {
     /// Of triangles that coincide elsewhere, any is hit.
     void find(RayPacket& packet, std::size_t count) const;
 
+    /// Finds out whether the first `count` rays of a packet hit anything, which is faster; whatever
+    /// it is, wherever they run to, and whichever way it faces. For RayPacket::is_blocked().
+    void find_any(RayPacket& packet, std::size_t count) const;
+
     /// The hit of one lane, made exact for the ray that set() was given: where the ray meets the
     /// triangle's plane, drawn into the triangle where rounding put it outside.
     [[nodiscard]] RayHit hit(const RayPacket& packet, std::size_t lane, const Ray& ray) const;

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <glm/glm.hpp>
 
+#include "relief/mesh/gltf_document.h"
 #include "relief/mesh/mesh.h"
 
 namespace relief {
@@ -29,9 +30,17 @@ struct TexelFrame {
             normal += weights[i] * glm::dvec3(mesh.normals[corners[i]]);
             t += weights[i] * glm::dvec4(mesh.tangents[corners[i]]);
         }
-        tangent = glm::dvec3(t);
-        bitangent = t.w * glm::cross(normal, tangent);
-        volume = glm::dot(tangent, glm::cross(bitangent, normal));
+        set_tangent(t);
+    }
+
+    /// The frame in which a map is read whose texture coordinates a material transforms.
+    [[nodiscard]] TexelFrame transformed_by(const GltfTextureTransform& transform) const {
+        const double handedness = glm::dot(bitangent, glm::cross(normal, tangent)) < 0.0 ? -1 : 1;
+        const glm::vec4 unit(glm::vec3(glm::normalize(tangent)), handedness);
+        TexelFrame result = *this;
+        result.set_tangent(
+            glm::dvec4(transformed(transform, unit, glm::vec3(glm::normalize(normal)))));
+        return result;
     }
 
     [[nodiscard]] bool is_usable() const {
@@ -48,6 +57,13 @@ struct TexelFrame {
                           glm::dot(n, glm::cross(normal, tangent)),
                           glm::dot(n, glm::cross(tangent, bitangent))) /
                volume;
+    }
+
+  private:
+    void set_tangent(const glm::dvec4& t) {
+        tangent = glm::dvec3(t);
+        bitangent = t.w * glm::cross(normal, tangent);
+        volume = glm::dot(tangent, glm::cross(bitangent, normal));
     }
 };
 

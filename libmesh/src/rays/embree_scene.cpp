@@ -142,6 +142,15 @@ void EmbreeScene::find_nearest(RayPacket& packet, std::size_t count) const {
     rtcIntersect16(valid.data(), scene_, &context, embree_of(packet));
 }
 
+void EmbreeScene::find_any(RayPacket& packet, std::size_t count) const {
+    alignas(64) std::array<int, RayPacket::size> valid{};
+    std::fill_n(valid.begin(), count, -1);
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    // Embree makes `far` of those that hit minus infinity.
+    rtcOccluded16(valid.data(), scene_, &context, &embree_of(packet)->ray);
+}
+
 void EmbreeScene::find_all(const RaySegment& segment, std::vector<MetTriangle>& found) const {
     Collector collector{};
     rtcInitIntersectContext(&collector.context);

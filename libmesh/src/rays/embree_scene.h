@@ -37,6 +37,8 @@ struct alignas(64) RayPacket {
     std::array<std::uint32_t, size> triangle, mesh, instance;
 
     [[nodiscard]] bool hits(std::size_t lane) const { return mesh[lane] != nothing; }
+    /// After find_any().
+    [[nodiscard]] bool is_blocked(std::size_t lane) const { return far[lane] < 0.0F; }
 };
 
 /// A piece of a line.
@@ -75,6 +77,9 @@ class EmbreeScene {
     /// Finds the nearest hits of the first `count` rays of a packet. Fastest for rays that run side
     /// by side.
     void find_nearest(RayPacket& packet, std::size_t count) const;
+
+    /// Finds out whether the first `count` rays hit anything, which is faster: is_blocked().
+    void find_any(RayPacket& packet, std::size_t count) const;
 
     /// Appends every triangle that a segment meets, in no order, some of them perhaps twice.
     void find_all(const RaySegment& segment, std::vector<MetTriangle>& found) const;

@@ -11,7 +11,7 @@
 namespace relief::test {
 
 struct BakedImage {
-    std::vector<float> normals, heights;
+    std::vector<float> normals, heights, occlusion, curvature, positions, colors;
     std::vector<TexelState> states;
     BakeResult result;
     Report report;
@@ -25,9 +25,16 @@ struct BakedImage {
 };
 
 inline void append(BakedImage& image, const BakedRows& rows) {
-    image.normals.insert(image.normals.end(), rows.normals.begin(), rows.normals.end());
-    image.heights.insert(image.heights.end(), rows.heights.begin(), rows.heights.end());
-    image.states.insert(image.states.end(), rows.states.begin(), rows.states.end());
+    const auto add = [](auto& all, const auto& more) {
+        all.insert(all.end(), more.begin(), more.end());
+    };
+    add(image.normals, rows.normals);
+    add(image.heights, rows.heights);
+    add(image.occlusion, rows.occlusion);
+    add(image.curvature, rows.curvature);
+    add(image.positions, rows.positions);
+    add(image.colors, rows.colors);
+    add(image.states, rows.states);
 }
 
 inline BakedImage bake(const std::vector<Mesh>& high, const Mesh& low, const BakeOptions& options) {
@@ -37,11 +44,12 @@ inline BakedImage bake(const std::vector<Mesh>& high, const Mesh& low, const Bak
     return image;
 }
 
-/// A map of so many texels; all else as usual.
+/// A map of so many texels, with heights; all else as usual.
 inline BakeOptions sized(int width, int height) {
     BakeOptions options;
     options.width = width;
     options.height = height;
+    options.layers.heights = true;
     return options;
 }
 

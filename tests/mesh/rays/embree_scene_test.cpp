@@ -101,5 +101,28 @@ TEST(EmbreeScene, LeavesOutWhatIsNotFiniteAndMayBeEmpty) {
     }
 }
 
+TEST(EmbreeScene, FindsWhetherRaysHitAnything) {
+    EmbreeScene scene;
+    add_triangle(scene, 7, 0.0F);
+    scene.build();
+    RayPacket packet;
+    aim(packet, 0, 0.25F, 0.25F, 1.0F);
+    aim(packet, 1, 0.75F, 0.75F, 1.0F);
+    aim(packet, 2, 0.25F, 0.25F, -0.1F);
+    aim(packet, 3, 0.25F, 0.25F, 1.0F);
+    packet.direction_z[3] = 1.0F;
+    aim(packet, 4, 0.25F, 0.25F, 1.0F);
+    packet.origin_z[4] = -1.0F;  // From behind.
+    packet.direction_z[4] = 1.0F;
+    aim(packet, 5, 0.25F, 0.25F, 1.0F);
+    scene.find_any(packet, 5);
+    EXPECT_TRUE(packet.is_blocked(0));
+    EXPECT_FALSE(packet.is_blocked(1));
+    EXPECT_FALSE(packet.is_blocked(2)) << "ends above";
+    EXPECT_FALSE(packet.is_blocked(3)) << "runs away from it";
+    EXPECT_TRUE(packet.is_blocked(4));
+    EXPECT_FALSE(packet.is_blocked(5)) << "was not asked for";
+}
+
 }  // namespace
 }  // namespace relief

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Normal maps of detailed meshes for a simple one: what rays from its surface meet. In the library
-/// relief::bake. Tests: tests/mesh/bake/bake_test.cpp, baker_test.cpp, bake_sphere_test.cpp.
+/// Maps of detailed meshes for a simple one: what rays from its surface meet, normals unless told
+/// otherwise. In the library relief::bake. Tests: tests/mesh/bake/bake_test.cpp, baker_test.cpp,
+/// bake_layers_test.cpp, bake_sphere_test.cpp.
 #pragma once
 
 #include <cstddef>
@@ -13,6 +14,8 @@
 #include <span>
 #include <vector>
 
+#include "relief/mesh/bake_layers.h"
+#include "relief/mesh/high_detail.h"
 #include "relief/mesh/mesh.h"
 #include "relief/mesh/normal_space.h"
 #include "relief/mesh/report.h"
@@ -66,6 +69,8 @@ struct BakeMapOptions {
     /// How far around charts, in texels, what is not baked is filled from the nearest texels that
     /// are: the mean of them, where several are equally near. 0 to 1024.
     int padding = 0;
+    /// A baker is made for those of its own options, of which each map may leave some out.
+    BakeLayers layers{};
 };
 
 /// What is alike for all maps, and one map's options.
@@ -87,6 +92,8 @@ struct BakeOptions : BakeMapOptions {
     /// Turns normals of object space into the axes that they are wanted in, from those of the
     /// meshes; made unit afterwards.
     glm::dmat3 output_from_mesh{1.0};
+    /// Of those high meshes that have some. The span must outlive the bake.
+    std::span<const HighDetail> details;
 };
 
 /// What became of a texel.
@@ -97,13 +104,18 @@ enum class TexelState : std::uint8_t {
     padded,  ///< Filled from the nearest texels that are baked; it may have been missed.
 };
 
-/// Rows of a map. Spans live as long as the call that they are given to.
+/// Rows of a map: the layers that were asked for (bake_layers.h), others are empty. Spans live as
+/// long as the call that they are given to.
 struct BakedRows {
     int first_row = 0;
     int row_count = 0;
     std::span<float> normals;  ///< Three a texel, unit; (0, 0, 1) where neither baked nor padded.
-    std::span<float> heights;  ///< Where the surface is, outside of the low mesh; 0 likewise.
+    std::span<float> heights;  ///< 0 there, as are the others but for occlusion, which is 1.
     std::span<TexelState> states;
+    std::span<float> occlusion{};
+    std::span<float> curvature{};
+    std::span<float> positions{};  ///< Three a texel.
+    std::span<float> colors{};     ///< Three a texel.
 };
 
 struct BakeDistances {
@@ -117,7 +129,8 @@ struct BakeResult {
     std::size_t texels_missed = 0;
     std::size_t samples = 0;  ///< Places that rays were cast for.
     std::size_t rays = 0;
-    BakeDistances distances;  ///< Baker::distances().
+    std::size_t occlusion_rays = 0;  ///< Not among those.
+    BakeDistances distances;         ///< Baker::distances().
     /// Of the surface outside of the low mesh, over all samples that hit; 0 where none did.
     double least_height = 0.0;
     double greatest_height = 0.0;

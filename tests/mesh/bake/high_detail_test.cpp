@@ -1,0 +1,219 @@
+// SPDX-License-Identifier: Apache-2.0
+// Textures and normal maps of high meshes, looked up by hand and through whole bakes.
+#include "relief/mesh/high_detail.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "bake/surface_texture.h"
+#include "mesh/bake/bake_support.h"
+#include "relief/mesh/direction_error.h"
+#include "relief/mesh/error.h"
+#include "relief/mesh/shapes.h"
+#include "support/message_of.h"
+
+namespace relief {
+namespace {
+
+using test::bake;
+using test::BakedImage;
+using test::sized;
+
+Image grey(int width, int height, std::vector<float> samples) {
+    return {width, height, 1, ColorSpace::linear, std::move(samples)};
+}
+
+TEST(SurfaceTexture, LiesBetweenTexelCentresAndGoesOnBeyondItsBorder) {
+    const Image image = grey(4, 1, {0.0F, 0.25F, 0.5F, 1.0F});
+    SurfaceTexture texture;
+    texture.image = &image;
+    const auto red = [&](double u) { return color_at(texture, {u, 0.5}).x; };
+    EXPECT_DOUBLE_EQ(red(0.125), 0.0);
+    EXPECT_DOUBLE_EQ(red(0.25), 0.125);
+    EXPECT_DOUBLE_EQ(red(0.75), 0.75);
+    // Halfway from the last to the first.
+    EXPECT_DOUBLE_EQ(red(1.0), 0.5);
+    EXPECT_DOUBLE_EQ(red(-3.0), 0.5);
+    EXPECT_DOUBLE_EQ(red(1.375), 0.25);
+    texture.wrap_u = TextureWrap::clamp;
+    EXPECT_DOUBLE_EQ(red(1.0), 1.0);
+    EXPECT_DOUBLE_EQ(red(7.0), 1.0);
+    EXPECT_DOUBLE_EQ(red(-1e30), 0.0);
+    texture.wrap_u = TextureWrap::mirror;
+    EXPECT_DOUBLE_EQ(red(1.375), 0.5);
+    EXPECT_DOUBLE_EQ(red(-0.375), 0.25);
+    texture.wrap_u = TextureWrap::repeat;
+    texture.filter = TextureFilter::nearest;
+    EXPECT_DOUBLE_EQ(red(0.49), 0.25);
+    EXPECT_DOUBLE_EQ(red(0.51), 0.5);
+    texture.transform.offset = {0.5F, 0.0F};
+    EXPECT_DOUBLE_EQ(red(0.125), 0.5);
+    EXPECT_DOUBLE_EQ(red(std::nan("")), 0.0);
+}
+
+TEST(SurfaceTexture, DecodesBeforeItFilters) {
+    const Image bytes{2, 1, 3, ColorSpace::srgb,
+                      std::vector<std::uint8_t>{0, 188, 255, 255, 0, 255}};
+    SurfaceTexture texture;
+    texture.image = &bytes;
+    const glm::dvec3 mean = color_at(texture, {0.5, 0.5});
+    EXPECT_NEAR(mean.x, 0.5, 1e-7);
+    EXPECT_NEAR(mean.y, 0.5 * 0.50288646, 1e-6);
+    EXPECT_NEAR(mean.z, 1.0, 1e-7);
+    const Image words{1, 1, 2, ColorSpace::srgb, std::vector<std::uint16_t>{48316, 1}};
+    texture.image = &words;
+    EXPECT_NEAR(color_at(texture, {0.5, 0.5}).z, 0.50288646, 1e-6);
+    const Image data{1, 1, 1, ColorSpace::linear, std::vector<std::uint8_t>{51}};
+    texture.image = &data;
+    EXPECT_DOUBLE_EQ(color_at(texture, {0.5, 0.5}).z, 0.2);
+}
+
+TEST(HighDetail, ColorIsFactorTimesTextureTimesVertex) {
+    Mesh high = make_quad();
+    high.colors.assign(4, {0.5F, 0.25F, 1.0F, 1.0F});
+    const Image image = grey(2, 1, {0.25F, 0.75F});
+    HighDetail detail{&high, {}, {}};
+    detail.materials.resize(2);
+    detail.materials[0].color = {1.0F, 0.5F, 0.25F};
+    detail.materials[0].color_texture = SurfaceTexture{.image = &image};
+    detail.materials[0].color_texture->filter = TextureFilter::nearest;
+    BakeOptions options = sized(2, 2);
+    options.layers.colors = true;
+    options.details = std::span(&detail, 1);
+    const auto colors = [&] {
+        return bake({}, make_quad(), options).colors;  // Nothing high, nothing there.
+    };
+    EXPECT_EQ(colors(), std::vector<float>(12, 0.0F));
+    const std::vector<Mesh> meshes = {high};
+    detail.mesh = &meshes[0];
+    std::vector<float> found = bake(meshes, make_quad(), options).colors;
+    EXPECT_EQ(found, (std::vector<float>{0.125F, 0.03125F, 0.0625F, 0.375F, 0.09375F, 0.1875F,
+                                         0.125F, 0.03125F, 0.0625F, 0.375F, 0.09375F, 0.1875F}));
+    // Texture coordinates of its own: all of it the right half.
+    detail.color_texcoords.assign(4, {0.9F, 0.5F});
+    found = bake(meshes, make_quad(), options).colors;
+    EXPECT_EQ(found[0], 0.375F);
+    detail.color_texcoords.pop_back();
+    EXPECT_EQ(test::message_of<InvalidInput>([&] { bake(meshes, make_quad(), options); }),
+              "3 texture coordinates for 4 vertices");
+}
+
+TEST(HighDetail, MaterialsAreByTriangle) {
+    std::vector<Mesh> meshes = {make_quad()};
+    meshes[0].material_ranges = {{0, 1, 1U}, {1, 1, std::nullopt}};
+    HighDetail detail{meshes.data(), std::vector<HighMaterial>(2), {}};
+    detail.materials[1].color = {0.5F, 0.0F, 0.0F};
+    BakeOptions options = sized(64, 64);
+    options.layers.colors = true;
+    options.details = std::span(&detail, 1);
+    const BakedImage image = bake(meshes, make_quad(), options);
+    std::size_t red = 0, white = 0;
+    for (std::size_t i = 0; i < 64UL * 64UL; ++i) {
+        red += image.colors[3 * i] == 0.5F ? 1 : 0;
+        white += image.colors[3 * i + 2] == 1.0F ? 1 : 0;
+    }
+    EXPECT_EQ(red + white, 64UL * 64UL);
+    EXPECT_NEAR(static_cast<double>(red), 2048.0, 64.0);
+    meshes[0].material_ranges[1].material = 2;
+    EXPECT_EQ(test::message_of<InvalidInput>([&] { bake(meshes, make_quad(), options); }),
+              "a high mesh names material 2, but there are only 2");
+}
+
+/// A map of so many texels with smooth slopes.
+Image slopes(int width, int height) {
+    Image normals = make_image(width, height, 3, 32, ColorSpace::data);
+    for (int y = 0; y < height; ++y) {
+        for (int x = 0; x < width; ++x) {
+            const auto first = 3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
+                                    static_cast<std::size_t>(x));
+            normals.as<float>()[first] = 0.5F * std::sin(0.3F * static_cast<float>(x));
+            normals.as<float>()[first + 1] = 0.4F * std::cos(0.2F * static_cast<float>(y));
+            normals.as<float>()[first + 2] = 1.0F;
+        }
+    }
+    return normals;
+}
+
+TEST(HighDetail, NormalMapsComeThroughOntoTheSameMesh) {
+    Report report;
+    for (const FlatCode flat : {FlatCode::middle, FlatCode::half}) {
+        for (const Green green : {Green::up, Green::down}) {
+            NormalMapFormat format;
+            format.flat = flat;
+            format.green = green;
+            const Image map = encode_normal_map(slopes(64, 48), format, report);
+            const Image truth = decode_normal_map(map, green, flat, report);
+            for (const Mesh& mesh : {make_quad(), make_torus()}) {
+                const std::vector<Mesh> high = {mesh};
+                HighDetail detail{high.data(), std::vector<HighMaterial>(1), {}};
+                detail.materials[0].normal_map =
+                    SurfaceNormalMap{{.image = &map}, 1.0F, green, flat};
+                BakeOptions options = sized(64, 48);
+                options.details = std::span(&detail, 1);
+                const BakedImage image = bake(high, mesh, options);
+                double worst = 0.0;
+                for (std::size_t i = 0; i < image.states.size(); ++i) {
+                    const std::span<const float> n = truth.as<float>();
+                    worst = std::max(
+                        worst,
+                        degrees_between(image.normal(i), {n[3 * i], n[3 * i + 1], n[3 * i + 2]}));
+                }
+                // A bilinear lookup next to a texel's centre.
+                EXPECT_LT(worst, 0.01);
+            }
+        }
+    }
+}
+
+TEST(HighDetail, NormalMapsAreScaledTurnedAndLeftOutWhereTheyCannotBe) {
+    // Slopes of 3/4 to the right.
+    const Image map{1, 1, 3, ColorSpace::data, std::vector<float>{0.8F, 0.5F, 0.9F}};
+    std::vector<Mesh> high = {make_quad()};
+    HighDetail detail{high.data(), std::vector<HighMaterial>(1), {}};
+    detail.materials[0].normal_map = SurfaceNormalMap{.texture = {.image = &map}};
+    SurfaceNormalMap& normal_map = *detail.materials[0].normal_map;
+    BakeOptions options = sized(2, 2);
+    options.details = std::span(&detail, 1);
+    const auto baked = [&] { return bake(high, make_quad(), options).normal(0); };
+    EXPECT_LT(degrees_between(baked(), {0.6, 0, 0.8}), 1e-5);
+    normal_map.scale = 2.0F;
+    EXPECT_LT(degrees_between(baked(), {1.2, 0, 0.8}), 1e-5);
+    normal_map.scale = 0.0F;
+    EXPECT_LT(degrees_between(baked(), {0, 0, 1}), 1e-5);
+    normal_map.scale = 1.0F;
+    // The image turns clockwise by a quarter: what rose to the right rises downwards.
+    normal_map.texture.transform.rotation = std::numbers::pi_v<float> / 2.0F;
+    EXPECT_LT(degrees_between(baked(), {0, -0.6, 0.8}), 1e-4);
+    normal_map.texture.transform = {};
+    // Without normals wanted nobody looks.
+    options.layers.normals = false;
+    EXPECT_TRUE(bake(high, make_quad(), options).report.empty());
+    options.layers.normals = true;
+    high[0].texcoords.clear();
+    const BakedImage bare = bake(high, make_quad(), options);
+    EXPECT_LT(degrees_between(bare.normal(0), {0, 0, 1}), 1e-5);
+    EXPECT_EQ(bare.report.count("normal map without texture coordinates"), 1U);
+    const Image narrow = grey(1, 1, {0.5F});
+    normal_map.texture.image = &narrow;
+    EXPECT_EQ(test::message_of<InvalidInput>([&] { bake(high, make_quad(), options); }),
+              "a normal map of 1 channels, not 3");
+}
+
+TEST(HighDetail, NormalMapsHaveNoSayInOcclusion) {
+    const Image map{1, 1, 3, ColorSpace::data, std::vector<float>{0.8F, 0.5F, 0.9F}};
+    const std::vector<Mesh> high = {make_torus()};
+    HighDetail detail{high.data(), std::vector<HighMaterial>(1), {}};
+    detail.materials[0].normal_map = SurfaceNormalMap{.texture = {.image = &map}};
+    BakeOptions options = sized(32, 32);
+    options.layers.occlusion = OcclusionOptions{};
+    const BakedImage plain = bake(high, make_torus(), options);
+    options.details = std::span(&detail, 1);
+    const BakedImage mapped = bake(high, make_torus(), options);
+    EXPECT_EQ(mapped.occlusion, plain.occlusion);
+    EXPECT_NE(mapped.normals, plain.normals);
+}
+
+}  // namespace
+}  // namespace relief
