@@ -18,6 +18,7 @@
 #include "relief/mesh/mesh_file.h"
 #include "relief/mesh/normal_map.h"
 #include "sky.h"
+#include "urn.h"
 #include "vase.h"
 
 namespace {
@@ -70,6 +71,8 @@ void write_all(const std::filesystem::path& folder) {
                             sample::sky_face(static_cast<int>(face), 512));
     }
     relief::write_mesh(folder / "vase.obj", vase_with_material(folder));
+    relief::write_mesh(folder / "urn-high.ply", {sample::carved_urn(), {}});
+    relief::write_mesh(folder / "urn-low.obj", {sample::plain_urn(), {}});
     std::filesystem::create_directories(folder / "scenes");
     write_glb(folder / "scenes" / "pot.glb", sample::pot());
     write_glb(folder / "scenes" / "knot.glb", sample::knot());
