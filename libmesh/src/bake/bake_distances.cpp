@@ -3,6 +3,7 @@
 #include "bake/bake_distances.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 
 #include "geometry/direction.h"
@@ -54,18 +55,20 @@ std::vector<glm::dvec3> vertices_of(std::span<const Mesh> meshes) {
     return points;
 }
 
-/// Of those points that are finite and have something to be far from.
+/// Of those points that are finite and have something to be far from. As soon as one turns out to
+/// be no further than another, how far does not matter.
 double largest_distance(const std::vector<glm::dvec3>& points, const RayScene& scene) {
-    std::vector<double> distances(points.size(), 0.0);
+    std::atomic<double> largest = 0.0;
     parallel_for(points.size(), 256, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
-            if (is_finite(points[i])) distances[i] = scene.distance_from(points[i]);
+            if (!is_finite(points[i])) continue;
+            double known = largest;
+            const double distance = scene.distance_from(points[i], known);
+            if (!std::isfinite(distance)) continue;
+            while (distance > known && !largest.compare_exchange_weak(known, distance)) {
+            }
         }
     });
-    double largest = 0.0;
-    for (const double distance : distances) {
-        if (std::isfinite(distance)) largest = std::max(largest, distance);
-    }
     return largest;
 }
 

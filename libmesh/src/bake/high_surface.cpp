@@ -53,6 +53,13 @@ Wide interpolated(std::span<const Value> values, const glm::uvec3& corners, cons
     return sum;
 }
 
+/// Of maps that are covered all over, where half of the samples need a second ray.
+double expected_rays(const BakeOptions& options) {
+    const int rays = options.layers.occlusion ? options.layers.occlusion->rays : 0;
+    return static_cast<double>(options.map_count) * options.width * options.height *
+           (1.5 * options.samples + rays);
+}
+
 }  // namespace
 
 HighSurface::HighSurface(std::span<const Mesh> meshes, const BakeOptions& options, Report& report)
@@ -63,7 +70,7 @@ HighSurface::HighSurface(std::span<const Mesh> meshes, const BakeOptions& option
         entries_.push_back(entry(meshes[i], i, options, report));
         ray_meshes.push_back({entries_[i].mesh->positions, entries_[i].mesh->triangles});
     }
-    scene_ = std::make_unique<RayScene>(std::move(ray_meshes));
+    scene_ = std::make_unique<RayScene>(std::move(ray_meshes), expected_rays(options));
 }
 
 HighSurface::Entry HighSurface::entry(const Mesh& mesh, std::size_t index,

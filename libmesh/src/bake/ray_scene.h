@@ -13,6 +13,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -47,7 +48,10 @@ struct RayHit {
 
 class RayScene {
   public:
-    explicit RayScene(std::vector<RayMesh> meshes);
+    /// \param expected_rays  how many will be cast, about: few do not pay for a scene that is made
+    ///                       ready for many (SceneBuild).
+    explicit RayScene(std::vector<RayMesh> meshes,
+                      double expected_rays = std::numeric_limits<double>::infinity());
 
     /// Puts a ray into a lane of a packet.
     void set(RayPacket& packet, std::size_t lane, const Ray& ray) const;
@@ -74,7 +78,8 @@ class RayScene {
 
     /// How far the nearest triangle is from a point; infinity where there is none. To within
     /// float's precision over the size of the scene.
-    [[nodiscard]] double distance_from(const glm::dvec3& point) const;
+    /// \param enough  where one is as near as that, its distance will do: found sooner
+    [[nodiscard]] double distance_from(const glm::dvec3& point, double enough = 0.0) const;
 
     [[nodiscard]] const std::vector<RayMesh>& meshes() const { return meshes_; }
     [[nodiscard]] bool is_empty() const { return is_empty_; }

@@ -27,12 +27,13 @@ RTCRayHit16* embree_of(RayPacket& packet) {
     return reinterpret_cast<RTCRayHit16*>(&packet);
 }
 
-template <typename T>
-T* new_buffer(RTCGeometry geometry, RTCBufferType type, RTCFormat format, std::size_t count) {
-    void* buffer = rtcSetNewGeometryBuffer(geometry, type, 0, format, 3 * sizeof(T), count);
+float* new_vertices(RTCGeometry geometry, std::size_t count) {
+    constexpr std::size_t size = 3 * sizeof(float);
+    void* buffer = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                                           size, count);
     if (buffer == nullptr) throw std::bad_alloc();
-    expect_filling(buffer, 3 * sizeof(T) * count);
-    return static_cast<T*>(buffer);
+    expect_filling(buffer, size * count);
+    return static_cast<float*>(buffer);
 }
 
 /// What Embree's filter gets: a place to put every hit. The context comes first, as Embree casts.
@@ -76,32 +77,37 @@ glm::vec3 nearest_point(const glm::vec3& p, const glm::vec3& a, const glm::vec3&
 
 /// What a point query needs: the buffers of all meshes, in Embree's space.
 struct PointQuery {
-    RTCScene scene;
+    std::span<const EmbreeBuffers> meshes;
     glm::vec3 point;
+    float enough;  ///< A triangle as near as that ends the query.
+    float distance = std::numeric_limits<float>::infinity();
 };
 
 bool come_nearer(RTCPointQueryFunctionArguments* arguments) {
-    const auto* query = static_cast<const PointQuery*>(arguments->userPtr);
-    RTCGeometry geometry = rtcGetGeometry(query->scene, arguments->geomID);
-    const auto* vertices =
-        static_cast<const float*>(rtcGetGeometryBufferData(geometry, RTC_BUFFER_TYPE_VERTEX, 0));
-    const auto* corners = static_cast<const std::uint32_t*>(
-        rtcGetGeometryBufferData(geometry, RTC_BUFFER_TYPE_INDEX, 0));
-    const auto corner = [&](std::size_t i) {
-        const float* v =
-            &vertices[3 * std::size_t{corners[3 * std::size_t{arguments->primID} + i]}];
+    auto* query = static_cast<PointQuery*>(arguments->userPtr);
+    const EmbreeBuffers& mesh = query->meshes[arguments->geomID];
+    const glm::uvec3& corners = mesh.corners[arguments->primID];
+    const auto corner = [&](int i) {
+        const float* v = &mesh.vertices[3 * std::size_t{corners[i]}];
         return glm::vec3(v[0], v[1], v[2]);
     };
     const float distance =
         glm::distance(query->point, nearest_point(query->point, corner(0), corner(1), corner(2)));
-    if (!(distance < arguments->query->radius)) return false;
-    arguments->query->radius = distance;
+    if (!(distance < query->distance)) return false;
+    query->distance = distance;
+    arguments->query->radius = distance <= query->enough ? 0.0F : distance;
     return true;
+}
+
+RTCBuildQuality quality_of(SceneBuild build) {
+    return build == SceneBuild::fast ? RTC_BUILD_QUALITY_LOW : RTC_BUILD_QUALITY_MEDIUM;
 }
 
 }  // namespace
 
-EmbreeScene::EmbreeScene() : device_(rtcNewDevice(nullptr)), scene_(rtcNewScene(device_)) {
+EmbreeScene::EmbreeScene(SceneBuild build)
+    : device_(rtcNewDevice(nullptr)), scene_(rtcNewScene(device_)), build_(build) {
+    rtcSetSceneBuildQuality(scene_, quality_of(build_));
     // Filters are for those who want every hit alone.
     rtcSetSceneFlags(scene_, static_cast<RTCSceneFlags>(RTC_SCENE_FLAG_ROBUST |
                                                         RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION));
@@ -115,15 +121,17 @@ EmbreeScene::~EmbreeScene() {
 void EmbreeScene::add(std::uint32_t name, std::size_t vertex_count, const VertexFill& fill,
                       std::span<const glm::uvec3> triangles) {
     RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
-    auto* vertices =
-        new_buffer<float>(geometry, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3, vertex_count);
-    auto* corners = new_buffer<std::uint32_t>(geometry, RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3,
-                                              triangles.size());
+    rtcSetGeometryBuildQuality(geometry, quality_of(build_));
+    float* vertices = new_vertices(geometry, vertex_count);
     constexpr std::size_t grain = 1 << 16;
     parallel_for(vertex_count, grain, [&](std::size_t begin, std::size_t end) {
         fill(begin, end, vertices + 3 * begin);
     });
-    std::copy_n(&triangles.data()->x, 3 * triangles.size(), corners);
+    // Of this buffer, unlike the other, Embree reads nothing past its end.
+    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                               triangles.data(), 0, sizeof(glm::uvec3), triangles.size());
+    if (name >= meshes_.size()) meshes_.resize(std::size_t{name} + 1);
+    meshes_[name] = {vertices, triangles.data()};
     rtcCommitGeometry(geometry);
     rtcAttachGeometryByID(scene_, geometry, name);
     rtcReleaseGeometry(geometry);
@@ -170,8 +178,8 @@ void EmbreeScene::find_all(const RaySegment& segment, std::vector<MetTriangle>& 
     rtcIntersect1(scene_, &collector.context, &query);
 }
 
-float EmbreeScene::distance_from(const glm::vec3& point) const {
-    PointQuery ours{scene_, point};
+float EmbreeScene::distance_from(const glm::vec3& point, float enough) const {
+    PointQuery ours{meshes_, point, enough};
     RTCPointQuery query{};
     query.x = point.x;
     query.y = point.y;
@@ -180,7 +188,7 @@ float EmbreeScene::distance_from(const glm::vec3& point) const {
     RTCPointQueryContext context;
     rtcInitPointQueryContext(&context);
     rtcPointQuery(scene_, &query, &context, come_nearer, &ours);
-    return query.radius;
+    return ours.distance;
 }
 
 }  // namespace relief

@@ -56,9 +56,22 @@ struct MetTriangle {
     friend auto operator<=>(const MetTriangle&, const MetTriangle&) = default;
 };
 
+/// How much time is spent on making a scene ready. Hits are at the same places, but which of
+/// triangles that coincide there, or meet in a corner, may differ.
+enum class SceneBuild {
+    thorough,  ///< For many rays.
+    fast,      ///< A third of the time; each ray takes a fifth longer.
+};
+
+/// Where Embree has a mesh.
+struct EmbreeBuffers {
+    const float* vertices = nullptr;
+    const glm::uvec3* corners = nullptr;
+};
+
 class EmbreeScene {
   public:
-    EmbreeScene();
+    explicit EmbreeScene(SceneBuild build = SceneBuild::thorough);
     ~EmbreeScene();
     EmbreeScene(const EmbreeScene&) = delete;
     EmbreeScene& operator=(const EmbreeScene&) = delete;
@@ -67,7 +80,8 @@ class EmbreeScene {
     /// pieces, on several threads.
     using VertexFill = std::function<void(std::size_t begin, std::size_t end, float* xyz)>;
 
-    /// \param name  what hits will call the mesh; no other has it
+    /// \param name       what hits will call the mesh; no other has it
+    /// \param triangles  must outlive the scene
     void add(std::uint32_t name, std::size_t vertex_count, const VertexFill& fill,
              std::span<const glm::uvec3> triangles);
 
@@ -85,11 +99,14 @@ class EmbreeScene {
     void find_all(const RaySegment& segment, std::vector<MetTriangle>& found) const;
 
     /// How far the nearest triangle is; infinity where there is none.
-    [[nodiscard]] float distance_from(const glm::vec3& point) const;
+    /// \param enough  where one is as near as that, its distance will do: found sooner
+    [[nodiscard]] float distance_from(const glm::vec3& point, float enough = 0.0F) const;
 
   private:
     RTCDeviceTy* device_;
     RTCSceneTy* scene_;
+    SceneBuild build_;
+    std::vector<EmbreeBuffers> meshes_;  ///< By name; without any where there is no such mesh.
 };
 
 }  // namespace relief

@@ -160,6 +160,37 @@ TEST(RayScene, KnowsMeshesApartAndHowFarTheyAre) {
     EXPECT_NEAR(scene.distance_from({0, 0, 0.75}), 0.25, 1e-6);
     EXPECT_NEAR(scene.distance_from({4, 5, 0.5}), 5.0, 1e-5);
     EXPECT_NEAR(scene.distance_from({0.2, -0.4, 0.1}), 0.1, 1e-6);
+    // Nothing is as near as that, so it is exact; else no more is promised.
+    EXPECT_EQ(scene.distance_from({0.2, 3.0, 0.1}, 1.5), scene.distance_from({0.2, 3.0, 0.1}));
+    EXPECT_LE(scene.distance_from({0.2, 3.0, 0.1}, 4.0), 4.0);
+}
+
+/// At a vertex it may be another of the triangles there: the same place, all the same.
+TEST(RayScene, ASceneForFewRaysHasHitsAtTheSamePlaces) {
+    const Mesh sphere = make_sphere(96, 48);
+    const RayScene many = scene_of(sphere);
+    const RayScene few({{sphere.positions, sphere.triangles}}, 10.0);
+    std::mt19937 random(9);
+    std::size_t hits = 0;
+    for (std::size_t i = 0; i < 4000; ++i) {
+        const glm::dvec3 origin(number(random), number(random), 2.0);
+        // Every other one to a vertex, but for those that it would graze.
+        const glm::dvec3 vertex(sphere.positions[i % sphere.positions.size()]);
+        const bool is_to_vertex = i % 2 == 0 && vertex.z > 0.7;
+        const glm::dvec3 target = is_to_vertex ? vertex : glm::dvec3(origin.x, origin.y, 0.0);
+        const Ray ray{origin, glm::normalize(target - origin), 0.0, 4.0};
+        const RayHit expected = many.nearest(ray);
+        const RayHit found = few.nearest(ray);
+        ASSERT_EQ(found.is_hit(), expected.is_hit());
+        if (!found.is_hit()) continue;
+        ++hits;
+        if (!is_to_vertex) {
+            ASSERT_EQ(found.triangle, expected.triangle);
+        }
+        ASSERT_NEAR(found.distance, expected.distance, 1e-14);
+        ASSERT_LT(glm::distance(place_of(few, found), place_of(many, expected)), 1e-14);
+    }
+    EXPECT_GT(hits, 3000U);
 }
 
 TEST(RayScene, ARayHitsTheSameInAnyPacket) {

@@ -16,7 +16,7 @@ using testing::UnorderedElementsAre;
 /// A right triangle in the plane of this z, from (0, 0) to (1, 0) and (0, 1).
 void add_triangle(EmbreeScene& scene, std::uint32_t name, float z) {
     const std::array<glm::vec3, 3> corners = {glm::vec3(0, 0, z), {1, 0, z}, {0, 1, z}};
-    const std::array<glm::uvec3, 1> triangles = {glm::uvec3(0, 1, 2)};
+    static const std::array<glm::uvec3, 1> triangles = {glm::uvec3(0, 1, 2)};
     const auto fill = [&](std::size_t begin, std::size_t end, float* xyz) {
         for (std::size_t i = begin; i < end; ++i)
             xyz = std::copy_n(&corners[i].x, 3, xyz);
@@ -85,6 +85,9 @@ TEST(EmbreeScene, KnowsHowFarTheNearestTriangleIs) {
     EXPECT_FLOAT_EQ(scene.distance_from({-3.0F, -4.0F, 0.0F}), 5.0F);
     EXPECT_FLOAT_EQ(scene.distance_from({2.0F, 0.0F, 0.0F}), 1.0F);
     EXPECT_FLOAT_EQ(scene.distance_from({1.0F, 1.0F, 0.0F}), 0.70710678F);
+    // Nothing is that near; then something is, and any such distance will do.
+    EXPECT_FLOAT_EQ(scene.distance_from({0.25F, 0.25F, 0.75F}, 0.7F), 0.75F);
+    EXPECT_LE(scene.distance_from({0.25F, 0.25F, 0.75F}, 3.0F), 3.0F);
 }
 
 TEST(EmbreeScene, LeavesOutWhatIsNotFiniteAndMayBeEmpty) {

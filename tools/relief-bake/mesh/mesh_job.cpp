@@ -217,6 +217,7 @@ MeshBake bake_maps(const MeshBakeRequest& request, Stages& stages) {
         baked.materials = plans.materials;
         baked.findings.add("", plans.report);
         BakeOptions options = bake_options_of(request);
+        options.map_count = plans.maps.size();
         options.output_from_mesh = output_axes(request, models.world_from_low);
         if (models.cage) options.cage = &*models.cage;
         stages.run("bake", [&] {

@@ -89,6 +89,9 @@ struct BakeOptions : BakeMapOptions {
     std::optional<double> offset;
     std::optional<double> max_distance;
     BackFaces back_faces = BackFaces::skip;
+    /// How many maps like this one will be baked: many are worth more time to make ready. It
+    /// changes nothing else.
+    std::size_t map_count = 1;
     /// Turns normals of object space into the axes that they are wanted in, from those of the
     /// meshes; made unit afterwards.
     glm::dmat3 output_from_mesh{1.0};
