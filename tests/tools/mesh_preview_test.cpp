@@ -34,23 +34,23 @@ void write_pair(const Workplace& workplace) {
                     "f 1//1 2//1 3//1 4//1\n");
 }
 
-/// Red, green and blue in the middle of each panel.
-std::vector<std::array<int, 3>> middles(const std::filesystem::path& file) {
+/// Red, green and blue in each panel, in its middle row.
+std::vector<std::array<int, 3>> colors(const std::filesystem::path& file, std::size_t column) {
     const Image picture = read_image(file, ImageUse::color);
     EXPECT_EQ(picture.width, 96);
     EXPECT_EQ(picture.height, 24);
     EXPECT_EQ(picture.channels, 3);
     std::vector<std::array<int, 3>> result;
-    for (const std::size_t x : {16U, 48U, 80U}) {
-        const std::uint8_t* code = &picture.as<std::uint8_t>()[3 * (12 * 96 + x)];
+    for (const std::size_t panel : {0U, 32U, 64U}) {
+        const std::uint8_t* code = &picture.as<std::uint8_t>()[3 * (12 * 96 + panel + column)];
         result.push_back({code[0], code[1], code[2]});
     }
     return result;
 }
 
 /// The low square with its map looks like the high one, and without it does not.
-void expect_alike(const std::filesystem::path& file) {
-    const auto panels = middles(file);
+void expect_alike(const std::filesystem::path& file, std::size_t column = 16) {
+    const auto panels = colors(file, column);
     ASSERT_EQ(panels.size(), 3U);
     for (std::size_t i = 0; i < 3; ++i) {
         EXPECT_NEAR(panels[0][i], panels[1][i], 2) << i;
@@ -97,6 +97,30 @@ TEST(MeshPreview, AnObjectSpaceMapTurnsWithItsNode) {
     }
 }
 
+/// Left half of the square: tile 1001, "left"; right half: tile 1002, "right".
+const char* const two_tiles =
+    "mtllib low.mtl\nv -1 -1 0\nv 0 -1 0\nv 0 1 0\nv -1 1 0\nv 1 -1 0\nv 1 1 0\n"
+    "vt 0.1 0.1\nvt 0.9 0.1\nvt 0.9 0.9\nvt 0.1 0.9\n"
+    "vt 1.1 0.1\nvt 1.9 0.1\nvt 1.9 0.9\nvt 1.1 0.9\n"
+    "usemtl left\nf 1/1 2/2 3/3 4/4\nusemtl right\nf 2/5 5/6 6/7 3/8\n";
+
+TEST(MeshPreview, ShowsAllMapsOfOneBake) {
+    const Workplace workplace;
+    write_pair(workplace);
+    workplace.write("low.mtl", "newmtl left\nnewmtl right\n");
+    workplace.write("low.obj", two_tiles);
+    for (const std::string& name :
+         {std::string("map_<UDIM>.png"), std::string("map_<material>_<UDIM>.png")}) {
+        SCOPED_TRACE(name);
+        const auto result = workplace.run("relief-bake mesh high.obj low.obj 'out/" + name +
+                                          "' --size 16 --preview out/preview.png --preview-size "
+                                          "32x24");
+        ASSERT_EQ(result.exit_code, 0) << result.error;
+        expect_alike(workplace / "out/preview.png", 13);
+        expect_alike(workplace / "out/preview.png", 19);
+    }
+}
+
 TEST(MeshPreview, LooksFromWhereMostOfTheModelIsSeen) {
     const ViewDirection round = telling_view(make_sphere());
     EXPECT_EQ(round.azimuth, default_azimuth);
@@ -129,10 +153,10 @@ TEST(MeshPreview, LargeMapsAreMadeSmallerByMeansOfNormals) {
     }
     Report report;
     const NormalMapFormat format{.bits = 16, .green = Green::down};
-    const PreviewMap map{.file = workplace / "out/map.png", .format = format};
-    write_image(map.file, encode_normal_map(normals, format, report));
-    EXPECT_EQ(std::get<std::filesystem::path>(preview_image(map, 7).source), map.file);
-    const ImageSource smaller = preview_image(map, 4);
+    const std::filesystem::path map = workplace / "out/map.png";
+    write_image(map, encode_normal_map(normals, format, report));
+    EXPECT_EQ(std::get<std::filesystem::path>(preview_image(map, format, 7).source), map);
+    const ImageSource smaller = preview_image(map, format, 4);
     const Image& image = std::get<Image>(smaller.source);
     ASSERT_EQ(image.width, 4);
     ASSERT_EQ(image.height, 2);
@@ -159,7 +183,7 @@ TEST(MeshPreview, OpenGLIsLookedForWhereAPreviewIsAskedForAndFirst) {
     EXPECT_EQ(workplace.run(line).exit_code, 0);
 }
 
-TEST(MeshPreview, AFailureSaysThatTheMapIsComplete) {
+TEST(MeshPreview, AFailureSaysThatTheMapsAreComplete) {
     const Workplace workplace;
     write_pair(workplace);
     const auto result = workplace.run(
@@ -167,7 +191,7 @@ TEST(MeshPreview, AFailureSaysThatTheMapIsComplete) {
         "--preview out/preview.png --preview-size 8x8");
     EXPECT_EQ(result.exit_code, 1);
     EXPECT_THAT(result.error, StartsWith("relief-bake: error: no preview: out/preview.png: "));
-    EXPECT_THAT(result.error, HasSubstr("(out/map.png is complete)\n"));
+    EXPECT_THAT(result.error, HasSubstr("(the maps are complete)\n"));
     EXPECT_EQ(read_image(workplace / "out/map.png", ImageUse::data).width, 8);
 }
 
@@ -191,6 +215,8 @@ INSTANTIATE_TEST_SUITE_P(
         Refused{"relief-bake mesh high.obj low.obj out/map.png --report out/r.png --preview "
                 "out/r.png",
                 2, "--preview out/r.png: is also the input or the output"},
+        Refused{"relief-bake mesh high.obj low.obj 'out/m_<UDIM>.png' --preview out/m_1001.png", 2,
+                "--preview out/m_1001.png: is also the input or the output"},
         Refused{"relief-bake mesh high.obj low.obj out/map.png --preview out/no/p.png", 1,
                 "out/no/p.png: the folder out/no does not exist"}));
 

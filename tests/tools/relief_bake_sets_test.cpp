@@ -204,9 +204,6 @@ INSTANTIATE_TEST_SUITE_P(
                             "out/<material><material>.png: <material> is there twice"},
                     Refused{"relief-bake mesh high.obj low.obj 'out/<UDIM>.png' --outside repeat",
                             2, "--outside repeat: has no effect with <UDIM>"},
-                    Refused{"relief-bake mesh high.obj low.obj 'out/<UDIM>.png' --preview "
-                            "out/p.png",
-                            2, "--preview: shows one map, not those of <material> or <UDIM>"},
                     Refused{"relief-bake mesh high.obj far.obj 'out/<UDIM>.png'", 1,
                             "far.obj: no triangle lies in a UDIM tile"},
                     Refused{"relief-bake mesh high.obj low.obj 'none/<UDIM>.png'", 1,

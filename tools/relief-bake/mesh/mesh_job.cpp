@@ -133,15 +133,21 @@ void draw(MeshPreview& preview, const MeshBakeRequest& request, const MeshBake& 
           Models models) {
     const bool is_tangent = request.space == SpaceChoice::tangent;
     const bool has_own_axes = request.space == SpaceChoice::object && models.world_from_low;
-    preview.draw(request.preview,
-                 {.high = std::move(models.high),
-                  .low = std::move(models.low),
-                  .world_from_low = has_own_axes ? *models.world_from_low : glm::dmat3(1.0),
-                  .shows_back_faces = request.back_faces == BackFaces::take},
-                 {.file = request.output,
-                  .format = baked.format,
-                  .space = is_tangent ? NormalSpace::tangent : NormalSpace::object,
-                  .repeats = request.outside == OutsideChoice::repeat});
+    std::vector<PreviewMap> maps;
+    for (const BakedMap& map : baked.maps) {
+        const bool is_tile = map.plan.tile != glm::ivec2(0);
+        maps.push_back({.file = map.plan.output,
+                        .triangles = map.plan.triangles,
+                        .repeats = is_tile || request.outside == OutsideChoice::repeat});
+    }
+    preview.draw(
+        request.preview,
+        {.high = std::move(models.high),
+         .low = std::move(models.low),
+         .world_from_low = has_own_axes ? *models.world_from_low : glm::dmat3(1.0),
+         .shows_back_faces = request.back_faces == BackFaces::take},
+        maps,
+        {.format = baked.format, .space = is_tangent ? NormalSpace::tangent : NormalSpace::object});
 }
 
 /// Adds what one map had to what all have.
@@ -216,6 +222,8 @@ MeshBake bake_maps(const MeshBakeRequest& request, Stages& stages) {
         MapPlans plans = plan_maps(request, models.low, models.materials);
         baked.materials = plans.materials;
         baked.findings.add("", plans.report);
+        for (const MapPlan& plan : plans.maps)
+            require_another(request.preview, plan.output);
         BakeOptions options = bake_options_of(request);
         options.map_count = plans.maps.size();
         options.output_from_mesh = output_axes(request, models.world_from_low);

@@ -55,10 +55,9 @@ Material grey() {
     return material;
 }
 
-/// Nothing but shape: no colours of its own, one material.
+/// Nothing but shape: no colours of its own.
 void add(Scene& scene, Mesh mesh, const glm::mat4& world_from_object = glm::mat4(1.0F)) {
     mesh.colors.clear();
-    mesh.material_ranges = {{0, static_cast<std::uint32_t>(mesh.triangles.size()), 0}};
     scene.meshes.push_back(std::move(mesh));
     scene.instances.push_back({scene.meshes.size() - 1, world_from_object, ""});
 }
@@ -74,10 +73,35 @@ Mesh in_own_axes(Mesh mesh, const glm::dmat3& world_from_object) {
     return mesh;
 }
 
-Scene low_scene(PreviewModels& models, const PreviewMap& map) {
+/// Triangles by the map that is for them, and a material for each: the first is for those that
+/// have none.
+void part_by_maps(Mesh& mesh, const std::vector<PreviewMap>& maps) {
+    std::vector<std::vector<glm::uvec3>> parts(maps.size() + 1);
+    std::vector<std::size_t> part_of(mesh.triangles.size(), 0);
+    for (std::size_t i = 0; i < maps.size(); ++i) {
+        if (!maps[i].triangles) std::fill(part_of.begin(), part_of.end(), i + 1);
+        if (!maps[i].triangles) continue;
+        for (const std::uint32_t triangle : *maps[i].triangles)
+            part_of[triangle] = i + 1;
+    }
+    for (std::size_t i = 0; i < part_of.size(); ++i)
+        parts[part_of[i]].push_back(mesh.triangles[i]);
+    mesh.triangles.clear();
+    mesh.material_ranges.clear();
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+        if (parts[i].empty()) continue;
+        mesh.material_ranges.push_back({static_cast<std::uint32_t>(mesh.triangles.size()),
+                                        static_cast<std::uint32_t>(parts[i].size()),
+                                        static_cast<std::uint32_t>(i)});
+        mesh.triangles.insert(mesh.triangles.end(), parts[i].begin(), parts[i].end());
+    }
+}
+
+Scene low_scene(PreviewModels& models, const std::vector<PreviewMap>& maps, NormalSpace space) {
     Scene scene;
-    scene.materials.push_back(grey());
-    if (map.space == NormalSpace::object && models.world_from_low != glm::dmat3(1.0)) {
+    scene.materials.assign(maps.size() + 1, grey());
+    part_by_maps(models.low, maps);
+    if (space == NormalSpace::object && models.world_from_low != glm::dmat3(1.0)) {
         add(scene, in_own_axes(std::move(models.low), models.world_from_low),
             glm::mat4(glm::mat3(models.world_from_low)));
     } else {
@@ -90,8 +114,10 @@ Scene high_scene(PreviewModels& models) {
     Scene scene;
     scene.materials.push_back(grey());
     scene.materials[0].double_sided = models.shows_back_faces;
-    for (Mesh& mesh : models.high)
+    for (Mesh& mesh : models.high) {
+        mesh.material_ranges = {{0, static_cast<std::uint32_t>(mesh.triangles.size()), 0}};
         add(scene, std::move(mesh));
+    }
     return scene;
 }
 
@@ -122,15 +148,24 @@ void put(Image& picture, const Image& panel, int index) {
     }
 }
 
-void use(Scene& scene, const PreviewMap& map, const glm::ivec2& size) {
-    const int most = std::max(least_map_size, texels_per_pixel * std::max(size.x, size.y));
-    const TextureWrap wrap = map.repeats ? TextureWrap::repeat : TextureWrap::clamp;
-    scene.images = {preview_image(map, most)};
-    const bool is_file = std::holds_alternative<std::filesystem::path>(scene.images[0].source);
-    scene.materials[0].normal_map = NormalMap{.texture = {0, wrap, wrap},
-                                              .green = is_file ? map.format.green : Green::up,
-                                              .flat = map.format.flat,
-                                              .space = map.space};
+void use(Scene& scene, const std::vector<PreviewMap>& maps, const PreviewReading& reading,
+         const glm::ivec2& size) {
+    // Each of several maps shows a part of the model.
+    const double share =
+        1.0 / std::sqrt(static_cast<double>(std::max<std::size_t>(maps.size(), 1)));
+    const int all = std::max(least_map_size, texels_per_pixel * std::max(size.x, size.y));
+    const int most = std::max(least_map_size / 4, static_cast<int>(share * all));
+    for (std::size_t i = 0; i < maps.size(); ++i) {
+        const TextureWrap wrap = maps[i].repeats ? TextureWrap::repeat : TextureWrap::clamp;
+        scene.images.push_back(preview_image(maps[i].file, reading.format, most));
+        const bool is_file =
+            std::holds_alternative<std::filesystem::path>(scene.images.back().source);
+        scene.materials[i + 1].normal_map =
+            NormalMap{.texture = {i, wrap, wrap},
+                      .green = is_file ? reading.format.green : Green::up,
+                      .flat = reading.format.flat,
+                      .space = reading.space};
+    }
 }
 
 /// What drawing finds odd about the models, the bake has found and reported before.
@@ -166,12 +201,13 @@ ViewDirection telling_view(const Mesh& mesh) {
 
 MeshPreview::MeshPreview() : context_(std::make_unique<Context>()) {}
 
-void MeshPreview::draw(const PreviewOptions& options, PreviewModels models, const PreviewMap& map) {
+void MeshPreview::draw(const PreviewOptions& options, PreviewModels models,
+                       const std::vector<PreviewMap>& maps, const PreviewReading& reading) {
     const glm::ivec2 size = options.size.value_or(default_size);
     try {
         const ViewDirection view = telling_view(models.low);
         Scene high = high_scene(models);
-        Scene low = low_scene(models, map);
+        Scene low = low_scene(models, maps, reading.space);
         const float aspect = static_cast<float>(size.x) / static_cast<float>(size.y);
         const Camera camera = camera_for(high, low, view, aspect);
         Image picture = make_image(panels * size.x, size.y, 3, 8, ColorSpace::srgb);
@@ -182,12 +218,11 @@ void MeshPreview::draw(const PreviewOptions& options, PreviewModels models, cons
         put(picture, drawn(*context_, high, camera, size), 0);
         high = {};
         put(picture, drawn(*context_, low, camera, size), 2);
-        use(low, map, size);
+        use(low, maps, reading, size);
         put(picture, drawn(*context_, low, camera, size), 1);
         write_image(*options.file, picture);
     } catch (const Error& error) {
-        throw Error(
-            fmt::format("no preview: {} ({} is complete)", error.what(), map.file.string()));
+        throw Error(fmt::format("no preview: {} (the maps are complete)", error.what()));
     }
 }
 

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <glm/glm.hpp>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,12 +20,18 @@
 
 namespace relief::tools {
 
-/// A finished map, and how it is to be read.
+/// A finished map.
 struct PreviewMap {
     std::filesystem::path file;
+    /// Of the low mesh, those that it is for; absent: all.
+    std::optional<std::vector<std::uint32_t>> triangles{};
+    bool repeats = false;  ///< Beyond the unit square; else its border goes on.
+};
+
+/// How maps are to be read.
+struct PreviewReading {
     NormalMapFormat format;
     NormalSpace space = NormalSpace::tangent;
-    bool repeats = false;  ///< Beyond the unit square; else its border goes on.
 };
 
 /// What is to be seen, in one space; taken over, as a picture needs it in another order.
@@ -46,8 +53,10 @@ struct ViewDirection {
 ViewDirection telling_view(const Mesh& mesh);
 
 /// A map for a picture of it: as it is in its file, or, where a side is longer than `most` texels,
-/// made smaller by a whole number: means of normals, in float, a few rows of the file at a time.
-ImageSource preview_image(const PreviewMap& map, int most);
+/// made smaller by a whole number: means of normals, in float and green up, a few rows of the file
+/// at a time.
+ImageSource preview_image(const std::filesystem::path& map, const NormalMapFormat& format,
+                          int most);
 
 /// Draws previews. OpenGL is loaded when one is made, so that what makes none never does, and a
 /// machine without it is found out before any work.
@@ -56,8 +65,9 @@ class MeshPreview {
     /// \throws GpuError where there is no OpenGL
     MeshPreview();
 
-    /// Draws and writes the picture. \throws Error, which says that the map is complete
-    void draw(const PreviewOptions& options, PreviewModels models, const PreviewMap& map);
+    /// Draws and writes the picture. \throws Error, which says that the maps are complete
+    void draw(const PreviewOptions& options, PreviewModels models,
+              const std::vector<PreviewMap>& maps, const PreviewReading& reading);
 
     /// "OSMesa"
     [[nodiscard]] const std::string& backend_name() const { return context_->backend_name(); }

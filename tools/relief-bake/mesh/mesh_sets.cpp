@@ -145,12 +145,6 @@ void check_map_names(const MeshBakeRequest& request) {
                              "use it once");
         }
     }
-    const bool has_sets =
-        names_word(request.output, material_word) || names_word(request.output, tile_word);
-    if (has_sets && request.preview.file) {
-        throw UsageError("--preview: shows one map, not those of <material> or <UDIM>",
-                         "leave it out; relief-view shows each");
-    }
     if (names_word(request.output, tile_word) && request.outside == OutsideChoice::repeat)
         throw UsageError("--outside repeat: has no effect with <UDIM>, which has tiles for all");
 }

@@ -11,13 +11,13 @@ namespace relief::tools {
 namespace {
 
 /// The next rows of a map as normals.
-Image next_rows(ImageRowReader& reader, int rows, const PreviewMap& map) {
+Image next_rows(ImageRowReader& reader, int rows, const NormalMapFormat& format) {
     const ImageInfo& info = reader.info();
     Image band = make_image(info.width, rows, info.channels, info.bits, ColorSpace::data);
     std::visit([&](auto& samples) { reader.read(std::as_writable_bytes(std::span(samples))); },
                band.samples);
     Report unused;  // The map is relief's own: every texel is a normal.
-    return decode_normal_map(band, map.format.green, map.format.flat, unused);
+    return decode_normal_map(band, format.green, format.flat, unused);
 }
 
 /// Adds a band, of `factor` rows or fewer, to the row of means that it belongs to.
@@ -32,12 +32,13 @@ void add(std::span<const float> band, int width, int factor, std::span<float> me
 
 }  // namespace
 
-ImageSource preview_image(const PreviewMap& map, int most) {
-    ImageRowReader reader(map.file);
+ImageSource preview_image(const std::filesystem::path& map, const NormalMapFormat& format,
+                          int most) {
+    ImageRowReader reader(map);
     const int width = reader.info().width;
     const int height = reader.info().height;
     const int factor = (std::max(width, height) + most - 1) / most;
-    if (factor <= 1) return {map.file.string(), map.file};
+    if (factor <= 1) return {map.string(), map};
     // What is left over at the right and at the bottom becomes texels of their own: the map ends a
     // little further out then, by less than a texel of the smaller one.
     Image means = make_image((width + factor - 1) / factor, (height + factor - 1) / factor, 3, 32,
@@ -45,11 +46,11 @@ ImageSource preview_image(const PreviewMap& map, int most) {
     const std::span<float> all = means.as<float>();
     const std::size_t row = 3 * static_cast<std::size_t>(means.width);
     for (int y = 0; y < means.height; ++y) {
-        const Image band = next_rows(reader, std::min(factor, height - y * factor), map);
+        const Image band = next_rows(reader, std::min(factor, height - y * factor), format);
         add(band.as<float>(), width, factor, all.subspan(static_cast<std::size_t>(y) * row, row));
     }
     Report unused;  // Where normals cancel out, flat is as good as any.
-    return {map.file.string(), encode_normal_map(means, {.bits = 32}, unused)};
+    return {map.string(), encode_normal_map(means, {.bits = 32}, unused)};
 }
 
 }  // namespace relief::tools

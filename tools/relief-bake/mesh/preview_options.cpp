@@ -23,6 +23,12 @@ void add_preview_options(CLI::App& app, PreviewOptions& options) {
         ->group(group);
 }
 
+void require_another(const PreviewOptions& options, const std::filesystem::path& file) {
+    if (!options.file || options.file->lexically_normal() != file.lexically_normal()) return;
+    throw UsageError(
+        fmt::format("--preview {}: is also the input or the output", options.file->string()));
+}
+
 void check(const PreviewOptions& options, const std::vector<std::filesystem::path>& files) {
     if (!options.file) {
         if (options.size) throw UsageError("--preview-size: has no effect without --preview");
@@ -32,11 +38,8 @@ void check(const PreviewOptions& options, const std::vector<std::filesystem::pat
         throw UsageError(
             fmt::format("--preview {}: no format to write it in", options.file->string()),
             "use .png");
-    for (const std::filesystem::path& file : files) {
-        if (options.file->lexically_normal() == file.lexically_normal())
-            throw UsageError(fmt::format("--preview {}: is also the input or the output",
-                                         options.file->string()));
-    }
+    for (const std::filesystem::path& file : files)
+        require_another(options, file);
     require_folder_of(*options.file);
 }
 
