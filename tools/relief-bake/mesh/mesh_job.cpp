@@ -212,7 +212,7 @@ MeshBake bake_maps(const MeshBakeRequest& request, Stages& stages) {
     MeshBake baked;
     baked.format = format_of(request.map, request.output);
     std::optional<MeshPreview> preview;
-    if (request.preview.file) preview.emplace();
+    if (request.preview.file) stages.run("context", [&] { preview.emplace(); });
     Models models = stages.run("read", [&] { return read_models(request, baked.findings); });
     for (const Mesh& mesh : models.high)
         baked.high_triangles += mesh.triangles.size();
