@@ -121,6 +121,24 @@ TEST(MeshPreview, ShowsAllMapsOfOneBake) {
     }
 }
 
+TEST(MeshPreview, ModelsOfAnySizeAreSeen) {
+    const Workplace workplace;
+    for (const std::string unit : {"1e-30", "1e30"}) {
+        SCOPED_TRACE(unit);
+        const std::string square = fmt::format(
+            "v -{0} -{0} 0\nv {0} -{0} 0\nv {0} {0} 0\nv -{0} {0} 0\n"
+            "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nvn -0.48 0.36 0.8\n",
+            unit);
+        workplace.write("high.obj", square + "f 1//1 2//1 3//1 4//1\n");
+        workplace.write("low.obj", square + "f 1/1 2/2 3/3 4/4\n");
+        const auto result = workplace.run(
+            "relief-bake mesh high.obj low.obj out/map.png --size 16 --preview out/preview.png "
+            "--preview-size 32x24");
+        ASSERT_EQ(result.exit_code, 0) << result.error;
+        expect_alike(workplace / "out/preview.png");
+    }
+}
+
 TEST(MeshPreview, LooksFromWhereMostOfTheModelIsSeen) {
     const ViewDirection round = telling_view(make_sphere());
     EXPECT_EQ(round.azimuth, default_azimuth);

@@ -121,6 +121,28 @@ Scene high_scene(PreviewModels& models) {
     return scene;
 }
 
+/// Moves models whose size is beyond a camera's floats to where they are not.
+void bring_within_reach(PreviewModels& models) {
+    constexpr double least = 1e-9, most = 1e9;
+    Bounds box = bounds_of(models.low);
+    for (const Mesh& mesh : models.high) {
+        const Bounds more = bounds_of(mesh);
+        box = {glm::min(box.min, more.min), glm::max(box.max, more.max)};
+    }
+    if (box.empty()) return;
+    const glm::dvec3 low(box.min), high(box.max);
+    const glm::dvec3 sides = high - low;
+    const double size = std::max({sides.x, sides.y, sides.z});
+    if (size == 0.0 || (size >= least && size <= most)) return;
+    const auto move = [&](Mesh& mesh) {
+        for (glm::vec3& position : mesh.positions)
+            position = glm::vec3((glm::dvec3(position) - 0.5 * (low + high)) / size);
+    };
+    move(models.low);
+    for (Mesh& mesh : models.high)
+        move(mesh);
+}
+
 /// Sees all of both; the meshes are lent to a scene for it, as copies would cost more than the
 /// picture.
 Camera camera_for(Scene& high, Scene& low, const ViewDirection& view, float aspect) {
@@ -205,6 +227,7 @@ void MeshPreview::draw(const PreviewOptions& options, PreviewModels models,
                        const std::vector<PreviewMap>& maps, const PreviewReading& reading) {
     const glm::ivec2 size = options.size.value_or(default_size);
     try {
+        bring_within_reach(models);
         const ViewDirection view = telling_view(models.low);
         Scene high = high_scene(models);
         Scene low = low_scene(models, maps, reading.space);
