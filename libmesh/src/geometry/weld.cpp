@@ -40,6 +40,18 @@ std::uint64_t hash_of(const std::array<float, N>& key) {
     return hash;
 }
 
+/// The same for keys that are equal where their bits are.
+template <std::size_t N>
+std::uint64_t hash_of(const std::array<std::uint32_t, N>& key) {
+    std::uint64_t hash = 0;
+    for (std::size_t i = 0; i < N; i += 2) {
+        const std::uint64_t low = key[i];
+        const std::uint64_t high = i + 1 < N ? key[i + 1] : 0U;
+        hash = mixed(hash + (low | high << 32) + 0x9e3779b97f4a7c15ULL);
+    }
+    return hash;
+}
+
 /// A vertex in the bucket of its hash.
 struct Entry {
     std::uint32_t hash;
@@ -141,6 +153,15 @@ std::vector<std::uint32_t> weld_vertices(std::span<const glm::vec3> positions,
         return std::array{p.x, p.y, p.z, n.x, n.y, n.z, t.x, t.y};
     });
 }
+
+template <typename Value>
+std::vector<std::uint32_t> weld_bits(std::span<const Value> values) {
+    using Bits = std::array<std::uint32_t, sizeof(Value) / sizeof(std::uint32_t)>;
+    return weld(values.size(), [&](std::size_t i) { return std::bit_cast<Bits>(values[i]); });
+}
+template std::vector<std::uint32_t> weld_bits(std::span<const glm::vec2>);
+template std::vector<std::uint32_t> weld_bits(std::span<const glm::vec3>);
+template std::vector<std::uint32_t> weld_bits(std::span<const std::array<float, 7>>);
 
 Groups groups_of(std::span<const std::uint32_t> representatives) {
     std::vector<std::pair<std::uint32_t, std::uint32_t>> shared;  // Representative, member.

@@ -23,6 +23,11 @@ std::vector<std::uint32_t> weld_vertices(std::span<const glm::vec3> positions,
                                          std::span<const glm::vec3> normals,
                                          std::span<const glm::vec2> texcoords);
 
+/// For every value, the smallest index of one with the same bits: NaN equals itself there, and +0
+/// does not equal -0. For glm::vec2, glm::vec3 and seven floats.
+template <typename Value>
+std::vector<std::uint32_t> weld_bits(std::span<const Value> values);
+
 /// Groups of two and more, by what the functions above say.
 struct Groups {
     /// Where each group begins; one more at the end.

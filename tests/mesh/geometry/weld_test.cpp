@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -33,6 +34,13 @@ TEST(Weld, MinusZeroIsZeroAndInfinitiesEqualThemselves) {
 TEST(Weld, ANaNEqualsNothingNotEvenItself) {
     const std::vector<glm::vec3> positions(4, glm::vec3(0, nan, 0));
     EXPECT_THAT(weld_positions(positions), ElementsAre(0, 1, 2, 3));
+}
+
+TEST(Weld, ByBitsANaNEqualsItselfAndMinusZeroIsNotZero) {
+    const std::vector<glm::vec2> values = {{0.0F, nan}, {-0.0F, nan}, {0.0F, nan}, {-0.0F, nan}};
+    EXPECT_EQ(weld_bits<glm::vec2>(values), (std::vector<std::uint32_t>{0, 1, 0, 1}));
+    const std::vector<std::array<float, 7>> rows = {{0, 0, 0, 0, 0, 0, 1}, {}, {}};
+    EXPECT_EQ((weld_bits<std::array<float, 7>>(rows)), (std::vector<std::uint32_t>{0, 1, 1}));
 }
 
 TEST(Weld, OneUnitInTheLastPlaceKeepsPositionsApart) {

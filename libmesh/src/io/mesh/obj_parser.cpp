@@ -5,7 +5,7 @@
 // Wavefront format as written by modelling tools, with vertex colours after the position.
 // A malformed number, an index 0 or an index past the end throws FileError.
 // Tests: tests/mesh/io/mesh/obj_test.cpp.
-#include "io/mesh/obj_parser.h"
+#include "io/mesh/obj_pieces.h"
 
 #include <fmt/format.h>
 
@@ -14,6 +14,7 @@
 #include <charconv>
 #include <limits>
 #include <unordered_map>
+#include <utility>
 
 #include "io/mesh/mesh_file_text.h"
 
@@ -26,26 +27,20 @@ bool is_blank(char c) {
     return c == ' ' || c == '\t' || c == '\v' || c == '\f';
 }
 
-/// Whether the text is UTF-16, by its byte order mark or by zeros in every other byte.
-bool looks_like_utf16(std::string_view text) {
-    if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF")) return true;
-    const std::string_view head = text.substr(0, 64);
-    return static_cast<std::size_t>(std::count(head.begin(), head.end(), '\0')) * 3 > head.size();
-}
-
 /// Reads one statement after the other. A backslash at the end of a line joins the next one to it.
 class ObjParser {
   public:
+    /// \param is_first  nothing comes before the text: it is known what counts back too far
     ObjParser(std::string_view text, const std::filesystem::path& file, const glm::dvec3& origin,
-              Report& report)
+              bool is_first)
         : at_(text.data()),
           end_(text.data() + text.size()),
           file_(file),
           origin_(origin),
           is_far_(origin != glm::dvec3(0.0)),
-          report_(report) {}
+          is_first_(is_first) {}
 
-    ObjStatements parse();
+    ObjPiece parse();
 
   private:
     [[noreturn]] void fail(const std::string& reason) const {
@@ -67,23 +62,24 @@ class ObjParser {
     void normal();
     void face();
     ObjCorner corner();
-    std::int32_t index(std::size_t count, const char* what);
+    std::int32_t index(std::size_t count, const char* what, ObjPiece::Back which);
     void use_material();
     void smoothing_group();
-    void check_indices();
 
     const char* at_;
     const char* end_;
     const std::filesystem::path& file_;
     glm::dvec3 origin_;
     bool is_far_;
-    Report& report_;
+    bool is_first_;
     std::size_t line_ = 1;
-    std::size_t object_count_ = 0;
     std::int32_t material_ = -1;
     std::uint32_t smoothing_group_ = 0;
+    std::uint8_t counting_back_ = 0;  ///< Of the corner being read.
     std::unordered_map<std::string, std::int32_t> material_numbers_;
-    ObjStatements result_;
+    ObjPiece piece_;
+    ObjStatements& result_ = piece_.statements;
+    Report& report_ = piece_.report;
 };
 
 void ObjParser::skip_blanks() {
@@ -168,30 +164,37 @@ std::int64_t ObjParser::integer() {
 }
 
 /// An index from 0; negative ones in the file count back from what has been read so far.
-std::int32_t ObjParser::index(std::size_t count, const char* what) {
+std::int32_t ObjParser::index(std::size_t count, const char* what, ObjPiece::Back which) {
     const std::int64_t written = integer();
     const std::int64_t index =
         written > 0 ? written - 1 : static_cast<std::int64_t>(count) + written;
     if (written == 0) fail(fmt::format("{} 0 is named, but OBJ counts from 1", what));
-    if (index < 0 || index > std::numeric_limits<std::int32_t>::max()) {
+    using Index = std::numeric_limits<std::int32_t>;
+    const bool is_known = written > 0 || is_first_;
+    if (index < (is_known ? 0 : Index::min()) || index > Index::max()) {
         fail(fmt::format("{} {} is named, but there are only {} so far", what, written, count));
     }
+    if (!is_known) counting_back_ |= which;
     return static_cast<std::int32_t>(index);
 }
 
 ObjCorner ObjParser::corner() {
     ObjCorner corner;
-    corner.position = index(result_.positions.size(), "vertex");
+    corner.position = index(result_.positions.size(), "vertex", ObjPiece::position);
     const auto at_slash = [&] { return at_ < end_ && *at_ == '/'; };
     const auto at_value = [&] {
         return at_ < end_ && (*at_ == '-' || *at_ == '+' || (*at_ >= '0' && *at_ <= '9'));
     };
     if (at_slash()) {
         ++at_;
-        if (at_value()) corner.texcoord = index(result_.texcoords.size(), "texture coordinate");
+        if (at_value()) {
+            corner.texcoord =
+                index(result_.texcoords.size(), "texture coordinate", ObjPiece::texcoord);
+        }
         if (at_slash()) {
             ++at_;
-            if (at_value()) corner.normal = index(result_.normals.size(), "normal");
+            if (at_value())
+                corner.normal = index(result_.normals.size(), "normal", ObjPiece::normal);
         }
     }
     if (at_ < end_ && !is_blank(*at_) && *at_ != '\n' && *at_ != '\r' && *at_ != '\\') {
@@ -205,12 +208,17 @@ void ObjParser::face() {
     face.first_corner = result_.corners.size();
     face.material = material_;
     face.smoothing_group = smoothing_group_;
-    while (!at_line_end())
+    while (!at_line_end()) {
         result_.corners.push_back(corner());
+        if (counting_back_ == 0 && piece_.counting_back.empty()) continue;
+        piece_.counting_back.resize(result_.corners.size() - 1, 0);
+        piece_.counting_back.push_back(std::exchange(counting_back_, std::uint8_t{0}));
+    }
     face.corner_count = static_cast<std::uint32_t>(result_.corners.size() - face.first_corner);
     if (face.corner_count < 3) {
         report_.add("face of fewer than three corners", "line", line_, "left out");
         result_.corners.resize(face.first_corner);
+        if (!piece_.counting_back.empty()) piece_.counting_back.resize(face.first_corner);
         return;
     }
     result_.faces.push_back(face);
@@ -257,12 +265,14 @@ void ObjParser::use_material() {
     const auto [entry, is_new] =
         material_numbers_.try_emplace(name, static_cast<std::int32_t>(result_.materials.size()));
     if (is_new) result_.materials.push_back(name);
+    if (material_ < 0) piece_.faces_before_material = result_.faces.size();
     material_ = entry->second;
 }
 
 /// s off, s 0, s 1, ... and "s on", which some write for 1.
 void ObjParser::smoothing_group() {
     const std::string_view text = at_line_end() ? std::string_view() : word();
+    if (!result_.has_smoothing_groups) piece_.faces_before_smoothing = result_.faces.size();
     result_.has_smoothing_groups = true;
     smoothing_group_ = 0;
     if (text == "off") return;
@@ -294,7 +304,7 @@ void ObjParser::statement(std::string_view keyword) {
     } else if (keyword == "mtllib") {
         result_.material_libraries.emplace_back(rest_of_line());
     } else if (keyword == "o") {
-        result_.name = object_count_++ == 0 ? std::string(rest_of_line()) : std::string();
+        if (piece_.object_count++ == 0) result_.name = rest_of_line();
     } else if (keyword == "p") {
         report_.add("point", "line", line_, "left out");
     } else if (keyword == "l") {
@@ -306,36 +316,7 @@ void ObjParser::statement(std::string_view keyword) {
     }
 }
 
-/// Positive indices may look ahead, so they are checked when all vertices are known. A vertex must
-/// exist; files that name texture coordinates or normals which they lack are common.
-void ObjParser::check_indices() {
-    const auto is_beyond = [](std::int32_t index, std::size_t count) {
-        return index >= 0 && static_cast<std::size_t>(index) >= count;
-    };
-    for (std::size_t i = 0; i < result_.faces.size(); ++i) {
-        const ObjFace& face = result_.faces[i];
-        for (std::uint32_t k = 0; k < face.corner_count; ++k) {
-            ObjCorner& corner = result_.corners[face.first_corner + k];
-            if (is_beyond(corner.position, result_.positions.size())) {
-                throw FileError(file_, fmt::format("face {} names vertex {}, but there are only {}",
-                                                   i + 1, corner.position + std::int64_t{1},
-                                                   result_.positions.size()));
-            }
-            if (is_beyond(corner.texcoord, result_.texcoords.size())) {
-                report_.add("texture coordinate that does not exist", "corner",
-                            face.first_corner + k, "taken as none");
-                corner.texcoord = -1;
-            }
-            if (is_beyond(corner.normal, result_.normals.size())) {
-                report_.add("normal that does not exist", "corner", face.first_corner + k,
-                            "taken as none");
-                corner.normal = -1;
-            }
-        }
-    }
-}
-
-ObjStatements ObjParser::parse() {
+ObjPiece ObjParser::parse() {
     while (at_ < end_) {
         if (!at_line_end()) {
             const std::string_view keyword = word();
@@ -353,19 +334,19 @@ ObjStatements ObjParser::parse() {
         }
         skip_line();
     }
-    check_indices();
-    return std::move(result_);
+    if (material_ < 0) piece_.faces_before_material = result_.faces.size();
+    if (!result_.has_smoothing_groups) piece_.faces_before_smoothing = result_.faces.size();
+    piece_.last_material = material_;
+    piece_.last_smoothing_group = smoothing_group_;
+    piece_.line_ends = line_ - 1;
+    return std::move(piece_);
 }
 
 }  // namespace
 
-ObjStatements parse_obj(std::string_view text, const std::filesystem::path& file,
-                        const glm::dvec3& origin, Report& report) {
-    if (looks_like_utf16(text)) {
-        throw FileError(file, "is UTF-16 text; save it as UTF-8");
-    }
-    if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
-    return ObjParser(text, file, origin, report).parse();
+ObjPiece parse_obj_piece(std::string_view text, const std::filesystem::path& file,
+                         const glm::dvec3& origin, bool is_first) {
+    return ObjParser(text, file, origin, is_first).parse();
 }
 
 }  // namespace relief

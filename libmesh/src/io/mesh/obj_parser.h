@@ -55,9 +55,10 @@ struct ObjStatements {
 ///                unknown statements, all left out; smoothing groups that are no number,
 ///                taken as off; and texture coordinates and normals that are
 ///                named but do not exist, taken as none
+/// \param piece_size  bytes that one thread reads at a time; the result is the same for any
 /// \throws FileError naming the line of a malformed statement or of an index that counts back too
 ///         far, and the face that names a vertex which does not exist
 ObjStatements parse_obj(std::string_view text, const std::filesystem::path& file,
-                        const glm::dvec3& origin, Report& report);
+                        const glm::dvec3& origin, Report& report, std::size_t piece_size = 1 << 21);
 
 }  // namespace relief

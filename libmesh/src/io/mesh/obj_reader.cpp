@@ -37,11 +37,16 @@ glm::vec3 face_normal(const ObjStatements& statements, const ObjFace& face) {
 
 /// Gives every corner a texture coordinate if any has one, and a normal if any has one.
 void complete_corners(ObjStatements& statements, Report& report) {
-    const auto& corners = statements.corners;
-    const bool any_texcoord = std::any_of(corners.begin(), corners.end(),
-                                          [](const ObjCorner& c) { return c.texcoord >= 0; });
-    const bool any_normal = std::any_of(corners.begin(), corners.end(),
-                                        [](const ObjCorner& c) { return c.normal >= 0; });
+    const auto have = [&](std::int32_t ObjCorner::*index) {
+        return std::count_if(statements.corners.begin(), statements.corners.end(),
+                             [index](const ObjCorner& corner) { return corner.*index >= 0; });
+    };
+    const auto count = static_cast<std::ptrdiff_t>(statements.corners.size());
+    const std::ptrdiff_t with_texcoord = have(&ObjCorner::texcoord);
+    const std::ptrdiff_t with_normal = have(&ObjCorner::normal);
+    const bool any_texcoord = with_texcoord > 0;
+    const bool any_normal = with_normal > 0;
+    if (count == 0 || (with_texcoord % count == 0 && with_normal % count == 0)) return;
     for (std::size_t i = 0; i < statements.faces.size(); ++i) {
         const ObjFace& face = statements.faces[i];
         std::int32_t own_normal = -1;
@@ -68,10 +73,14 @@ void complete_corners(ObjStatements& statements, Report& report) {
 
 /// Triangles grouped by material, groups in order of first use, order kept within each. A file that
 /// names no material gets no ranges.
-void group_by_material(const CutPolygons& cut, const ObjStatements& statements, Mesh& mesh) {
+void group_by_material(CutPolygons cut, const ObjStatements& statements, Mesh& mesh) {
     const auto face_of = [&](std::size_t triangle) -> const ObjFace& {
         return statements.faces[cut.polygons[triangle]];
     };
+    if (statements.materials.empty() && !statements.has_smoothing_groups) {
+        mesh.triangles = std::move(cut.triangles);
+        return;
+    }
     if (statements.has_smoothing_groups) mesh.smoothing_groups.resize(cut.triangles.size());
     const auto place = [&](std::size_t triangle, std::size_t at) {
         mesh.triangles[at] = cut.triangles[triangle];
@@ -120,9 +129,9 @@ MeshFile read_obj(const std::filesystem::path& file, const glm::dvec3& origin, R
     polygons.corner_counts.reserve(statements.faces.size());
     for (const ObjFace& face : statements.faces)
         polygons.corner_counts.push_back(face.corner_count);
-    const CutPolygons cut = cut_polygons(result.mesh, polygons, report);
+    CutPolygons cut = cut_polygons(result.mesh, polygons, report);
     if (cut.triangles.empty()) throw FileError(file, "has no triangle");
-    group_by_material(cut, statements, result.mesh);
+    group_by_material(std::move(cut), statements, result.mesh);
     result.materials =
         read_materials(file, statements.materials, statements.material_libraries, report);
     return result;

@@ -1,40 +1,24 @@
 // SPDX-License-Identifier: Apache-2.0
-// Unifying OBJ corners into indexed vertices by hashing: first equal values, then index triples.
+// Unifying OBJ corners into indexed vertices: first equal values, then index triples.
 //
 // Bits decide, so NaN equals itself and +0 differs from -0. Corners must be complete and in range
 // (obj_parser.h, obj_reader.cpp see to it). Tests: tests/mesh/io/mesh/obj_test.cpp.
 #include "io/mesh/obj_vertices.h"
 
 #include <array>
-#include <bit>
 #include <cassert>
+#include <limits>
 
+#include "geometry/weld.h"
 #include "io/mesh/polygon_key_numbers.h"
+#include "large_memory.h"
 
 namespace relief {
 namespace {
 
-/// For every value the first one with the same bits.
-template <typename Value>
-std::vector<std::uint32_t> first_equal(const std::vector<Value>& values) {
-    KeyNumbers<sizeof(Value) / 4> numbers(values.size());
-    std::vector<std::uint32_t> first_of_number;
-    std::vector<std::uint32_t> result;
-    result.reserve(values.size());
-    for (const Value& value : values) {
-        const auto number =
-            numbers.number_of(std::bit_cast<typename KeyNumbers<sizeof(Value) / 4>::Key>(value));
-        if (number == first_of_number.size()) {
-            first_of_number.push_back(static_cast<std::uint32_t>(result.size()));
-        }
-        result.push_back(first_of_number[number]);
-    }
-    return result;
-}
-
 /// The same for positions that carry colours: both must agree.
 std::vector<std::uint32_t> first_equal_vertex(const ObjStatements& statements) {
-    if (statements.colors.empty()) return first_equal(statements.positions);
+    if (statements.colors.empty()) return weld_bits<glm::vec3>(statements.positions);
     std::vector<std::array<float, 7>> rows;
     rows.reserve(statements.positions.size());
     for (std::size_t i = 0; i < statements.positions.size(); ++i) {
@@ -42,33 +26,95 @@ std::vector<std::uint32_t> first_equal_vertex(const ObjStatements& statements) {
         const glm::vec4& c = statements.colors[i];
         rows.push_back({p.x, p.y, p.z, c.r, c.g, c.b, c.a});
     }
-    return first_equal(rows);
+    return weld_bits<std::array<float, 7>>(rows);
 }
+
+/// Numbers combinations in order of first appearance. Those of a position are few nearly always,
+/// and looked through; from the seventeenth on they are hashed.
+class VertexNumbers {
+  public:
+    struct Vertex {
+        std::uint32_t position, texcoord, normal;
+    };
+
+    explicit VertexNumbers(std::size_t position_count) : newest_(position_count, none), hashed_(0) {
+        vertices_.reserve(position_count);
+        previous_.reserve(position_count);
+    }
+
+    std::uint32_t number_of(const Vertex& vertex) {
+        std::uint32_t& newest = newest_[vertex.position];
+        std::uint32_t steps = 0;
+        for (std::uint32_t at = newest; at != none; at = previous_[at]) {
+            const Vertex& known = vertices_[at];
+            if (known.texcoord == vertex.texcoord && known.normal == vertex.normal) return at;
+            if (++steps == most_steps) return hashed_number_of(vertex);
+        }
+        previous_.push_back(newest);
+        newest = added(vertex);
+        return newest;
+    }
+
+    /// Each at its number.
+    [[nodiscard]] const std::vector<Vertex>& vertices() const { return vertices_; }
+
+  private:
+    static constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
+    static constexpr std::uint32_t most_steps = 16;
+
+    std::uint32_t added(const Vertex& vertex) {
+        vertices_.push_back(vertex);
+        return static_cast<std::uint32_t>(vertices_.size() - 1);
+    }
+
+    std::uint32_t hashed_number_of(const Vertex& vertex) {
+        const std::uint32_t known =
+            hashed_.number_of({vertex.position, vertex.texcoord, vertex.normal});
+        if (known == number_of_hashed_.size()) {
+            previous_.push_back(none);  // In no chain.
+            number_of_hashed_.push_back(added(vertex));
+        }
+        return number_of_hashed_[known];
+    }
+
+    std::vector<Vertex> vertices_;
+    std::vector<std::uint32_t> previous_;  ///< With the same position, by vertex.
+    std::vector<std::uint32_t> newest_;    ///< By position.
+    KeyNumbers<3> hashed_;
+    std::vector<std::uint32_t> number_of_hashed_;
+};
 
 }  // namespace
 
 std::vector<std::uint32_t> unify_vertices(const ObjStatements& statements, Mesh& mesh) {
     const std::vector<std::uint32_t> positions = first_equal_vertex(statements);
-    const std::vector<std::uint32_t> texcoords = first_equal(statements.texcoords);
-    const std::vector<std::uint32_t> normals = first_equal(statements.normals);
+    const std::vector<std::uint32_t> texcoords = weld_bits<glm::vec2>(statements.texcoords);
+    const std::vector<std::uint32_t> normals = weld_bits<glm::vec3>(statements.normals);
     const bool has_texcoords = !statements.corners.empty() && statements.corners[0].texcoord >= 0;
     const bool has_normals = !statements.corners.empty() && statements.corners[0].normal >= 0;
-    KeyNumbers<3> vertices(statements.positions.size());
+    VertexNumbers numbers(statements.positions.size());
     std::vector<std::uint32_t> vertex_of_corner;
-    vertex_of_corner.reserve(statements.corners.size());
+    reserve_to_fill(vertex_of_corner, statements.corners.size());
     for (const ObjCorner& corner : statements.corners) {
         assert((corner.texcoord >= 0) == has_texcoords && (corner.normal >= 0) == has_normals);
-        vertex_of_corner.push_back(vertices.number_of(
+        vertex_of_corner.push_back(numbers.number_of(
             {positions[static_cast<std::uint32_t>(corner.position)],
              has_texcoords ? texcoords[static_cast<std::uint32_t>(corner.texcoord)] : 0,
              has_normals ? normals[static_cast<std::uint32_t>(corner.normal)] : 0}));
     }
-    for (const auto& [position, texcoord, normal] : vertices.keys()) {
-        mesh.positions.push_back(statements.positions[position]);
-        if (!statements.colors.empty()) mesh.colors.push_back(statements.colors[position]);
-        if (has_texcoords) mesh.texcoords.push_back(statements.texcoords[texcoord]);
-        if (has_normals) mesh.normals.push_back(statements.normals[normal]);
-    }
+    const std::vector<VertexNumbers::Vertex>& vertices = numbers.vertices();
+    const auto gather = [&](const auto& values, std::uint32_t VertexNumbers::Vertex::*index,
+                            auto& gathered) {
+        gathered.reserve(vertices.size());
+        for (const VertexNumbers::Vertex& vertex : vertices)
+            gathered.push_back(values[vertex.*index]);
+    };
+    gather(statements.positions, &VertexNumbers::Vertex::position, mesh.positions);
+    if (!statements.colors.empty())
+        gather(statements.colors, &VertexNumbers::Vertex::position, mesh.colors);
+    if (has_texcoords)
+        gather(statements.texcoords, &VertexNumbers::Vertex::texcoord, mesh.texcoords);
+    if (has_normals) gather(statements.normals, &VertexNumbers::Vertex::normal, mesh.normals);
     return vertex_of_corner;
 }
 

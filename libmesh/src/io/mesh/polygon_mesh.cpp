@@ -5,7 +5,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <numeric>
+
 #include "io/mesh/polygon_triangulation.h"
+#include "large_memory.h"
 #include "relief/mesh/error.h"
 
 namespace relief {
@@ -23,9 +27,29 @@ void check_indices(const Polygons& polygons, std::size_t vertex_count,
     }
 }
 
+bool are_triangles(const Polygons& polygons) {
+    return std::all_of(polygons.corner_counts.begin(), polygons.corner_counts.end(),
+                       [](std::uint32_t count) { return count == 3; });
+}
+
+/// Nothing to cut.
+CutPolygons whole_triangles(const Polygons& polygons) {
+    CutPolygons result;
+    const std::size_t count = polygons.corner_counts.size();
+    reserve_to_fill(result.triangles, count);
+    for (std::size_t i = 0; i < count; ++i) {
+        const std::uint32_t* corner = &polygons.corners[3 * i];
+        result.triangles.emplace_back(corner[0], corner[1], corner[2]);
+    }
+    result.polygons.resize(count);
+    std::iota(result.polygons.begin(), result.polygons.end(), 0U);
+    return result;
+}
+
 }  // namespace
 
 CutPolygons cut_polygons(const Mesh& vertices, const Polygons& polygons, Report& report) {
+    if (are_triangles(polygons)) return whole_triangles(polygons);
     CutPolygons result;
     result.triangles.reserve(polygons.corner_counts.size());
     result.polygons.reserve(polygons.corner_counts.size());

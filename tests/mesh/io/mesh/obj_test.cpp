@@ -40,6 +40,21 @@ TEST_F(Obj, CornersThatShareAllValuesBecomeOneVertexInOrderOfFirstUse) {
     EXPECT_THAT(mesh.normals, IsEmpty());
 }
 
+/// More combinations at one position than are looked through one by one.
+TEST_F(Obj, AFanWithANormalForEachFaceHasAVertexForEach) {
+    std::string text = three;
+    for (int i = 0; i < 100; ++i)
+        text += fmt::format("vn {} 1 0\nf 1//{} 2//{} 3//1\n", i / 2, i + 1, i + 1);
+    const Mesh mesh = read(text).mesh;
+    // Normals come in pairs; the first face has the only corner at the third position.
+    ASSERT_EQ(mesh.positions.size(), 101U);
+    EXPECT_EQ(mesh.triangles[1], glm::uvec3(0, 1, 2));
+    EXPECT_EQ(mesh.triangles[2], glm::uvec3(3, 4, 2));
+    EXPECT_EQ(mesh.triangles[98], glm::uvec3(99, 100, 2));
+    EXPECT_EQ(mesh.triangles[99], glm::uvec3(99, 100, 2));
+    EXPECT_EQ(mesh.normals[99], glm::vec3(49, 1, 0));
+}
+
 TEST_F(Obj, TheTextureOriginMovesToTheUpperLeftCorner) {
     const Mesh mesh = read(three + "vt 0.25 0.125\nvt 1 1\nvt 0 0\nf 1/1 2/2 3/3\n").mesh;
     EXPECT_THAT(mesh.texcoords,
