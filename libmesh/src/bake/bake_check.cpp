@@ -7,9 +7,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
-#include "bake/bake_check_rows.h"
+#include "bake/bake_check_casts.h"
 #include "relief/mesh/error.h"
 
 namespace relief {
@@ -18,51 +17,10 @@ namespace {
 constexpr std::size_t strip_texels = 1'000'000;
 constexpr int band = TexelCover::band_rows;
 constexpr std::size_t known_texels = 16384;  // For the search of a convention, at least if known.
-constexpr double reference_angle = 0.5;      // Degrees.
-constexpr int most_samples = 256;
 
 int rows_of_strip(int width) {
     const auto fitting = static_cast<int>(strip_texels / static_cast<std::size_t>(width));
     return std::max(fitting / band, 1) * band;
-}
-
-BakeMapOptions with_samples(BakeMapOptions map, int samples, std::optional<double> angle) {
-    map.samples = samples;
-    map.sample_angle = angle;
-    return map;
-}
-
-BakeMapOptions reference_of(const BakeMapOptions& map, int samples) {
-    int wanted = samples > 0 ? samples : std::min(16 * map.samples, most_samples);
-    // Of large maps, as many as coverage has room for.
-    const int longest = std::max(map.width, map.height);
-    while (wanted > 4 &&
-           std::sqrt(wanted) * longest > static_cast<double>(TexelCover::largest_side))
-        wanted /= 4;
-    return with_samples(map, wanted, reference_angle * std::numbers::pi / 180.0);
-}
-
-std::vector<CoveredTexel> owners_of(const Baker& baker, const BakeMapOptions& map, int first,
-                                    int last) {
-    CoverageOptions options;
-    options.width = map.width;
-    options.height = map.height;
-    options.tile = map.placement.tile;
-    options.repeat = map.placement.repeat;
-    options.only = map.triangles;
-    const auto width = static_cast<std::size_t>(map.width);
-    std::vector<CoveredTexel> owners(width * static_cast<std::size_t>(last - first));
-    Report said_by_the_bake;
-    const TexelCover cover(baker.low().texcoords, baker.low().triangles, options, said_by_the_bake);
-    cover.cover(
-        first, last,
-        [&](int row, std::span<const CoveredTexel> texels) {
-            std::copy(texels.begin(), texels.end(),
-                      owners.begin() + static_cast<std::ptrdiff_t>(
-                                           width * static_cast<std::size_t>(row - first)));
-        },
-        said_by_the_bake);
-    return owners;
 }
 
 /// Rows of an image of its own kind.
@@ -93,42 +51,6 @@ void check(const Image& map, const BakeMapOptions& options) {
         throw InvalidInput(fmt::format("the map is of {} x {} texels, not {} x {}", map.width,
                                        map.height, options.width, options.height));
     }
-}
-
-/// The stages of a strip that take rays.
-struct Casts {
-    CastRows reference, centre;
-    std::optional<CastRows> several;  ///< The map's own samples, where they are not one.
-
-    Casts(const Baker& baker, const BakeMapOptions& map, int reference_samples, int first, int last,
-          Report& report) {
-        Report unsaid;
-        centre = cast_rows(baker, with_samples(map, 1, std::nullopt), first, last,
-                           map.samples == 1 ? report : unsaid);
-        reference = cast_rows(baker, reference_of(map, reference_samples), first, last, unsaid);
-        if (map.samples > 1) several = cast_rows(baker, map, first, last, report);
-    }
-    [[nodiscard]] const CastRows& made() const { return several ? *several : centre; }
-    [[nodiscard]] std::size_t rays() const {
-        return reference.rays + centre.rays + (several ? several->rays : 0);
-    }
-};
-
-CheckSums check_strip(const Baker& baker, const BakeMapOptions& map, const NormalMapFormat& format,
-                      const Casts& casts, std::span<const float> shown, int first, int step,
-                      std::span<float> degrees) {
-    const auto rows = static_cast<int>(degrees.size() / static_cast<std::size_t>(map.width));
-    RowsToCheck strip;
-    strip.first = first;
-    strip.width = map.width;
-    strip.height = map.height;
-    strip.owners = owners_of(baker, map, first, first + rows);
-    strip.reference = &casts.reference;
-    strip.centre = &casts.centre;
-    strip.made = &casts.made();
-    strip.remade = coded(casts.made().normals, map.width, format);
-    strip.map = shown.empty() ? std::span<const float>(strip.remade) : shown;
-    return check_rows(baker, strip, step, degrees);
 }
 
 void summarise(const CheckSums& sums, BakeCheck& check) {
@@ -195,11 +117,12 @@ BakeCheck check_bake(const Baker& baker, const Image& map, const BakeCheckOption
         const int last = std::min(first + rows, map.height);
         const Image shown =
             decode_normal_map(part_of(map, first, last), format.green, format.flat, report);
-        const Casts casts(baker, options.map, options.reference_samples, first, last, report);
+        const BakeCasts casts(baker, options.map, options.reference_samples, first, last, report);
         std::vector<float> degrees(static_cast<std::size_t>(map.width) *
                                    static_cast<std::size_t>(last - first));
-        sums.add(check_strip(baker, options.map, format, casts, shown.as<float>(), first, step,
-                             degrees));
+        const std::vector<float> remade = coded(casts.made().normals, map.width, format);
+        sums.add(check_strip(baker, options.map, casts, casts.made(), remade, shown.as<float>(),
+                             first, step, degrees));
         result.rays += casts.rays();
         if (take) take(first, degrees);
     }
@@ -207,37 +130,6 @@ BakeCheck check_bake(const Baker& baker, const Image& map, const BakeCheckOption
     if (options.finds_convention)
         result.convention = convention_of(baker, map, options, sums.known);
     return result;
-}
-
-BakeTrial try_bake(const Baker& baker, const BakeMapOptions& map,
-                   std::span<const NormalMapFormat> formats, int reference_samples,
-                   std::size_t texels) {
-    const int bands = (map.height + band - 1) / band;
-    const std::size_t band_texels =
-        static_cast<std::size_t>(map.width) * static_cast<std::size_t>(band);
-    const auto wanted = static_cast<int>(std::clamp<std::size_t>(
-        (texels + band_texels - 1) / band_texels, 1, static_cast<std::size_t>(bands)));
-    BakeTrial trial;
-    std::vector<CheckSums> sums(formats.size());
-    Report unsaid;
-    for (int i = 0; i < wanted; ++i) {
-        // The middle one of as many equal parts.
-        const int first = (2 * i + 1) * bands / (2 * wanted) * band;
-        const int last = std::min(first + band, map.height);
-        const Casts casts(baker, map, reference_samples, first, last, unsaid);
-        trial.rays += casts.made().rays;
-        std::vector<float> degrees(static_cast<std::size_t>(map.width) *
-                                   static_cast<std::size_t>(last - first));
-        trial.texels += degrees.size();
-        for (std::size_t f = 0; f < formats.size(); ++f)
-            sums[f].add(check_strip(baker, map, formats[f], casts, {}, first, 0, degrees));
-    }
-    for (const CheckSums& sum : sums) {
-        trial.errors.push_back(sum.error.summary());
-        const auto codes = static_cast<std::size_t>(BakeStage::quantisation);
-        trial.quantisation.push_back(sum.stages[codes].summary());
-    }
-    return trial;
 }
 
 }  // namespace relief

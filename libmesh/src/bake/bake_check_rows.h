@@ -43,7 +43,7 @@ struct RowsToCheck {
     const CastRows* reference = nullptr;  ///< The truth: of many samples.
     const CastRows* centre = nullptr;     ///< Of one.
     const CastRows* made = nullptr;       ///< As the map was: may be `centre`.
-    std::vector<float> remade;            ///< `made`, through codes.
+    std::span<const float> remade;        ///< `made`, through codes.
 };
 
 /// Sums over texels.

@@ -282,26 +282,5 @@ TEST(BakeCheck, RefusesWhatIsNoMapOfThatSize) {
               "an image of 2 channels holds no normals");
 }
 
-TEST(TryBake, SaysOfAWholeMapWhatACheckSays) {
-    const Mesh high = waves(256, 20.0);
-    const BakeOptions options = sized(64, 128);
-    Report report;
-    const Baker baker(std::span(&high, 1), make_quad(), options, report);
-    const std::vector<NormalMapFormat> formats = {{.bits = 8}, {.bits = 16}};
-    const BakeTrial trial = try_bake(baker, options, formats, 0, 64 * 128);
-    EXPECT_EQ(trial.texels, 64U * 128U);
-    for (std::size_t i = 0; i < 2; ++i) {
-        const Image map = baked_map(high, make_quad(), options, formats[i].bits);
-        const BakeCheck check = checked(high, make_quad(), options, map);
-        EXPECT_NEAR(trial.errors[i].rms, check.error.rms, 1e-9);
-        EXPECT_EQ(trial.errors[i].max, check.error.max);
-        EXPECT_NEAR(trial.quantisation[i].rms, stage(check, BakeStage::quantisation).rms, 1e-6);
-    }
-    // Of a part of it, nearly.
-    const BakeTrial part = try_bake(baker, options, formats, 0, 1);
-    EXPECT_EQ(part.texels, 64U * 64U);
-    EXPECT_NEAR(part.errors[0].rms, trial.errors[0].rms, 0.01);
-}
-
 }  // namespace
 }  // namespace relief

@@ -111,19 +111,4 @@ BakeCheck check_bake(const Baker& baker, const Image& map, const BakeCheckOption
                      const std::function<void(int first_row, std::span<const float> degrees)>& take,
                      Report& report);
 
-/// A bake that was not written: its errors for each of several formats.
-struct BakeTrial {
-    std::vector<AngleSummary> errors;        ///< By format, from the mean over the texel.
-    std::vector<AngleSummary> quantisation;  ///< By format, of the codes alone.
-    std::size_t texels = 0;                  ///< Looked at.
-    std::size_t rays = 0;                    ///< Of the bake itself.
-};
-
-/// What a map of these options would be off, measured on rows all over the map, without making it.
-///
-/// \param texels  at least so many are looked at, or all: in bands of 64 rows, evenly spread
-BakeTrial try_bake(const Baker& baker, const BakeMapOptions& map,
-                   std::span<const NormalMapFormat> formats, int reference_samples,
-                   std::size_t texels);
-
 }  // namespace relief

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// What maps of several sample counts and codes would be off, and take, without writing them.
+/// In the library relief::bake. Tests: tests/mesh/bake/bake_trials_test.cpp.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "relief/mesh/bake_check.h"
+
+namespace relief {
+
+/// One bake, in several codes.
+struct BakeTrial {
+    std::vector<AngleSummary> errors;  ///< By format, from the mean over the texel.
+    /// By format, of the codes alone: what no number of samples makes less.
+    std::vector<AngleSummary> quantisation;
+    AngleSummary centre;  ///< Before coding, from the normal at the texel's centre.
+    std::size_t rays = 0;
+    double cast_seconds = 0.0;         ///< Of the bake itself.
+    std::vector<double> code_seconds;  ///< By format, of its codes.
+};
+
+/// The truth for a map, or some bands of it, kept for any number of bakes to be held against.
+///
+/// Memory: 17 bytes a texel looked at, and four times that while one is measured.
+class BakeTrials {
+  public:
+    /// \param reference_samples  of the truth; 0: 256, or as many as the map has room for
+    /// \param texels  at least so many are looked at, or all: in bands of 64 rows, evenly spread
+    BakeTrials(const Baker& baker, const BakeMapOptions& map, std::size_t texels,
+               int reference_samples = 0);
+    ~BakeTrials();
+    BakeTrials(const BakeTrials&) = delete;
+    BakeTrials& operator=(const BakeTrials&) = delete;
+
+    /// Bakes in memory, and codes, and compares as check_bake() does.
+    [[nodiscard]] BakeTrial measure(int samples, std::optional<double> sample_angle,
+                                    std::span<const NormalMapFormat> formats) const;
+
+    [[nodiscard]] std::size_t texels() const;  ///< Looked at, covered or not.
+    [[nodiscard]] bool is_whole() const;
+    [[nodiscard]] int reference_samples() const;
+    [[nodiscard]] std::size_t reference_rays() const;
+
+  private:
+    struct Implementation;
+    std::unique_ptr<Implementation> implementation_;
+};
+
+}  // namespace relief

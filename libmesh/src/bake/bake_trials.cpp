@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: Apache-2.0
+// The truth once, then bake after bake of the same rows. Tests:
+// tests/mesh/bake/bake_trials_test.cpp.
+#include "relief/mesh/bake_trials.h"
+
+#include <algorithm>
+#include <chrono>
+
+#include "bake/bake_check_casts.h"
+
+namespace relief {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr int band = TexelCover::band_rows;
+
+double seconds_since(Clock::time_point start) {
+    return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+/// Some rows whose truth is known.
+struct Band {
+    BakeRowRange rows;
+    BakeCasts casts;
+};
+
+}  // namespace
+
+struct BakeTrials::Implementation {
+    const Baker& baker;
+    BakeMapOptions map;  ///< Of one sample.
+    int reference_samples;
+    std::vector<Band> bands;
+    bool is_whole = true;
+
+    [[nodiscard]] std::size_t texels_of(const BakeRowRange& rows) const {
+        return static_cast<std::size_t>(map.width) *
+               static_cast<std::size_t>(rows.last - rows.first);
+    }
+};
+
+BakeTrials::BakeTrials(const Baker& baker, const BakeMapOptions& map, std::size_t texels,
+                       int reference_samples)
+    : implementation_(new Implementation{baker, map, 0, {}, true}) {
+    Implementation& all = *implementation_;
+    all.map.samples = 1;
+    all.map.sample_angle.reset();
+    all.reference_samples =
+        reference_of(map, reference_samples > 0 ? reference_samples : 256).samples;
+    const int bands = (map.height + band - 1) / band;
+    const std::size_t band_texels =
+        static_cast<std::size_t>(map.width) * static_cast<std::size_t>(band);
+    const auto wanted =
+        static_cast<int>(std::min(texels / band_texels + 1, static_cast<std::size_t>(bands)));
+    all.is_whole = wanted == bands;
+    Report unsaid;
+    for (int i = 0; i < wanted; ++i) {
+        // The middle one of as many equal parts.
+        const int first = (2 * i + 1) * bands / (2 * wanted) * band;
+        const BakeRowRange rows{first, std::min(first + band, map.height)};
+        all.bands.push_back({rows, BakeCasts(baker, all.map, all.reference_samples, rows.first,
+                                             rows.last, unsaid)});
+    }
+}
+
+BakeTrials::~BakeTrials() = default;
+
+BakeTrial BakeTrials::measure(int samples, std::optional<double> sample_angle,
+                              std::span<const NormalMapFormat> formats) const {
+    const Implementation& all = *implementation_;
+    BakeMapOptions map = all.map;
+    map.samples = samples;
+    map.sample_angle = sample_angle;
+    BakeTrial trial;
+    trial.code_seconds.resize(formats.size());
+    std::vector<CheckSums> sums(formats.size());
+    Report unsaid;
+    for (const Band& part : all.bands) {
+        const auto start = Clock::now();
+        const CastRows made = cast_rows(all.baker, map, part.rows.first, part.rows.last, unsaid);
+        trial.cast_seconds += seconds_since(start);
+        trial.rays += made.rays;
+        std::vector<float> degrees(all.texels_of(part.rows));
+        for (std::size_t f = 0; f < formats.size(); ++f) {
+            const auto coding = Clock::now();
+            const std::vector<float> remade = coded(made.normals, map.width, formats[f]);
+            trial.code_seconds[f] += seconds_since(coding);
+            sums[f].add(check_strip(all.baker, map, part.casts, made, remade, {}, part.rows.first,
+                                    0, degrees));
+        }
+    }
+    for (const CheckSums& sum : sums) {
+        trial.errors.push_back(sum.error.summary());
+        const auto codes = static_cast<std::size_t>(BakeStage::quantisation);
+        trial.quantisation.push_back(sum.stages[codes].summary());
+        trial.centre.push_back(sum.centre.summary());
+    }
+    return trial;
+}
+
+std::size_t BakeTrials::texels() const {
+    std::size_t sum = 0;
+    for (const Band& part : implementation_->bands)
+        sum += implementation_->texels_of(part.rows);
+    return sum;
+}
+
+bool BakeTrials::is_whole() const {
+    return implementation_->is_whole;
+}
+
+int BakeTrials::reference_samples() const {
+    return implementation_->reference_samples;
+}
+
+std::size_t BakeTrials::reference_rays() const {
+    std::size_t sum = 0;
+    for (const Band& part : implementation_->bands)
+        sum += part.casts.reference.rays;
+    return sum;
+}
+
+}  // namespace relief

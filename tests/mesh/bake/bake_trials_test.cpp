@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+// Trials of a map against checks of it made.
+#include "relief/mesh/bake_trials.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "mesh/bake/bake_support.h"
+#include "relief/mesh/shapes.h"
+
+namespace relief {
+namespace {
+
+using test::bake;
+using test::sized;
+
+Mesh waves(int cells, double frequency) {
+    Mesh mesh = make_quad(cells);
+    for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
+        glm::vec3& p = mesh.positions[i];
+        const double x = frequency * p.x;
+        p.z = static_cast<float>(0.3 / frequency * std::sin(x));
+        mesh.normals[i] = glm::normalize(glm::vec3(-0.3 * std::cos(x), 0.0, 1.0));
+    }
+    return mesh;
+}
+
+struct Trials {
+    Mesh high = waves(256, 20.0);
+    BakeOptions options = sized(64, 192);
+    Report report;
+    Baker baker{std::span(&high, 1), make_quad(), options, report};
+    std::vector<NormalMapFormat> formats = {{.bits = 8}, {.bits = 16}};
+
+    BakeCheck check_of(int samples, const NormalMapFormat& format) {
+        BakeMapOptions map = options;
+        map.samples = samples;
+        Image normals = make_image(64, 192, 3, 32, ColorSpace::data);
+        std::size_t at = 0;
+        baker.bake(
+            map,
+            [&](const BakedRows& rows) {
+                for (const float value : rows.normals)
+                    normals.as<float>()[at++] = value;
+            },
+            report);
+        BakeCheckOptions check;
+        check.map = map;
+        check.reference_samples = 64;
+        return check_bake(baker, encode_normal_map(normals, format, report), check, {}, report);
+    }
+};
+
+TEST(BakeTrials, SayOfAWholeMapWhatACheckSays) {
+    Trials all;
+    const BakeTrials trials(all.baker, all.options, 64 * 192, 64);
+    EXPECT_TRUE(trials.is_whole());
+    EXPECT_EQ(trials.texels(), 64U * 192U);
+    EXPECT_EQ(trials.reference_samples(), 64);
+    for (const int samples : {1, 4}) {
+        const BakeTrial trial = trials.measure(samples, std::nullopt, all.formats);
+        EXPECT_GE(trial.rays, static_cast<std::size_t>(samples) * 64U * 192U);
+        for (std::size_t i = 0; i < 2; ++i) {
+            const BakeCheck check = all.check_of(samples, all.formats[i]);
+            EXPECT_NEAR(trial.errors[i].rms, check.error.rms, 1e-9);
+            EXPECT_EQ(trial.errors[i].max, check.error.max);
+            const auto codes = static_cast<std::size_t>(BakeStage::quantisation);
+            EXPECT_NEAR(trial.quantisation[i].rms, check.stages.at(codes).rms, 1e-6);
+        }
+    }
+}
+
+TEST(BakeTrials, MoreSamplesAndBitsAreTruer) {
+    Trials all;
+    const BakeTrials trials(all.baker, all.options, 64 * 192);
+    EXPECT_EQ(trials.reference_samples(), 256);
+    const BakeTrial one = trials.measure(1, std::nullopt, all.formats);
+    const BakeTrial four = trials.measure(4, std::nullopt, all.formats);
+    EXPECT_LT(four.errors[1].rms, one.errors[1].rms / 2.0);
+    EXPECT_LT(four.errors[1].rms, four.errors[0].rms);
+    EXPECT_LT(four.quantisation[1].rms, 0.001);
+    EXPECT_GT(four.quantisation[0].rms, 0.05);
+    // What is sampled at the centre alone is exact there.
+    EXPECT_LT(one.centre[1].max, 0.002);
+}
+
+TEST(BakeTrials, OfAPartAreNearlyThoseOfTheWhole) {
+    Trials all;
+    const BakeTrials part(all.baker, all.options, 1);
+    EXPECT_FALSE(part.is_whole());
+    EXPECT_EQ(part.texels(), 64U * 64U);
+    const BakeTrials whole(all.baker, all.options, 64 * 192);
+    EXPECT_NEAR(part.measure(1, std::nullopt, all.formats).errors[1].rms,
+                whole.measure(1, std::nullopt, all.formats).errors[1].rms, 0.01);
+}
+
+}  // namespace
+}  // namespace relief
