@@ -6,9 +6,6 @@
 #include <algorithm>
 
 namespace relief::tools {
-namespace {
-
-/// As it is typed in a shell.
 std::string quoted(const std::filesystem::path& file) {
     const std::string name = file.string();
     const bool is_plain = std::all_of(name.begin(), name.end(), [](unsigned char letter) {
@@ -22,8 +19,6 @@ std::string quoted(const std::filesystem::path& file) {
         result += letter == '\'' ? std::string("'\\''") : std::string(1, letter);
     return result + "'";
 }
-
-}  // namespace
 
 std::string remedy_for(MapCondition condition, MapContent content,
                        const std::filesystem::path& file) {

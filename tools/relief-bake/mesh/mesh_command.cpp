@@ -29,6 +29,8 @@ void check(MeshCommand& command) {
     check(command.report, files);
     if (command.report.file) files.push_back(*command.report.file);
     check(command.request.preview, files);
+    if (command.request.preview.file) files.push_back(*command.request.preview.file);
+    check_verify(command.request, files);
     require_folder_of(command.request.output);
 }
 
@@ -54,10 +56,12 @@ Command add_mesh_command(CLI::App& tool) {
     add_mesh_options(app, command->request, command->files);
     add_report_options(app, command->report);
     add_general_options(app, command->general);
-    set_examples(app, {"relief-mesh subdivide data/vase.obj out/high.obj --levels 2",
-                       "relief-bake mesh out/high.obj data/vase.obj out/vase-baked.png --size 512 "
-                       "--preview out/vase-preview.png",
-                       "relief-bake mesh out/high.obj data/vase.obj 'out/<material>-<UDIM>.png'"});
+    set_examples(
+        app, {"relief-mesh subdivide data/vase.obj out/high.obj --levels 2",
+              "relief-bake mesh out/high.obj data/vase.obj out/vase-baked.png --size 512 "
+              "--preview out/vase-preview.png",
+              "relief-bake mesh out/high.obj data/vase.obj out/vase-baked.png --size 256 --verify",
+              "relief-bake mesh out/high.obj data/vase.obj 'out/<material>-<UDIM>.png'"});
     return {&app, [&app, command] { return run(app, *command); }};
 }
 

@@ -8,16 +8,18 @@
 #include <algorithm>
 
 #include "common/map_choices.h"
-#include "map_models.h"
+#include "mesh/bake_models.h"
+#include "mesh/bake_words.h"
 #include "mesh/mesh_preview.h"
 #include "relief/mesh/image_rows.h"
 
 namespace relief::tools {
 namespace {
 
-std::map<std::string, std::string> metadata_of(const MeshBakeRequest& request,
+std::map<std::string, std::string> metadata_of(const MeshBakeRequest& request, const MapPlan& plan,
                                                const NormalMapFormat& format) {
     std::map<std::string, std::string> metadata = normal_map_metadata(format);
+    metadata.merge(bake_metadata(request, plan));
     if (request.space == SpaceChoice::object)
         metadata["relief:content"] = "normal map, object space";
     if (request.space == SpaceChoice::world) metadata["relief:content"] = "normal map, world space";
@@ -41,15 +43,15 @@ std::vector<Sample> with_alpha(std::span<const Sample> codes, std::span<const Te
 /// Codes rows of normals and writes them.
 class MapWriter {
   public:
-    MapWriter(const MeshBakeRequest& request, const std::filesystem::path& output,
-              const NormalMapFormat& format, Report& report)
+    MapWriter(const MeshBakeRequest& request, const MapPlan& plan, const NormalMapFormat& format,
+              Report& report)
         : format_(format),
           has_alpha_(request.background == Background::transparent),
           report_(report),
           writer_(
-              output,
+              plan.output,
               {request.size.x, request.size.y, has_alpha_ ? 4 : 3, format.bits, ColorSpace::data},
-              metadata_of(request, format), write_options_of(request.map, output)) {}
+              metadata_of(request, plan, format), write_options_of(request.map, plan.output)) {}
 
     void write(const BakedRows& rows) {
         const auto width =
@@ -83,54 +85,8 @@ class MapWriter {
     ImageRowWriter writer_;
 };
 
-glm::dmat3 output_axes(const MeshBakeRequest& request,
-                       const std::optional<glm::dmat3>& world_from_low) {
-    if (request.space != SpaceChoice::object) return glm::dmat3(1.0);
-    if (!world_from_low) {
-        throw failure(request.low, "has several primitives, so no axes of its own",
-                      "use --space world or tangent");
-    }
-    // Normals go by the inverse transpose of what positions go by.
-    return glm::transpose(*world_from_low);
-}
-
-struct Models {
-    std::vector<Mesh> high;
-    Mesh low;
-    std::vector<std::string> materials;  ///< Of the low mesh.
-    std::optional<glm::dmat3> world_from_low;
-    std::optional<Mesh> cage;
-};
-
-MapModel read(const std::filesystem::path& file, Findings& findings) {
-    Report report;
-    MapModel model = read_map_model(file, ModelSpace::world, report);
-    findings.add(file.string(), report);
-    return model;
-}
-
-Mesh read_beside(const MapModel& low, const std::filesystem::path& file, Findings& findings) {
-    MapModel model = read(file, findings);
-    move_to(model, low.origin);
-    return about(file, [&] { return joined(std::move(model.parts)); });
-}
-
-Models read_models(const MeshBakeRequest& request, Findings& findings) {
-    Models models;
-    MapModel low = read(request.low, findings);
-    require_texcoords(request.low, low, "no texture coordinates, by which a map lies on a mesh",
-                      "unwrap it in a modelling program");
-    for (const std::filesystem::path& file : request.high)
-        models.high.push_back(read_beside(low, file, findings));
-    if (request.cage) models.cage = read_beside(low, *request.cage, findings);
-    models.materials = low.materials;
-    models.world_from_low = low.world_from_object;
-    models.low = about(request.low, [&] { return joined(std::move(low.parts)); });
-    return models;
-}
-
 void draw(MeshPreview& preview, const MeshBakeRequest& request, const MeshBake& baked,
-          Models models) {
+          BakeModels models) {
     const bool is_tangent = request.space == SpaceChoice::tangent;
     const bool has_own_axes = request.space == SpaceChoice::object && models.world_from_low;
     std::vector<PreviewMap> maps;
@@ -170,11 +126,9 @@ void add(BakeResult& all, const BakeResult& more) {
 BakedMap bake_map(const MeshBakeRequest& request, const Baker& baker, MapPlan plan,
                   const BakeOptions& options, MeshBake& baked) {
     Report report;
-    BakeMapOptions map = options;
-    map.placement.tile = plan.tile;
-    if (plan.triangles) map.triangles = *plan.triangles;
+    const BakeMapOptions map = map_options(options, plan);
     BakedMap result;
-    MapWriter writer(request, plan.output, baked.format, report);
+    MapWriter writer(request, plan, baked.format, report);
     const auto take = [&](const BakedRows& rows) { writer.write(rows); };
     result.result = baker.bake(map, take, report);
     writer.finish();
@@ -206,6 +160,20 @@ void bake_all(const MeshBakeRequest& request, const Baker& baker, MapPlans plans
     }
 }
 
+void verify_all(const MeshBakeRequest& request, const Baker& baker, const BakeModels& models,
+                const BakeOptions& options, MeshBake& baked) {
+    for (BakedMap& map : baked.maps) {
+        Report said_by_the_bake;
+        map.verified = verify_map(baker, models, request, map_options(options, map.plan),
+                                  {.map = map.plan.output, .error_map = request.verify.error_map},
+                                  said_by_the_bake);
+        Report report;
+        for (const std::string& trouble : map.verified->trouble)
+            report.add("map off its surface", "map", 0, trouble);
+        baked.findings.add(map.plan.name(), report);
+    }
+}
+
 }  // namespace
 
 MeshBake bake_maps(const MeshBakeRequest& request, Stages& stages) {
@@ -213,7 +181,8 @@ MeshBake bake_maps(const MeshBakeRequest& request, Stages& stages) {
     baked.format = format_of(request.map, request.output);
     std::optional<MeshPreview> preview;
     if (request.preview.file) stages.run("context", [&] { preview.emplace(); });
-    Models models = stages.run("read", [&] { return read_models(request, baked.findings); });
+    BakeModels models =
+        stages.run("read", [&] { return read_bake_models(request, baked.findings); });
     for (const Mesh& mesh : models.high)
         baked.high_triangles += mesh.triangles.size();
     baked.low_triangles = models.low.triangles.size();
@@ -228,12 +197,15 @@ MeshBake bake_maps(const MeshBakeRequest& request, Stages& stages) {
         options.map_count = plans.maps.size();
         options.output_from_mesh = output_axes(request, models.world_from_low);
         if (models.cage) options.cage = &*models.cage;
+        std::optional<Baker> baker;
         stages.run("bake", [&] {
             Report report;
-            const Baker baker(models.high, models.low, options, report);
+            baker.emplace(models.high, models.low, options, report);
             baked.findings.add("", report);
-            bake_all(request, baker, std::move(plans), options, baked);
+            bake_all(request, *baker, std::move(plans), options, baked);
         });
+        if (request.verify.wanted)
+            stages.run("verify", [&] { verify_all(request, *baker, models, options, baked); });
     });
     if (preview) stages.run("preview", [&] { draw(*preview, request, baked, std::move(models)); });
     return baked;

@@ -7,6 +7,7 @@
 #include "common/findings.h"
 #include "mesh/mesh_options.h"
 #include "mesh/mesh_sets.h"
+#include "mesh/mesh_verify.h"
 
 namespace relief::tools {
 
@@ -14,6 +15,7 @@ namespace relief::tools {
 struct BakedMap {
     MapPlan plan;
     BakeResult result;
+    std::optional<VerifiedMap> verified;  ///< Where that is asked for.
 };
 
 /// What was baked.
@@ -28,7 +30,8 @@ struct MeshBake {
     Findings findings;
 };
 
-/// Reads, bakes and writes; the stages are "read" and "bake", which writes as well.
+/// Reads, bakes and writes; the stages are "read", "bake", which writes as well, and
+/// "verify".
 /// \throws FileError, UsageError
 MeshBake bake_maps(const MeshBakeRequest& request, Stages& stages);
 

@@ -7,6 +7,7 @@
 #include "common/model_file.h"
 #include "common/options.h"
 #include "mesh/mesh_sets.h"
+#include "mesh/mesh_verify.h"
 
 namespace relief::tools {
 namespace {
@@ -26,6 +27,37 @@ SampleChoice parse_samples(const std::string& subject, const std::string& text) 
     const Choices<int> counts = {{"1", 1}, {"4", 4}, {"16", 16}, {"64", 64}, {"auto", 0}};
     return {parse_choice(subject, text, counts), false};
 }
+
+void add_map_options(CLI::App& app, MeshBakeRequest& request) {
+    const std::string group = "Map";
+    add_value(app, "--size", "N|WxH", "Of the map, in texels. Default: 1024.",
+              [&](const std::string& subject, const std::string& text) {
+                  request.size = parse_map_size(subject, text);
+              })
+        ->group(group);
+    add_texel_options(app, request);
+    add_value(app, "--padding", "PX",
+              "Fill so many texels around charts from the nearest ones: 0 to 1024. Default: 16.",
+              [&](const std::string& subject, const std::string& text) {
+                  request.padding = parse_integer(subject, text, 0, 1024);
+              })
+        ->group(group);
+    add_choice(
+        app, "--background", request.background,
+        Choices<Background>{{"flat", Background::flat}, {"transparent", Background::transparent}},
+        "What is further away: flat, in three channels; or transparent, with a fourth that "
+        "is 1 where the map is baked or padded. Default: flat.")
+        ->group(group);
+}
+
+void check_cage(const MeshBakeRequest& request) {
+    if (!request.cage) return;
+    readable_format(*request.cage);
+    if (request.offset || request.directions || request.hardness)
+        throw UsageError("--offset, --rays, --hardness: have no effect with --cage");
+}
+
+}  // namespace
 
 void add_ray_options(CLI::App& app, MeshBakeRequest& request) {
     const std::string group = "Rays";
@@ -60,13 +92,8 @@ void add_ray_options(CLI::App& app, MeshBakeRequest& request) {
         ->group(group);
 }
 
-void add_map_options(CLI::App& app, MeshBakeRequest& request) {
+void add_texel_options(CLI::App& app, MeshBakeRequest& request) {
     const std::string group = "Map";
-    add_value(app, "--size", "N|WxH", "Of the map, in texels. Default: 1024.",
-              [&](const std::string& subject, const std::string& text) {
-                  request.size = parse_map_size(subject, text);
-              })
-        ->group(group);
     add_choice(app, "--space", request.space,
                Choices<SpaceChoice>{{"tangent", SpaceChoice::tangent},
                                     {"object", SpaceChoice::object},
@@ -90,28 +117,7 @@ void add_map_options(CLI::App& app, MeshBakeRequest& request) {
         "Texture coordinates outside of the unit square: not baked, or moved into it by "
         "whole numbers, as textures repeat. Default: drop.")
         ->group(group);
-    add_value(app, "--padding", "PX",
-              "Fill so many texels around charts from the nearest ones: 0 to 1024. Default: 16.",
-              [&](const std::string& subject, const std::string& text) {
-                  request.padding = parse_integer(subject, text, 0, 1024);
-              })
-        ->group(group);
-    add_choice(
-        app, "--background", request.background,
-        Choices<Background>{{"flat", Background::flat}, {"transparent", Background::transparent}},
-        "What is further away: flat, in three channels; or transparent, with a fourth that "
-        "is 1 where the map is baked or padded. Default: flat.")
-        ->group(group);
 }
-
-void check_cage(const MeshBakeRequest& request) {
-    if (!request.cage) return;
-    readable_format(*request.cage);
-    if (request.offset || request.directions || request.hardness)
-        throw UsageError("--offset, --rays, --hardness: have no effect with --cage");
-}
-
-}  // namespace
 
 void add_mesh_options(CLI::App& app, MeshBakeRequest& request,
                       std::vector<std::filesystem::path>& files) {
@@ -124,6 +130,16 @@ void add_mesh_options(CLI::App& app, MeshBakeRequest& request,
     add_map_options(app, request);
     add_map_output_options(app, request.map);
     add_preview_options(app, request.preview);
+    add_verify_options(app, request.verify);
+}
+
+void check_bake_options(const MeshBakeRequest& request) {
+    check_cage(request);
+    if (request.hardness &&
+        request.directions.value_or(RayDirections::averaged) != RayDirections::averaged)
+        throw UsageError("--hardness: is for --rays averaged");
+    if (request.sample_angle && !request.samples.is_auto)
+        throw UsageError("--sample-angle: has no effect without --samples auto");
 }
 
 void check_mesh_options(MeshBakeRequest& request, const std::vector<std::filesystem::path>& files) {
@@ -139,12 +155,7 @@ void check_mesh_options(MeshBakeRequest& request, const std::vector<std::filesys
     format_of(request.map, request.output);
     write_options_of(request.map, request.output);
     check_map_names(request);
-    check_cage(request);
-    if (request.hardness &&
-        request.directions.value_or(RayDirections::averaged) != RayDirections::averaged)
-        throw UsageError("--hardness: is for --rays averaged");
-    if (request.sample_angle && !request.samples.is_auto)
-        throw UsageError("--sample-angle: has no effect without --samples auto");
+    check_bake_options(request);
 }
 
 BakeOptions bake_options_of(const MeshBakeRequest& request) {

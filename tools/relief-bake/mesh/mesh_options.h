@@ -30,6 +30,12 @@ struct SampleChoice {
     bool is_auto = false;
 };
 
+/// --verify
+struct VerifyChoice {
+    bool wanted = false;
+    std::optional<std::filesystem::path> error_map;
+};
+
 struct MeshBakeRequest {
     std::vector<std::filesystem::path> high;
     std::filesystem::path low, output;
@@ -47,11 +53,19 @@ struct MeshBakeRequest {
     Background background = Background::flat;
     MapOutputOptions map;
     PreviewOptions preview;
+    VerifyChoice verify;
 };
+
+/// How rays are cast; and what a texel is made of: --space, --samples, --sample-angle, --outside.
+void add_ray_options(CLI::App& app, MeshBakeRequest& request);
+void add_texel_options(CLI::App& app, MeshBakeRequest& request);
 
 /// \param files  gets the file arguments, for check_mesh_options() to part
 void add_mesh_options(CLI::App& app, MeshBakeRequest& request,
                       std::vector<std::filesystem::path>& files);
+
+/// \throws UsageError where options of rays and texels contradict each other, or one has no effect
+void check_bake_options(const MeshBakeRequest& request);
 
 /// Parts the files into high meshes, low mesh and map.
 /// \throws UsageError where options contradict each other, or one has no effect

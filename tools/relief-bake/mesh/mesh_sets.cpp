@@ -133,6 +133,13 @@ std::string MapPlan::name() const {
     return fmt::format("material '{}'{}", *material, udim ? ", " + number : "");
 }
 
+BakeMapOptions map_options(const BakeOptions& options, const MapPlan& plan) {
+    BakeMapOptions map = options;
+    map.placement.tile = plan.tile;
+    if (plan.triangles) map.triangles = *plan.triangles;
+    return map;
+}
+
 void check_map_names(const MeshBakeRequest& request) {
     for (const std::string_view word : {material_word, tile_word}) {
         if (request.output.parent_path().string().find(word) != std::string::npos) {

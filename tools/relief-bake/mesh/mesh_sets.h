@@ -30,6 +30,9 @@ struct MapPlan {
     [[nodiscard]] std::string name() const;
 };
 
+/// A bake's options for that map, which must outlive them.
+BakeMapOptions map_options(const BakeOptions& options, const MapPlan& plan);
+
 struct MapPlans {
     std::vector<MapPlan> maps;
     Report report;              ///< Triangles outside of all maps.

@@ -68,6 +68,7 @@ nlohmann::ordered_json map_json(const BakedMap& map) {
                  {"greatest_height", map.result.greatest_height},
                  {"samples", map.result.samples},
                  {"rays", map.result.rays}});
+    if (map.verified) json["check"] = verified_json(*map.verified);
     return json;
 }
 
@@ -92,6 +93,9 @@ void print_summary(const MeshBakeRequest& request, const MeshBake& baked, const 
     print_entry(baked.maps.size() == 1 ? "map" : "maps", map_lines(request, baked));
     print_entry("coded",
                 fmt::format("{}, {}", space_words(request, baked), format_words(baked.format)));
+    for (const BakedMap& map : baked.maps) {
+        if (map.verified) print_verified(*map.verified);
+    }
     print_entry("findings",
                 baked.findings.empty() ? std::vector<std::string>{"none"} : baked.findings.lines());
     print_entry("time", durations(stages.finished()));

@@ -19,7 +19,7 @@ struct BakeTrial {
     std::vector<AngleSummary> errors;  ///< By format, from the mean over the texel.
     /// By format, of the codes alone: what no number of samples makes less.
     std::vector<AngleSummary> quantisation;
-    AngleSummary centre;  ///< Before coding, from the normal at the texel's centre.
+    std::vector<AngleSummary> centre;  ///< By format, from the normal at the texel's centre.
     std::size_t rays = 0;
     double cast_seconds = 0.0;         ///< Of the bake itself.
     std::vector<double> code_seconds;  ///< By format, of its codes.
