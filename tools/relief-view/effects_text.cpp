@@ -14,7 +14,7 @@ namespace {
 std::string instance_name(const Scene& scene, const DrawPlan& draw) {
     const Instance& instance = scene.instances[draw.instance];
     if (!instance.name.empty()) return instance.name;
-    const std::string& mesh = scene.meshes[instance.mesh].name;
+    const std::string& mesh = scene.meshes[instance.mesh]->name;
     return mesh.empty() ? fmt::format("instance {}", draw.instance) : mesh;
 }
 

@@ -37,7 +37,8 @@ void name_all_materials(Scene& scene) {
         }
         return *added;
     };
-    for (Mesh& mesh : scene.meshes) {
+    for (Shared<Mesh>& shared : scene.meshes) {
+        Mesh& mesh = shared.edit();
         if (mesh.material_ranges.empty() && !mesh.triangles.empty()) {
             mesh.material_ranges.push_back(
                 {0, static_cast<std::uint32_t>(mesh.triangles.size()), std::nullopt});

@@ -26,7 +26,7 @@ std::string lights_in_words(const Scene& scene) {
 std::size_t triangle_count(const Scene& scene) {
     std::size_t count = 0;
     for (const Instance& instance : scene.instances)
-        count += scene.meshes[instance.mesh].triangles.size();
+        count += scene.meshes[instance.mesh]->triangles.size();
     return count;
 }
 

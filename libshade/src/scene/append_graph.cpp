@@ -98,8 +98,8 @@ void append(SceneGraph& graph, SceneGraph part, std::size_t node) {
     const std::size_t first_node = graph.nodes.size();
     for (Material& material : part.scene.materials)
         shift_images(material, first_image);
-    for (Mesh& mesh : part.scene.meshes) {
-        for (MaterialRange& range : mesh.material_ranges) {
+    for (Shared<Mesh>& mesh : part.scene.meshes) {
+        for (MaterialRange& range : mesh.edit().material_ranges) {
             if (range.material) *range.material += first_material;
         }
     }

@@ -35,7 +35,7 @@ float fitting_factor(const Scene& scene, const Camera& camera, const glm::vec3& 
         glm::mat4 from_target = instance.world_from_object;
         from_target[3] -= glm::vec4(target, 0.0F);
         const glm::mat4 view_from_object = glm::mat4(view_from_world) * from_target;
-        for (const glm::vec3& position : scene.meshes[instance.mesh].positions) {
+        for (const glm::vec3& position : scene.meshes[instance.mesh]->positions) {
             const glm::vec3 point(view_from_object * glm::vec4(position, 1.0F));
             const float distance = distance_to_see(point, tan_x, tan_y);
             if (std::isfinite(distance)) needed = std::max(needed, distance);

@@ -10,30 +10,39 @@ namespace relief {
 namespace {
 
 /// The name in quotes, or the number.
-template <typename Part>
-std::string label(const char* kind, const std::vector<Part>& parts, std::size_t index) {
-    if (index < parts.size() && !parts[index].name.empty())
-        return fmt::format("{} '{}'", kind, parts[index].name);
+std::string label(const char* kind, std::size_t index, const std::string& name) {
+    if (!name.empty()) return fmt::format("{} '{}'", kind, name);
     return fmt::format("{} {}", kind, index);
+}
+
+/// Empty where there is no such part.
+template <typename Named>
+std::string name_of(const std::vector<Named>& parts, std::size_t index) {
+    return index < parts.size() ? parts[index].name : std::string();
+}
+
+std::string name_of(const std::vector<Shared<Mesh>>& meshes, std::size_t index) {
+    return index < meshes.size() ? meshes[index]->name : std::string();
 }
 
 }  // namespace
 
 std::string material_label(const Scene& scene, std::optional<std::size_t> material) {
-    return material ? label("material", scene.materials, *material) : "the default material";
+    if (!material) return "the default material";
+    return label("material", *material, name_of(scene.materials, *material));
 }
 
 std::string instance_label(const Scene& scene, std::size_t instance) {
-    if (instance < scene.instances.size() && scene.instances[instance].name.empty()) {
+    const std::string name = name_of(scene.instances, instance);
+    if (name.empty() && instance < scene.instances.size()) {
         const std::size_t mesh = scene.instances[instance].mesh;
-        if (mesh < scene.meshes.size() && !scene.meshes[mesh].name.empty())
-            return mesh_label(scene, mesh);
+        if (!name_of(scene.meshes, mesh).empty()) return mesh_label(scene, mesh);
     }
-    return label("instance", scene.instances, instance);
+    return label("instance", instance, name);
 }
 
 std::string mesh_label(const Scene& scene, std::size_t mesh) {
-    return label("mesh", scene.meshes, mesh);
+    return label("mesh", mesh, name_of(scene.meshes, mesh));
 }
 
 }  // namespace relief

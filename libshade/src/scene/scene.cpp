@@ -53,7 +53,7 @@ void check_view(float azimuth, float elevation, float vertical_fov, float aspect
 Bounds world_bounds(const Scene& scene) {
     Bounds bounds;
     for (const Instance& instance : scene.instances) {
-        for (const glm::vec3& position : scene.meshes.at(instance.mesh).positions) {
+        for (const glm::vec3& position : scene.meshes.at(instance.mesh)->positions) {
             const glm::vec3 world(instance.world_from_object * glm::vec4(position, 1.0F));
             if (!is_finite(world)) continue;
             bounds.min = glm::min(bounds.min, world);

@@ -88,7 +88,7 @@ Material material_from(const MtlMaterial& read, std::size_t index, ImagesByPath&
 
 /// Gives every range that names no material one that both sides show.
 void name_missing_materials(Scene& scene) {
-    Mesh& mesh = scene.meshes.front();
+    Mesh& mesh = scene.meshes.front().edit();
     if (mesh.material_ranges.empty()) {
         mesh.material_ranges = {
             {0, static_cast<std::uint32_t>(mesh.triangles.size()), std::nullopt}};
@@ -115,7 +115,7 @@ Scene scene_from(MeshFile contents, Report& report) {
     }
     FrameOptions options;  // Angle-weighted normals where there are none.
     scene.meshes.push_back(with_frames(std::move(contents.mesh), options, report).mesh);
-    scene.instances.push_back({0, glm::mat4(1.0F), scene.meshes.front().name});
+    scene.instances.push_back({0, glm::mat4(1.0F), scene.meshes.front()->name});
     name_missing_materials(scene);
     return scene;
 }

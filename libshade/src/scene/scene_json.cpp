@@ -261,7 +261,7 @@ class SceneReader {
     /// Puts one material on all meshes from this one on.
     void use_material(std::size_t first_mesh, std::uint32_t material) {
         for (std::size_t i = first_mesh; i < graph_.scene.meshes.size(); ++i) {
-            Mesh& mesh = graph_.scene.meshes[i];
+            Mesh& mesh = graph_.scene.meshes[i].edit();
             mesh.material_ranges = {
                 {0, static_cast<std::uint32_t>(mesh.triangles.size()), material}};
         }

@@ -183,7 +183,7 @@ void validate_instance(const Scene& scene, std::size_t index) {
     const std::string thing = instance_label(scene, index);
     check_index(thing, "mesh", instance.mesh, scene.meshes.size());
     check_finite(thing + " matrix", instance.world_from_object);
-    for (const MaterialRange& range : scene.meshes[instance.mesh].material_ranges) {
+    for (const MaterialRange& range : scene.meshes[instance.mesh]->material_ranges) {
         if (range.material) {
             check_index(thing, "material", *range.material, scene.materials.size());
         }

@@ -28,8 +28,8 @@ Scene scene_with(const std::vector<Material>& materials) {
     scene.materials = materials;
     for (std::uint32_t i = 0; i < materials.size(); ++i) {
         scene.meshes.push_back(test::grid(1));
-        scene.meshes.back().name = "plane";
-        scene.meshes.back().material_ranges = {{0, 2, i}};
+        scene.meshes.back().edit().name = "plane";
+        scene.meshes.back().edit().material_ranges = {{0, 2, i}};
         scene.instances.push_back({i, glm::mat4(1), "node"});
     }
     scene.directional_lights = {{{0, 0, -1}, {1, 1, 1}}};

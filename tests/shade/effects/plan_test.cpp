@@ -20,8 +20,8 @@ Material gray(const char* name = "body") {
 Scene lit_scene(const Material& material) {
     Scene scene;
     scene.meshes = {test::grid(1)};
-    scene.meshes[0].name = "plane";
-    scene.meshes[0].material_ranges = {{0, 2, 0}};
+    scene.meshes[0].edit().name = "plane";
+    scene.meshes[0].edit().material_ranges = {{0, 2, 0}};
     scene.materials = {material};
     scene.instances = {{0, glm::mat4(1), "node"}};
     scene.directional_lights = {{{0, 0, -1}, {1, 1, 1}}};
@@ -81,7 +81,7 @@ TEST(EffectPlan, NeedsTextureCoordinatesForTextures) {
               "material 'body' has one and the mesh has texture coordinates");
     EXPECT_TRUE(plan.draws[0].needs_tangents);
 
-    scene.meshes[0].texcoords.clear();
+    scene.meshes[0].edit().texcoords.clear();
     EXPECT_FALSE(features(scene).diffuse_texture);
     EXPECT_EQ(features(scene).detail, NormalDetail::none);
     plan = plan_effects(scene, {.samples = 1});
@@ -92,7 +92,7 @@ TEST(EffectPlan, NeedsTextureCoordinatesForTextures) {
 TEST(EffectPlan, ComputesTangentsOnlyWhereThereAreNone) {
     Scene scene = lit_scene(gray());
     scene.materials[0].normal_map = NormalMap{};
-    scene.meshes[0].tangents.assign(4, glm::vec4(1, 0, 0, 1));
+    scene.meshes[0].edit().tangents.assign(4, glm::vec4(1, 0, 0, 1));
     const FramePlan plan = plan_effects(scene, {.samples = 1});
     EXPECT_EQ(plan.draws[0].features.detail, NormalDetail::normal_map);
     EXPECT_FALSE(plan.draws[0].needs_tangents);
@@ -102,9 +102,9 @@ TEST(EffectPlan, ComputesTangentsOnlyWhereThereAreNone) {
 
 TEST(EffectPlan, TakesOnlyVertexColoursThatTint) {
     Scene scene = lit_scene(gray());
-    scene.meshes[0].colors.assign(4, glm::vec4(1, 1, 1, 0.5F));
+    scene.meshes[0].edit().colors.assign(4, glm::vec4(1, 1, 1, 0.5F));
     EXPECT_FALSE(features(scene).vertex_colors);
-    scene.meshes[0].colors[2] = glm::vec4(1, 0.5F, 1, 1);
+    scene.meshes[0].edit().colors[2] = glm::vec4(1, 0.5F, 1, 1);
     EXPECT_TRUE(features(scene).vertex_colors);
 }
 
@@ -178,7 +178,7 @@ TEST(EffectPlan, HasOneDrawForEachRangeOfEachInstance) {
     Material second = gray("second");
     second.specular = {1, 1, 1};
     scene.materials.push_back(second);
-    scene.meshes[0].material_ranges = {{0, 1, 1}, {1, 1, std::nullopt}};
+    scene.meshes[0].edit().material_ranges = {{0, 1, 1}, {1, 1, std::nullopt}};
     scene.instances.push_back({0, glm::mat4(2), "again"});
     const FramePlan plan = plan_effects(scene, {.samples = 1, .output = OutputCoding::linear});
     ASSERT_EQ(plan.draws.size(), 4U);
@@ -304,7 +304,7 @@ TEST(EffectPlan, LooksAtAlphaOnlyWhereSomethingIsNotOpaque) {
     scene.materials[0].opacity = 1.0F;
     scene.materials[0].alpha_mode = AlphaMode::mask;
     EXPECT_EQ(features(scene).alpha, AlphaMode::opaque);
-    scene.meshes[0].colors.assign(4, glm::vec4(1, 1, 1, 0.5F));
+    scene.meshes[0].edit().colors.assign(4, glm::vec4(1, 1, 1, 0.5F));
     EXPECT_EQ(features(scene).alpha, AlphaMode::mask);
     EXPECT_TRUE(features(scene).vertex_colors);  // White, but their alpha counts now.
 }

@@ -91,7 +91,7 @@ TEST(EnvironmentLookups, FindDirectionsInCrosses) {
     const std::array<glm::ivec2, 6> cells{{{2, 1}, {0, 1}, {1, 0}, {1, 2}, {1, 1}, {3, 1}}};
     Image cross = make_image(64, 48, 3, 32, ColorSpace::linear);
     for (std::size_t face = 0; face < 6; ++face) {
-        const Image& image = std::get<Image>(faces.at(face).source);
+        const Image& image = *std::get<Shared<Image>>(faces.at(face).source);
         for (int i = 0; i < 16 * 16 * 3; ++i) {
             const glm::ivec2 at = 16 * cells.at(face) + glm::ivec2(i / 3 % 16, i / 48);
             cross.as<float>()[static_cast<std::size_t>(3 * (64 * at.y + at.x) + i % 3)] =

@@ -94,7 +94,7 @@ TEST(Reference, AlphaIsTheProductOfAllItsSources) {
     Scene scene = stacked({material});
     scene.images = {{"diffuse", test::constant_image({1, 1, 1, 0.5F}, 4, 32, ColorSpace::linear)},
                     {"opacity", test::constant_image({0.75F, 0, 0, 0}, 3, 32, ColorSpace::data)}};
-    scene.meshes[0].colors.assign(4, {1, 1, 1, 0.5F});
+    scene.meshes[0].edit().colors.assign(4, {1, 1, 1, 0.5F});
     EXPECT_EQ(in_the_middle(scene), glm::dvec4(1, 1, 1, 0.5 * 0.5 * 0.75 * 0.5));
     scene.materials[0].alpha_mode = AlphaMode::opaque;
     EXPECT_EQ(in_the_middle(scene).a, 1.0);
@@ -102,7 +102,7 @@ TEST(Reference, AlphaIsTheProductOfAllItsSources) {
 
 TEST(Reference, DrawsBackFacesOfDoubleSidedMaterialsOnly) {
     Scene scene = stacked({unlit({1, 0, 0}), unlit({0, 1, 0})});
-    for (glm::uvec3& triangle : scene.meshes[0].triangles)
+    for (glm::uvec3& triangle : scene.meshes[0].edit().triangles)
         std::swap(triangle.y, triangle.z);
     EXPECT_EQ(in_the_middle(scene), glm::dvec4(0, 1, 0, 1));
     scene.materials[0].double_sided = true;
@@ -139,7 +139,7 @@ TEST(Reference, IsTheSameForAnyNumberOfThreads) {
 TEST(Reference, HoldsNoNumbersThatAreNone) {
     Scene scene = test::scene_of(test::facing_square(), Material{});
     scene.ambient = glm::vec3(1.0F);
-    Mesh& mesh = scene.meshes[0];
+    Mesh& mesh = scene.meshes[0].edit();
     mesh.colors.assign(4, glm::vec4(1.0F));
     mesh.colors[0] = glm::vec4(not_a_number);
     mesh.positions.emplace_back(not_a_number, 0.0F, 0.0F);

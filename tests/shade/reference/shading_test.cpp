@@ -47,7 +47,7 @@ TEST(ReferenceShading, OfAmbientLightIsItsShareTimesTintAndOcclusion) {
     Scene scene = square(material);
     scene.images = {{"occlusion", texel({0.25F, 1, 1, 1})}};
     scene.ambient = {2.0F, 2.0F, 0.5F};
-    scene.meshes[0].colors.assign(4, {0.5F, 1.0F, 1.0F, 1.0F});
+    scene.meshes[0].edit().colors.assign(4, {0.5F, 1.0F, 1.0F, 1.0F});
     const double occlusion = 1.0 + 0.5 * (0.25 - 1.0);
     expect_near(in_the_middle(scene), occlusion * glm::dvec3(0.5, 0.5, 0.5));
 }
@@ -141,7 +141,7 @@ TEST(ReferenceShading, OfHighlightsHasItsOwnTextureAndLampColour) {
     material.specular_texture = Texture{0};
     Scene scene = square(material);
     scene.images = {{"specular", texel({0.5F, 1.0F, 0.25F, 1})}};
-    scene.meshes[0].colors.assign(4, {0.5F, 0.5F, 0.5F, 1.0F});  // No say in highlights.
+    scene.meshes[0].edit().colors.assign(4, {0.5F, 0.5F, 0.5F, 1.0F});  // No say in highlights.
     scene.directional_lights = {{{0, 0, -1}, {1, 1, 1}, glm::vec3(4, 0, 8)}};
     expect_near(in_the_middle(scene), glm::dvec3(0.5) + glm::dvec3(2, 0, 2));
     scene.directional_lights.clear();
@@ -199,7 +199,7 @@ TEST(ReferenceShading, OfAReflectionLooksWhereALightWouldHaveToBe) {
     scene.environment = numbered_faces();
     expect_near(in_the_middle(scene), glm::dvec3(5));
     // Leaning right by 60 degrees, the normal mirrors what is right and a little behind.
-    scene.meshes[0].normals.assign(4, {std::sqrt(0.75F), 0, 0.5F});
+    scene.meshes[0].edit().normals.assign(4, {std::sqrt(0.75F), 0, 0.5F});
     expect_near(in_the_middle(scene), glm::dvec3(1));
 }
 
@@ -214,9 +214,9 @@ TEST(ReferenceShading, OfATransparentSurfaceBendsTheViewByItsIndex) {
     expect_near(in_the_middle(scene), glm::dvec3(0.25 + 0.75 * 6));
     // Leaning left by 60 degrees: straight through, -z; bent by 2, asin(sin(60)/2) = 25.66 degrees
     // from the normal's back, 34.3 degrees off -z; and without reflection nothing else.
-    scene.meshes[0].normals.assign(4, {-std::sqrt(0.75F), 0, 0.5F});
+    scene.meshes[0].edit().normals.assign(4, {-std::sqrt(0.75F), 0, 0.5F});
     expect_near(in_the_middle(scene), glm::dvec3(0.25 + 0.75 * 6));
-    scene.meshes[0].normals.assign(4, {-std::sin(1.4F), 0, std::cos(1.4F)});
+    scene.meshes[0].edit().normals.assign(4, {-std::sin(1.4F), 0, std::cos(1.4F)});
     scene.materials[0].refractive_index = 3.0F;  // 80.2 degrees, bent to 19.2: 61 off -z, to +x.
     expect_near(in_the_middle(scene), glm::dvec3(0.25 + 0.75 * 1));
     scene.materials[0].refractive_index = 1.0F;
@@ -303,7 +303,7 @@ TEST(ReferenceShading, OfTheEyesOppositeLampHasNoHalfVector) {
     Material material = test::black_material();
     material.specular = glm::vec3(1.0F);
     Scene scene = square(material);
-    scene.meshes[0].normals.assign(4, glm::vec3(0, 0, -1));
+    scene.meshes[0].edit().normals.assign(4, glm::vec3(0, 0, -1));
     scene.directional_lights = {{{0, 0, 1}, {1, 1, 1}}};
     expect_near(in_the_middle(scene), glm::dvec3(0.0));
     scene.materials[0].metallic_roughness = MetallicRoughness{};
@@ -342,8 +342,8 @@ TEST(ReferenceShading, ByGouraudShowsBackFacesTheirOwnLight) {
     material.interpolation = Interpolation::gouraud;
     material.double_sided = true;
     Scene scene = square(material);
-    scene.meshes[0].normals.assign(4, glm::vec3(0, 0, 1));
-    for (glm::uvec3& triangle : scene.meshes[0].triangles)
+    scene.meshes[0].edit().normals.assign(4, glm::vec3(0, 0, 1));
+    for (glm::uvec3& triangle : scene.meshes[0].edit().triangles)
         std::swap(triangle.y, triangle.z);  // Seen from behind: the normal counts as -z.
     scene.directional_lights = {{{0, 0, -1}, {1, 1, 1}}, {{0, 3, 4}, {2, 2, 2}}};
     expect_near(in_the_middle(scene), glm::dvec3(1.6));

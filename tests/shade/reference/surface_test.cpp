@@ -253,7 +253,7 @@ TEST(ReferenceSurface, LeansAwayFromWhereItsBumpsRise) {
 
 TEST(ReferenceSurface, IsAsInterpolatedWhereAMeshHasNoTexcoords) {
     Scene scene = bumped(0.25F, 0, 2.0F);
-    scene.meshes[0].texcoords.clear();
+    scene.meshes[0].edit().texcoords.clear();
     expect_normal(scene, {0, 0, 1});
 }
 

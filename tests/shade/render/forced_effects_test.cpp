@@ -56,7 +56,7 @@ std::vector<std::pair<const char*, Scene>> scenes() {
     all.emplace_back("normal-mapped and glowing", textured);
 
     Scene bare = base_scene();  // No texture coordinates: textures that exist cannot show.
-    bare.meshes[0].texcoords.clear();
+    bare.meshes[0].edit().texcoords.clear();
     bare.images = textured.images;
     bare.materials[0].normal_map = textured.materials[0].normal_map;
     bare.materials[0].diffuse_texture = Texture{0};
@@ -257,7 +257,7 @@ TEST_F(ForcedEffects, VertexColoursAreExactlyWhiteBetweenWhiteVertices) {
     scene.materials[0].alpha_mode = AlphaMode::mask;
     scene.materials[0].alpha_cutoff = 1.0F;
     const Image whole = render(scene, {48, 48, 1, OutputCoding::srgb}).image;
-    Mesh& mesh = scene.meshes[0];
+    Mesh& mesh = scene.meshes[0].edit();
     mesh.colors.assign(mesh.positions.size(), glm::vec4(1.0F));
     const auto hidden =
         std::min_element(mesh.positions.begin(), mesh.positions.end(),

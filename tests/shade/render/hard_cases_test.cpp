@@ -45,7 +45,7 @@ const glm::dvec4 fully_lit(0.5, 0.5, 0.5, 1);
 TEST_F(HardCases, ANormalWithoutLengthCountsAsTheZAxis) {
     for (const glm::vec3& bad : {glm::vec3(0.0F), glm::vec3(not_a_number), glm::vec3(infinite)}) {
         Scene scene = lit_square();
-        scene.meshes[0].normals.assign(4, bad);
+        scene.meshes[0].edit().normals.assign(4, bad);
         EXPECT_EQ(pixel(finite_radiance(scene), 8, 8), fully_lit);
     }
 }
@@ -53,7 +53,7 @@ TEST_F(HardCases, ANormalWithoutLengthCountsAsTheZAxis) {
 TEST_F(HardCases, NormalsThatCancelBetweenVerticesAreFinite) {
     Scene scene = lit_square();
     scene.materials[0].specular = glm::vec3(1.0F);
-    auto& normals = scene.meshes[0].normals;
+    auto& normals = scene.meshes[0].edit().normals;
     for (std::size_t i = 0; i < 4; ++i)
         normals[i] = {i % 2 == 0 ? 1.0F : -1.0F, 0, 0};
     // 17 pixels across: a column of them is where the normals cancel.
@@ -65,7 +65,7 @@ TEST_F(HardCases, ANormalOfAnyLengthCountsAlike) {
     const Image expected = finite_radiance(lit_square());
     for (const float length : {1e-14F, 1e-3F, 1e3F, 1e14F}) {
         Scene scene = lit_square();
-        for (glm::vec3& normal : scene.meshes[0].normals)
+        for (glm::vec3& normal : scene.meshes[0].edit().normals)
             normal *= length;
         EXPECT_TRUE(test::same_bits(finite_radiance(scene), expected)) << length;
     }
@@ -73,7 +73,7 @@ TEST_F(HardCases, ANormalOfAnyLengthCountsAlike) {
 
 TEST_F(HardCases, ANormalThatFacesAwayReflectsAtGrazingAngleAtMost) {
     Scene scene = test::scene_of(test::facing_square(), test::black_material());
-    scene.meshes[0].normals.assign(4, glm::vec3(0, 0, -1));
+    scene.meshes[0].edit().normals.assign(4, glm::vec3(0, 0, -1));
     scene.materials[0].reflectivity = {0.25F, 0.25F, 0.25F};
     scene.environment = test::constant_environment(glm::vec3(0.5F), false);
     // n.v is -1, taken as 0: all is reflected.
@@ -139,7 +139,7 @@ TEST_F(HardCases, ALightBehindTheEyeExactlyOppositeHasNoHalfVector) {
     Scene scene = lit_square();
     scene.materials[0] = test::black_material();
     scene.materials[0].specular = glm::vec3(1.0F);
-    scene.meshes[0].normals.assign(4, glm::vec3(0, 0, -1));
+    scene.meshes[0].edit().normals.assign(4, glm::vec3(0, 0, -1));
     scene.directional_lights = {{{0, 0, 1}, {1, 1, 1}}};
     EXPECT_EQ(pixel(finite_radiance(scene, 17), 8, 8), glm::dvec4(0, 0, 0, 1));
 }
@@ -193,7 +193,7 @@ TEST_F(HardCases, FarFromTheOriginTheModelKeepsItsShape) {
 
 TEST_F(HardCases, NotANumberInVertexDataStaysWhereItIs) {
     Scene scene = lit_square();
-    Mesh& mesh = scene.meshes[0];
+    Mesh& mesh = scene.meshes[0].edit();
     const auto add_triangle = [&](const glm::vec3& first) {
         const auto base = static_cast<std::uint32_t>(mesh.positions.size());
         mesh.positions.insert(mesh.positions.end(), {first, {0, 0, 1}, {1, 0, 1}});
@@ -246,13 +246,13 @@ TEST_F(HardCases, TextureCoordinatesThatDoNotChangeLeaveTheNormalAsItIs) {
     Scene scene = bumped_square();
     const double tilted = pixel(finite_radiance(scene), 8, 8).r;
     EXPECT_NEAR(tilted, 0.5 * std::sqrt(0.5), 1e-4);
-    for (glm::vec2& texcoord : scene.meshes[0].texcoords)
+    for (glm::vec2& texcoord : scene.meshes[0].edit().texcoords)
         texcoord = glm::vec2(0.5F);
     EXPECT_EQ(pixel(finite_radiance(scene), 8, 8), fully_lit);
-    for (glm::vec2& texcoord : scene.meshes[0].texcoords)
+    for (glm::vec2& texcoord : scene.meshes[0].edit().texcoords)
         texcoord = glm::vec2(not_a_number);
     (void)finite_radiance(scene);
-    for (glm::vec2& texcoord : scene.meshes[0].texcoords)
+    for (glm::vec2& texcoord : scene.meshes[0].edit().texcoords)
         texcoord *= infinite;
     (void)finite_radiance(scene);
 }
@@ -280,7 +280,7 @@ TEST_F(HardCases, MirroredTexturesBendTheNormalTheOtherWay) {
     Scene scene = bumped_square();
     scene.directional_lights = {{{1, 0, -1}, glm::vec3(0.5F)}};  // From the left.
     const double upright = pixel(finite_radiance(scene), 8, 8).r;
-    for (glm::vec2& texcoord : scene.meshes[0].texcoords)
+    for (glm::vec2& texcoord : scene.meshes[0].edit().texcoords)
         texcoord.x = 1.0F - texcoord.x;
     const double mirrored = pixel(finite_radiance(scene), 8, 8).r;
     EXPECT_NEAR(upright, 0.5, 1e-4);   // Tilted towards the light.
@@ -317,13 +317,13 @@ TEST_F(HardCases, AMetalLitFromExactlyBehindTheEyesLineIsFinite) {
     Scene scene = lit_square();
     scene.materials[0].metallic_roughness =
         MetallicRoughness{glm::vec3(1.0F), 1.0F, 0.0F, std::nullopt};
-    scene.meshes[0].normals.assign(4, glm::vec3(0, 0, -1));
+    scene.meshes[0].edit().normals.assign(4, glm::vec3(0, 0, -1));
     scene.directional_lights = {{{0, 0, 1}, glm::vec3(1.0F)}};
     // No half vector, or after rounding one across the normal: facets of the least roughness,
     // 0.045, mirror half of its square there.
     EXPECT_NEAR(pixel(finite_radiance(scene, 17), 8, 8).r, 0.0, 0.5 * 0.045 * 0.045 * 1.01);
     // The brightest there is: a mirror that faces the lamp, and the lamp at its brightest.
-    scene.meshes[0].normals.assign(4, glm::vec3(0, 0, 1));
+    scene.meshes[0].edit().normals.assign(4, glm::vec3(0, 0, 1));
     scene.directional_lights = {{{0, 0, -1}, glm::vec3(max_light)}};
     (void)finite_radiance(scene, 17);
 }
@@ -361,7 +361,7 @@ TEST_F(HardCases, AnEmptySceneIsItsBackground) {
     EXPECT_EQ(pixel(finite_radiance(scene), 8, 8), glm::dvec4(0.25, 0.5, 0.75, 1));
     // A mesh without triangles, with a range of none, is nothing as well.
     scene.meshes = {Mesh{}};
-    scene.meshes[0].material_ranges = {{0, 0, std::nullopt}};
+    scene.meshes[0].edit().material_ranges = {{0, 0, std::nullopt}};
     scene.instances = {{0, glm::mat4(1), "empty"}};
     scene.ambient = {1, 1, 1};
     EXPECT_EQ(pixel(finite_radiance(scene), 8, 8), glm::dvec4(0.25, 0.5, 0.75, 1));
@@ -415,7 +415,7 @@ TEST_F(HardCases, AnInstanceThatMirrorsShadesAsItsMirroredSurface) {
         const double tolerance = is_uniform ? 1e-4 : 0.03;
         EXPECT_LE(compare(image, finite_radiance(moved, 48)).max, tolerance) << scale.x;
         // The map shows: without the hand turned, the picture is another.
-        for (glm::vec4& tangent : moved.meshes[0].tangents)
+        for (glm::vec4& tangent : moved.meshes[0].edit().tangents)
             tangent.w = -tangent.w;
         EXPECT_GT(compare(image, finite_radiance(moved, 48)).max, 0.1) << scale.x;
     }

@@ -151,7 +151,7 @@ Image rippled(float angle) {
 
 TEST_F(NormalMapping, WidensTheHighlightsOfRipplesFinerThanAPixel) {
     Scene scene = mapped(test::facing_square(), rippled(0.3F), Green::up, FlatCode::half);
-    for (glm::vec2& texcoord : scene.meshes[0].texcoords)
+    for (glm::vec2& texcoord : scene.meshes[0].edit().texcoords)
         texcoord *= 64.0F;  // 240 texels a pixel: only the smallest mip level is seen.
     Material& material = scene.materials[0];
     material.diffuse = glm::vec3(0.0F);

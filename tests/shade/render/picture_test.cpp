@@ -96,7 +96,7 @@ TEST_F(FinishedPicture, LeavesItsBackgroundAsItIs) {
 TEST_F(FinishedPicture, ToneMapsEverySampleOfAnEdge) {
     Scene scene = glowing(1000.0F);
     scene.background = {0, 0, 0, 1};
-    for (glm::vec3& p : scene.meshes[0].positions)
+    for (glm::vec3& p : scene.meshes[0].edit().positions)
         p.x = p.x < 0.0F ? -2.0F : 0.125F;  // Half of pixel 8 of 16.
     scene.tone_mapping = ToneMapping::reinhard;
     const Image image = render(scene, {16, 16, 4, OutputCoding::srgb}).image;
@@ -108,7 +108,7 @@ TEST_F(FinishedPicture, ToneMapsEverySampleOfAnEdge) {
 Scene layered(const glm::vec4& near, const glm::vec4& far) {
     Scene scene = test::scene_of(test::facing_square(), test::black_material());
     scene.meshes.push_back(scene.meshes[0]);
-    scene.meshes[1].material_ranges[0].material = 1;
+    scene.meshes[1].edit().material_ranges[0].material = 1;
     scene.materials.push_back(scene.materials[0]);
     const std::array<glm::vec4, 2> layers{near, far};
     for (std::size_t i = 0; i < 2; ++i) {

@@ -141,13 +141,13 @@ std::vector<Effect> material_effects() {
          }},
         {"vertex colours",
          [](Scene& s, test::Dice&) {
-             for (const glm::vec3& position : s.meshes[0].positions)
-                 s.meshes[0].colors.emplace_back(position * 0.5F + 0.5F, 1.0F);
+             for (const glm::vec3& position : s.meshes[0]->positions)
+                 s.meshes[0].edit().colors.emplace_back(position * 0.5F + 0.5F, 1.0F);
          }},
         {"back faces",
          [](Scene& s, test::Dice&) {
              s.materials[0].double_sided = true;
-             for (glm::uvec3& triangle : s.meshes[0].triangles)
+             for (glm::uvec3& triangle : s.meshes[0].edit().triangles)
                  std::swap(triangle.y, triangle.z);
          }},
         {"blending",

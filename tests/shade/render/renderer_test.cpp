@@ -104,7 +104,7 @@ TEST_F(Rendering, ShadesAMirroredInstanceAsTheMirroredGeometry) {
     by_matrix.instances[0].world_from_object[3] = glm::vec4(0.2F, 0, 0, 1);
 
     Scene by_geometry = plain;
-    Mesh& mesh = by_geometry.meshes[0];
+    Mesh& mesh = by_geometry.meshes[0].edit();
     for (glm::vec3& p : mesh.positions)
         p.x = -1.5F * p.x + 0.2F;
     for (glm::vec3& n : mesh.normals)
@@ -133,9 +133,9 @@ TEST_F(Rendering, TurnsNormalsByTheInverseTranspose) {
     squashed.directional_lights = {{{1, -0.5F, -1}, {0.8F, 0.8F, 0.8F}}};
     Scene ellipsoid = squashed;
     squashed.instances[0].world_from_object[2].z = 0.25F;
-    for (glm::vec3& p : ellipsoid.meshes[0].positions)
+    for (glm::vec3& p : ellipsoid.meshes[0].edit().positions)
         p.z *= 0.25F;
-    for (glm::vec3& n : ellipsoid.meshes[0].normals) {
+    for (glm::vec3& n : ellipsoid.meshes[0].edit().normals) {
         n = glm::normalize(glm::vec3(n.x, n.y, n.z * 4.0F));
     }
     const FrameSettings settings{64, 64, 1, OutputCoding::srgb};
@@ -220,11 +220,11 @@ TEST_F(Rendering, ComputesMissingFrames) {
     Scene with_tangents = bumpy_scene();
     Scene without = with_tangents;
     without.meshes[0] = test::sphere(32, 16);
-    without.meshes[0].material_ranges = with_tangents.meshes[0].material_ranges;
+    without.meshes[0].edit().material_ranges = with_tangents.meshes[0].edit().material_ranges;
     const FrameSettings settings{64, 64, 1, OutputCoding::srgb};
     EXPECT_TRUE(
         test::same_bits(render(with_tangents, settings).image, render(without, settings).image));
-    without.meshes[0].normals.clear();
+    without.meshes[0].edit().normals.clear();
     // Angle-weighted normals of a fine sphere are nearly its own.
     EXPECT_LE(compare(render(with_tangents, settings).image, render(without, settings).image).mean,
               0.5);
@@ -234,7 +234,7 @@ TEST_F(Rendering, ReportsTexturesThatCannotShow) {
     Material material;
     material.normal_map = NormalMap{Texture{0}};
     Scene scene = test::scene_of(test::facing_square(), material);
-    scene.meshes[0].texcoords.clear();
+    scene.meshes[0].edit().texcoords.clear();
     scene.images = {{"image", four_colors()}};
     scene.directional_lights = {{}};
     Report report;

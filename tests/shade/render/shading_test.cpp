@@ -183,7 +183,7 @@ TEST_F(Shading, OfTexturesTintsWhatIsScattered) {
     scene.images = {
         {"diffuse", test::constant_image({0.8F, 0.2F, 0.4F, 1}, 3, 8, ColorSpace::srgb)},
         {"emission", test::constant_image({0.4F, 1.0F, 0.6F, 1}, 3, 8, ColorSpace::srgb)}};
-    scene.meshes[0].colors.assign(4, glm::vec4(0.5F, 0.75F, 1.0F, 0.1F));
+    scene.meshes[0].edit().colors.assign(4, glm::vec4(0.5F, 0.75F, 1.0F, 0.1F));
     // llvmpipe decodes sRGB texels by a polynomial that is up to half a percent off.
     expect_formula(scene, 6e-3);
 }

@@ -48,7 +48,7 @@ float extent_in_picture(const Scene& scene, const Camera& camera, float aspect) 
     const glm::mat4 view_from_world = glm::inverse(camera.world_from_view);
     const float tan_y = std::tan(0.5F * camera.vertical_fov);
     float extent = 0;
-    for (const glm::vec3& position : scene.meshes[0].positions) {
+    for (const glm::vec3& position : scene.meshes[0]->positions) {
         if (!std::isfinite(position.x)) continue;
         const glm::vec4 view =
             view_from_world * scene.instances[0].world_from_object * glm::vec4(position, 1.0F);
@@ -62,7 +62,7 @@ TEST(Framing, EveryVertexIsSeenAndTheModelFillsThePicture) {
     Scene scene;
     scene.meshes.push_back(test::sphere(64, 32));
     // A vertex that is nowhere must not push the camera away.
-    scene.meshes[0].positions.push_back(glm::vec3(std::numeric_limits<float>::quiet_NaN()));
+    scene.meshes[0].edit().positions.push_back(glm::vec3(std::numeric_limits<float>::quiet_NaN()));
     scene.instances.emplace_back();
     scene.instances[0].world_from_object[3] = glm::vec4(10, 20, -30, 1);
     const glm::vec3 center(10, 20, -30);
@@ -87,7 +87,7 @@ TEST(Framing, OfNothingStandsAtDistanceOne) {
     EXPECT_EQ(framed(Scene{}, 0, 0, 0.7F, 1).world_from_view[3], glm::vec4(0, 0, 1, 1));
     Scene point;
     point.meshes.resize(1);
-    point.meshes[0].positions = {{2, 3, 4}};
+    point.meshes[0].edit().positions = {{2, 3, 4}};
     point.instances.emplace_back();
     EXPECT_EQ(framed(point, 0, 0, 0.7F, 1, 3.0F).world_from_view[3], glm::vec4(2, 3, 7, 1));
 }

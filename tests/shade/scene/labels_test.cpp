@@ -12,7 +12,7 @@ TEST(Labels, AreNamesOrElseNumbers) {
     scene.materials.resize(2);
     scene.materials[0].name = "paint";
     scene.meshes.resize(2);
-    scene.meshes[0].name = "Wheel";
+    scene.meshes[0].edit().name = "Wheel";
     scene.instances = {{0, glm::mat4(1.0F), "left"}, {0, glm::mat4(1.0F), ""}, {1, {}, ""}};
     EXPECT_EQ(material_label(scene, 0), "material 'paint'");
     EXPECT_EQ(material_label(scene, 1), "material 1");

@@ -62,8 +62,8 @@ TEST(LoadScene, ReadsObjWithItsMaterials) {
     EXPECT_EQ(report.count("map_Ns in MTL"), 1U);
     EXPECT_EQ(report.findings().size(), 1U);
     ASSERT_EQ(scene.meshes.size(), 1U);
-    EXPECT_EQ(scene.meshes[0].normals.size(), scene.meshes[0].positions.size());
-    EXPECT_TRUE(scene.meshes[0].tangents.empty());
+    EXPECT_EQ(scene.meshes[0]->normals.size(), scene.meshes[0]->positions.size());
+    EXPECT_TRUE(scene.meshes[0]->tangents.empty());
     EXPECT_FALSE(scene.camera);
     EXPECT_TRUE(scene.directional_lights.empty());
 }
@@ -93,9 +93,9 @@ TEST(LoadScene, GivesSurfacesWithoutMaterialBothSides) {
     const Scene scene = load_scene(folder / "model.obj", report);
     ASSERT_EQ(scene.materials.size(), 1U);
     EXPECT_TRUE(scene.materials[0].double_sided);
-    EXPECT_EQ(scene.meshes[0].material_ranges,
+    EXPECT_EQ(scene.meshes[0]->material_ranges,
               (std::vector<MaterialRange>{{0, 1, std::uint32_t{0}}}));
-    EXPECT_EQ(scene.meshes[0].normals[0], glm::vec3(0, 0, 1));
+    EXPECT_EQ(scene.meshes[0]->normals[0], glm::vec3(0, 0, 1));
 }
 
 /// One triangle with lights, a camera under a scaled node, and a material with everything.
@@ -151,7 +151,7 @@ TEST(LoadScene, PlacesWhatAGltfFileHolds) {
     EXPECT_EQ(scene.instances[0].name, "first");
     EXPECT_EQ(scene.instances[0].world_from_object[3], glm::vec4(2, 0, 0, 1));
     EXPECT_EQ(scene.instances[1].world_from_object[0].x, -1.0F);
-    EXPECT_EQ(scene.meshes[0].normals[0], glm::vec3(0, 0, 1));  // Flat, as glTF asks.
+    EXPECT_EQ(scene.meshes[0]->normals[0], glm::vec3(0, 0, 1));  // Flat, as glTF asks.
 
     ASSERT_EQ(scene.directional_lights.size(), 1U);
     const DirectionalLight& sun = scene.directional_lights[0];
@@ -197,8 +197,8 @@ TEST(LoadScene, TurnsStoredTangentsWithTheTexture) {
     write_text(folder / "square.gltf", root.dump());
     Report report;
     const Scene scene = load_scene(folder / "square.gltf", report);
-    ASSERT_EQ(scene.meshes[0].tangents.size(), 4U);
-    for (const glm::vec4& tangent : scene.meshes[0].tangents) {
+    ASSERT_EQ(scene.meshes[0]->tangents.size(), 4U);
+    for (const glm::vec4& tangent : scene.meshes[0]->tangents) {
         // The image's u now grows along the old bitangent, its v upwards along -w * cross(n, y).
         EXPECT_NEAR(tangent.x, 0.0F, 1e-6F);
         EXPECT_NEAR(tangent.y, 1.0F, 1e-6F);
@@ -222,7 +222,7 @@ TEST(LoadScene, GivesGltfsMaterialsAsTheirAuthorsMeant) {
     EXPECT_TRUE(glass.double_sided);
     EXPECT_EQ(glass.occlusion_strength, 0.25F);
     // The set that the base colour uses, by its transform: (x, y) to (2 x + 0.5, 3 y).
-    EXPECT_EQ(scene.meshes[0].texcoords,
+    EXPECT_EQ(scene.meshes[0]->texcoords,
               (std::vector<glm::vec2>{{0.5F, 0.0F}, {0.5F, 3.0F}, {0.5F, 0.0F}}));
     // What Phong would make of the factors stays at hand.
     EXPECT_NEAR(glass.shininess, 30.0F, 1e-4F);

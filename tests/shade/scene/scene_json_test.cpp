@@ -192,7 +192,7 @@ TEST_F(SceneFile, NodesCarryModelsShapesLightsAndCameras) {
     EXPECT_EQ(scene.instances[0].world_from_object[3], glm::vec4(12, 0, 0, 1));
     EXPECT_EQ(scene.instances[0].world_from_object[0].x, 2.0F);
     const auto material = [&](std::size_t mesh) {
-        return scene.materials.at(scene.meshes[mesh].material_ranges.at(0).material.value());
+        return scene.materials.at(scene.meshes[mesh]->material_ranges.at(0).material.value());
     };
     EXPECT_EQ(material(0).name, "emerald");
     EXPECT_EQ(material(1).name, "one");

@@ -19,7 +19,7 @@ constexpr float not_a_number = std::numeric_limits<float>::quiet_NaN();
 Scene cube_scene() {
     Scene scene;
     scene.meshes = {test::cube()};
-    scene.meshes[0].material_ranges = {{0, 12, 0}};
+    scene.meshes[0].edit().material_ranges = {{0, 12, 0}};
     scene.materials = {Material{}};
     scene.materials[0].name = "paint";
     scene.images = {{"image", Image{}}};
@@ -38,8 +38,8 @@ TEST(WorldBounds, HoldEveryInstanceAtItsPlace) {
 
 TEST(WorldBounds, LeaveOutWhatIsNotFinite) {
     Scene scene = cube_scene();
-    scene.meshes[0].positions[0].x = not_a_number;
-    scene.meshes[0].positions[1].y = std::numeric_limits<float>::infinity();
+    scene.meshes[0].edit().positions[0].x = not_a_number;
+    scene.meshes[0].edit().positions[1].y = std::numeric_limits<float>::infinity();
     EXPECT_EQ(world_bounds(scene).max, glm::vec3(1, 1, 1));
     EXPECT_TRUE(world_bounds(Scene{}).empty());
 }
@@ -132,7 +132,7 @@ std::string verdict(const std::function<void(Scene&)>& spoil) {
 TEST(ValidateScene, AcceptsSoundScenes) {
     EXPECT_EQ(verdict([](Scene&) {}), "valid");
     EXPECT_EQ(verdict([](Scene& s) { s = Scene{}; }), "valid");
-    EXPECT_EQ(verdict([](Scene& s) { s.meshes[0].positions[0].x = not_a_number; }), "valid");
+    EXPECT_EQ(verdict([](Scene& s) { s.meshes[0].edit().positions[0].x = not_a_number; }), "valid");
     EXPECT_EQ(verdict([](Scene& s) { s.instances[0].world_from_object = glm::mat4(0.0F); }),
               "valid");
 }
@@ -140,13 +140,13 @@ TEST(ValidateScene, AcceptsSoundScenes) {
 TEST(ValidateScene, NamesIndicesThatNameNothing) {
     EXPECT_EQ(verdict([](Scene& s) { s.instances[0].mesh = 3; }),
               "instance 'node' names mesh 3, but there are only 1");
-    EXPECT_EQ(verdict([](Scene& s) { s.meshes[0].material_ranges[0].material = 7; }),
+    EXPECT_EQ(verdict([](Scene& s) { s.meshes[0].edit().material_ranges[0].material = 7; }),
               "instance 'node' names material 7, but there are only 1");
     EXPECT_EQ(verdict([](Scene& s) { s.materials[0].diffuse_texture = Texture{4}; }),
               "material 'paint': diffuse texture names image 4, but there are only 1");
     EXPECT_EQ(verdict([](Scene& s) { s.materials[0].normal_map = NormalMap{Texture{1}}; }),
               "material 'paint': normal map names image 1, but there are only 1");
-    EXPECT_EQ(verdict([](Scene& s) { s.meshes[0].triangles[2].y = 99; }),
+    EXPECT_EQ(verdict([](Scene& s) { s.meshes[0].edit().triangles[2].y = 99; }),
               "mesh 0: triangle 2 names vertex 99, but there are only 24");
 }
 

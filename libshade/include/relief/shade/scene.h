@@ -21,13 +21,14 @@
 #include "relief/mesh/mesh.h"
 #include "relief/shade/lights.h"
 #include "relief/shade/material.h"
+#include "relief/shade/shared.h"
 
 namespace relief {
 
 /// Where an image comes from: a file, an encoded file in memory, or decoded already.
 struct ImageSource {
     std::string name;  ///< For messages.
-    std::variant<std::filesystem::path, std::vector<std::byte>, Image> source;
+    std::variant<std::filesystem::path, Shared<std::vector<std::byte>>, Shared<Image>> source;
 };
 
 /// The largest value of a material's colour.
@@ -87,7 +88,7 @@ struct Instance {
 };
 
 struct Scene {
-    std::vector<Mesh> meshes;
+    std::vector<Shared<Mesh>> meshes;  ///< Copies of a scene share them.
     std::vector<Material> materials;
     std::vector<ImageSource> images;
     std::vector<Instance> instances;
