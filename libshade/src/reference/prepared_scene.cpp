@@ -86,9 +86,7 @@ void want_textures(PreparedScene& prepared, const Scene& scene, const Material& 
     const std::size_t image = material.normal_map->texture.image;
     const Image decoded = decode(scene.images[image], ImageUse::data);
     prepared.normal_map_bits[image] = decoded.bits();
-    NormalMap undecided = *material.normal_map;
-    undecided.flat.reset();
-    prepared.detected_flat_codes[image] = flat_code_of(undecided, decoded, scene.images[image]);
+    prepared.detected_flat_codes[image] = detected_flat_code(scene.images[image], decoded);
 }
 
 /// Counts triangles that have no place.

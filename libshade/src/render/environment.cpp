@@ -8,15 +8,12 @@
 #include <cmath>
 
 #include "effects/environment_needs.h"
-#include "effects/shader_source.h"
 #include "effects/surface_program.h"
 #include "environment/cube_faces.h"
 #include "environment/environment_brdf.h"
-#include "environment/irradiance_sh.h"
 #include "gl/prefilter.h"
 #include "gl/texture.h"
 #include "parallel.h"
-#include "render/program_cache.h"
 #include "scene/image_source.h"
 
 namespace relief {
@@ -33,12 +30,6 @@ std::span<const ImageSource> sources_of(const Environment& environment) {
             }
         },
         environment.source);
-}
-
-gl::LinkedProgram skybox_program(const gl::Api& api, const Scene& scene, OutputCoding output) {
-    const ShaderSteps steps = output_steps(output, scene);
-    return link(api, "skybox", assemble("skybox.vert.glsl", steps, {}),
-                assemble("skybox.frag.glsl", steps, {}));
 }
 
 gl::CubeMap black_cube_map(const gl::Api& api) {
@@ -62,19 +53,22 @@ gl::CubeMap cube_map_of(const gl::Api& api, const Environment& environment,
     return gl::make_cube_map_from_panorama(api, images.front(), name, report);
 }
 
-/// What the surroundings shed, times their intensity, padded as the shader wants it.
-std::array<glm::vec4, 9> irradiance_of(const gl::Api& api, const gl::CubeMap& environment,
-                                       float intensity) {
+/// What the surroundings shed.
+IrradianceSh irradiance_of(const gl::Api& api, const gl::CubeMap& environment) {
     // The harmonics are as wide as the sphere: details of a degree and a half do not matter.
     constexpr int enough_texels = 64;
     int level = 0;
     while (environment.size >> level > enough_texels)
         ++level;
-    const IrradianceSh sh = irradiance_sh(read_faces(api, environment, level));
-    std::array<glm::vec4, 9> padded{};
+    return irradiance_sh(read_faces(api, environment, level));
+}
+
+/// Times the intensity, padded as the shader wants it.
+std::array<glm::vec4, 9> padded(const IrradianceSh& sh, float intensity) {
+    std::array<glm::vec4, 9> rows{};
     for (std::size_t i = 0; i < sh.size(); ++i)
-        padded.at(i) = glm::vec4(intensity * sh.at(i), 0.0F);
-    return padded;
+        rows.at(i) = glm::vec4(intensity * sh.at(i), 0.0F);
+    return rows;
 }
 
 /// Column for the root of n.v, row for roughness; red is A, green B
@@ -92,9 +86,12 @@ gl::Texture brdf_texture(const gl::Api& api) {
     return texture;
 }
 
-}  // namespace
+bool is_left_handed(const Environment& environment) {
+    const auto* faces = std::get_if<CubeFaces>(&environment.source);
+    return faces != nullptr && faces->left_handed;
+}
 
-std::vector<Image> decode_environment(const Environment& environment) {
+std::vector<Image> decoded(const Environment& environment) {
     const std::span<const ImageSource> sources = sources_of(environment);
     std::vector<Image> images(sources.size());
     parallel_for(sources.size(), 1, [&](std::size_t begin, std::size_t end) {
@@ -104,20 +101,80 @@ std::vector<Image> decode_environment(const Environment& environment) {
     return images;
 }
 
-EnvironmentMaps::EnvironmentMaps(const gl::Api& api, const Scene& scene, const FramePlan& plan,
-                                 std::span<const Image> images, Report& report) {
+}  // namespace
+
+bool EnvironmentCache::Entry::is(const Environment& environment) const {
+    const std::span<const ImageSource> sources = sources_of(environment);
+    if (layout != environment.source.index() || left_handed != is_left_handed(environment) ||
+        images.size() != sources.size())
+        return false;
+    return std::equal(
+        images.begin(), images.end(), sources.begin(),
+        [](const ImageIdentity& image, const ImageSource& source) { return image.is(source); });
+}
+
+std::shared_ptr<GpuEnvironment> EnvironmentCache::find(const Environment& environment) const {
+    const auto entry = std::find_if(environments_.begin(), environments_.end(),
+                                    [&](const Entry& known) { return known.is(environment); });
+    return entry == environments_.end() ? nullptr : entry->maps;
+}
+
+void EnvironmentCache::decode(const Environment& environment) {
+    decoded_.clear();
+    if (!find(environment)) decoded_ = decoded(environment);
+}
+
+std::shared_ptr<GpuEnvironment> EnvironmentCache::get(const Environment& environment,
+                                                      Report& report) {
+    std::shared_ptr<GpuEnvironment> maps = find(environment);
+    if (!maps) {
+        maps = std::make_shared<GpuEnvironment>();
+        maps->sharp = cube_map_of(*api_, environment, decoded_, maps->found);
+        decoded_.clear();
+        Entry entry{{}, environment.source.index(), is_left_handed(environment), maps};
+        for (const ImageSource& source : sources_of(environment))
+            entry.images.emplace_back(source);
+        environments_.push_back(std::move(entry));
+    }
+    report.merge(maps->found);
+    return maps;
+}
+
+std::shared_ptr<GpuEnvironment> EnvironmentCache::black() {
+    if (!black_) {
+        black_ = std::make_shared<GpuEnvironment>();
+        black_->sharp = black_cube_map(*api_);
+        black_->blurred = black_cube_map(*api_);
+        black_->irradiance.emplace();
+    }
+    return black_;
+}
+
+std::shared_ptr<const gl::Texture> EnvironmentCache::brdf() {
+    if (!brdf_) brdf_ = std::make_shared<const gl::Texture>(brdf_texture(*api_));
+    return brdf_;
+}
+
+void EnvironmentCache::drop_unused() {
+    std::erase_if(environments_, [](const Entry& entry) { return entry.maps.use_count() == 1; });
+}
+
+EnvironmentMaps::EnvironmentMaps(const gl::Api& api, EnvironmentCache& cache, const Scene& scene,
+                                 const FramePlan& plan, bool is_shown, Report& report) {
     const EnvironmentNeeds needs = environment_needs(plan);
-    if (!images.empty()) {
-        sharp_ = cube_map_of(api, *scene.environment, images, report);
+    if (is_shown) {
+        maps_ = cache.get(*scene.environment, report);
     } else if (needs.any() || plan.skybox) {
-        sharp_ = black_cube_map(api);
+        maps_ = cache.black();
     }
-    if (needs.brdf) brdf_ = brdf_texture(api);
-    if (needs.blurred) {
-        blurred_ = images.empty() ? black_cube_map(api) : make_prefiltered(api, *sharp_);
+    if (needs.brdf) brdf_ = cache.brdf();
+    if (!maps_) return;
+    has_blurred_ = needs.blurred;
+    if (needs.blurred && !maps_->blurred) maps_->blurred = make_prefiltered(api, maps_->sharp);
+    if (needs.irradiance) {
+        if (!maps_->irradiance) maps_->irradiance = irradiance_of(api, maps_->sharp);
+        irradiance_sh_ = padded(*maps_->irradiance, is_shown ? scene.environment->intensity : 0.0F);
     }
-    if (needs.irradiance && !images.empty())
-        irradiance_sh_ = irradiance_of(api, *sharp_, scene.environment->intensity);
 }
 
 void EnvironmentMaps::bind(const gl::Api& api) const {
@@ -126,25 +183,24 @@ void EnvironmentMaps::bind(const gl::Api& api) const {
         api->BindTexture(target, texture.name());
         api->BindSampler(static_cast<GLuint>(unit), 0);
     };
-    if (sharp_) bind_to(TextureUnit::environment, GL_TEXTURE_CUBE_MAP, sharp_->texture);
-    if (blurred_) {
-        bind_to(TextureUnit::blurred_environment, GL_TEXTURE_CUBE_MAP, blurred_->texture);
+    if (maps_) bind_to(TextureUnit::environment, GL_TEXTURE_CUBE_MAP, maps_->sharp.texture);
+    if (has_blurred_) {
+        bind_to(TextureUnit::blurred_environment, GL_TEXTURE_CUBE_MAP, maps_->blurred->texture);
     }
     if (brdf_) bind_to(TextureUnit::environment_brdf, GL_TEXTURE_2D, *brdf_);
 }
 
 std::size_t EnvironmentMaps::texture_count() const {
-    return static_cast<std::size_t>(sharp_.has_value()) +
-           static_cast<std::size_t>(blurred_.has_value()) +
-           static_cast<std::size_t>(brdf_.has_value());
+    return static_cast<std::size_t>(maps_ != nullptr) + static_cast<std::size_t>(has_blurred_) +
+           static_cast<std::size_t>(brdf_ != nullptr);
 }
 
 float EnvironmentMaps::blurred_levels() const {
-    return blurred_ ? static_cast<float>(blurred_->levels - 1) : 0.0F;
+    return has_blurred_ ? static_cast<float>(maps_->blurred->levels - 1) : 0.0F;
 }
 
-Skybox::Skybox(const gl::Api& api, const Scene& scene, OutputCoding output)
-    : program_(skybox_program(api, scene, output)),
+Skybox::Skybox(const gl::Api& api, ProgramCache& programs, const Scene& scene, OutputCoding output)
+    : program_(programs.get("skybox", output_steps(output, scene))),
       nothing_(api),
       intensity_(scene.environment ? scene.environment->intensity : 0.0F),
       exposure_(scene.exposure) {}
@@ -154,10 +210,10 @@ void Skybox::draw(const gl::Api& api, const Camera& camera, float aspect) const 
     const glm::mat3 world_from_view(camera.world_from_view);
     const glm::mat3 world_from_screen(world_from_view[0] * (y * aspect), world_from_view[1] * y,
                                       -world_from_view[2]);
-    program_.use();
-    program_.set("world_from_screen", world_from_screen);
-    program_.set("environment_intensity", intensity_);
-    program_.set("exposure", exposure_);
+    program_->use();
+    program_->set("world_from_screen", world_from_screen);
+    program_->set("environment_intensity", intensity_);
+    program_->set("exposure", exposure_);
     api->BindVertexArray(nothing_.name());
     api->DrawArrays(GL_TRIANGLES, 0, 3);
 }

@@ -21,6 +21,8 @@ struct PlannedStreams {
     bool tangents = false;
     bool colors = false;
 
+    friend bool operator==(const PlannedStreams&, const PlannedStreams&) = default;
+
     void add(const PlannedInterface& planned);
 };
 

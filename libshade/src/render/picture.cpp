@@ -6,10 +6,8 @@
 
 #include <algorithm>
 
-#include "effects/shader_source.h"
 #include "effects/surface_program.h"
 #include "relief/mesh/error.h"
-#include "render/program_cache.h"
 
 namespace relief {
 
@@ -32,12 +30,10 @@ glm::vec4 shown_background(const glm::vec4& background, OutputCoding output) {
     return {glm::min(glm::vec3(background), glm::vec3(1.0F)), background.a};
 }
 
-gl::LinkedProgram finishing_program(const gl::Api& api, const Scene& scene, OutputCoding output,
-                                    int samples) {
+ShaderSteps finishing_steps(const Scene& scene, OutputCoding output, int samples) {
     ShaderSteps steps = output_steps(output, scene);
     steps["samples"] = samples > 1 ? "picture/four_samples.glsl" : "picture/one_sample.glsl";
-    return link(api, "picture", assemble("picture.vert.glsl", steps, {}),
-                assemble("picture.frag.glsl", steps, {}));
+    return steps;
 }
 
 }  // namespace
@@ -47,15 +43,15 @@ OutputCoding drawn_coding(const FrameSettings& settings, bool finishes) {
     return OutputCoding::half;
 }
 
-Picture::Picture(const gl::Api& api, const Scene& scene, const FrameSettings& settings,
-                 bool finishes)
+Picture::Picture(const gl::Api& api, TargetPool& targets, ProgramCache& programs,
+                 const Scene& scene, const FrameSettings& settings, bool finishes)
     : api_(&api),
       sample_count_(settings.samples),
       output_(settings.output),
       background_(shown_background(scene.background, settings.output)),
       exposure_(scene.exposure),
-      samples_(api, settings.width, settings.height, format_of(drawn_coding(settings, finishes)),
-               settings.samples),
+      samples_(targets.take(settings.width, settings.height,
+                            format_of(drawn_coding(settings, finishes)), settings.samples)),
       nothing_(api) {
     if (settings.output == OutputCoding::half) {
         throw InvalidInput("half is what a finishing pass reads, not a picture's coding");
@@ -64,12 +60,12 @@ Picture::Picture(const gl::Api& api, const Scene& scene, const FrameSettings& se
         throw InvalidInput("samples are to be averaged, but the plan has no finishing pass");
     }
     if (!finishes) return;
-    finished_.emplace(api, settings.width, settings.height, format_of(output_), 1);
-    finishing_.emplace(finishing_program(api, scene, output_, settings.samples));
+    finished_ = targets.take(settings.width, settings.height, format_of(output_), 1);
+    finishing_ = programs.get("picture", finishing_steps(scene, output_, settings.samples));
 }
 
 void Picture::begin() const {
-    samples_.bind();
+    samples_->bind();
     glm::vec4 color(0.0F);
     if (!finishing_) {
         color = background_;
@@ -99,7 +95,7 @@ void Picture::finish() const {
         finishing_->set("exposure", exposure_);
         gl->ActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(TextureUnit::drawn));
         const GLenum target = sample_count_ > 1 ? GL_TEXTURE_2D_MULTISAMPLE : GL_TEXTURE_2D;
-        gl->BindTexture(target, samples_.color().name());
+        gl->BindTexture(target, samples_->color().name());
         gl->BindSampler(static_cast<GLuint>(TextureUnit::drawn), 0);
         gl->BindVertexArray(nothing_.name());
         gl->DrawArrays(GL_TRIANGLES, 0, 3);
@@ -110,7 +106,7 @@ void Picture::finish() const {
 
 Image Picture::read() const {
     const ColorSpace space = output_ == OutputCoding::srgb ? ColorSpace::srgb : ColorSpace::linear;
-    return (finished_ ? *finished_ : samples_).read(space);
+    return target().read(space);
 }
 
 }  // namespace relief

@@ -5,12 +5,12 @@
 #pragma once
 
 #include <glm/glm.hpp>
-#include <optional>
+#include <memory>
 
-#include "gl/framebuffer.h"
-#include "gl/program.h"
 #include "relief/shade/frame_settings.h"
 #include "relief/shade/scene.h"
+#include "render/program_cache.h"
+#include "render/target_pool.h"
 
 namespace relief {
 
@@ -24,7 +24,8 @@ class Picture {
     /// \param finishes  the plan's finishing_pass
     /// \throws InvalidInput, GpuError as RenderTarget does; InvalidInput if samples are to be
     ///         averaged without a finishing pass
-    Picture(const gl::Api& api, const Scene& scene, const FrameSettings& settings, bool finishes);
+    Picture(const gl::Api& api, TargetPool& targets, ProgramCache& programs, const Scene& scene,
+            const FrameSettings& settings, bool finishes);
 
     /// Makes it the target of draws, cleared.
     void begin() const;
@@ -34,19 +35,26 @@ class Picture {
 
     [[nodiscard]] Image read() const;
 
+    /// Where the finished picture is: one level, row 0 at the bottom.
+    [[nodiscard]] GLuint texture() const { return target().color().name(); }
+
     [[nodiscard]] float aspect() const {
-        return static_cast<float>(samples_.width()) / static_cast<float>(samples_.height());
+        return static_cast<float>(samples_->width()) / static_cast<float>(samples_->height());
     }
 
   private:
+    [[nodiscard]] const gl::RenderTarget& target() const {
+        return finished_ ? *finished_ : *samples_;
+    }
+
     const gl::Api* api_;
     int sample_count_;
     OutputCoding output_;
     glm::vec4 background_;  ///< As it is to be seen, linear, alpha multiplied in.
     float exposure_;
-    gl::RenderTarget samples_;
-    std::optional<gl::RenderTarget> finished_;
-    std::optional<gl::LinkedProgram> finishing_;
+    std::shared_ptr<const gl::RenderTarget> samples_;
+    std::shared_ptr<const gl::RenderTarget> finished_;
+    std::shared_ptr<const gl::LinkedProgram> finishing_;
     gl::VertexArray nothing_;  ///< Core OpenGL draws only with a vertex array.
 };
 

@@ -71,18 +71,37 @@ gl::LinkedProgram link(const gl::Api& api, const std::string& name, const Shader
     }
 }
 
-const DrawProgram& ProgramCache::get(const Features& features) {
-    std::unique_ptr<DrawProgram>& entry = programs_[features];
+std::shared_ptr<const DrawProgram> ProgramCache::get(const Features& features) {
+    std::shared_ptr<const DrawProgram> entry;
+    if (const auto known = programs_.find(features); known != programs_.end())
+        entry = known->second;
     if (!entry) {
         Stopwatch stopwatch;
         const SurfaceProgram source = surface_program(features);
-        entry = std::make_unique<DrawProgram>(
+        entry = std::make_shared<const DrawProgram>(
             DrawProgram{link(*api_, fmt::format("surface ({})", describe(features)), source.vertex,
                              source.fragment),
                         planned_interface(features)});
+        programs_.emplace(features, entry);
         milliseconds_ += stopwatch.lap();
     }
-    return *entry;
+    return entry;
+}
+
+std::shared_ptr<const gl::LinkedProgram> ProgramCache::get(const std::string& name,
+                                                           const ShaderSteps& steps) {
+    const auto known = others_.find({name, steps});
+    if (known != others_.end()) return known->second;
+    auto program = std::make_shared<const gl::LinkedProgram>(
+        link(*api_, name, assemble(name + ".vert.glsl", steps, {}),
+             assemble(name + ".frag.glsl", steps, {})));
+    others_.emplace(std::pair(name, steps), program);
+    return program;
+}
+
+void ProgramCache::clear() {
+    programs_.clear();
+    others_.clear();
 }
 
 }  // namespace relief

@@ -68,16 +68,24 @@ class ProgramCache {
     explicit ProgramCache(const gl::Api& api) : api_(&api) {}
 
     /// The program for these (canonical) features, linked at first use. \throws GpuError
-    const DrawProgram& get(const Features& features);
+    std::shared_ptr<const DrawProgram> get(const Features& features);
+
+    /// A program that is no surface's: NAME.vert.glsl and NAME.frag.glsl, likewise.
+    std::shared_ptr<const gl::LinkedProgram> get(const std::string& name, const ShaderSteps& steps);
+
+    /// Whoever holds a program keeps it.
+    void clear();
 
     [[nodiscard]] std::size_t size() const { return programs_.size(); }
 
-    /// Wall-clock milliseconds that assembling, compiling and linking took so far.
+    /// Wall-clock milliseconds that assembling, compiling and linking of surfaces' programs took
+    /// so far.
     [[nodiscard]] double milliseconds() const { return milliseconds_; }
 
   private:
     const gl::Api* api_;
-    std::map<Features, std::unique_ptr<DrawProgram>> programs_;
+    std::map<Features, std::shared_ptr<const DrawProgram>> programs_;
+    std::map<std::pair<std::string, ShaderSteps>, std::shared_ptr<const gl::LinkedProgram>> others_;
     double milliseconds_ = 0;
 };
 

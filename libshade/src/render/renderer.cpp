@@ -9,16 +9,16 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
+#include <set>
 #include <utility>
 
 #include "relief/mesh/error.h"
 #include "render/draw_values.h"
-#include "render/environment.h"
-#include "render/gpu_mesh.h"
+#include "render/gpu_cache.h"
 #include "render/light_storage.h"
 #include "render/material_textures.h"
 #include "render/picture.h"
-#include "render/program_cache.h"
 #include "render/scene_textures.h"
 #include "render/sorted_triangles.h"
 #include "render/stopwatch.h"
@@ -29,7 +29,7 @@ namespace {
 
 /// Everything that one draw binds and sets.
 struct Draw {
-    const DrawProgram* program = nullptr;
+    std::shared_ptr<const DrawProgram> program;
     Features features;
     std::size_t instance = 0;
     std::size_t mesh = 0;
@@ -57,16 +57,17 @@ Planned planned(const Scene& scene, const DrawPlan& draw) {
             scene.meshes[scene.instances[draw.instance].mesh]};
 }
 
-DecodedImages decode_planned(const Scene& scene, const FramePlan& plan) {
-    DecodedImages images;
+ImagePurpose purpose_of(const UsedTexture& used) {
+    return {used.use, used.unit == TextureUnit::normal_texture};
+}
+
+void want_planned(SceneTextures& textures, const Scene& scene, const FramePlan& plan) {
     for (const DrawPlan& draw : plan.draws) {
         const Planned p = planned(scene, draw);
         for (const UsedTexture& used : used_textures(p.features, p.material, p.mesh)) {
-            if (used.texture != nullptr) images.want(used.texture->image, used.use);
+            if (used.texture != nullptr) textures.want(used.texture->image, purpose_of(used));
         }
     }
-    images.decode_all(scene.images);
-    return images;
 }
 
 /// Counts what a material asks for and a mesh without texture coordinates cannot show.
@@ -88,13 +89,14 @@ std::array<std::size_t, 4> population(const Scene& scene) {
 }  // namespace
 
 struct Renderer::Implementation {
+    /// \param given  absent: a cache of its own
     Implementation(const Context& context, const Scene& scene, FramePlan frame_plan,
-                   const FrameSettings& settings, Report& report);
+                   const FrameSettings& settings, RenderCache* given, Report& report);
 
     void prepare_meshes(const Scene& scene, Report& report);
-    void prepare_draws(const Scene& scene, const DecodedImages& images);
-    Draw prepare_draw(const Scene& scene, const DrawPlan& plan_of_draw,
-                      const DecodedImages& images);
+    void prepare_draws(const Scene& scene);
+    Draw prepare_draw(const Scene& scene, const DrawPlan& plan_of_draw);
+    void bind_planned_textures(Draw& draw, const Planned& p);
     void set_environment_values(Draw& draw) const;
     void move(const Scene& scene);
     void bind_textures(const Draw& draw) const;
@@ -104,74 +106,67 @@ struct Renderer::Implementation {
     void draw_frame(const Camera& camera);
 
     const gl::Api& api;
+    std::unique_ptr<RenderCache> own;  ///< Where none was given.
+    RenderCache::Implementation& cache;
     FramePlan plan;
     std::array<std::size_t, 4> things;
     FrameTimes times;
     Picture picture;
-    ProgramCache programs;
+    std::set<Features> programs;
     SceneTextures textures;
     LightStorage lights;
-    std::vector<GpuMesh> meshes;
-    std::vector<Draw> draws;  ///< Opaque ones first.
+    std::map<std::size_t, std::shared_ptr<GpuMesh>> meshes;  ///< By index; those that are drawn.
+    std::vector<Draw> draws;                                 ///< Opaque ones first.
     std::optional<EnvironmentMaps> environment;
     std::optional<Skybox> skybox;
 };
 
 Renderer::Implementation::Implementation(const Context& context, const Scene& scene,
                                          FramePlan frame_plan, const FrameSettings& settings,
-                                         Report& report)
+                                         RenderCache* given, Report& report)
     : api(context.api()),
+      own(given == nullptr ? std::make_unique<RenderCache>(context) : nullptr),
+      cache((given == nullptr ? *own : *given).implementation()),
       plan(std::move(frame_plan)),
       things(population(scene)),
-      picture(api, scene, settings, plan.finishing_pass),
-      programs(api),
-      textures(api) {
+      picture(api, cache.targets, cache.programs, scene, settings, plan.finishing_pass),
+      textures(cache.textures) {
     report_missing_texcoords(scene, plan, report);
 
     Stopwatch stopwatch;
-    const DecodedImages images = decode_planned(scene, plan);
-    std::vector<Image> surroundings;
-    if (plan.environment_map && scene.environment) {
-        surroundings = decode_environment(*scene.environment);
-    }
+    want_planned(textures, scene, plan);
+    textures.decode(scene.images);
+    const bool shows_environment = plan.environment_map && scene.environment.has_value();
+    if (shows_environment) cache.environments.decode(*scene.environment);
     times.decode_images = stopwatch.lap();
 
+    const double linked_before = cache.programs.milliseconds();
     prepare_meshes(scene, report);
-    textures.upload(images, scene.images);
-    environment.emplace(api, scene, plan, surroundings, report);
+    textures.upload(scene.images);
+    environment.emplace(api, cache.environments, scene, plan, shows_environment, report);
     if (plan.skybox) {
-        skybox.emplace(api, scene, drawn_coding(settings, plan.finishing_pass));
+        skybox.emplace(api, cache.programs, scene, drawn_coding(settings, plan.finishing_pass));
     }
-    prepare_draws(scene, images);
+    prepare_draws(scene);
     api->Finish();
     api.check("preparing the scene");
-    times.link = programs.milliseconds();
+    times.link = cache.programs.milliseconds() - linked_before;
     times.prepare = stopwatch.lap();
 }
 
 void Renderer::Implementation::prepare_meshes(const Scene& scene, Report& report) {
-    std::vector<PlannedStreams> streams(scene.meshes.size());
-    for (const DrawPlan& draw : plan.draws) {
+    std::map<std::size_t, PlannedStreams> streams;
+    for (const DrawPlan& draw : plan.draws)
         streams[scene.instances[draw.instance].mesh].add(planned_interface(draw.features));
-    }
-    for (std::size_t i = 0; i < scene.meshes.size(); ++i) {
-        const Mesh& mesh = scene.meshes[i];
-        const bool lacks_normals = streams[i].normals && mesh.normals.empty();
-        const bool lacks_tangents =
-            streams[i].tangents && mesh.tangents.empty() && !mesh.texcoords.empty();
-        if (lacks_normals || lacks_tangents) {
-            meshes.emplace_back(api, with_planned_frames(mesh, streams[i], report), streams[i]);
-        } else {
-            meshes.emplace_back(api, mesh, streams[i]);
-        }
-    }
+    for (const auto& [mesh, planned] : streams)
+        meshes.emplace(mesh, cache.meshes.get(scene.meshes[mesh], planned, report));
 }
 
-void Renderer::Implementation::prepare_draws(const Scene& scene, const DecodedImages& images) {
+void Renderer::Implementation::prepare_draws(const Scene& scene) {
     for (const DrawPlan& draw : plan.draws) {
         if (draw.range.triangle_count == 0) continue;
         lights.add(api, scene, draw.features);
-        draws.push_back(prepare_draw(scene, draw, images));
+        draws.push_back(prepare_draw(scene, draw));
     }
     // Neighbours with one program need no change of it; the depth buffer makes order invisible.
     std::stable_sort(draws.begin(), draws.end(), [](const Draw& a, const Draw& b) {
@@ -180,12 +175,12 @@ void Renderer::Implementation::prepare_draws(const Scene& scene, const DecodedIm
     });
 }
 
-Draw Renderer::Implementation::prepare_draw(const Scene& scene, const DrawPlan& plan_of_draw,
-                                            const DecodedImages& images) {
+Draw Renderer::Implementation::prepare_draw(const Scene& scene, const DrawPlan& plan_of_draw) {
     const Planned p = planned(scene, plan_of_draw);
     const Instance& instance = scene.instances[plan_of_draw.instance];
     Draw draw;
-    draw.program = &programs.get(p.features);
+    draw.program = cache.programs.get(p.features);
+    programs.insert(p.features);
     draw.features = p.features;
     draw.instance = plan_of_draw.instance;
     draw.mesh = instance.mesh;
@@ -194,23 +189,27 @@ Draw Renderer::Implementation::prepare_draw(const Scene& scene, const DrawPlan& 
     set_material(draw.values, p.material, scene);
     set_environment_values(draw);
     set_place(draw.values, instance.world_from_object);
+    bind_planned_textures(draw, p);
+    if (is_blended(draw)) draw.sorted = std::make_unique<SortedTriangles>(p.mesh, draw.range);
+    return draw;
+}
+
+void Renderer::Implementation::bind_planned_textures(Draw& draw, const Planned& p) {
     for (const UsedTexture& used : used_textures(p.features, p.material, p.mesh)) {
         BoundTexture& bound = draw.textures[static_cast<std::size_t>(used.unit)];
         const bool is_normal_map = used.unit == TextureUnit::normal_texture;
         if (used.texture == nullptr) {
-            bound = is_normal_map ? textures.flat() : textures.white();
+            bound = is_normal_map ? cache.textures.flat() : cache.textures.white();
             continue;
         }
-        bound = textures.get(*used.texture, used.use);
+        const ImagePurpose purpose = purpose_of(used);
+        bound = textures.bound(*used.texture, purpose);
         if (is_normal_map) {
-            const Image& image = images.get(used.texture->image, used.use);
+            const GpuImage& image = textures.image(used.texture->image, purpose);
             const NormalMap& map = *p.material.normal_map;
-            const FlatCode flat = flat_code_of(map, image, scene.images[used.texture->image]);
-            set_normal_map(draw.values, map, image.bits(), flat);
+            set_normal_map(draw.values, map, image.bits, map.flat.value_or(image.flat));
         }
     }
-    if (is_blended(draw)) draw.sorted = std::make_unique<SortedTriangles>(p.mesh, draw.range);
-    return draw;
 }
 
 void Renderer::Implementation::set_environment_values(Draw& draw) const {
@@ -255,13 +254,13 @@ void Renderer::Implementation::issue(Draw& draw, const glm::dmat4& to_clip, cons
     bind_textures(draw);
     set_state(draw);
     if (!draw.sorted) {
-        meshes[draw.mesh].draw(api, draw.range);
+        meshes.at(draw.mesh)->draw(api, draw.range);
         return;
     }
     const glm::vec3 farther_world(-camera.world_from_view[2]);
     const glm::vec3 farther_object =
         glm::transpose(glm::mat3(values.world_from_object)) * farther_world;
-    meshes[draw.mesh].draw(api, draw.sorted->sort(farther_object));
+    meshes.at(draw.mesh)->draw(api, draw.sorted->sort(farther_object));
 }
 
 /// Blended draws over all others, those whose centre is farthest first. They hide nothing, so they
@@ -357,12 +356,19 @@ FramePlan checked_plan(const Scene& scene, FramePlan plan, const FrameSettings& 
 Renderer::Renderer(const Context& context, const Scene& scene, const FrameSettings& settings,
                    Report& report)
     : implementation_(std::make_unique<Implementation>(
-          context, scene, checked_plan(scene, settings), settings, report)) {}
+          context, scene, checked_plan(scene, settings), settings, nullptr, report)) {}
 
 Renderer::Renderer(const Context& context, const Scene& scene, FramePlan plan,
                    const FrameSettings& settings, Report& report)
     : implementation_(std::make_unique<Implementation>(
-          context, scene, checked_plan(scene, std::move(plan), settings), settings, report)) {}
+          context, scene, checked_plan(scene, std::move(plan), settings), settings, nullptr,
+          report)) {}
+
+Renderer::Renderer(RenderCache& cache, const Context& context, const Scene& scene, FramePlan plan,
+                   const FrameSettings& settings, Report& report)
+    : implementation_(std::make_unique<Implementation>(
+          context, scene, checked_plan(scene, std::move(plan), settings), settings, &cache,
+          report)) {}
 
 Renderer::~Renderer() = default;
 
@@ -379,18 +385,23 @@ void Renderer::move(const Scene& scene) {
     implementation_->move(scene);
 }
 
-Frame Renderer::draw(const Camera& camera) {
+DrawnFrame Renderer::draw_only(const Camera& camera) {
     validate(camera);
     Implementation& self = *implementation_;
-    Frame frame;
     Stopwatch stopwatch;
     self.draw_frame(camera);
     self.times.draw = stopwatch.lap();
-    frame.image = self.picture.read();
-    self.times.read_back = stopwatch.lap();
-    frame.times = self.times;
-    frame.programs = self.programs.size();
-    frame.textures = self.textures.size() + self.environment->texture_count();
+    self.times.read_back = 0;
+    return {self.picture.texture(), self.times, self.programs.size(),
+            self.textures.size() + self.environment->texture_count()};
+}
+
+Frame Renderer::draw(const Camera& camera) {
+    const DrawnFrame drawn = draw_only(camera);
+    Frame frame{{}, drawn.times, drawn.programs, drawn.textures};
+    Stopwatch stopwatch;
+    frame.image = implementation_->picture.read();
+    frame.times.read_back = stopwatch.lap();
     return frame;
 }
 

@@ -1,72 +1,50 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// The images that the plan calls for, decoded on all threads and uploaded once each.
-/// Tests: tests/shade/render/renderer_test.cpp.
+/// The images that one scene's plan calls for: those that a cache does not have are decoded on all
+/// threads and uploaded once each. Tests: tests/shade/render/renderer_test.cpp.
 #pragma once
 
 #include <map>
-#include <optional>
-#include <tuple>
+#include <memory>
 #include <utility>
 #include <vector>
 
-#include "gl/texture.h"
 #include "relief/mesh/image.h"
-#include "relief/mesh/image_file.h"
 #include "relief/shade/scene.h"
+#include "render/texture_cache.h"
 
 namespace relief {
 
-/// Images of a scene in memory, by what they are read for.
-class DecodedImages {
-  public:
-    /// \throws FileError if one cannot be read
-    void want(std::size_t image, ImageUse use) { images_.try_emplace({image, use}); }
-    void decode_all(const std::vector<ImageSource>& sources);
-
-    [[nodiscard]] const Image& get(std::size_t image, ImageUse use) const {
-        return images_.at({image, use});
-    }
-    [[nodiscard]] const auto& all() const { return images_; }
-
-  private:
-    std::map<std::pair<std::size_t, ImageUse>, Image> images_;
-};
-
-/// A texture and its sampler, to be bound to one unit.
-struct BoundTexture {
-    GLuint texture = 0;
-    GLuint sampler = 0;
-};
-
-/// Textures and samplers, and the neutral ones that stand in where a plan names a texture that a
-/// material does not have: white, and flat.
 class SceneTextures {
   public:
-    explicit SceneTextures(const gl::Api& api) : api_(&api) {}
+    explicit SceneTextures(TextureCache& cache) : cache_(&cache) {}
 
-    /// Uploads every decoded image. \throws GpuError
-    void upload(const DecodedImages& images, const std::vector<ImageSource>& sources);
+    void want(std::size_t image, const ImagePurpose& purpose) {
+        images_.try_emplace({image, purpose});
+    }
 
-    BoundTexture get(const Texture& texture, ImageUse use);
-    BoundTexture white();
-    BoundTexture flat();  ///< Looks up as (0, 0, 1).
+    /// Decodes what is wanted and not in the cache. \throws FileError if one cannot be read
+    void decode(const std::vector<ImageSource>& sources);
 
-    [[nodiscard]] std::size_t size() const { return textures_.size(); }
+    /// Uploads what was decoded. \throws GpuError
+    void upload(const std::vector<ImageSource>& sources);
+
+    [[nodiscard]] const GpuImage& image(std::size_t image, const ImagePurpose& purpose) const {
+        return *images_.at({image, purpose});
+    }
+    [[nodiscard]] BoundTexture bound(const Texture& texture, const ImagePurpose& purpose) const {
+        return {image(texture.image, purpose).texture.name(),
+                cache_->sampler(texture.wrap_u, texture.wrap_v, texture.filter)};
+    }
+
+    [[nodiscard]] std::size_t size() const { return images_.size(); }
 
   private:
-    GLuint sampler(TextureWrap u, TextureWrap v, TextureFilter filter);
-    BoundTexture constant(std::optional<gl::Texture>& texture, float rg, float b, const char* name);
+    using Key = std::pair<std::size_t, ImagePurpose>;
 
-    const gl::Api* api_;
-    std::map<std::pair<std::size_t, ImageUse>, gl::Texture> textures_;
-    std::map<std::tuple<TextureWrap, TextureWrap, TextureFilter>, gl::Sampler> samplers_;
-    std::optional<gl::Texture> white_;
-    std::optional<gl::Texture> flat_;
+    TextureCache* cache_;
+    std::map<Key, std::shared_ptr<const GpuImage>> images_;
+    std::vector<std::pair<Key, Image>> decoded_;
 };
-
-/// Which stored code of a normal map stands for zero: as the material says, as the file's text
-/// says, or as the image looks.
-FlatCode flat_code_of(const NormalMap& map, const Image& image, const ImageSource& source);
 
 }  // namespace relief

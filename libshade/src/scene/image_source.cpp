@@ -30,4 +30,10 @@ Image decode(const ImageSource& source, ImageUse use) {
     return std::visit(Decoder{source.name, use}, source.source);
 }
 
+FlatCode detected_flat_code(const ImageSource& source, const Image& image) {
+    if (const auto* file = std::get_if<std::filesystem::path>(&source.source))
+        return detect_flat_code(image, read_image_info(*file).metadata);
+    return detect_flat_code(image);
+}
+
 }  // namespace relief

@@ -6,6 +6,7 @@
 
 #include "relief/mesh/image.h"
 #include "relief/mesh/image_file.h"
+#include "relief/mesh/normal_map.h"
 #include "relief/shade/scene.h"
 
 namespace relief {
@@ -14,5 +15,9 @@ namespace relief {
 ///         numbers are taken as numbers whatever its colour space says
 /// \throws FileError as read_image does
 Image decode(const ImageSource& source, ImageUse use);
+
+/// Which stored code of a normal map stands for zero: as the file's text says, or as the image
+/// looks. \param image  decoded from the source
+FlatCode detected_flat_code(const ImageSource& source, const Image& image);
 
 }  // namespace relief

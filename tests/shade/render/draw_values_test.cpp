@@ -121,7 +121,7 @@ TEST_P(DrawUniforms, HaveAValueForEveryPlannedName) {
     ProgramCache cache(api());
     const DrawValues values;
     for (const Features& f : test::covering_features()) {
-        const DrawProgram& program = cache.get(f);
+        const DrawProgram& program = *cache.get(f);
         program.linked.use();
         for (const std::string& name : program.planned.uniforms) {
             EXPECT_TRUE(set_uniform(program.linked, name, values)) << name;

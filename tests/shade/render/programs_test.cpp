@@ -30,7 +30,7 @@ TEST_P(Programs, OfACoveringSetTakeExactlyWhatIsPlanned) {
     for (const Features& f : test::covering_features()) {
         SCOPED_TRACE(describe(f));
         ProgramCache cache(api());
-        const DrawProgram& program = cache.get(f);
+        const DrawProgram& program = *cache.get(f);
         const gl::ProgramInterface& actual = program.linked.interface();
         const PlannedInterface active{names(actual.attributes), names(actual.uniforms),
                                       actual.uniform_blocks, names(actual.samplers)};
@@ -46,10 +46,10 @@ TEST_P(Programs, AreSharedByEqualFeatures) {
     Features f;
     f.directional_lights = 1;
     f.diffuse = true;
-    const DrawProgram* first = &cache.get(f);
-    EXPECT_EQ(first, &cache.get(Features(f)));
+    const auto first = cache.get(f);
+    EXPECT_EQ(first, cache.get(Features(f)));
     f.directional_lights = 2;
-    EXPECT_NE(first, &cache.get(f));
+    EXPECT_NE(first, cache.get(f));
     EXPECT_EQ(cache.size(), 2U);
 }
 

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <memory>
 #include <vector>
 
 #include "relief/shade/scene.h"
@@ -15,19 +16,31 @@ TEST(Shared, CopiesAreOneValueUntilOneIsEdited) {
     Shared<std::vector<int>> first = std::vector<int>{1, 2, 3};
     Shared<std::vector<int>> second = first;
     EXPECT_EQ(first->data(), second->data());
-    EXPECT_TRUE(first.is_same(second));
+    const auto identity = first.identity();
+    EXPECT_TRUE(identity.is(second));
     second.edit()[0] = 7;
     EXPECT_EQ(first->at(0), 1);
     EXPECT_EQ(second->at(0), 7);
-    EXPECT_FALSE(first.is_same(second));
+    EXPECT_TRUE(identity.is(first));
+    EXPECT_FALSE(identity.is(second));
 }
 
 TEST(Shared, AloneIsEditedInPlace) {
     Shared<std::vector<int>> alone = std::vector<int>{1, 2, 3};
+    const auto identity = alone.identity();
     const int* before = alone->data();
     alone.edit()[2] = 5;
     EXPECT_EQ(alone->data(), before);
+    EXPECT_FALSE(identity.is(alone));
     EXPECT_EQ(*alone, (std::vector<int>{1, 2, 5}));
+}
+
+TEST(Shared, AnIdentityIsNotTakenForThatOfALaterValue) {
+    auto first = std::make_unique<Shared<int>>(1);
+    const auto identity = first->identity();
+    first.reset();
+    for (int i = 0; i < 100; ++i)
+        EXPECT_FALSE(identity.is(Shared<int>(1)));
 }
 
 TEST(Shared, ACopiedSceneHasItsMeshesInCommon) {

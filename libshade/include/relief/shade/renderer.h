@@ -10,6 +10,7 @@
 #include "relief/shade/context.h"
 #include "relief/shade/effects.h"
 #include "relief/shade/frame_settings.h"
+#include "relief/shade/render_cache.h"
 #include "relief/shade/scene.h"
 
 namespace relief {
@@ -31,6 +32,16 @@ struct Frame {
     FrameTimes times;
     std::size_t programs = 0;  ///< Linked for this scene.
     std::size_t textures = 0;  ///< Uploaded for this scene.
+};
+
+/// A frame that stays on the GPU.
+struct DrawnFrame {
+    /// OpenGL's name of the picture, a 2D texture of one level, row 0 at the bottom, coded as the
+    /// settings say; until the renderer draws again or goes.
+    unsigned texture = 0;
+    FrameTimes times;
+    std::size_t programs = 0;
+    std::size_t textures = 0;
 };
 
 /// Holds one scene on the GPU and draws it.
@@ -55,6 +66,9 @@ class Renderer {
     /// finishing pass that samples or blending need is put in.
     Renderer(const Context& context, const Scene& scene, FramePlan plan,
              const FrameSettings& settings, Report& report);
+    /// The same, with what renderers before it left in the cache, which keeps what this one makes.
+    Renderer(RenderCache& cache, const Context& context, const Scene& scene, FramePlan plan,
+             const FrameSettings& settings, Report& report);
     ~Renderer();
     Renderer(const Renderer&) = delete;
     Renderer& operator=(const Renderer&) = delete;
@@ -69,6 +83,9 @@ class Renderer {
     /// Draws the scene as the camera sees it. \throws InvalidInput if the camera is not valid
     /// (scene.h); GpuError
     Frame draw(const Camera& camera);
+
+    /// The same without reading the picture back.
+    DrawnFrame draw_only(const Camera& camera);
 
   private:
     struct Implementation;

@@ -4,6 +4,7 @@
 /// numbers. Tests: tests/shade/scene/shared_test.cpp.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <utility>
 
@@ -14,26 +15,48 @@ namespace relief {
 /// Reading from several threads needs no lock, also while another thread edits its own copy.
 template <typename T>
 class Shared {
-  public:
-    Shared() : value_(std::make_shared<T>()) {}
-    // Wherever a T is taken, so that sharing is no business of those who make one.
-    Shared(T value) : value_(std::make_shared<T>(std::move(value))) {}  // NOLINT
+    struct Held {
+        T value;
+        std::uint64_t edits = 0;
+    };
 
-    const T& operator*() const { return *value_; }
-    const T* operator->() const { return value_.get(); }
-    operator const T&() const { return *value_; }  // NOLINT: likewise where one is read.
+  public:
+    Shared() : held_(std::make_shared<Held>()) {}
+    // Wherever a T is taken, so that sharing is no business of those who make one.
+    Shared(T value) : held_(std::make_shared<Held>(Held{std::move(value)})) {}  // NOLINT
+
+    const T& operator*() const { return held_->value; }
+    const T* operator->() const { return &held_->value; }
+    operator const T&() const { return held_->value; }  // NOLINT: likewise where one is read.
 
     /// To change it; copies keep what they have, for which it is copied if there are any.
     T& edit() {
-        if (value_.use_count() > 1) value_ = std::make_shared<T>(*value_);
-        return *value_;
+        if (held_.use_count() > 1) held_ = std::make_shared<Held>(*held_);
+        ++held_->edits;
+        return held_->value;
     }
 
-    /// Whether both are one value, not only equal ones.
-    [[nodiscard]] bool is_same(const Shared& other) const { return value_ == other.value_; }
+    /// Tells an unedited value from all others, without keeping it in memory.
+    class Identity {
+      public:
+        explicit Identity(const Shared& shared)
+            : held_(shared.held_), edits_(shared.held_->edits) {}
+
+        /// Whether this is the very value, not only an equal one, and not edited since.
+        [[nodiscard]] bool is(const Shared& shared) const {
+            const bool is_other =
+                held_.owner_before(shared.held_) || shared.held_.owner_before(held_);
+            return !is_other && edits_ == shared.held_->edits;
+        }
+
+      private:
+        std::weak_ptr<const Held> held_;
+        std::uint64_t edits_;
+    };
+    [[nodiscard]] Identity identity() const { return Identity(*this); }
 
   private:
-    std::shared_ptr<T> value_;
+    std::shared_ptr<Held> held_;
 };
 
 }  // namespace relief
