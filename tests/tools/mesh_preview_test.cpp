@@ -175,7 +175,7 @@ TEST(MeshPreview, LargeMapsAreMadeSmallerByMeansOfNormals) {
     write_image(map, encode_normal_map(normals, format, report));
     EXPECT_EQ(std::get<std::filesystem::path>(preview_image(map, format, 7).source), map);
     const ImageSource smaller = preview_image(map, format, 4);
-    const Image& image = std::get<Image>(smaller.source);
+    const Image& image = std::get<Shared<Image>>(smaller.source);
     ASSERT_EQ(image.width, 4);
     ASSERT_EQ(image.height, 2);
     // Of two and two: (0.3, 0.3, 0.8), made unit; green up again, and (n + 1) / 2.
