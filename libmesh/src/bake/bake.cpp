@@ -216,6 +216,16 @@ BakeDistances Baker::distances() const {
     return implementation_->parts.largest_distances();
 }
 
+LayerBounds Baker::bounds(const BakeLayers& layers) const {
+    LayerBounds bounds = implementation_->parts.bounds(layers);
+    if (layers.heights) {
+        const BakeDistances reach = distances();
+        bounds.height =
+            std::max({reach.offset, reach.max_distance, implementation_->low.cage_reach()});
+    }
+    return bounds;
+}
+
 BakeResult Baker::bake(const BakeMapOptions& map,
                        const std::function<void(const BakedRows& rows)>& take,
                        Report& report) const {

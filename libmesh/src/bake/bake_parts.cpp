@@ -82,6 +82,22 @@ BakeParts::BakeParts(std::span<const BakePart> parts, const Mesh& low, const Bak
     }
 }
 
+LayerBounds BakeParts::bounds(const BakeLayers& layers) const {
+    LayerBounds bounds;
+    for (const auto& surface : surfaces_) {
+        if (layers.curvature) {
+            const HighSurface::CurvatureRange range = surface->high.curvature_range();
+            bounds.curvature = std::max(bounds.curvature, range.greatest);
+            bounds.usual_curvature = std::max(bounds.usual_curvature, range.usual);
+        }
+        if (layers.positions) {
+            bounds.position = std::max(bounds.position,
+                                       surface->high.largest_coordinate(layers.position_from_mesh));
+        }
+    }
+    return bounds;
+}
+
 BakeDistances BakeParts::largest_distances() const {
     BakeDistances largest;
     for (const auto& surface : surfaces_) {

@@ -39,6 +39,8 @@ class BakeParts {
     }
 
     [[nodiscard]] BakeDistances largest_distances() const;
+    /// Of curvature and positions.
+    [[nodiscard]] LayerBounds bounds(const BakeLayers& layers) const;
 
   private:
     std::vector<std::unique_ptr<SeenSurface>> surfaces_;

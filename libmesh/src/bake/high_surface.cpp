@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "bake/surface_texture.h"
 #include "bake/texel_frame.h"
@@ -13,6 +14,9 @@
 
 namespace relief {
 namespace {
+
+constexpr double usual_share = 0.99;  // Of the area.
+constexpr std::size_t most_asked = 250'000;
 
 const HighDetail* detail_of(const Mesh& mesh, const BakeOptions& options) {
     for (const HighDetail& detail : options.details) {
@@ -180,18 +184,53 @@ glm::dvec3 HighSurface::color(const RayHit& hit) const {
 }
 
 HighSurface::CurvatureRange HighSurface::curvature_range() const {
-    std::vector<float> sizes;
-    for (const Entry& entry : entries_) {
-        for (const float value : entry.curvature)
-            sizes.push_back(std::abs(value));
-    }
-    if (sizes.empty()) return {};
     CurvatureRange range;
-    range.greatest = static_cast<double>(*std::max_element(sizes.begin(), sizes.end()));
-    const auto usual = sizes.begin() + static_cast<std::ptrdiff_t>((sizes.size() - 1) * 99 / 100);
-    std::nth_element(sizes.begin(), usual, sizes.end());
-    range.usual = static_cast<double>(*usual);
+    std::vector<std::pair<float, double>> sizes;  // Of each corner, with its share of the area.
+    double area = 0.0;
+    for (std::size_t i = 0; i < entries_.size(); ++i) {
+        const Entry& entry = entries_[i];
+        for (const float value : entry.curvature)
+            range.greatest = std::max(range.greatest, static_cast<double>(std::abs(value)));
+        // Of many triangles some all over.
+        const std::size_t stride = entry.mesh->triangles.size() / most_asked + 1;
+        for (std::size_t triangle = 0; triangle < entry.mesh->triangles.size();
+             triangle += stride) {
+            const auto corners = scene_->corners(static_cast<std::uint32_t>(i),
+                                                 static_cast<std::uint32_t>(triangle));
+            const double share =
+                glm::length(glm::cross(corners[1] - corners[0], corners[2] - corners[0]));
+            if (entry.curvature.empty() || !std::isfinite(share)) continue;
+            for (int corner = 0; corner < 3; ++corner) {
+                const std::uint32_t vertex = entry.mesh->triangles[triangle][corner];
+                sizes.emplace_back(std::abs(entry.curvature[vertex]), share);
+                area += share;
+            }
+        }
+    }
+    std::sort(sizes.begin(), sizes.end());
+    double below = 0.0;
+    for (const auto& [size, share] : sizes) {
+        range.usual = static_cast<double>(size);
+        below += share;
+        if (below >= usual_share * area) break;
+    }
     return range;
+}
+
+double HighSurface::largest_coordinate(const glm::dmat4& axes_from_mesh) const {
+    double largest = 0.0;
+    for (const Entry& entry : entries_) {
+        const Bounds box = bounds_of(*entry.mesh);
+        if (box.empty()) continue;
+        for (int corner = 0; corner < 8; ++corner) {
+            const glm::dvec4 place((corner & 1) != 0 ? box.max.x : box.min.x,
+                                   (corner & 2) != 0 ? box.max.y : box.min.y,
+                                   (corner & 4) != 0 ? box.max.z : box.min.z, 1.0);
+            const glm::dvec3 size = glm::abs(glm::dvec3(axes_from_mesh * place));
+            largest = std::max({largest, size.x, size.y, size.z});
+        }
+    }
+    return largest;
 }
 
 }  // namespace relief

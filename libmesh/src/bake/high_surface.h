@@ -42,12 +42,15 @@ class HighSurface {
     /// If wanted: linear RGB; white where the mesh has none.
     [[nodiscard]] glm::dvec3 color(const RayHit& hit) const;
 
-    /// Over the vertices of all meshes, if wanted: what most of them do not exceed, and none does.
+    /// Over all meshes, if wanted: what most of their area does not exceed, and none of it does.
     struct CurvatureRange {
-        double usual = 0.0;  ///< Of 99 in 100.
+        double usual = 0.0;  ///< On 99% of the area.
         double greatest = 0.0;
     };
     [[nodiscard]] CurvatureRange curvature_range() const;
+
+    /// Of any position, in size, in other axes: at most this.
+    [[nodiscard]] double largest_coordinate(const glm::dmat4& axes_from_mesh) const;
 
   private:
     /// A mesh and what hangs on it.

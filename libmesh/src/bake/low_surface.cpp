@@ -64,6 +64,17 @@ LowSurface::LowSurface(const Mesh& low, const BakeOptions& options, Report& repo
     }
 }
 
+double LowSurface::cage_reach() const {
+    double reach = 0.0;
+    for (std::size_t i = 0; i < cage_.size(); ++i) {
+        const std::uint32_t vertex = mesh_.triangles[i / 3][static_cast<int>(i % 3)];
+        const double here =
+            glm::distance(glm::dvec3(cage_[i]), glm::dvec3(mesh_.positions[vertex]));
+        if (std::isfinite(here)) reach = std::max(reach, here);
+    }
+    return reach;
+}
+
 glm::dvec3 LowSurface::interpolated(std::span<const glm::vec3> values,
                                     const CoveredTexel& texel) const {
     const glm::uvec3 corners = mesh_.triangles[texel.triangle];

@@ -25,6 +25,8 @@ class LowSurface {
 
     /// Whether rays run from a cage.
     [[nodiscard]] bool has_cage() const { return !cage_.empty(); }
+    /// How far the cage is from the mesh at most; 0 without one.
+    [[nodiscard]] double cage_reach() const;
 
   private:
     [[nodiscard]] glm::dvec3 direction(const CoveredTexel& texel, std::size_t sample,

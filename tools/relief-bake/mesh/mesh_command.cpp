@@ -32,6 +32,8 @@ void check(MeshCommand& command) {
     if (command.request.preview.file) files.push_back(*command.request.preview.file);
     check_verify(command.request, files);
     require_folder_of(command.request.output);
+    for (const auto& [kind, file] : command.request.layers.files)
+        require_folder_of(file);
 }
 
 ExitCode run(const CLI::App& app, MeshCommand& command) {

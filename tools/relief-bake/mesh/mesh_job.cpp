@@ -121,6 +121,7 @@ void add(BakeResult& all, const BakeResult& more) {
     all.texels_missed += more.texels_missed;
     all.samples += more.samples;
     all.rays += more.rays;
+    all.occlusion_rays += more.occlusion_rays;
 }
 
 BakedMap bake_map(const MeshBakeRequest& request, const Baker& baker, MapPlan plan,
@@ -129,9 +130,15 @@ BakedMap bake_map(const MeshBakeRequest& request, const Baker& baker, MapPlan pl
     const BakeMapOptions map = map_options(options, plan);
     BakedMap result;
     MapWriter writer(request, plan, baked.format, report);
-    const auto take = [&](const BakedRows& rows) { writer.write(rows); };
+    result.layers = planned_layers(request, plan, baker, map.layers);
+    LayerWriters layers(request, result.layers, report);
+    const auto take = [&](const BakedRows& rows) {
+        writer.write(rows);
+        layers.write(rows);
+    };
     result.result = baker.bake(map, take, report);
     writer.finish();
+    layers.finish(plan.output);
     baked.findings.add(plan.name(), report);
     result.plan = std::move(plan);
     return result;
@@ -186,6 +193,8 @@ MeshBake bake_maps(const MeshBakeRequest& request, Stages& stages) {
     for (const Mesh& mesh : models.high)
         baked.high_triangles += mesh.triangles.size();
     baked.low_triangles = models.low.triangles.size();
+    if (request.layers.files.contains(LayerKind::height))
+        baked.texel_size = mean_texel_size(models.low, request.size);
     baked.has_own_tangents = !models.low.tangents.empty();
     about(request.low, [&] {
         MapPlans plans = plan_maps(request, models.low, models.materials);

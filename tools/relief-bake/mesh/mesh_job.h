@@ -5,6 +5,7 @@
 #pragma once
 
 #include "common/findings.h"
+#include "mesh/mesh_layers.h"
 #include "mesh/mesh_options.h"
 #include "mesh/mesh_sets.h"
 #include "mesh/mesh_verify.h"
@@ -16,6 +17,7 @@ struct BakedMap {
     MapPlan plan;
     BakeResult result;
     std::optional<VerifiedMap> verified;  ///< Where that is asked for.
+    std::vector<WrittenLayer> layers;
 };
 
 /// What was baked.
@@ -25,6 +27,7 @@ struct MeshBake {
     bool has_own_tangents = false;
     std::size_t materials = 0;  ///< Of the low mesh.
     NormalMapFormat format;
+    double texel_size = 0.0;  ///< Of its maps, in the mean; where a height map is made.
     std::vector<BakedMap> maps;
     BakeResult all;  ///< Sums over all maps, and the least and greatest.
     Findings findings;

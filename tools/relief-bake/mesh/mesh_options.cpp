@@ -128,6 +128,7 @@ void add_mesh_options(CLI::App& app, MeshBakeRequest& request,
               "each tile that its texture coordinates enter.");
     add_ray_options(app, request);
     add_map_options(app, request);
+    add_layer_options(app, request.layers);
     add_map_output_options(app, request.map);
     add_preview_options(app, request.preview);
     add_verify_options(app, request.verify);
@@ -154,12 +155,14 @@ void check_mesh_options(MeshBakeRequest& request, const std::vector<std::filesys
     readable_format(request.low);
     format_of(request.map, request.output);
     write_options_of(request.map, request.output);
+    check_layer_options(request.layers);
     check_map_names(request);
     check_bake_options(request);
 }
 
 BakeOptions bake_options_of(const MeshBakeRequest& request) {
     BakeOptions options;
+    options.layers = layers_of(request.layers);
     options.width = request.size.x;
     options.height = request.size.y;
     options.placement.repeat = request.outside == OutsideChoice::repeat;

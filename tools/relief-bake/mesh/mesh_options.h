@@ -10,6 +10,7 @@
 
 #include "common/command.h"
 #include "map_output.h"
+#include "mesh/layer_options.h"
 #include "mesh/preview_options.h"
 #include "relief/mesh/bake.h"
 
@@ -52,6 +53,7 @@ struct MeshBakeRequest {
     int padding = 16;
     Background background = Background::flat;
     MapOutputOptions map;
+    LayerOptions layers;
     PreviewOptions preview;
     VerifyChoice verify;
 };

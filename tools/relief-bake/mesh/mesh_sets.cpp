@@ -111,13 +111,20 @@ void check_files(const MeshBakeRequest& request, const std::vector<MapPlan>& map
         taken[identity_of(file)] = "a model";
     taken[identity_of(request.low)] = "a model";
     if (request.cage) taken[identity_of(*request.cage)] = "the cage";
+    const auto take = [&](const std::filesystem::path& file, const std::string& name) {
+        const auto [other, is_new] = taken.emplace(identity_of(file), name);
+        if (is_new) return;
+        throw failure(
+            request.low,
+            fmt::format("{} and {} would be the same file {}", other->second, name, file.string()),
+            "give one of them another name");
+    };
     for (const MapPlan& map : maps) {
-        const auto [other, is_new] = taken.emplace(identity_of(map.output), map.name());
-        if (is_new) continue;
-        throw failure(request.low,
-                      fmt::format("{} and {} would be the same file {}", other->second,
-                                  map.name().empty() ? "the map" : map.name(), map.output.string()),
-                      "give one of them another name");
+        take(map.output, map.name().empty() ? "the map" : map.name());
+        for (const auto& [kind, file] : request.layers.files) {
+            take(map.named(file), fmt::format("{}{}{}", layer_name(kind),
+                                              map.name().empty() ? "" : " of ", map.name()));
+        }
     }
 }
 
@@ -126,6 +133,13 @@ bool names_twice(const std::filesystem::path& file, std::string_view word) {
 }
 
 }  // namespace
+
+std::filesystem::path MapPlan::named(const std::filesystem::path& file) const {
+    std::filesystem::path result = file;
+    if (material) result = with_word(result, material_word, material_in_files);
+    if (udim) result = with_word(result, tile_word, fmt::format("{}", *udim));
+    return result;
+}
 
 std::string MapPlan::name() const {
     const std::string number = udim ? fmt::format("tile {}", *udim) : "";
@@ -141,6 +155,13 @@ BakeMapOptions map_options(const BakeOptions& options, const MapPlan& plan) {
 }
 
 void check_map_names(const MeshBakeRequest& request) {
+    for (const auto& [kind, file] : request.layers.files) {
+        for (const std::string_view word : {material_word, tile_word}) {
+            if (names_word(file, word) == names_word(request.output, word)) continue;
+            throw UsageError(fmt::format("{}: {} must be in the names of all files, or of none",
+                                         file.string(), word));
+        }
+    }
     for (const std::string_view word : {material_word, tile_word}) {
         if (request.output.parent_path().string().find(word) != std::string::npos) {
             throw UsageError(
@@ -166,6 +187,7 @@ MapPlans plan_maps(const MeshBakeRequest& request, const Mesh& low,
             MapPlan plan;
             plan.output = with_word(request.output, material_word, part.file_name);
             plan.material = part.name;
+            plan.material_in_files = part.file_name;
             plan.triangles = std::move(part.triangles);
             add_maps(request, low, plan, plans);
         }

@@ -21,6 +21,7 @@ inline constexpr std::string_view material_word = "<material>";
 struct MapPlan {
     std::filesystem::path output;
     std::optional<std::string> material;  ///< Its name, where the map is for one.
+    std::string material_in_files;        ///< The same in names of files.
     std::optional<int> udim;
     glm::ivec2 tile{0, 0};
     /// Those that it is for; absent: all.
@@ -28,6 +29,8 @@ struct MapPlan {
 
     /// "material 'Skin', tile 1001"; empty where it is the only map.
     [[nodiscard]] std::string name() const;
+    /// Another file of this map, with the same words in its name as OUT.
+    [[nodiscard]] std::filesystem::path named(const std::filesystem::path& file) const;
 };
 
 /// A bake's options for that map, which must outlive them.

@@ -58,6 +58,23 @@ std::vector<std::string> map_lines(const MeshBakeRequest& request, const MeshBak
     return lines;
 }
 
+void print_layers(const MeshBake& baked) {
+    std::vector<std::string> lines;
+    for (const BakedMap& map : baked.maps) {
+        for (const WrittenLayer& layer : map.layers)
+            lines.push_back(layer_words(layer));
+    }
+    if (lines.empty()) return;
+    for (const WrittenLayer& layer : baked.maps.front().layers) {
+        if (layer.coding.kind != LayerKind::height) continue;
+        for (const std::string& line : height_use(layer, baked.texel_size))
+            lines.push_back("heights " + line);
+    }
+    if (baked.all.occlusion_rays > 0)
+        lines.push_back(fmt::format("{} rays for occlusion", baked.all.occlusion_rays));
+    print_entry("layers", lines);
+}
+
 nlohmann::ordered_json map_json(const BakedMap& map) {
     nlohmann::ordered_json json = {{"output", map.plan.output.string()}};
     if (map.plan.material) json["material"] = *map.plan.material;
@@ -69,6 +86,8 @@ nlohmann::ordered_json map_json(const BakedMap& map) {
                  {"samples", map.result.samples},
                  {"rays", map.result.rays}});
     if (map.verified) json["check"] = verified_json(*map.verified);
+    for (const WrittenLayer& layer : map.layers)
+        json["layers"].push_back(layer_json(layer));
     return json;
 }
 
@@ -96,12 +115,16 @@ void print_summary(const MeshBakeRequest& request, const MeshBake& baked, const 
     for (const BakedMap& map : baked.maps) {
         if (map.verified) print_verified(*map.verified);
     }
+    print_layers(baked);
     print_entry("findings",
                 baked.findings.empty() ? std::vector<std::string>{"none"} : baked.findings.lines());
     print_entry("time", durations(stages.finished()));
     std::vector<std::string> written;
-    for (const BakedMap& map : baked.maps)
+    for (const BakedMap& map : baked.maps) {
         written.push_back(file_and_size(map.plan.output));
+        for (const WrittenLayer& layer : map.layers)
+            written.push_back(file_and_size(layer.file));
+    }
     if (request.preview.file)
         written.push_back(file_and_size(*request.preview.file) +
                           " (high, low with the map, low without)");
@@ -137,6 +160,7 @@ nlohmann::ordered_json results_json(const MeshBakeRequest& request, const MeshBa
                                       {"texels_missed", result.texels_missed},
                                       {"samples", result.samples},
                                       {"rays", result.rays},
+                                      {"occlusion_rays", result.occlusion_rays},
                                       {"rays_per_second", megarays_per_second(baked, stages) * 1e6},
                                       {"maps", maps},
                                       {"findings", baked.findings.json()},

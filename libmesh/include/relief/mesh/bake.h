@@ -200,6 +200,9 @@ class Baker {
     /// As used; the largest of all parts. With a cage, the inner one, or 0 where that varies.
     [[nodiscard]] BakeDistances distances() const;
 
+    /// What the layers that are asked for cannot exceed; 0 for the others.
+    [[nodiscard]] LayerBounds bounds(const BakeLayers& layers) const;
+
     /// Bakes a map.
     ///
     /// \param take    gets the map from the top, some rows at a time, on the calling thread; it may

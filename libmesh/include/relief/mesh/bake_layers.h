@@ -38,4 +38,13 @@ struct BakeLayers {
     glm::dmat4 position_from_mesh{1.0};  ///< For `positions`.
 };
 
+/// How large the numbers of layers can be, without their signs, for those who store them in
+/// integers.
+struct LayerBounds {
+    double height = 0.0;           ///< How far rays reach.
+    double curvature = 0.0;        ///< Of all vertices of the high meshes.
+    double usual_curvature = 0.0;  ///< On 99% of their area.
+    double position = 0.0;         ///< Of any coordinate, by `position_from_mesh`.
+};
+
 }  // namespace relief
