@@ -13,7 +13,9 @@
 #include "relief/mesh/image_channels.h"
 #include "relief/mesh/image_file.h"
 #include "relief/shade/default_view.h"
+#include "relief/shade/effects.h"
 #include "relief/shade/framing.h"
+#include "relief/shade/render_cache.h"
 #include "relief/shade/renderer.h"
 
 namespace relief::tools {
@@ -143,19 +145,13 @@ void bring_within_reach(PreviewModels& models) {
         move(mesh);
 }
 
-/// Sees all of both; the meshes are lent to a scene for it, as copies would cost more than the
-/// picture.
-Camera camera_for(Scene& high, Scene& low, const ViewDirection& view, float aspect) {
-    Scene both = std::move(high);
+/// Sees all of both.
+Camera camera_for(const Scene& high, const Scene& low, const ViewDirection& view, float aspect) {
+    Scene both = high;
     const std::size_t count = both.meshes.size();
-    both.meshes.push_back(std::move(low.meshes[0]));
+    both.meshes.push_back(low.meshes[0]);
     both.instances.push_back({count, low.instances[0].world_from_object, ""});
-    const Camera camera = framed(both, view.azimuth, view.elevation, default_vertical_fov, aspect);
-    low.meshes[0] = std::move(both.meshes.back());
-    both.meshes.pop_back();
-    both.instances.pop_back();
-    high = std::move(both);
-    return camera;
+    return framed(both, view.azimuth, view.elevation, default_vertical_fov, aspect);
 }
 
 /// One panel beside the others.
@@ -191,10 +187,11 @@ void use(Scene& scene, const std::vector<PreviewMap>& maps, const PreviewReading
 }
 
 /// What drawing finds odd about the models, the bake has found and reported before.
-Image drawn(const Context& context, const Scene& scene, const Camera& camera,
+Image drawn(RenderCache& cache, const Context& context, const Scene& scene, const Camera& camera,
             const glm::ivec2& size) {
     Report known;
-    Renderer renderer(context, scene, {.width = size.x, .height = size.y}, known);
+    const FrameSettings settings{.width = size.x, .height = size.y};
+    Renderer renderer(cache, context, scene, plan_effects(scene, settings), settings, known);
     Image image = renderer.draw(camera).image;
     drop_alpha(image);
     return image;
@@ -238,11 +235,13 @@ void MeshPreview::draw(const PreviewOptions& options, PreviewModels models,
             scene->background = default_background;
             add_default_lights(*scene, camera);
         }
-        put(picture, drawn(*context_, high, camera, size), 0);
+        RenderCache cache(*context_);
+        put(picture, drawn(cache, *context_, high, camera, size), 0);
         high = {};
-        put(picture, drawn(*context_, low, camera, size), 2);
+        cache.drop_unused();
+        put(picture, drawn(cache, *context_, low, camera, size), 2);
         use(low, maps, reading, size);
-        put(picture, drawn(*context_, low, camera, size), 1);
+        put(picture, drawn(cache, *context_, low, camera, size), 1);
         write_image(*options.file, picture);
     } catch (const Error& error) {
         throw Error(fmt::format("no preview: {} (the maps are complete)", error.what()));
