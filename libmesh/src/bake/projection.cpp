@@ -12,9 +12,11 @@ namespace {
 constexpr double step_share = 4e-6;  // Of the scene's size.
 constexpr int most_steps = 256;      // Through so many layers of surface.
 
-/// Casts rays by packets: ray_of(i) says which, each(i, ray, hit) gets what it meets.
-template <typename RayOf, typename Each>
-void cast(const RayScene& scene, std::size_t count, const RayOf& ray_of, const Each& each) {
+/// Casts rays by packets: ray_of(i) says which, each(i, hit) gets what it meets, unless it meets
+/// the triangle known_of(i).
+template <typename RayOf, typename KnownOf, typename Each>
+void cast(const RayScene& scene, std::size_t count, const RayOf& ray_of, const KnownOf& known_of,
+          const Each& each) {
     RayPacket packet;
     std::array<Ray, RayPacket::size> rays;
     for (std::size_t first = 0; first < count; first += RayPacket::size) {
@@ -24,8 +26,11 @@ void cast(const RayScene& scene, std::size_t count, const RayOf& ray_of, const E
             scene.set(packet, lane, rays[lane]);
         }
         scene.find(packet, lanes);
-        for (std::size_t lane = 0; lane < lanes; ++lane)
+        for (std::size_t lane = 0; lane < lanes; ++lane) {
+            const MetTriangle met{packet.mesh[lane], packet.triangle[lane]};
+            if (packet.hits(lane) && met == known_of(first + lane)) continue;
             each(first + lane, scene.hit(packet, lane, rays[lane]));
+        }
     }
 }
 
@@ -54,6 +59,9 @@ std::size_t Projection::find_from_outside(std::span<const ProjectionLine> lines,
                                           std::span<ProjectedPoint> points) const {
     cast(
         scene_, lines.size(), [&](std::size_t i) { return from_outside(lines[i]); },
+        [](std::size_t) {
+            return MetTriangle{RayPacket::nothing, 0};
+        },
         [&](std::size_t i, const RayHit& hit) {
             points[i] = {hit, lines[i].outside - hit.distance};
         });
@@ -76,6 +84,11 @@ std::size_t Projection::find_doubtful(std::span<const ProjectionLine> lines,
         [&](std::size_t i) {
             const ProjectionLine& line = lines[outwards[i]];
             return Ray{line.point, line.outward, 0.0, points[outwards[i]].height + step_};
+        },
+        // The surface itself, as nearly always: there is nothing before it.
+        [&](std::size_t i) {
+            const RayHit& surface = points[outwards[i]].hit;
+            return MetTriangle{surface.mesh, surface.triangle};
         },
         [&](std::size_t i, const RayHit& hit) {
             if (hit.is_hit() && hit.distance < points[outwards[i]].height - step_)

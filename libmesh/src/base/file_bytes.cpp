@@ -9,8 +9,11 @@
 #include <cerrno>
 #include <cstring>
 #include <fstream>
+#include <span>
 
 #include "large_memory.h"
+#include "parallel.h"
+#include "random_access_file.h"
 #include "relief/mesh/error.h"
 
 namespace relief {
@@ -33,6 +36,19 @@ std::string read_file(const std::filesystem::path& file) {
                                           bytes.size()));
     }
     return bytes;
+}
+
+FileContents::FileContents(const std::filesystem::path& file) {
+    constexpr std::size_t piece = 1 << 22;
+    const RandomAccessFile opened(file);
+    size_ = static_cast<std::size_t>(opened.size());
+    bytes_ = std::make_unique_for_overwrite<char[]>(size_);
+    expect_filling(bytes_.get(), size_);
+    parallel_for((size_ + piece - 1) / piece, 1, [&](std::size_t first, std::size_t last) {
+        const std::size_t begin = first * piece;
+        const std::size_t end = std::min(last * piece, size_);
+        opened.read(begin, std::as_writable_bytes(std::span(&bytes_[begin], end - begin)));
+    });
 }
 
 std::string lower_extension(const std::filesystem::path& file) {

@@ -116,7 +116,7 @@ void group_by_material(CutPolygons cut, const ObjStatements& statements, Mesh& m
 }  // namespace
 
 MeshFile read_obj(const std::filesystem::path& file, const glm::dvec3& origin, Report& report) {
-    ObjStatements statements = parse_obj(read_file(file), file, origin, report);
+    ObjStatements statements = parse_obj(FileContents(file).text(), file, origin, report);
     if (statements.corners.size() > std::numeric_limits<std::int32_t>::max()) {
         throw FileError(file, fmt::format("has {} face corners, more than 2147483647",
                                           statements.corners.size()));

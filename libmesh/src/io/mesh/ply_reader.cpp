@@ -313,10 +313,10 @@ PlyData read_data(const PlyHeader& header, std::string_view bytes,
 
 MeshFile read_ply(const std::filesystem::path& file, const glm::dvec3& origin, Report& report) {
     static_assert(std::endian::native == std::endian::little);
-    const std::string bytes = read_file(file);
+    const FileContents contents(file);
+    const std::string_view bytes = contents.text();
     const PlyHeader header = parse_ply_header(bytes, file);
-    PlyData data =
-        read_data(header, std::string_view(bytes).substr(header.data_begin), file, origin, report);
+    PlyData data = read_data(header, bytes.substr(header.data_begin), file, origin, report);
     if (!data.corner_texcoords.empty()) {
         data.corner_texcoords.resize(data.polygons.corners.size());
         unify_corners(data, file);

@@ -120,7 +120,8 @@ void read_face(TextScanner& text, Polygons& polygons) {
 }  // namespace
 
 MeshFile read_off(const std::filesystem::path& file, const glm::dvec3& origin, Report& report) {
-    const std::string bytes = read_file(file);
+    const FileContents contents(file);
+    const std::string_view bytes = contents.text();
     TextScanner text(bytes, file, '#');
     const OffHeader header = parse_header(text, bytes.size());
     MeshFile result;

@@ -99,7 +99,8 @@ bool says_that_it_is_ascii(std::string_view bytes, const std::filesystem::path& 
 }  // namespace
 
 MeshFile read_stl(const std::filesystem::path& file, const glm::dvec3& origin, Report& report) {
-    const std::string bytes = read_file(file);
+    const FileContents contents(file);
+    const std::string_view bytes = contents.text();
     std::uint32_t count = 0;
     if (bytes.size() >= header_size) {
         std::memcpy(&count, bytes.data() + header_size - sizeof(count), sizeof(count));
