@@ -233,6 +233,15 @@ INSTANTIATE_TEST_SUITE_P(
         Refused{"relief-bake mesh high.obj low.obj out/map.png --report out/r.png --preview "
                 "out/r.png",
                 2, "--preview out/r.png: is also the input or the output"},
+        Refused{"relief-bake mesh high.obj low.obj out/map.png --height-map out/h.png --preview "
+                "out/h.png",
+                2, "--preview out/h.png: is also the input or the output"},
+        Refused{"relief-bake mesh high.obj low.obj out/map.png --height-map out/h.png --report "
+                "out/h.png",
+                2, "--report out/h.png: is also the input or the output"},
+        Refused{"relief-bake mesh high.obj low.obj 'out/m_<UDIM>.png' --height-map "
+                "'out/h_<UDIM>.png' --preview out/h_1001.png",
+                2, "--preview out/h_1001.png: is also the input or the output"},
         Refused{"relief-bake mesh high.obj low.obj 'out/m_<UDIM>.png' --preview out/m_1001.png", 2,
                 "--preview out/m_1001.png: is also the input or the output"},
         Refused{"relief-bake mesh high.obj low.obj out/map.png --preview out/no/p.png", 1,

@@ -26,6 +26,8 @@ void check(MeshCommand& command) {
     check_mesh_options(command.request, command.files);
     std::vector<std::filesystem::path> files = command.files;
     if (command.request.cage) files.push_back(*command.request.cage);
+    for (const auto& [kind, file] : command.request.layers.files)
+        files.push_back(file);
     check(command.report, files);
     if (command.report.file) files.push_back(*command.report.file);
     check(command.request.preview, files);

@@ -200,8 +200,11 @@ MeshBake bake_maps(const MeshBakeRequest& request, Stages& stages) {
         MapPlans plans = plan_maps(request, models.low, models.materials);
         baked.materials = plans.materials;
         baked.findings.add("", plans.report);
-        for (const MapPlan& plan : plans.maps)
+        for (const MapPlan& plan : plans.maps) {
             require_another(request.preview, plan.output);
+            for (const auto& [kind, file] : request.layers.files)
+                require_another(request.preview, plan.named(file));
+        }
         BakeOptions options = bake_options_of(request);
         options.map_count = plans.maps.size();
         options.output_from_mesh = output_axes(request, models.world_from_low);
