@@ -61,11 +61,14 @@ Command add_mesh_command(CLI::App& tool) {
     add_report_options(app, command->report);
     add_general_options(app, command->general);
     set_examples(
-        app, {"relief-mesh subdivide data/vase.obj out/high.obj --levels 2",
-              "relief-bake mesh out/high.obj data/vase.obj out/vase-baked.png --size 512 "
-              "--preview out/vase-preview.png",
-              "relief-bake mesh out/high.obj data/vase.obj out/vase-baked.png --size 256 --verify",
-              "relief-bake mesh out/high.obj data/vase.obj 'out/<material>-<UDIM>.png'"});
+        app,
+        {"relief-mesh subdivide data/vase.obj out/high.obj --levels 2",
+         "relief-bake mesh out/high.obj data/vase.obj out/vase-baked.png --size 512 "
+         "--preview out/vase-preview.png",
+         "relief-bake mesh out/high.obj data/vase.obj out/vase-baked.png --size 256 --verify",
+         "relief-bake mesh out/high.obj data/vase.obj out/vase-baked.png --size 128 --max-error 1",
+         "relief-bake mesh out/high.obj data/vase.obj out/vase-baked.png --size 64 --compare",
+         "relief-bake mesh out/high.obj data/vase.obj 'out/<material>-<UDIM>.png'"});
     return {&app, [&app, command] { return run(app, *command); }};
 }
 

@@ -181,6 +181,12 @@ void verify_all(const MeshBakeRequest& request, const Baker& baker, const BakeMo
     }
 }
 
+void take_samples(const MeshBakeRequest& settled, BakeOptions& options) {
+    const BakeOptions anew = bake_options_of(settled);
+    options.samples = anew.samples;
+    options.sample_angle = anew.sample_angle;
+}
+
 }  // namespace
 
 MeshBake bake_maps(const MeshBakeRequest& request, Stages& stages) {
@@ -214,10 +220,18 @@ MeshBake bake_maps(const MeshBakeRequest& request, Stages& stages) {
             Report report;
             baker.emplace(models.high, models.low, options, report);
             baked.findings.add("", report);
-            bake_all(request, *baker, std::move(plans), options, baked);
         });
+        MeshBakeRequest settled = request;
+        if (needs_trials(request)) {
+            stages.run("choose", [&] {
+                baked.accuracy = settle_accuracy(*baker, map_options(options, plans.maps.front()),
+                                                 settled, baked.format);
+            });
+            take_samples(settled, options);
+        }
+        stages.run("bake", [&] { bake_all(settled, *baker, std::move(plans), options, baked); });
         if (request.verify.wanted)
-            stages.run("verify", [&] { verify_all(request, *baker, models, options, baked); });
+            stages.run("verify", [&] { verify_all(settled, *baker, models, options, baked); });
     });
     if (preview) stages.run("preview", [&] { draw(*preview, request, baked, std::move(models)); });
     return baked;

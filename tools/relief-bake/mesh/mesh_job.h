@@ -5,6 +5,7 @@
 #pragma once
 
 #include "common/findings.h"
+#include "mesh/mesh_accuracy.h"
 #include "mesh/mesh_layers.h"
 #include "mesh/mesh_options.h"
 #include "mesh/mesh_sets.h"
@@ -29,7 +30,8 @@ struct MeshBake {
     NormalMapFormat format;
     double texel_size = 0.0;  ///< Of its maps, in the mean; where a height map is made.
     std::vector<BakedMap> maps;
-    BakeResult all;  ///< Sums over all maps, and the least and greatest.
+    BakeResult all;                        ///< Sums over all maps, and the least and greatest.
+    std::optional<MeshAccuracy> accuracy;  ///< Where something was measured first.
     Findings findings;
 };
 

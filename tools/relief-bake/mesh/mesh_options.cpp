@@ -6,6 +6,7 @@
 
 #include "common/model_file.h"
 #include "common/options.h"
+#include "mesh/mesh_accuracy.h"
 #include "mesh/mesh_sets.h"
 #include "mesh/mesh_verify.h"
 
@@ -23,9 +24,9 @@ glm::ivec2 parse_map_size(const std::string& subject, const std::string& text) {
 }
 
 SampleChoice parse_samples(const std::string& subject, const std::string& text) {
-    if (text == "auto") return {auto_samples, true};
+    if (text == "auto") return {auto_samples, true, true};
     const Choices<int> counts = {{"1", 1}, {"4", 4}, {"16", 16}, {"64", 64}, {"auto", 0}};
-    return {parse_choice(subject, text, counts), false};
+    return {parse_choice(subject, text, counts), false, true};
 }
 
 void add_map_options(CLI::App& app, MeshBakeRequest& request) {
@@ -132,6 +133,7 @@ void add_mesh_options(CLI::App& app, MeshBakeRequest& request,
     add_map_output_options(app, request.map);
     add_preview_options(app, request.preview);
     add_verify_options(app, request.verify);
+    add_accuracy_options(app, request.accuracy);
 }
 
 void check_bake_options(const MeshBakeRequest& request) {
@@ -158,6 +160,12 @@ void check_mesh_options(MeshBakeRequest& request, const std::vector<std::filesys
     check_layer_options(request.layers);
     check_map_names(request);
     check_bake_options(request);
+    check_accuracy(request);
+}
+
+std::optional<double> angle_of(const MeshBakeRequest& request, const SampleChoice& samples) {
+    if (!samples.is_auto) return std::nullopt;
+    return request.sample_angle.value_or(default_angle);
 }
 
 BakeOptions bake_options_of(const MeshBakeRequest& request) {
@@ -173,8 +181,8 @@ BakeOptions bake_options_of(const MeshBakeRequest& request) {
     options.max_distance = request.max_distance;
     options.back_faces = request.back_faces;
     options.samples = request.samples.count;
-    if (request.samples.is_auto)
-        options.sample_angle = glm::radians(request.sample_angle.value_or(default_angle));
+    if (const auto angle = angle_of(request, request.samples))
+        options.sample_angle = glm::radians(*angle);
     options.padding = request.padding;
     return options;
 }

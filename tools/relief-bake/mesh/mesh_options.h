@@ -10,6 +10,7 @@
 
 #include "common/command.h"
 #include "map_output.h"
+#include "mesh/error_bound.h"
 #include "mesh/layer_options.h"
 #include "mesh/preview_options.h"
 #include "relief/mesh/bake.h"
@@ -29,12 +30,19 @@ enum class OutsideChoice { drop, repeat };
 struct SampleChoice {
     int count = 1;
     bool is_auto = false;
+    bool is_told = false;
 };
 
 /// --verify
 struct VerifyChoice {
     bool wanted = false;
     std::optional<std::filesystem::path> error_map;
+};
+
+/// --max-error, --max-error-kind, --compare
+struct AccuracyChoice {
+    ErrorBound bound;
+    bool compare = false;
 };
 
 struct MeshBakeRequest {
@@ -56,6 +64,7 @@ struct MeshBakeRequest {
     LayerOptions layers;
     PreviewOptions preview;
     VerifyChoice verify;
+    AccuracyChoice accuracy;
 };
 
 /// How rays are cast; and what a texel is made of: --space, --samples, --sample-angle, --outside.
@@ -72,6 +81,9 @@ void check_bake_options(const MeshBakeRequest& request);
 /// Parts the files into high meshes, low mesh and map.
 /// \throws UsageError where options contradict each other, or one has no effect
 void check_mesh_options(MeshBakeRequest& request, const std::vector<std::filesystem::path>& files);
+
+/// By how many degrees first samples must differ for more; absent unless `samples` is auto.
+std::optional<double> angle_of(const MeshBakeRequest& request, const SampleChoice& samples);
 
 /// What the library is asked for; the cage is left out.
 BakeOptions bake_options_of(const MeshBakeRequest& request);

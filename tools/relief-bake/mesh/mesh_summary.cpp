@@ -112,6 +112,7 @@ void print_summary(const MeshBakeRequest& request, const MeshBake& baked, const 
     print_entry(baked.maps.size() == 1 ? "map" : "maps", map_lines(request, baked));
     print_entry("coded",
                 fmt::format("{}, {}", space_words(request, baked), format_words(baked.format)));
+    if (baked.accuracy) print_accuracy(request, *baked.accuracy);
     for (const BakedMap& map : baked.maps) {
         if (map.verified) print_verified(*map.verified);
     }
@@ -165,6 +166,7 @@ nlohmann::ordered_json results_json(const MeshBakeRequest& request, const MeshBa
                                       {"maps", maps},
                                       {"findings", baked.findings.json()},
                                       {"milliseconds", durations_json(stages.finished())}};
+    if (baked.accuracy) add_accuracy(*baked.accuracy, results);
     if (request.preview.file) results["preview"] = request.preview.file->string();
     return results;
 }

@@ -13,18 +13,11 @@
 #include "common/command.h"
 #include "common/findings.h"
 #include "mesh/bake_models.h"
+#include "mesh/error_bound.h"
 #include "normal_map_input.h"
 #include "relief/mesh/bake_check.h"
 
 namespace relief::tools {
-
-/// Which error a bound is for.
-enum class BoundKind { rms, p99, max };
-
-struct ErrorBound {
-    std::optional<double> degrees;
-    std::optional<BoundKind> kind;  ///< rms unless told.
-};
 
 /// --max-error and --max-error-kind. \param description  what the bound is for
 void add_bound_options(CLI::App& app, ErrorBound& bound, const std::string& description);

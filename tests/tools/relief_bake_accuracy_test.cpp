@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: Apache-2.0
+// relief-bake mesh --max-error and --compare: samples and bits by measured error.
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "relief/mesh/image_file.h"
+#include "tools/refusal.h"
+#include "tools/workplace.h"
+
+namespace relief::tools {
+namespace {
+
+using nlohmann::json;
+using test::expect_refusal;
+using test::ProgramResult;
+using test::Refused;
+using test::Workplace;
+using testing::HasSubstr;
+
+/// Waves above the square of Workplace, of which a texel of 32 has a fifth of one.
+std::string waves() {
+    std::string text;
+    constexpr int cells = 300;
+    for (int column = 0; column <= cells; ++column) {
+        const double x = 2.0 * column / cells - 1.0;
+        const double height = 0.01 * std::sin(20.0 * x);
+        text += fmt::format("v {0} -1 {1}\nv {0} 1 {1}\n", x, height);
+    }
+    for (int column = 0; column < cells; ++column) {
+        const int a = 2 * column + 1;
+        text += fmt::format("f {} {} {} {}\n", a, a + 2, a + 3, a + 1);
+    }
+    return text;
+}
+
+class BakeAccuracy : public testing::Test {
+  protected:
+    BakeAccuracy() {
+        workplace.write_square("low.obj");
+        workplace.write("high.obj", waves());
+    }
+    [[nodiscard]] json baked(const std::string& options) const {
+        const ProgramResult result = workplace.run(
+            "relief-bake mesh high.obj low.obj out/map.png --size 32 --report out/report.json " +
+            options);
+        EXPECT_EQ(result.exit_code, 0) << result.error;
+        return json::parse(workplace.read("out/report.json"));
+    }
+    Workplace workplace;
+};
+
+TEST_F(BakeAccuracy, RaisesSamplesAndBitsUntilTheErrorIsKept) {
+    const json loose = baked("--max-error 5");
+    EXPECT_EQ(loose["kept"]["samples"], 1);
+    EXPECT_EQ(loose["kept"]["bits"], 8);
+    EXPECT_EQ(loose["bits"], 8);
+    EXPECT_EQ(read_image_info(workplace / "out/map.png").bits, 8);
+    const json tight = baked("--max-error 0.1");
+    EXPECT_GT(tight["kept"]["samples"].get<int>(), 1);
+    EXPECT_EQ(tight["kept"]["bits"], 16);
+    EXPECT_LE(tight["kept"]["rms"].get<double>(), 0.1);
+    const json& before = tight["steps"][tight["steps"].size() - 4];
+    EXPECT_GT(before["rms"].get<double>(), 0.1);
+    const auto said = read_image_info(workplace / "out/map.png").metadata;
+    EXPECT_EQ(said.at("relief:bake"),
+              fmt::format("--samples {} --space tangent", tight["kept"]["samples"].get<int>()));
+    // What was measured is what the file has.
+    const json checked = baked("--max-error 0.1 --verify");
+    EXPECT_NEAR(checked["maps"][0]["check"]["error"]["rms"].get<double>(),
+                tight["kept"]["rms"].get<double>(), 0.01);
+}
+
+TEST_F(BakeAccuracy, KeepsToWhatIsTold) {
+    const json bits = baked("--max-error 0.2 --bits 8");
+    EXPECT_EQ(bits["kept"]["bits"], 8);
+    const json samples = baked("--max-error 5 --samples 16");
+    EXPECT_EQ(samples["kept"]["samples"], 16);
+    EXPECT_EQ(samples["steps"].size(), 2U);
+}
+
+TEST_F(BakeAccuracy, RefusesWhatNothingKeepsAndStopsWhereCodesAloneAreWorse) {
+    const std::string line = "relief-bake mesh high.obj low.obj out/map.png --size 32 ";
+    ProgramResult result = workplace.run(line + "--max-error 0.01 --bits 8");
+    EXPECT_EQ(result.exit_code, 1);
+    // The first count of samples shows it.
+    EXPECT_THAT(result.error, HasSubstr("no way to bake it keeps within 0.01 degrees (RMS): the "
+                                        "least is "));
+    EXPECT_THAT(result.error, HasSubstr("with 1 sample, 8 bit"));
+    result = workplace.run(line + "--max-error 0.0001 --max-error-kind max --samples 4");
+    EXPECT_EQ(result.exit_code, 1);
+    EXPECT_THAT(result.error, HasSubstr("within 0.0001 degrees (greatest)"));
+    EXPECT_EQ(workplace.outputs(), "");
+}
+
+TEST_F(BakeAccuracy, ComparesEverySampleCountAndDepth) {
+    const json report = baked("--compare");
+    const json& all = report["comparison"];
+    ASSERT_EQ(all.size(), 28U);
+    const auto error_of = [&](const json& samples, int bits, const std::string& dither) {
+        for (const json& one : all) {
+            if (one["samples"] == samples && one["bits"] == bits && one["dither"] == dither)
+                return one["rms"].get<double>();
+        }
+        return -1.0;
+    };
+    EXPECT_GT(error_of(1, 16, "none"), 2.0 * error_of(4, 16, "none"));
+    EXPECT_GT(error_of(4, 16, "none"), 2.0 * error_of(16, 16, "none"));
+    EXPECT_GT(error_of(16, 8, "none"), error_of(16, 16, "none"));
+    EXPECT_GT(error_of(16, 8, "blue-noise"), error_of(16, 8, "none"));
+    std::size_t efficient = 0;
+    for (const json& one : all)
+        efficient += one["efficient"].get<bool>() ? 1 : 0;
+    EXPECT_GE(efficient, 2U);
+    EXPECT_EQ(report["reference"]["samples"], 256);
+    EXPECT_TRUE(report["reference"]["whole"].get<bool>());
+    // The map is baked as usual beside.
+    EXPECT_EQ(report["samples"], 32 * 32);
+}
+
+class BakeAccuracyRefusal : public testing::TestWithParam<Refused> {};
+
+TEST_P(BakeAccuracyRefusal, LeavesEverythingAsItWas) {
+    const Workplace workplace;
+    workplace.write_square("low.obj");
+    workplace.write("high.obj", waves());
+    expect_refusal(workplace, "relief-bake", GetParam(), "map.png");
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    All, BakeAccuracyRefusal,
+    testing::Values(Refused{"relief-bake mesh high.obj low.obj out/map.png --max-error-kind max", 2,
+                            "--max-error-kind: is for --max-error"},
+                    Refused{"relief-bake mesh high.obj low.obj out/map.png --max-error 1 --compare",
+                            2, "--compare, --max-error: one bakes in every way, the other in one"},
+                    Refused{"relief-bake mesh high.obj low.obj 'out/<UDIM>.png' --compare", 2,
+                            "--compare: is of one map, not those of <material> or <UDIM>"},
+                    Refused{"relief-bake mesh high.obj low.obj out/map.exr --half --max-error 1", 2,
+                            "--max-error, --half: errors of half floats are not measured"}));
+
+}  // namespace
+}  // namespace relief::tools

@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: Apache-2.0
+// Trials against one truth. Tests: tests/tools/relief_bake_accuracy_test.cpp.
+#include "mesh/mesh_accuracy.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <glm/trigonometric.hpp>
+
+#include "common/file_jobs.h"
+#include "mesh/accuracy_words.h"
+#include "mesh/mesh_sets.h"
+#include "mesh/mesh_verify.h"
+#include "relief/mesh/error.h"
+
+namespace relief::tools {
+namespace {
+
+constexpr std::size_t texels_for_bound = std::size_t{1} << 17;
+constexpr std::size_t texels_for_table = std::size_t{1} << 16;
+constexpr std::size_t rounds = 3;
+
+/// The depths that are open to choice, fewest bits first.
+std::vector<NormalMapFormat> open_formats(const MeshBakeRequest& request,
+                                          const NormalMapFormat& format) {
+    std::vector<int> depths = depths_of(request.output);
+    if (request.map.bits) depths = {*request.map.bits};
+    // What is said of codes has no effect on floats.
+    if (!request.map.bits && (request.map.flat || request.map.dither)) std::erase(depths, 32);
+    std::sort(depths.begin(), depths.end());
+    std::vector<NormalMapFormat> formats;
+    for (const int bits : depths) {
+        formats.push_back(format);
+        formats.back().bits = bits;
+    }
+    return formats;
+}
+
+std::optional<double> radians(const std::optional<double>& degrees) {
+    if (!degrees) return std::nullopt;
+    return glm::radians(*degrees);
+}
+
+std::vector<MeasuredBake> measure(const BakeTrials& trials, const SampleChoice& samples,
+                                  const std::optional<double>& angle,
+                                  std::span<const NormalMapFormat> formats,
+                                  std::vector<AngleSummary>* codes = nullptr) {
+    const BakeTrial trial = trials.measure(samples.count, radians(angle), formats);
+    std::vector<MeasuredBake> measured;
+    for (std::size_t i = 0; i < formats.size(); ++i) {
+        measured.push_back({samples, angle, formats[i], trial.errors[i], trial.rays,
+                            trial.cast_seconds + trial.code_seconds[i], false});
+    }
+    if (codes != nullptr) *codes = trial.quantisation;
+    return measured;
+}
+
+std::vector<SampleChoice> open_samples(const MeshBakeRequest& request) {
+    if (request.samples.is_told) return {request.samples};
+    return {{1, false, false}, {4, false, false}, {16, false, false}, {64, false, false}};
+}
+
+[[noreturn]] void refuse(const ErrorBound& bound, const std::vector<MeasuredBake>& measured) {
+    const auto least = std::min_element(
+        measured.begin(), measured.end(), [&](const MeasuredBake& a, const MeasuredBake& b) {
+            return bounded(a.error, bound) < bounded(b.error, bound);
+        });
+    throw InvalidInput(
+        fmt::format("no way to bake it keeps within {}: the least is {:.3g}, with {}",
+                    bound_words(bound), bounded(least->error, bound), method_words(*least)));
+}
+
+void keep_within(const BakeTrials& trials, MeshBakeRequest& request, NormalMapFormat& format,
+                 MeshAccuracy& found) {
+    const ErrorBound& bound = request.accuracy.bound;
+    const std::vector<NormalMapFormat> formats = open_formats(request, format);
+    for (const SampleChoice& samples : open_samples(request)) {
+        std::vector<AngleSummary> codes;
+        for (MeasuredBake& one :
+             measure(trials, samples, angle_of(request, samples), formats, &codes)) {
+            const bool keeps = bounded(one.error, bound) <= *bound.degrees;
+            if (keeps && !found.kept) found.kept = one;
+            found.measured.push_back(std::move(one));
+        }
+        if (found.kept) break;
+        const bool can_be_kept = std::any_of(codes.begin(), codes.end(), [&](const auto& alone) {
+            return bounded(alone, bound) <= *bound.degrees;
+        });
+        if (!can_be_kept) break;
+    }
+    if (!found.kept) refuse(bound, found.measured);
+    request.samples = found.kept->samples;
+    format = found.kept->format;
+}
+
+struct Way {
+    SampleChoice samples;
+    std::optional<double> angle;
+};
+
+std::vector<Way> all_ways() {
+    std::vector<Way> ways;
+    for (const int count : {1, 4, 16, 64})
+        ways.push_back({{count, false, false}, std::nullopt});
+    for (const double angle : {8.0, 2.0, 0.5})
+        ways.push_back({{16, true, false}, angle});
+    return ways;
+}
+
+/// Of all depths: what a file of this name cannot hold, another can.
+std::vector<NormalMapFormat> all_formats(const NormalMapFormat& format) {
+    NormalMapFormat eight = format, dithered = format, sixteen = format, floats = format;
+    eight.bits = dithered.bits = 8;
+    eight.dither = sixteen.dither = floats.dither = Dither::none;
+    dithered.dither = Dither::blue_noise;
+    sixteen.bits = 16;
+    floats.bits = 32;
+    return {eight, dithered, sixteen, floats};
+}
+
+void compare(const BakeTrials& trials, const NormalMapFormat& format, MeshAccuracy& found) {
+    const std::vector<Way> ways = all_ways();
+    const std::vector<NormalMapFormat> formats = all_formats(format);
+    std::vector<std::vector<double>> seconds(ways.size() * formats.size());
+    found.measured.resize(seconds.size());
+    interleave(ways.size(), {rounds, 0}, [&](std::size_t way, bool) {
+        const std::vector<MeasuredBake> measured =
+            measure(trials, ways[way].samples, ways[way].angle, formats);
+        for (std::size_t i = 0; i < formats.size(); ++i) {
+            seconds[way * formats.size() + i].push_back(measured[i].seconds);
+            found.measured[way * formats.size() + i] = measured[i];
+        }
+    });
+    for (std::size_t i = 0; i < seconds.size(); ++i)
+        found.measured[i].seconds = spread_of(seconds[i]).median;
+    for (MeasuredBake& one : found.measured) {
+        one.is_efficient = std::none_of(
+            found.measured.begin(), found.measured.end(), [&](const MeasuredBake& other) {
+                return other.error.rms < one.error.rms && other.seconds < one.seconds;
+            });
+    }
+}
+
+}  // namespace
+
+void check_accuracy(const MeshBakeRequest& request) {
+    const AccuracyChoice& choice = request.accuracy;
+    check(choice.bound);
+    if (!needs_trials(request)) return;
+    if (choice.compare && choice.bound.degrees)
+        throw UsageError("--compare, --max-error: one bakes in every way, the other in one");
+    const std::string option = choice.compare ? "--compare" : "--max-error";
+    if (request.map.half)
+        throw UsageError(option + ", --half: errors of half floats are not measured");
+    if (names_word(request.output, material_word) || names_word(request.output, tile_word))
+        throw UsageError(option + ": is of one map, not those of <material> or <UDIM>");
+}
+
+bool needs_trials(const MeshBakeRequest& request) {
+    return request.accuracy.compare || request.accuracy.bound.degrees.has_value();
+}
+
+MeshAccuracy settle_accuracy(const Baker& baker, const BakeMapOptions& map,
+                             MeshBakeRequest& request, NormalMapFormat& format) {
+    const bool compares = request.accuracy.compare;
+    const bool needs_all = request.accuracy.bound.kind == BoundKind::max;
+    const std::size_t whole =
+        static_cast<std::size_t>(map.width) * static_cast<std::size_t>(map.height);
+    const BakeTrials trials(baker, map,
+                            needs_all  ? whole
+                            : compares ? texels_for_table
+                                       : texels_for_bound);
+    MeshAccuracy found;
+    found.texels = trials.texels();
+    found.is_whole = trials.is_whole();
+    found.reference_samples = trials.reference_samples();
+    found.reference_rays = trials.reference_rays();
+    if (compares)
+        compare(trials, format, found);
+    else
+        keep_within(trials, request, format, found);
+    return found;
+}
+
+}  // namespace relief::tools

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// How true `relief-bake mesh` is to be: samples and bits raised until an error is kept, or all of
+/// them beside their times. Tests: tests/tools/relief_bake_accuracy_test.cpp.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <vector>
+
+#include "mesh/mesh_options.h"
+#include "relief/mesh/bake_trials.h"
+#include "relief/mesh/timing.h"
+
+namespace relief::tools {
+
+/// One way to bake, on the part that was looked at.
+struct MeasuredBake {
+    SampleChoice samples;
+    std::optional<double> sample_angle;  ///< Degrees, of `auto`.
+    NormalMapFormat format;
+    AngleSummary error;
+    std::size_t rays = 0;
+    double seconds = 0.0;       ///< Of the rays; with --compare the median, and the codes among it.
+    bool is_efficient = false;  ///< With --compare: none is both truer and faster.
+};
+
+struct MeshAccuracy {
+    /// --max-error: in the order tried, up to what is kept. --compare: all.
+    std::vector<MeasuredBake> measured;
+    std::optional<MeasuredBake> kept;  ///< By --max-error.
+    std::size_t texels = 0;            ///< Looked at.
+    bool is_whole = true;
+    int reference_samples = 0;
+    std::size_t reference_rays = 0;
+};
+
+/// --max-error, --max-error-kind, --compare.
+void add_accuracy_options(CLI::App& app, AccuracyChoice& choice);
+
+/// \throws UsageError where options contradict each other, or have no effect
+void check_accuracy(const MeshBakeRequest& request);
+
+/// Whether something is to be measured before the map is baked.
+bool needs_trials(const MeshBakeRequest& request);
+
+/// Measures, and for --max-error settles samples and bits of the request and the format.
+///
+/// Samples are raised from 1 to 64, or stay as told; at each count all depths that are open are
+/// looked at, which takes no rays. The first count at which one keeps the bound is taken, with the
+/// fewest bits that do. Where the codes of all depths alone are further off, no rays are wasted.
+/// \throws InvalidInput where nothing keeps within the bound, saying what comes closest
+MeshAccuracy settle_accuracy(const Baker& baker, const BakeMapOptions& map,
+                             MeshBakeRequest& request, NormalMapFormat& format);
+
+void print_accuracy(const MeshBakeRequest& request, const MeshAccuracy& accuracy);
+void add_accuracy(const MeshAccuracy& accuracy, nlohmann::ordered_json& report);
+
+}  // namespace relief::tools
