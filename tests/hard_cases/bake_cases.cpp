@@ -4,66 +4,13 @@
 #include <algorithm>
 #include <limits>
 
+#include "hard_cases/baked_map.h"
 #include "hard_cases/map_cases.h"
-#include "relief/mesh/bake.h"
-#include "relief/mesh/direction_error.h"
 #include "relief/mesh/error.h"
 #include "relief/mesh/shapes.h"
 
 namespace relief::test {
 namespace {
-
-constexpr int side = 16;
-constexpr std::size_t texels = std::size_t{side} * side;
-
-/// A map of 16 x 16 texels.
-struct Map {
-    std::vector<float> normals, heights;
-    std::vector<TexelState> states;
-    BakeResult result;
-    Report report;
-
-    [[nodiscard]] double degrees(std::size_t texel, const glm::dvec3& expected) const {
-        return degrees_between({normals[3 * texel], normals[3 * texel + 1], normals[3 * texel + 2]},
-                               expected);
-    }
-};
-
-Map baked(const std::vector<Mesh>& high, const Mesh& low, int padding = 0) {
-    Map map;
-    BakeOptions options;
-    options.width = side;
-    options.height = side;
-    options.padding = padding;
-    options.layers.heights = true;
-    map.result = bake_normals(
-        high, low, options,
-        [&](const BakedRows& rows) {
-            map.normals.assign(rows.normals.begin(), rows.normals.end());
-            map.heights.assign(rows.heights.begin(), rows.heights.end());
-            map.states.assign(rows.states.begin(), rows.states.end());
-        },
-        map.report);
-    return map;
-}
-
-Mesh moved(Mesh mesh, const glm::vec3& by) {
-    for (glm::vec3& position : mesh.positions)
-        position += by;
-    return mesh;
-}
-
-/// Every texel baked, this direction and this height.
-std::string not_all(const Map& map, const glm::dvec3& normal, double height) {
-    for (std::size_t i = 0; i < texels; ++i) {
-        if (map.states[i] != TexelState::baked) return fmt::format("texel {} is not baked", i);
-        if (!(map.degrees(i, normal) < 0.001))
-            return fmt::format("texel {} is {} degrees off", i, map.degrees(i, normal));
-        if (!(std::abs(map.heights[i] - height) < 1e-5))
-            return fmt::format("texel {} is {} high", i, map.heights[i]);
-    }
-    return "";
-}
 
 const glm::dvec3 flat(0, 0, 1);
 
@@ -88,7 +35,7 @@ HardCase edges_case() {
             "Embree#174, #181; tinybvh#168",
             {{"bake", "one hit each, the same whatever the order of triangles", [] {
                   Mesh high = moved(make_quad(8), {0, 0, 0.125F});
-                  const Map map = baked({high}, make_quad());
+                  const HardBake map = baked({high}, make_quad());
                   std::reverse(high.triangles.begin(), high.triangles.end());
                   const std::string problem = not_all(map, flat, 0.125);
                   if (!problem.empty()) return problem;
@@ -104,7 +51,7 @@ HardCase needle_case() {
             "Embree#387",
             {{"bake", "the square alone is hit", [] {
                   Mesh needles;
-                  for (int i = 0; i < side; ++i) {
+                  for (int i = 0; i < bake_side; ++i) {
                       const float x = static_cast<float>(i) / 8.0F - 1.0F;
                       needles.positions.insert(needles.positions.end(),
                                                {{x, -1, 0}, {x, 1, 0}, {x + 1e-7F, 1, 0.005F}});
@@ -124,9 +71,9 @@ HardCase missed_case() {
                   Mesh half = make_quad();
                   for (glm::vec3& position : half.positions)
                       position.x = (position.x - 1.0F) / 2.0F;
-                  const Map map = baked({half}, make_quad());
-                  return map.report.count("texel missed by its rays") == texels / 2 &&
-                                 map.degrees(side - 1, flat) == 0.0
+                  const HardBake map = baked({half}, make_quad());
+                  return map.report.count("texel missed by its rays") == bake_texels / 2 &&
+                                 map.degrees(bake_side - 1, flat) == 0.0
                              ? ""
                              : std::string("not so");
               }},
@@ -135,8 +82,8 @@ HardCase missed_case() {
                   half.normals.assign(4, glm::normalize(glm::vec3(0.6F, 0, 0.8F)));
                   for (glm::vec3& position : half.positions)
                       position.x = (position.x - 1.0F) / 2.0F;
-                  const Map map = baked({half}, make_quad(), side);
-                  for (std::size_t i = 0; i < texels; ++i) {
+                  const HardBake map = baked({half}, make_quad(), bake_side);
+                  for (std::size_t i = 0; i < bake_texels; ++i) {
                       if (!(map.degrees(i, {0.6, 0, 0.8}) < 0.001))
                           return fmt::format("texel {} is not", i);
                   }
@@ -170,7 +117,7 @@ HardCase scale_case() {
                       Mesh mesh = make_torus();
                       for (glm::vec3& position : mesh.positions)
                           position *= size;
-                      Map map = baked({mesh}, mesh);
+                      HardBake map = baked({mesh}, mesh);
                       std::fill(map.heights.begin(), map.heights.end(), 0.0F);
                       const std::string problem = not_all(map, flat, 0.0);
                       if (!problem.empty()) return problem;
@@ -184,7 +131,7 @@ HardCase broken_case() {
             "Nothing; triangles without area; vertices that are not finite, beside a sound square.",
             "crashes of ray casters",
             {{"bake", "of nothing all missed; else the square", [] {
-                  if (baked({Mesh{}}, make_quad()).result.texels_missed != texels)
+                  if (baked({Mesh{}}, make_quad()).result.texels_missed != bake_texels)
                       return std::string("hit nothing");
                   Mesh high = make_quad();
                   const float nan = std::numeric_limits<float>::quiet_NaN();

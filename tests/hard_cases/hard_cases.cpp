@@ -11,7 +11,7 @@ const std::vector<HardCase>& hard_cases() {
         for (const auto& part :
              {triangle_cases(), surface_cases(), number_cases(), stored_cases(), tangent_cases(),
               tangent_surface_cases(), encoding_cases(), image_cases(), image_file_cases(),
-              normal_map_cases(), map_check_cases(), bake_cases()})
+              normal_map_cases(), map_check_cases(), bake_cases(), bake_shape_cases()})
             rows.insert(rows.end(), part.begin(), part.end());
         return rows;
     }();

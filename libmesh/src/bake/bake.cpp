@@ -14,6 +14,7 @@
 
 #include "bake/baked_layers.h"
 #include "bake/band_bake.h"
+#include "bake/border_fill.h"
 #include "bake/dilation.h"
 #include "parallel.h"
 #include "relief/mesh/error.h"
@@ -75,6 +76,16 @@ void check_rows(const BakeRowRange& rows, const BakeMapOptions& map) {
     if (map.padding > 0) throw InvalidInput("some rows of a map have no padding");
 }
 
+void check_border(const BakeMapOptions& map) {
+    if (!map.border_folder) return;
+    if (map.padding > 0 || map.rows)
+        throw InvalidInput("a map that is filled to its border has no padding, and all rows");
+    if (std::max(map.width, map.height) > BorderFill::largest_side) {
+        throw InvalidInput(fmt::format("a map of {} x {} texels is too large to be filled: {}",
+                                       map.width, map.height, BorderFill::largest_side));
+    }
+}
+
 void check_map(const BakeMapOptions& map, const Mesh& low) {
     const int side = side_of(map.samples);
     // Coverage has a limit of its own, which is of samples.
@@ -89,6 +100,7 @@ void check_map(const BakeMapOptions& map, const Mesh& low) {
         throw InvalidInput(
             fmt::format("a padding of {} texels is not within 0 to {}", map.padding, most_padding));
     }
+    check_border(map);
     if (map.sample_angle && !(*map.sample_angle >= 0.0 && *map.sample_angle <= std::numbers::pi))
         throw InvalidInput(fmt::format("an angle of {} is not within 0 to pi", *map.sample_angle));
     if (map.rows) check_rows(*map.rows, map);
@@ -156,7 +168,7 @@ int rows_of_strip(const BakeLayers& wanted, int width, int height) {
 
 /// Bakes rows [first, last), and says what there was.
 void bake_strip(const BakeWork& work, const TexelCover& cover, Strip& strip, int first, int last,
-                BakeResult& result, BakeCounts& counts, Report& report) {
+                BakeResult& result, BakeCounts& counts, int& rows_done, Report& report) {
     const int side = work.side;
     std::mutex mutex;
     std::map<int, Report> reports;  // By row, so that their order is no matter of threads.
@@ -169,6 +181,8 @@ void bake_strip(const BakeWork& work, const TexelCover& cover, Strip& strip, int
             work, row, owners, strip.rows(work.options.width, row, row - first, count), found);
         const std::lock_guard lock(mutex);
         counts += more;
+        rows_done += count;
+        if (work.options.progress) work.options.progress({rows_done, counts.rays});
         reports.emplace(row, std::move(found));
     };
     result.coverage += cover.cover(first * side, last * side, take, report);
@@ -244,11 +258,15 @@ BakeResult Baker::bake(const BakeMapOptions& map,
     const int rows = rows_of_strip(options.layers, map.width, range.last - range.first);
     Strip strip(options.layers, static_cast<std::size_t>(map.width),
                 static_cast<std::size_t>(rows));
-    Dilation dilation(map.width, map.height, map.padding, take);
+    std::optional<BorderFill> border;
+    if (map.border_folder) border.emplace(map.width, map.height, *map.border_folder, take);
+    Dilation dilation(map.width, map.height, map.padding,
+                      [&](const BakedRows& done) { border ? border->push(done) : take(done); });
     BakeCounts counts;
+    int rows_done = 0;
     for (int first = range.first; first < range.last; first += rows) {
         const int last = std::min(first + rows, range.last);
-        bake_strip(work, cover, strip, first, last, result, counts, report);
+        bake_strip(work, cover, strip, first, last, result, counts, rows_done, report);
         dilation.push(strip.rows(map.width, first, 0, last - first));
     }
     result.samples = counts.samples;

@@ -198,6 +198,7 @@ void CheckSums::add(const CheckSums& others) {
 CastRows cast_rows(const Baker& baker, BakeMapOptions map, int first, int last, Report& report) {
     map.rows = BakeRowRange{first, last};
     map.padding = 0;
+    map.border_folder.reset();
     map.layers = {.heights = true};
     CastRows cast;
     const auto take = [&](const BakedRows& rows) {

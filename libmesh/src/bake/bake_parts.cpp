@@ -6,10 +6,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <unordered_map>
 
 #include "bake/bake_distances.h"
 #include "relief/mesh/error.h"
+#include "relief/mesh/mesh_part.h"
 
 namespace relief {
 namespace {
@@ -22,23 +22,6 @@ BakeDistances distances_of(std::span<const Mesh> high, const HighSurface& surfac
     distances.offset = options.offset.value_or(distances.offset);
     distances.max_distance = options.max_distance.value_or(distances.max_distance);
     return distances;
-}
-
-/// Some triangles and the positions that they name: distances depend on no more.
-Mesh places_of(const Mesh& mesh, std::span<const std::uint32_t> triangles) {
-    Mesh part;
-    std::unordered_map<std::uint32_t, std::uint32_t> vertices;
-    for (const std::uint32_t triangle : triangles) {
-        glm::uvec3 corners = mesh.triangles[triangle];
-        for (int i = 0; i < 3; ++i) {
-            const auto next = static_cast<std::uint32_t>(part.positions.size());
-            const auto [known, is_new] = vertices.emplace(corners[i], next);
-            if (is_new) part.positions.push_back(mesh.positions[corners[i]]);
-            corners[i] = known->second;
-        }
-        part.triangles.push_back(corners);
-    }
-    return part;
 }
 
 std::vector<std::uint32_t> parts_of_triangles(std::span<const BakePart> parts, const Mesh& low) {
@@ -77,7 +60,7 @@ BakeParts::BakeParts(std::span<const BakePart> parts, const Mesh& low, const Bak
                      Report& report)
     : part_of_triangle_(parts_of_triangles(parts, low)) {
     for (const BakePart& part : parts) {
-        const Mesh own = places_of(low, part.triangles);
+        const Mesh own = part_of(low, part.triangles);
         surfaces_.push_back(std::make_unique<SeenSurface>(part.high, own, options, report));
     }
 }

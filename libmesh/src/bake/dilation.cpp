@@ -8,7 +8,7 @@
 
 #include "bake/baked_layers.h"
 #include "bake/nearest_columns.h"
-#include "geometry/direction.h"
+#include "bake/texel_mean.h"
 #include "parallel.h"
 
 namespace relief {
@@ -20,31 +20,6 @@ constexpr std::size_t columns_at_once = 256;
 template <typename T>
 void append(std::vector<T>& all, std::span<const T> more) {
     all.insert(all.end(), more.begin(), more.end());
-}
-
-/// The mean of a layer's values at some texels, into one that is none of them.
-void average(const BakedLayer& layer, std::span<float> values, std::span<const std::size_t> from,
-             std::size_t to) {
-    if (!layer.has_directions) {
-        for (std::size_t channel = 0; channel < layer.channels; ++channel) {
-            double sum = 0.0;
-            for (const std::size_t texel : from)
-                sum += values[layer.channels * texel + channel];
-            values[layer.channels * to + channel] =
-                static_cast<float>(sum / static_cast<double>(from.size()));
-        }
-        return;
-    }
-    const auto direction = [&](std::size_t texel) {
-        return glm::dvec3(values[3 * texel], values[3 * texel + 1], values[3 * texel + 2]);
-    };
-    glm::dvec3 sum(0.0);
-    for (const std::size_t texel : from)
-        sum += direction(texel);
-    const bool cancels = glm::length(sum) < 1e-6 * static_cast<double>(from.size());
-    const glm::vec3 mean = rounded(cancels ? direction(from.front()) : direction_or_zero(sum));
-    for (int axis = 0; axis < 3; ++axis)
-        values[3 * to + static_cast<std::size_t>(axis)] = mean[axis];
 }
 
 }  // namespace
@@ -144,7 +119,8 @@ void Dilation::fill_row(int row, const BakedRows& rows, NearestColumns& nearest)
         });
         const std::size_t to = here + static_cast<std::size_t>(column);
         for (const BakedLayer& layer : baked_layers) {
-            if (!(rows.*layer.values).empty()) average(layer, rows.*layer.values, from, to);
+            const std::span<float> values = rows.*layer.values;
+            if (!values.empty()) average(layer, values, from, &values[layer.channels * to]);
         }
         rows.states[to] = TexelState::padded;
     }

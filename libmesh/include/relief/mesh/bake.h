@@ -7,6 +7,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <glm/glm.hpp>
 #include <memory>
@@ -49,6 +50,12 @@ struct BakeRowRange {
     int last = 0;   ///< Likewise, or the map's height.
 };
 
+/// How far a map is.
+struct BakeProgress {
+    int rows = 0;  ///< Done, of the map's height.
+    std::size_t rays = 0;
+};
+
 /// One map of a bake. There may be many on the same meshes, each with options of its own.
 struct BakeMapOptions {
     int width = 0;  ///< In texels.
@@ -66,6 +73,12 @@ struct BakeMapOptions {
     /// With several samples: a quarter of them is cast first (of 4: the upper left and the lower
     /// right one), and the others only where two of those are further apart than this, radians.
     std::optional<double> sample_angle{};
+    /// Fills all of the map instead, however far from any chart. Rows are handed on when all are
+    /// baked, and kept until then in a file without a name in this folder: 4 bytes a texel for each
+    /// channel of each layer, and 3.
+    std::optional<std::filesystem::path> border_folder{};
+    /// Told how far a map is, one call at a time, from any thread.
+    std::function<void(const BakeProgress& progress)> progress{};
     /// How far around charts, in texels, what is not baked is filled from the nearest texels that
     /// are: the mean of them, where several are equally near. 0 to 1024.
     int padding = 0;

@@ -4,6 +4,7 @@
 /// Tests: tests/mesh/io/mesh/mesh_file_test.cpp.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <glm/glm.hpp>
 #include <optional>
@@ -47,6 +48,11 @@ struct MeshFile {
     /// Positions of the mesh are relative to this: add it for the coordinates of the file. Zero but
     /// for files far from 0 whose digits floats could not hold otherwise.
     glm::dvec3 origin{0.0};
+    /// The names of OBJ's objects (o), or where it has none of its groups (g), in order of first
+    /// use; "" for triangles before any. Other formats have none.
+    std::vector<std::string> objects{};
+    /// Which of them each triangle belongs to; empty where all belong to the same.
+    std::vector<std::uint32_t> object_of{};
 };
 
 /// Reads OBJ, PLY, STL or OFF, by extension.

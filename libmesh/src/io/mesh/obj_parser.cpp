@@ -289,8 +289,8 @@ void ObjParser::smoothing_group() {
 }
 
 void ObjParser::statement(std::string_view keyword) {
-    static constexpr std::array without_shape = {
-        "g", "vp", "mg", "bevel", "c_interp", "d_interp", "lod", "shadow_obj", "trace_obj"};
+    static constexpr std::array without_shape = {"vp",       "mg",  "bevel",      "c_interp",
+                                                 "d_interp", "lod", "shadow_obj", "trace_obj"};
     static constexpr std::array free_form = {"cstype", "deg",  "bmat",  "step", "curv", "curv2",
                                              "surf",   "parm", "trim",  "hole", "scrv", "sp",
                                              "end",    "con",  "ctech", "stech"};
@@ -304,7 +304,10 @@ void ObjParser::statement(std::string_view keyword) {
     } else if (keyword == "mtllib") {
         result_.material_libraries.emplace_back(rest_of_line());
     } else if (keyword == "o") {
-        if (piece_.object_count++ == 0) result_.name = rest_of_line();
+        result_.objects.push_back({result_.faces.size(), std::string(rest_of_line())});
+        if (piece_.object_count++ == 0) result_.name = result_.objects.back().name;
+    } else if (keyword == "g") {
+        result_.groups.push_back({result_.faces.size(), std::string(rest_of_line())});
     } else if (keyword == "p") {
         report_.add("point", "line", line_, "left out");
     } else if (keyword == "l") {

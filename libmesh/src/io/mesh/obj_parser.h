@@ -34,6 +34,12 @@ struct ObjFace {
     std::uint32_t smoothing_group = 0;  ///< 0: off, also before any s.
 };
 
+/// Faces from one on that belong to an object or a group, until the next run begins.
+struct ObjRun {
+    std::size_t first_face = 0;
+    std::string name;  ///< As written after o or g, all of the line.
+};
+
 struct ObjStatements {
     std::string name;  ///< Of the object, where there is exactly one.
     std::vector<glm::vec3> positions;
@@ -43,6 +49,7 @@ struct ObjStatements {
     std::vector<ObjCorner> corners;
     std::vector<ObjFace> faces;
     bool has_smoothing_groups = false;            ///< Some s says what they are.
+    std::vector<ObjRun> objects, groups;          ///< In the file's order.
     std::vector<std::string> materials;           ///< Names in order of first use.
     std::vector<std::string> material_libraries;  ///< As written after mtllib.
 };

@@ -126,10 +126,19 @@ void add_findings(const std::vector<ObjPiece>& pieces, const std::vector<Before>
     }
 }
 
+/// Runs of a piece, counted from the file's first face.
+void append_runs(std::vector<ObjRun>& runs, std::size_t faces_before, std::vector<ObjRun>& all) {
+    for (ObjRun& run : runs)
+        all.push_back({run.first_face + faces_before, std::move(run.name)});
+}
+
 /// The name of the one object, and what has no order but that of the file.
 void join_words(std::vector<ObjPiece>& pieces, ObjStatements& all) {
-    std::size_t objects = 0;
+    std::size_t objects = 0, faces = 0;
     for (ObjPiece& piece : pieces) {
+        append_runs(piece.statements.objects, faces, all.objects);
+        append_runs(piece.statements.groups, faces, all.groups);
+        faces += piece.statements.faces.size();
         if (piece.object_count > 0) all.name = piece.statements.name;
         objects += piece.object_count;
         all.has_smoothing_groups |= piece.statements.has_smoothing_groups;

@@ -13,6 +13,7 @@
 
 #include "file_bytes.h"
 #include "io/mesh/obj_materials.h"
+#include "io/mesh/obj_objects.h"
 #include "io/mesh/obj_parser.h"
 #include "io/mesh/obj_vertices.h"
 #include "io/mesh/polygon_mesh.h"
@@ -73,17 +74,23 @@ void complete_corners(ObjStatements& statements, Report& report) {
 
 /// Triangles grouped by material, groups in order of first use, order kept within each. A file that
 /// names no material gets no ranges.
-void group_by_material(CutPolygons cut, const ObjStatements& statements, Mesh& mesh) {
+void group_by_material(CutPolygons cut, const ObjStatements& statements, MeshFile& file) {
+    Mesh& mesh = file.mesh;
+    ObjObjects objects = objects_of(statements);
+    file.objects = std::move(objects.names);
+    if (!objects.of_face.empty()) file.object_of.resize(cut.triangles.size());
     const auto face_of = [&](std::size_t triangle) -> const ObjFace& {
         return statements.faces[cut.polygons[triangle]];
     };
-    if (statements.materials.empty() && !statements.has_smoothing_groups) {
+    if (statements.materials.empty() && !statements.has_smoothing_groups &&
+        objects.of_face.empty()) {
         mesh.triangles = std::move(cut.triangles);
         return;
     }
     if (statements.has_smoothing_groups) mesh.smoothing_groups.resize(cut.triangles.size());
     const auto place = [&](std::size_t triangle, std::size_t at) {
         mesh.triangles[at] = cut.triangles[triangle];
+        if (!objects.of_face.empty()) file.object_of[at] = objects.of_face[cut.polygons[triangle]];
         if (statements.has_smoothing_groups)
             mesh.smoothing_groups[at] = face_of(triangle).smoothing_group;
     };
@@ -131,7 +138,7 @@ MeshFile read_obj(const std::filesystem::path& file, const glm::dvec3& origin, R
         polygons.corner_counts.push_back(face.corner_count);
     CutPolygons cut = cut_polygons(result.mesh, polygons, report);
     if (cut.triangles.empty()) throw FileError(file, "has no triangle");
-    group_by_material(std::move(cut), statements, result.mesh);
+    group_by_material(std::move(cut), statements, result);
     result.materials =
         read_materials(file, statements.materials, statements.material_libraries, report);
     return result;
