@@ -8,6 +8,7 @@
 #include <cmath>
 #include <mutex>
 
+#include "bake/border_sample.h"
 #include "bake/layer_bake.h"
 #include "geometry/direction.h"
 #include "parallel.h"
@@ -134,6 +135,7 @@ class Piece {
         const Projection projection(seen_->high.scene(), work_.options.back_faces);
         counts_.rays += projection.find(lines_, points_);
         counts_.samples += lines_.size();
+        cast_again_from_borders(projection);
         for (std::size_t i = 0; i < lines_.size(); ++i) {
             if (points_[i].hit.is_hit()) take(samples_[i], points_[i]);
         }
@@ -147,6 +149,20 @@ class Piece {
         std::size_t texel;
         std::uint32_t index;  ///< Of those of the texel.
     };
+
+    /// Samples on the border of their triangle that missed are cast once more, from just inside.
+    void cast_again_from_borders(const Projection& projection) {
+        Report said_already;
+        for (std::size_t i = 0; i < lines_.size(); ++i) {
+            if (points_[i].hit.is_hit()) continue;
+            const auto moved =
+                moved_inside(work_.low.mesh(), samples_[i].owner, projection.least_from_border());
+            if (!moved) continue;
+            lines_[i] = work_.low.line(*moved, seen_->distances, map_index(samples_[i].texel),
+                                       said_already);
+            counts_.rays += projection.find({&lines_[i], 1}, {&points_[i], 1});
+        }
+    }
 
     void add_layers() {
         std::vector<LayerHit> hits;

@@ -45,6 +45,9 @@ class Projection {
     /// Finds the surface for all lines; neighbours in order are fastest. \return rays cast
     std::size_t find(std::span<const ProjectionLine> lines, std::span<ProjectedPoint> points) const;
 
+    /// A ray so far inside of an open border of the high meshes does not slip past it.
+    [[nodiscard]] double least_from_border() const { return step_; }
+
   private:
     struct Walk;
 
