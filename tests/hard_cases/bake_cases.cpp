@@ -45,6 +45,32 @@ HardCase edges_case() {
               }}}};
 }
 
+/// One triangle askew, whose edges run across texels.
+HardCase border_case() {
+    return {
+        "rays on open borders",
+        "A triangle that nothing joins onto itself: texels that only touch it have their place "
+        "exactly on its edges.",
+        "rays that slip past by the rounding of floats; dark rims",
+        {{"bake", "flat, height 0, no texel missed", [] {
+              Mesh low;
+              low.positions = {{0.31F, 0.12F, 2.03F}, {1.37F, 0.45F, 2.71F}, {0.58F, 1.19F, 1.6F}};
+              low.texcoords = {{0.02F, 0.11F}, {0.97F, 0.29F}, {0.23F, 0.94F}};
+              low.triangles = {{0, 1, 2}};
+              const HardBake map = baked({low}, low);
+              if (map.result.coverage.touched < bake_side)
+                  return std::string("few texels touch it");
+              for (std::size_t i = 0; i < bake_texels; ++i) {
+                  if (!(map.degrees(i, flat) < 0.001)) return fmt::format("texel {} is off", i);
+              }
+              if (map.result.texels_missed > 0)
+                  return fmt::format("{} missed", map.result.texels_missed);
+              const bool is_flat =
+                  map.result.greatest_height < 1e-6 && map.result.least_height > -1e-6;
+              return std::string(is_flat ? "" : "the heights are not 0");
+          }}}};
+}
+
 HardCase needle_case() {
     return {"needles seen edge-on",
             "A square, and above it upright triangles 1e-7 wide, between the rays.",
@@ -167,7 +193,7 @@ HardCase bare_case() {
 }  // namespace
 
 std::vector<HardCase> bake_cases() {
-    return {self_case(), edges_case(), needle_case(), missed_case(),
+    return {self_case(), edges_case(), border_case(), needle_case(), missed_case(),
             wall_case(), scale_case(), broken_case(), bare_case()};
 }
 
