@@ -82,7 +82,9 @@ enum class MapCondition {
     green_contradicted,  ///< The metadata says one direction, the surface shows the other.
     green_down,
     green_unknown,
-    flat_contradicted,  ///< The file says one flat code, its flat texels show the other.
+    /// The file says 128 is flat, but 64 texels or more have 127 in x and y, and more so than any
+    /// other code near to flat; a smooth surface has all of them alike.
+    flat_contradicted,
     // Channels.
     all_flat,    ///< Every texel is the same.
     x_constant,  ///< No slope left and right, though there is one up and down.

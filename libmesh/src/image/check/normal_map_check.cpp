@@ -9,6 +9,7 @@
 #include <array>
 #include <cmath>
 
+#include "image/check/flat_evidence.h"
 #include "image/check/green_direction.h"
 #include "image/check/map_statistics.h"
 #include "parallel.h"
@@ -190,10 +191,10 @@ void find_conventions(const Image& map, const NormalMapCheck& check,
         found.if_so(!check.green.green, green_unknown);
     }
     // The other way round nothing shows: maps coded about 127.5 may well have 128 for flat.
-    if (has_directions(check.content) && metadata.contains("relief:flat") && map.bits() != 32)
-        found.if_so(detect_flat_code(map, metadata) == FlatCode::middle &&
-                        detect_flat_code(map) == FlatCode::half,
-                    flat_contradicted);
+    if (has_directions(check.content) && metadata.contains("relief:flat")) {
+        const bool says_middle = detect_flat_code(map, metadata) == FlatCode::middle;
+        found.if_so(says_middle && flat_evidence(map).is_half(), flat_contradicted);
+    }
 }
 
 void find_channels(const Image& map, const NormalMapCheck& check, const MapStatistics& all,
