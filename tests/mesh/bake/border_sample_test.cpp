@@ -137,6 +137,23 @@ TEST(OpenBorders, NoTexelOfAMeshOntoItselfIsMissed) {
     }
 }
 
+TEST(OpenBorders, AreNotMissedFromACageEither) {
+    const Mesh mesh = open_grid();
+    Mesh cage = mesh;
+    // Outwards everywhere, the grid being nearly flat.
+    const glm::dvec3 a(mesh.positions[mesh.triangles[0].x]);
+    const glm::dvec3 b(mesh.positions[mesh.triangles[0].y]);
+    const glm::dvec3 c(mesh.positions[mesh.triangles[0].z]);
+    const glm::vec3 outwards(glm::normalize(glm::cross(b - a, c - a)));
+    for (glm::vec3& position : cage.positions)
+        position += 0.05F * outwards;
+    BakeOptions options = sized(256, 256);
+    options.cage = &cage;
+    const BakedImage image = bake({mesh}, mesh, options);
+    EXPECT_GT(image.result.coverage.touched, 100U);
+    EXPECT_EQ(image.result.texels_missed, 0U);
+}
+
 TEST(OpenBorders, AreTheSameForAnyNumberOfThreads) {
     const Mesh mesh = confetti();
     const BakedImage usual = bake({mesh}, mesh, sized(200, 200));
