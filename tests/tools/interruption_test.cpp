@@ -51,6 +51,27 @@ TEST(Interruption, LeavesTheOldFileAndNothingElseAndDiesByTheSignal) {
     }
 }
 
+TEST(Interruption, OfABakeOfSeveralMapsLeavesThoseThatAreComplete) {
+    const Workplace place;
+    place.write("low.obj",
+                "v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n"
+                "usemtl A\nf 1/1 2/2 3/3 4/4\nusemtl B\nf 1/1 2/2 3/3 4/4\n");
+    for (const char* padding : {"16", "border"}) {
+        const ProgramResult result = run_program_until(
+            {"relief-bake", "mesh", "low.obj", "low.obj", "out/<material>.png", "--size", "2048",
+             "--padding", padding},
+            place / ".",
+            [&] {
+                return std::filesystem::exists(place / "out/A.png") && is_writing(place / "out");
+            },
+            SIGINT);
+        EXPECT_EQ(result.exit_code, 128 + SIGINT) << result.error;
+        EXPECT_EQ(place.outputs(), "A.png");
+        EXPECT_EQ(read_image_info(place / "out/A.png").width, 2048);
+        std::filesystem::remove(place / "out/A.png");
+    }
+}
+
 TEST(Interruption, AFileThatGetsTooLargeIsAnErrorLikeAFullDisc) {
     const Workplace place;
     write_noise(place / "heights.png", 500);

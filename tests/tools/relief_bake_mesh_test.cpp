@@ -161,6 +161,8 @@ INSTANTIATE_TEST_SUITE_P(
                 "--offset, --rays, --hardness: have no effect with --cage"},
         Refused{"relief-bake mesh high.obj low.obj out/map.png --rays face --hardness 1", 2,
                 "--hardness: is for --rays averaged"},
+        Refused{"relief-bake mesh high.obj low.obj out/map.png --size 16384 --samples 64", 2,
+                "--size 16384x16384: with 64 samples a texel, 8192 are the most along a side"},
         Refused{"relief-bake mesh high.obj low.obj out/map.png --size 0", 2, "--size 0"},
         Refused{"relief-bake mesh high.obj low.obj out/none/map.png", 1,
                 "out/none/map.png: the folder out/none does not exist"}));

@@ -147,6 +147,19 @@ TEST_F(Sets, WhatIsOutsideOfTheMapIsCountedWithTheRemedy) {
                 testing::Not(HasSubstr("outside of the map")));
 }
 
+TEST_F(Sets, PaddingToTheBorderFillsEveryMapAndIsNotOpaque) {
+    write({{"A", 0, 0, right}, {"B", 0.75, 0, up}});
+    const std::string line = "--padding border --background transparent ";
+    EXPECT_EQ(bake("out/<material>.png", line).exit_code, 0);
+    EXPECT_EQ(place_.outputs(), "A.png B.png");
+    const Image map = read_image(place_ / "out/B.png", ImageUse::data);
+    ASSERT_EQ(map.channels, 4);
+    for (std::size_t i = 0; i < 64; ++i) {
+        EXPECT_NEAR((map.as<std::uint16_t>()[4 * i + 1] - 32768.0) / 32767.0, 0.6, 1e-4);
+        EXPECT_EQ(map.as<std::uint16_t>()[4 * i + 3], i % 8 < 6 ? 0 : 65535);
+    }
+}
+
 TEST_F(Sets, GltfMaterialsWithoutNamesHaveMadeOnes) {
     write({{"A", 0, 0, right}, {"B", 0, 0, up}});
     ASSERT_EQ(place_.run("relief-mesh process low.obj out/low.gltf").exit_code, 0);

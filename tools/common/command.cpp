@@ -177,11 +177,11 @@ void Stages::book(const std::string& name, double milliseconds) {
     finished_[index_of(name)].milliseconds += milliseconds;
 }
 
-void Stages::show_progress(const std::string& name, double part) {
+void Stages::show_progress(const std::string& name, double part, const std::string& more) {
     const int percent = static_cast<int>(part * 100);
     if (!show_ || percent == shown_percent_) return;
     shown_percent_ = percent;
-    fmt::print(stderr, "\r\033[K{} {} % ...", name, percent);
+    fmt::print(stderr, "\r\033[K{} {} %{}{} ...", name, percent, more.empty() ? "" : ", ", more);
     std::fflush(stderr);
 }
 

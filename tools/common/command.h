@@ -90,8 +90,11 @@ class Stages {
     /// Adds to the time of a step what was measured elsewhere.
     void book(const std::string& name, double milliseconds);
 
+    /// Whether there is a terminal to say it on.
+    [[nodiscard]] bool shows_progress() const { return show_; }
     /// On a terminal, says how far something is, 0 to 1, wherever it is told anew in percent.
-    void show_progress(const std::string& name, double part);
+    /// \param more  what else to say then: "3 s left"
+    void show_progress(const std::string& name, double part, const std::string& more = "");
     void clear_progress() const;
 
     [[nodiscard]] const std::vector<Stage>& finished() const { return finished_; }

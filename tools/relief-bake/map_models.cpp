@@ -27,7 +27,7 @@ MapModelPart part_of(const GltfDocument& document, GltfPrimitiveId id, Report& r
         options.tangents = TangentMode::none;
         mesh = with_frames(std::move(mesh), options, report).mesh;
     }
-    return {document.describe(id), std::move(mesh)};
+    return {document.describe(id), std::move(mesh), {}, {}};
 }
 
 MapModel model_of(const GltfDocument& document, ModelSpace space, Report& report) {
@@ -42,6 +42,7 @@ MapModel model_of(const GltfDocument& document, ModelSpace space, Report& report
         model.materials.push_back(material.name);
     for (const auto& primitive : view.primitives) {
         MapModelPart part = part_of(document, primitive.what, report);
+        part.objects = {primitive.name};
         part.mesh = placed(std::move(part.mesh), primitive.world_from_object);
         model.parts.push_back(std::move(part));
     }
@@ -84,7 +85,8 @@ MapModel read_map_model(const std::filesystem::path& file, ModelSpace space, Rep
             return model_of(*document, space, report);
         auto& contents = std::get<MeshFile>(read);
         MapModel model;
-        model.parts.push_back({"", std::move(contents.mesh)});
+        model.parts.push_back({"", std::move(contents.mesh), std::move(contents.objects),
+                               std::move(contents.object_of)});
         for (const MtlMaterial& material : contents.materials)
             model.materials.push_back(material.name);
         model.origin = contents.origin;

@@ -22,6 +22,9 @@ enum class ModelSpace { object, world };
 struct MapModelPart {
     std::string name;  ///< "mesh 'Body' primitive 0"; empty where it is all of the file.
     Mesh mesh;
+    /// The names of its objects: of OBJ files (MeshFile::objects), or the node that places it.
+    std::vector<std::string> objects{};
+    std::vector<std::uint32_t> object_of{};  ///< By triangle; empty: all of the same.
 };
 
 struct MapModel {

@@ -138,7 +138,7 @@ SurfaceCheck check_surface(const CLI::App& app, const SurfaceCheckRequest& reque
     Report report;
     about(request.bake.low, [&] {
         stages.run("check", [&] {
-            const Baker baker(models.high, models.low, options, report);
+            const Baker baker = models.baker(options, report);
             result.distances = baker.distances();
             result.map = verify_map(baker, models, settled.bake, map_options(options, plan),
                                     request.verify, report);

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tests: tests/tools/relief_bake_mesh_test.cpp.
+// Tests: tests/tools/relief_bake_mesh_test.cpp, model_pairs_test.cpp.
 #include "mesh/bake_models.h"
 
+#include <utility>
+
 #include "map_models.h"
+#include "relief/mesh/mesh_part.h"
 
 namespace relief::tools {
 namespace {
@@ -14,25 +17,69 @@ MapModel read(const std::filesystem::path& file, Findings& findings) {
     return model;
 }
 
-Mesh read_beside(const MapModel& low, const std::filesystem::path& file, Findings& findings) {
+MapModel read_beside(const MapModel& low, const std::filesystem::path& file, Findings& findings) {
     MapModel model = read(file, findings);
     move_to(model, low.origin);
+    return model;
+}
+
+Mesh joined_of(const std::filesystem::path& file, MapModel model) {
     return about(file, [&] { return joined(std::move(model.parts)); });
 }
 
+/// A part's triangles as a mesh; all of them as they are.
+Mesh taken(std::vector<MapModel>& models, const HighPiece& piece) {
+    Mesh& mesh = models[piece.model].parts[piece.part].mesh;
+    return piece.triangles.size() == mesh.triangles.size() ? std::move(mesh)
+                                                           : part_of(mesh, piece.triangles);
+}
+
+/// The high meshes, one pair after another where they are matched by name.
+void add_high(const MeshBakeRequest& request, const MapModel& low, std::vector<MapModel> high,
+              BakeModels& models, Findings& findings) {
+    std::vector<NamedModel> named;
+    for (std::size_t i = 0; i < high.size(); ++i)
+        named.push_back({request.high[i], &high[i]});
+    ModelPairs paired = pair_models(named, {request.low, &low}, request.match);
+    findings.add("", paired.report);
+    models.unpaired = std::move(paired.unpaired);
+    for (ModelPair& pair : paired.pairs) {
+        BakePair range{pair.name, models.high.size(), pair.high.size(), 0, std::move(pair.low)};
+        for (const HighPiece& piece : pair.high) {
+            models.high.push_back(taken(high, piece));
+            range.high_triangles += models.high.back().triangles.size();
+        }
+        models.pairs.push_back(std::move(range));
+    }
+    if (!paired.pairs.empty()) return;
+    for (std::size_t i = 0; i < high.size(); ++i)
+        models.high.push_back(joined_of(request.high[i], std::move(high[i])));
+}
+
 }  // namespace
+
+Baker BakeModels::baker(const BakeOptions& options, Report& report) const {
+    if (pairs.empty()) return {high, low, options, report};
+    std::vector<BakePart> parts;
+    for (const BakePair& pair : pairs)
+        parts.push_back({std::span(high).subspan(pair.first_high, pair.high_count), pair.low});
+    return {parts, low, options, report};
+}
 
 BakeModels read_bake_models(const MeshBakeRequest& request, Findings& findings) {
     BakeModels models;
     MapModel low = read(request.low, findings);
     require_texcoords(request.low, low, "no texture coordinates, by which a map lies on a mesh",
                       "unwrap it in a modelling program");
+    std::vector<MapModel> high;
     for (const std::filesystem::path& file : request.high)
-        models.high.push_back(read_beside(low, file, findings));
-    if (request.cage) models.cage = read_beside(low, *request.cage, findings);
+        high.push_back(read_beside(low, file, findings));
+    if (request.cage)
+        models.cage = joined_of(*request.cage, read_beside(low, *request.cage, findings));
+    add_high(request, low, std::move(high), models, findings);
     models.materials = low.materials;
     models.world_from_low = low.world_from_object;
-    models.low = about(request.low, [&] { return joined(std::move(low.parts)); });
+    models.low = joined_of(request.low, std::move(low));
     return models;
 }
 

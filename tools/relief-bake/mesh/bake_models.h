@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// The models of a bake, from files, all in the same axes. Tests:
-/// tests/tools/relief_bake_mesh_test.cpp.
+/// tests/tools/relief_bake_mesh_test.cpp, model_pairs_test.cpp.
 #pragma once
 
 #include <optional>
@@ -10,16 +10,32 @@
 
 #include "common/findings.h"
 #include "mesh/mesh_options.h"
+#include "relief/mesh/bake.h"
 #include "relief/mesh/mesh.h"
 
 namespace relief::tools {
 
+/// Parts of one name on both sides.
+struct BakePair {
+    std::string name;
+    std::size_t first_high = 0;  ///< Among BakeModels::high, where they are side by side.
+    std::size_t high_count = 0;
+    std::size_t high_triangles = 0;
+    std::vector<std::uint32_t> low;  ///< Triangles.
+};
+
 struct BakeModels {
-    std::vector<Mesh> high;
+    std::vector<Mesh> high;  ///< One for each file, or where there are pairs, for each part.
     Mesh low;
     std::vector<std::string> materials;  ///< Of the low mesh.
     std::optional<glm::dmat3> world_from_low;
     std::optional<Mesh> cage;
+    std::vector<BakePair> pairs;  ///< None: all is seen by all.
+    /// Names without a counterpart, where that is why there are no pairs.
+    std::vector<std::string> unpaired;
+
+    /// Makes them ready, each low part for what it sees; they must outlive the baker.
+    [[nodiscard]] Baker baker(const BakeOptions& options, Report& report) const;
 };
 
 /// \throws FileError if one cannot be read, or the low one has no texture coordinates

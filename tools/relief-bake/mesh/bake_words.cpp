@@ -49,6 +49,8 @@ BakeWords words_of(const MeshBakeRequest& request) {
     if (request.offset) words["--offset"] = fmt::format("{}", *request.offset);
     if (request.max_distance) words["--max-distance"] = fmt::format("{}", *request.max_distance);
     if (request.back_faces == BackFaces::take) words["--back-faces"] = "take";
+    if (request.match != MatchChoice::automatic)
+        words["--match"] = request.match == MatchChoice::name ? "name" : "all";
     if (request.outside == OutsideChoice::repeat) words["--outside"] = "repeat";
     if (request.map.dither) words["--dither"] = name_of(*request.map.dither, dither_choices());
     return words;

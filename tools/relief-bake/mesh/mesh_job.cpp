@@ -11,6 +11,7 @@
 #include "mesh/bake_models.h"
 #include "mesh/bake_words.h"
 #include "mesh/mesh_preview.h"
+#include "mesh/mesh_progress.h"
 #include "relief/mesh/image_rows.h"
 
 namespace relief::tools {
@@ -26,15 +27,17 @@ std::map<std::string, std::string> metadata_of(const MeshBakeRequest& request, c
     return metadata;
 }
 
-/// Three channels and a fourth, full where there is a normal.
+/// Three channels and a fourth, full where there is a normal, be it of the padding or not.
 template <typename Sample>
-std::vector<Sample> with_alpha(std::span<const Sample> codes, std::span<const TexelState> states) {
+std::vector<Sample> with_alpha(std::span<const Sample> codes, std::span<const TexelState> states,
+                               bool has_padding) {
     const Sample full =
         std::is_floating_point_v<Sample> ? Sample{1} : std::numeric_limits<Sample>::max();
     std::vector<Sample> result(4 * states.size());
     for (std::size_t i = 0; i < states.size(); ++i) {
         std::copy_n(&codes[3 * i], 3, &result[4 * i]);
-        const bool is_there = states[i] == TexelState::baked || states[i] == TexelState::padded;
+        const bool is_there =
+            states[i] == TexelState::baked || (has_padding && states[i] == TexelState::padded);
         result[4 * i + 3] = is_there ? full : Sample{0};
     }
     return result;
@@ -47,6 +50,7 @@ class MapWriter {
               Report& report)
         : format_(format),
           has_alpha_(request.background == Background::transparent),
+          shows_padding_(!request.fills_to_border),
           report_(report),
           writer_(
               plan.output,
@@ -75,12 +79,12 @@ class MapWriter {
     template <typename Sample>
     void write(std::span<const Sample> codes, std::span<const TexelState> states) {
         if (!has_alpha_) return writer_.write(std::as_bytes(codes));
-        const std::vector<Sample> all = with_alpha(codes, states);
+        const std::vector<Sample> all = with_alpha(codes, states, shows_padding_);
         writer_.write(std::as_bytes(std::span(all)));
     }
 
     const NormalMapFormat& format_;
-    bool has_alpha_;
+    bool has_alpha_, shows_padding_;
     Report& report_;
     ImageRowWriter writer_;
 };
@@ -125,9 +129,10 @@ void add(BakeResult& all, const BakeResult& more) {
 }
 
 BakedMap bake_map(const MeshBakeRequest& request, const Baker& baker, MapPlan plan,
-                  const BakeOptions& options, MeshBake& baked) {
+                  const BakeOptions& options, MapProgress& progress, MeshBake& baked) {
     Report report;
-    const BakeMapOptions map = map_options(options, plan);
+    BakeMapOptions map = map_options(options, plan);
+    map.progress = progress.next_map(request.size.y);
     BakedMap result;
     MapWriter writer(request, plan, baked.format, report);
     result.layers = planned_layers(request, plan, baker, map.layers);
@@ -155,10 +160,12 @@ FileError failure_after(const MeshBake& baked, const Error& error, const std::si
 }
 
 void bake_all(const MeshBakeRequest& request, const Baker& baker, MapPlans plans,
-              const BakeOptions& options, MeshBake& baked) {
+              const BakeOptions& options, Stages& stages, MeshBake& baked) {
+    MapProgress progress(stages, plans.maps.size());
     for (MapPlan& plan : plans.maps) {
         try {
-            baked.maps.push_back(bake_map(request, baker, std::move(plan), options, baked));
+            baked.maps.push_back(
+                bake_map(request, baker, std::move(plan), options, progress, baked));
         } catch (const Error& error) {
             if (baked.maps.empty()) throw;
             throw failure_after(baked, error, plans.maps.size());
@@ -198,6 +205,8 @@ MeshBake bake_maps(const MeshBakeRequest& request, Stages& stages) {
         stages.run("read", [&] { return read_bake_models(request, baked.findings); });
     for (const Mesh& mesh : models.high)
         baked.high_triangles += mesh.triangles.size();
+    baked.pairs = models.pairs;
+    baked.unpaired = models.unpaired;
     baked.low_triangles = models.low.triangles.size();
     if (request.layers.files.contains(LayerKind::height))
         baked.texel_size = mean_texel_size(models.low, request.size);
@@ -218,7 +227,7 @@ MeshBake bake_maps(const MeshBakeRequest& request, Stages& stages) {
         std::optional<Baker> baker;
         stages.run("bake", [&] {
             Report report;
-            baker.emplace(models.high, models.low, options, report);
+            baker.emplace(models.baker(options, report));
             baked.findings.add("", report);
         });
         MeshBakeRequest settled = request;
@@ -229,7 +238,8 @@ MeshBake bake_maps(const MeshBakeRequest& request, Stages& stages) {
             });
             take_samples(settled, options);
         }
-        stages.run("bake", [&] { bake_all(settled, *baker, std::move(plans), options, baked); });
+        stages.run("bake",
+                   [&] { bake_all(settled, *baker, std::move(plans), options, stages, baked); });
         if (request.verify.wanted)
             stages.run("verify", [&] { verify_all(settled, *baker, models, options, baked); });
     });

@@ -5,6 +5,7 @@
 #pragma once
 
 #include "common/findings.h"
+#include "mesh/bake_models.h"
 #include "mesh/mesh_accuracy.h"
 #include "mesh/mesh_layers.h"
 #include "mesh/mesh_options.h"
@@ -26,7 +27,9 @@ struct MeshBake {
     std::size_t high_triangles = 0;
     std::size_t low_triangles = 0;
     bool has_own_tangents = false;
-    std::size_t materials = 0;  ///< Of the low mesh.
+    std::size_t materials = 0;    ///< Of the low mesh.
+    std::vector<BakePair> pairs;  ///< As in BakeModels.
+    std::vector<std::string> unpaired;
     NormalMapFormat format;
     double texel_size = 0.0;  ///< Of its maps, in the mean; where a height map is made.
     std::vector<BakedMap> maps;

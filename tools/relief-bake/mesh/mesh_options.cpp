@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "common/model_file.h"
 #include "common/options.h"
 #include "mesh/mesh_accuracy.h"
@@ -37,18 +39,34 @@ void add_map_options(CLI::App& app, MeshBakeRequest& request) {
               })
         ->group(group);
     add_texel_options(app, request);
-    add_value(app, "--padding", "PX",
-              "Fill so many texels around charts from the nearest ones: 0 to 1024. Default: 16.",
+    add_value(app, "--padding", "PX|border",
+              "Fill so many texels around charts from the nearest ones, 0 to 1024; or all, up to "
+              "the map's border, for which OUT's folder needs room: 4 bytes a texel and channel, "
+              "and 3. Default: 16.",
               [&](const std::string& subject, const std::string& text) {
-                  request.padding = parse_integer(subject, text, 0, 1024);
+                  request.fills_to_border = text == "border";
+                  request.padding =
+                      request.fills_to_border ? 0 : parse_integer(subject, text, 0, 1024);
               })
         ->group(group);
     add_choice(
         app, "--background", request.background,
         Choices<Background>{{"flat", Background::flat}, {"transparent", Background::transparent}},
         "What is further away: flat, in three channels; or transparent, with a fourth that "
-        "is 1 where the map is baked or padded. Default: flat.")
+        "is 1 where the map is baked or padded (with --padding border: baked). Default: flat.")
         ->group(group);
+}
+
+/// Samples are counted along the sides of the map.
+void check_sample_count(const MeshBakeRequest& request) {
+    int across = 1;
+    while (across * across < request.samples.count)
+        ++across;
+    const int most = TexelCover::largest_side / across;
+    if (std::max(request.size.x, request.size.y) <= most) return;
+    throw UsageError(
+        fmt::format("--size {}x{}: with {} samples a texel, {} are the most along a side",
+                    request.size.x, request.size.y, request.samples.count, most));
 }
 
 void check_cage(const MeshBakeRequest& request) {
@@ -84,6 +102,14 @@ void add_ray_options(CLI::App& app, MeshBakeRequest& request) {
     add_number(app, "--max-distance", "D", request.max_distance, {0.0, 1e30, ""},
                "How far inside of the low mesh rays end. Default: as for --offset; with --cage, as "
                "far again as it is outside.")
+        ->group(group);
+    add_choice(app, "--match", request.match,
+               Choices<MatchChoice>{{"auto", MatchChoice::automatic},
+                                    {"name", MatchChoice::name},
+                                    {"all", MatchChoice::all}},
+               "Which high parts each low part sees: those of its name (X_low sees X_high, as "
+               "objects or files are called), all, or by name if all have a counterpart (auto). "
+               "Default: auto.")
         ->group(group);
     add_choice(
         app, "--back-faces", request.back_faces,
@@ -160,6 +186,7 @@ void check_mesh_options(MeshBakeRequest& request, const std::vector<std::filesys
     check_layer_options(request.layers);
     check_map_names(request);
     check_bake_options(request);
+    check_sample_count(request);
     check_accuracy(request);
 }
 
@@ -184,6 +211,10 @@ BakeOptions bake_options_of(const MeshBakeRequest& request) {
     if (const auto angle = angle_of(request, request.samples))
         options.sample_angle = glm::radians(*angle);
     options.padding = request.padding;
+    if (request.fills_to_border) {
+        const std::filesystem::path folder = request.output.parent_path();
+        options.border_folder = folder.empty() ? "." : folder;
+    }
     return options;
 }
 

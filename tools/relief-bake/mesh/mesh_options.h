@@ -12,6 +12,7 @@
 #include "map_output.h"
 #include "mesh/error_bound.h"
 #include "mesh/layer_options.h"
+#include "mesh/model_pairs.h"
 #include "mesh/preview_options.h"
 #include "relief/mesh/bake.h"
 
@@ -55,10 +56,12 @@ struct MeshBakeRequest {
     std::optional<double> hardness;
     std::optional<double> offset, max_distance;
     BackFaces back_faces = BackFaces::skip;
+    MatchChoice match = MatchChoice::automatic;
     OutsideChoice outside = OutsideChoice::drop;
     SampleChoice samples;
     std::optional<double> sample_angle;  ///< Degrees.
     int padding = 16;
+    bool fills_to_border = false;  ///< Instead of `padding`.
     Background background = Background::flat;
     MapOutputOptions map;
     LayerOptions layers;

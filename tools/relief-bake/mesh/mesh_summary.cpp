@@ -40,11 +40,34 @@ const char* space_name(SpaceChoice space) {
                                           : "world";
 }
 
+/// "a, b, c", or of many the first and "...".
+std::string first_of(std::vector<std::string> names) {
+    constexpr std::size_t most = 8;
+    if (names.size() > most) {
+        names.resize(most);
+        names.emplace_back("...");
+    }
+    return fmt::format("{}", fmt::join(names, ", "));
+}
+
 std::vector<std::string> read_lines(const MeshBakeRequest& request, const MeshBake& baked) {
     const std::string high =
         request.high.size() == 1 ? request.high[0].string() : counted(request.high.size(), "model");
-    return {fmt::format("{}: {}", high, counted(baked.high_triangles, "triangle")),
-            fmt::format("{}: {}", request.low.string(), counted(baked.low_triangles, "triangle"))};
+    std::vector<std::string> lines = {
+        fmt::format("{}: {}", high, counted(baked.high_triangles, "triangle")),
+        fmt::format("{}: {}", request.low.string(), counted(baked.low_triangles, "triangle"))};
+    if (!baked.pairs.empty()) {
+        std::vector<std::string> names;
+        for (const BakePair& pair : baked.pairs)
+            names.push_back(pair.name);
+        lines.push_back(fmt::format("{} matched by name: {}", counted(names.size(), "part"),
+                                    first_of(std::move(names))));
+    }
+    if (!baked.unpaired.empty()) {
+        lines.push_back("not matched by name, as these have no counterpart: " +
+                        first_of(baked.unpaired));
+    }
+    return lines;
 }
 
 std::vector<std::string> map_lines(const MeshBakeRequest& request, const MeshBake& baked) {
@@ -138,6 +161,12 @@ nlohmann::ordered_json results_json(const MeshBakeRequest& request, const MeshBa
     nlohmann::ordered_json high = nlohmann::ordered_json::array();
     for (const std::filesystem::path& file : request.high)
         high.push_back(file.string());
+    nlohmann::ordered_json pairs = nlohmann::ordered_json::array();
+    for (const BakePair& pair : baked.pairs) {
+        pairs.push_back({{"name", pair.name},
+                         {"high_triangles", pair.high_triangles},
+                         {"low_triangles", pair.low.size()}});
+    }
     nlohmann::ordered_json maps = nlohmann::ordered_json::array();
     for (const BakedMap& map : baked.maps)
         maps.push_back(map_json(map));
@@ -163,6 +192,7 @@ nlohmann::ordered_json results_json(const MeshBakeRequest& request, const MeshBa
                                       {"rays", result.rays},
                                       {"occlusion_rays", result.occlusion_rays},
                                       {"rays_per_second", megarays_per_second(baked, stages) * 1e6},
+                                      {"pairs", pairs},
                                       {"maps", maps},
                                       {"findings", baked.findings.json()},
                                       {"milliseconds", durations_json(stages.finished())}};

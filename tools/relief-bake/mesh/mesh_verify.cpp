@@ -59,6 +59,7 @@ VerifiedMap verify_map(const Baker& baker, const BakeModels& models, const MeshB
     map.width = input.image.width;
     map.height = input.image.height;
     map.padding = 0;
+    map.border_folder.reset();
     BakeCheckOptions options;
     options.map = map;
     options.format.green = input.green.value_or(Green::up);
