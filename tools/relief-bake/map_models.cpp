@@ -16,7 +16,8 @@ namespace relief::tools {
 namespace {
 
 MapModelPart part_of(const GltfDocument& document, GltfPrimitiveId id, Report& report) {
-    Mesh mesh = document.mesh(id, document.tangent_texcoords(id).set);
+    const int set = document.tangent_texcoords(id).set;
+    Mesh mesh = document.mesh(id, set);
     if (mesh.normals.empty()) {
         if (!mesh.tangents.empty()) {
             report.add("tangents without normals", "primitive", id.primitive,
@@ -27,7 +28,30 @@ MapModelPart part_of(const GltfDocument& document, GltfPrimitiveId id, Report& r
         options.tangents = TangentMode::none;
         mesh = with_frames(std::move(mesh), options, report).mesh;
     }
-    return {document.describe(id), std::move(mesh), {}, {}};
+    return {document.describe(id), std::move(mesh), {}, {}, set};
+}
+
+/// By the rules of GltfDocument::from_mesh().
+MapLooks looks_of(const std::vector<MtlMaterial>& materials) {
+    MapLooks looks;
+    const auto texture = [&](const std::optional<std::filesystem::path>& file) {
+        std::optional<GltfTexture> result;
+        if (file) {
+            result.emplace();
+            result->image = looks.images.size();
+            looks.images.push_back({file->filename().string(), *file});
+        }
+        return result;
+    };
+    for (const MtlMaterial& material : materials) {
+        GltfMaterial look;
+        look.name = material.name;
+        look.base_color = glm::vec4(glm::clamp(material.diffuse, 0.0F, 1.0F), 1.0F);
+        look.base_color_texture = texture(material.diffuse_map);
+        look.normal_texture = texture(material.normal_map);
+        looks.materials.push_back(std::move(look));
+    }
+    return looks;
 }
 
 MapModel model_of(const GltfDocument& document, ModelSpace space, Report& report) {
@@ -37,7 +61,7 @@ MapModel model_of(const GltfDocument& document, ModelSpace space, Report& report
             model.parts.push_back(part_of(document, id, report));
         return model;
     }
-    const GltfView view = document.view();
+    GltfView view = document.view();
     for (const GltfMaterial& material : view.materials)
         model.materials.push_back(material.name);
     for (const auto& primitive : view.primitives) {
@@ -46,6 +70,7 @@ MapModel model_of(const GltfDocument& document, ModelSpace space, Report& report
         part.mesh = placed(std::move(part.mesh), primitive.world_from_object);
         model.parts.push_back(std::move(part));
     }
+    model.looks = {std::move(view.materials), std::move(view.images)};
     if (view.primitives.size() == 1)
         model.world_from_object = glm::dmat3(glm::dmat4(view.primitives[0].world_from_object));
     return model;
@@ -86,9 +111,10 @@ MapModel read_map_model(const std::filesystem::path& file, ModelSpace space, Rep
         auto& contents = std::get<MeshFile>(read);
         MapModel model;
         model.parts.push_back({"", std::move(contents.mesh), std::move(contents.objects),
-                               std::move(contents.object_of)});
+                               std::move(contents.object_of), 0});
         for (const MtlMaterial& material : contents.materials)
             model.materials.push_back(material.name);
+        model.looks = looks_of(contents.materials);
         model.origin = contents.origin;
         model.world_from_object = glm::dmat3(1.0);
         return model;
@@ -110,6 +136,7 @@ Mesh joined(std::vector<MapModelPart> parts) {
     all.normals = joined(parts, &Mesh::normals);
     all.tangents = joined(parts, &Mesh::tangents);
     all.texcoords = joined(parts, &Mesh::texcoords);
+    all.colors = joined(parts, &Mesh::colors);
     if (all.positions.size() > std::numeric_limits<std::uint32_t>::max()) {
         throw InvalidInput(
             fmt::format("{} vertices are too many for one mesh", all.positions.size()));

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "relief/mesh/gltf_document.h"
 #include "relief/mesh/mesh.h"
 #include "relief/mesh/report.h"
 
@@ -25,10 +26,18 @@ struct MapModelPart {
     /// The names of its objects: of OBJ files (MeshFile::objects), or the node that places it.
     std::vector<std::string> objects{};
     std::vector<std::uint32_t> object_of{};  ///< By triangle; empty: all of the same.
+    int texcoord_set = 0;                    ///< Of a document: which the mesh has.
+};
+
+/// What a scene's materials look like, as files have it: nothing is decoded.
+struct MapLooks {
+    std::vector<GltfMaterial> materials;
+    std::vector<GltfImage> images;
 };
 
 struct MapModel {
     std::vector<MapModelPart> parts;
+    MapLooks looks;  ///< By the same numbers as `materials`; only of models in world space.
     std::vector<std::string> materials;  ///< Names, by the numbers in the parts' material ranges.
     glm::dvec3 origin{0.0};              ///< Positions are relative to it (mesh_file.h).
     /// How the only primitive of a scene is placed; absent where there are several. Mesh files: as

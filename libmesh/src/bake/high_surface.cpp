@@ -28,15 +28,17 @@ const HighDetail* detail_of(const Mesh& mesh, const BakeOptions& options) {
 }
 
 bool has_normal_map(const HighDetail* detail) {
-    return detail != nullptr &&
-           std::any_of(detail->materials.begin(), detail->materials.end(),
+    if (detail == nullptr) return false;
+    if (detail->otherwise && detail->otherwise->normal_map) return true;
+    return std::any_of(detail->materials.begin(), detail->materials.end(),
                        [](const HighMaterial& material) { return material.normal_map; });
 }
 
 /// What is asked of a mesh that it does not have.
 void count_missing(const Mesh& mesh, const HighDetail* detail, std::size_t index,
                    const BakeLayers& layers, Report& report) {
-    if (layers.colors && mesh.colors.empty() && (detail == nullptr || detail->materials.empty()))
+    if (layers.colors && mesh.colors.empty() &&
+        (detail == nullptr || (detail->materials.empty() && !detail->otherwise)))
         report.add("high mesh without colours", "mesh", index, "is white");
     if (!mesh.texcoords.empty() || detail == nullptr) return;
     if (layers.normals && has_normal_map(detail))
@@ -111,16 +113,21 @@ HighSurface::Entry HighSurface::entry(const Mesh& mesh, std::size_t index,
 
 const HighMaterial* HighSurface::material(const RayHit& hit) const {
     const Entry& entry = entries_[hit.mesh];
-    if (entry.detail == nullptr || entry.detail->materials.empty()) return nullptr;
+    if (entry.detail == nullptr) return nullptr;
+    const HighMaterial* otherwise = entry.detail->otherwise ? &*entry.detail->otherwise : nullptr;
     const std::vector<MaterialRange>& ranges = entry.mesh->material_ranges;
-    // One material and nothing said of triangles: it is that of all.
-    if (ranges.empty()) return &entry.detail->materials.front();
+    if (ranges.empty()) {
+        // Nothing is said of triangles: the only material is that of all.
+        return otherwise != nullptr || entry.detail->materials.empty()
+                   ? otherwise
+                   : &entry.detail->materials.front();
+    }
     const auto next = std::upper_bound(ranges.begin(), ranges.end(), hit.triangle,
                                        [](std::uint32_t triangle, const MaterialRange& range) {
                                            return triangle < range.first_triangle;
                                        });
     const MaterialRange& range = *std::prev(next);
-    return range.material ? &entry.detail->materials[*range.material] : nullptr;
+    return range.material ? &entry.detail->materials[*range.material] : otherwise;
 }
 
 glm::dvec3 HighSurface::face_normal(const RayHit& hit) const {

@@ -125,7 +125,9 @@ glm::dvec3 normal_at(const SurfaceNormalMap& map, const glm::dvec2& texcoord) {
 }
 
 void check(const HighDetail& detail) {
-    for (const HighMaterial& material : detail.materials) {
+    std::vector<HighMaterial> all = detail.materials;
+    if (detail.otherwise) all.push_back(*detail.otherwise);
+    for (const HighMaterial& material : all) {
         if (material.color_texture) check(*material.color_texture, 1, "a colour texture");
         if (material.normal_map) check(material.normal_map->texture, 3, "a normal map");
     }

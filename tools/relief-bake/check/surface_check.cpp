@@ -14,9 +14,10 @@ namespace relief::tools {
 namespace {
 
 constexpr std::array of_surface = {
-    "--low",          "--cage",       "--rays",         "--hardness",       "--offset",
-    "--space",        "--back-faces", "--max-distance", "--samples",        "--outside",
-    "--sample-angle", "--udim",       "--max-error",    "--max-error-kind", "--error-map"};
+    "--low",       "--cage",           "--rays",         "--hardness",
+    "--offset",    "--space",          "--back-faces",   "--max-distance",
+    "--samples",   "--outside",        "--sample-angle", "--udim",
+    "--max-error", "--max-error-kind", "--error-map",    "--high-normal-map"};
 
 /// Of the maps that the low model has, the one that a file says it is.
 MapPlan plan_of(const SurfaceCheckRequest& request, const BakeModels& models,
@@ -79,6 +80,7 @@ void add_surface_check_options(CLI::App& app, SurfaceCheckRequest& request) {
         ->group("Models");
     add_ray_options(app, request.bake);
     add_texel_options(app, request.bake);
+    add_high_normal_map_option(app, request.bake.looks);
     add_bound_options(app, request.verify.bound,
                       "It is trouble if the map is further off its models. Default: it is if it "
                       "is 1 degree (RMS) off what this bake makes, or if another reading explains "
@@ -124,6 +126,7 @@ SurfaceCheck check_surface(const CLI::App& app, const SurfaceCheckRequest& reque
     settled.bake = MeshBakeRequest{};
     settled.bake.high = request.bake.high;
     settled.bake.low = request.bake.low;
+    settled.bake.looks = request.bake.looks;
     if (result.used.contains("--cage") && !request.bake.cage) {
         throw failure(request.verify.map, "was baked from a cage, whose file it does not name",
                       "give --cage FILE");
@@ -133,6 +136,7 @@ SurfaceCheck check_surface(const CLI::App& app, const SurfaceCheckRequest& reque
         stages.run("read", [&] { return read_bake_models(settled.bake, result.findings); });
     BakeOptions options = bake_options_of(settled.bake);
     options.output_from_mesh = output_axes(settled.bake, models.world_from_low);
+    options.details = models.looks.details();
     if (models.cage) options.cage = &*models.cage;
     const MapPlan plan = plan_of(settled, models, metadata);
     Report report;

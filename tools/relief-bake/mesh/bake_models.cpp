@@ -35,25 +35,46 @@ Mesh taken(std::vector<MapModel>& models, const HighPiece& piece) {
 }
 
 /// The high meshes, one pair after another where they are matched by name.
-void add_high(const MeshBakeRequest& request, const MapModel& low, std::vector<MapModel> high,
-              BakeModels& models, Findings& findings) {
+/// \return the file that each is from
+std::vector<std::size_t> add_high(const MeshBakeRequest& request, const MapModel& low,
+                                  std::vector<MapModel> high, BakeModels& models,
+                                  Findings& findings) {
     std::vector<NamedModel> named;
     for (std::size_t i = 0; i < high.size(); ++i)
         named.push_back({request.high[i], &high[i]});
     ModelPairs paired = pair_models(named, {request.low, &low}, request.match);
     findings.add("", paired.report);
     models.unpaired = std::move(paired.unpaired);
+    std::vector<std::size_t> file_of;
     for (ModelPair& pair : paired.pairs) {
         BakePair range{pair.name, models.high.size(), pair.high.size(), 0, std::move(pair.low)};
         for (const HighPiece& piece : pair.high) {
+            file_of.push_back(piece.model);
             models.high.push_back(taken(high, piece));
             range.high_triangles += models.high.back().triangles.size();
         }
         models.pairs.push_back(std::move(range));
     }
-    if (!paired.pairs.empty()) return;
-    for (std::size_t i = 0; i < high.size(); ++i)
+    if (!paired.pairs.empty()) return file_of;
+    for (std::size_t i = 0; i < high.size(); ++i) {
+        file_of.push_back(i);
         models.high.push_back(joined_of(request.high[i], std::move(high[i])));
+    }
+    return file_of;
+}
+
+/// What the high meshes have beside their vertices, once these are in their places.
+void add_looks(const MeshBakeRequest& request, const std::vector<MapLooks>& looks,
+               std::span<const std::size_t> file_of, BakeModels& models, Findings& findings) {
+    const bool with_colors = request.layers.files.contains(LayerKind::color);
+    std::vector<Report> reports(looks.size());
+    for (std::size_t i = 0; i < models.high.size(); ++i) {
+        const std::size_t file = file_of[i];
+        models.looks.add(request.high[file], models.high[i], looks[file], request.looks,
+                         with_colors, reports[file]);
+    }
+    for (std::size_t file = 0; file < looks.size(); ++file)
+        findings.add(request.high[file].string(), reports[file]);
 }
 
 }  // namespace
@@ -72,11 +93,16 @@ BakeModels read_bake_models(const MeshBakeRequest& request, Findings& findings) 
     require_texcoords(request.low, low, "no texture coordinates, by which a map lies on a mesh",
                       "unwrap it in a modelling program");
     std::vector<MapModel> high;
-    for (const std::filesystem::path& file : request.high)
+    std::vector<MapLooks> looks;
+    for (const std::filesystem::path& file : request.high) {
         high.push_back(read_beside(low, file, findings));
+        looks.push_back(std::move(high.back().looks));
+    }
     if (request.cage)
         models.cage = joined_of(*request.cage, read_beside(low, *request.cage, findings));
-    add_high(request, low, std::move(high), models, findings);
+    const std::vector<std::size_t> file_of =
+        add_high(request, low, std::move(high), models, findings);
+    add_looks(request, looks, file_of, models, findings);
     models.materials = low.materials;
     models.world_from_low = low.world_from_object;
     models.low = joined_of(request.low, std::move(low));

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "common/findings.h"
+#include "mesh/high_looks.h"
 #include "mesh/mesh_options.h"
 #include "relief/mesh/bake.h"
 #include "relief/mesh/mesh.h"
@@ -30,6 +31,7 @@ struct BakeModels {
     std::vector<std::string> materials;  ///< Of the low mesh.
     std::optional<glm::dmat3> world_from_low;
     std::optional<Mesh> cage;
+    HighLooks looks;
     std::vector<BakePair> pairs;  ///< None: all is seen by all.
     /// Names without a counterpart, where that is why there are no pairs.
     std::vector<std::string> unpaired;

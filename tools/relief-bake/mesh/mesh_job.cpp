@@ -223,6 +223,8 @@ MeshBake bake_maps(const MeshBakeRequest& request, Stages& stages) {
         BakeOptions options = bake_options_of(request);
         options.map_count = plans.maps.size();
         options.output_from_mesh = output_axes(request, models.world_from_low);
+        options.details = models.looks.details();
+        baked.looks = models.looks.words();
         if (models.cage) options.cage = &*models.cage;
         std::optional<Baker> baker;
         stages.run("bake", [&] {

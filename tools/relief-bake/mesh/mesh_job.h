@@ -31,6 +31,7 @@ struct MeshBake {
     std::vector<BakePair> pairs;  ///< As in BakeModels.
     std::vector<std::string> unpaired;
     NormalMapFormat format;
+    std::string looks;        ///< HighLooks::words()
     double texel_size = 0.0;  ///< Of its maps, in the mean; where a height map is made.
     std::vector<BakedMap> maps;
     BakeResult all;                        ///< Sums over all maps, and the least and greatest.

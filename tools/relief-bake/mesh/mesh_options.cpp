@@ -155,6 +155,8 @@ void add_mesh_options(CLI::App& app, MeshBakeRequest& request,
               "each tile that its texture coordinates enter.");
     add_ray_options(app, request);
     add_map_options(app, request);
+    add_high_normal_map_option(app, request.looks);
+    add_high_color_option(app, request.looks);
     add_layer_options(app, request.layers);
     add_map_output_options(app, request.map);
     add_preview_options(app, request.preview);
@@ -184,6 +186,8 @@ void check_mesh_options(MeshBakeRequest& request, const std::vector<std::filesys
     format_of(request.map, request.output);
     write_options_of(request.map, request.output);
     check_layer_options(request.layers);
+    if (request.looks.color && !request.layers.files.contains(LayerKind::color))
+        throw UsageError("--high-color: has no effect without --color-map");
     check_map_names(request);
     check_bake_options(request);
     check_sample_count(request);

@@ -11,6 +11,7 @@
 #include "common/command.h"
 #include "map_output.h"
 #include "mesh/error_bound.h"
+#include "mesh/high_looks.h"
 #include "mesh/layer_options.h"
 #include "mesh/model_pairs.h"
 #include "mesh/preview_options.h"
@@ -65,6 +66,7 @@ struct MeshBakeRequest {
     Background background = Background::flat;
     MapOutputOptions map;
     LayerOptions layers;
+    HighLookOptions looks;
     PreviewOptions preview;
     VerifyChoice verify;
     AccuracyChoice accuracy;

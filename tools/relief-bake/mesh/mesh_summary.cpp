@@ -53,8 +53,9 @@ std::string first_of(std::vector<std::string> names) {
 std::vector<std::string> read_lines(const MeshBakeRequest& request, const MeshBake& baked) {
     const std::string high =
         request.high.size() == 1 ? request.high[0].string() : counted(request.high.size(), "model");
+    const std::string looks = baked.looks.empty() ? "" : ", " + baked.looks;
     std::vector<std::string> lines = {
-        fmt::format("{}: {}", high, counted(baked.high_triangles, "triangle")),
+        fmt::format("{}: {}{}", high, counted(baked.high_triangles, "triangle"), looks),
         fmt::format("{}: {}", request.low.string(), counted(baked.low_triangles, "triangle"))};
     if (!baked.pairs.empty()) {
         std::vector<std::string> names;

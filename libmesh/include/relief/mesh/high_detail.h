@@ -48,6 +48,7 @@ struct HighDetail {
     /// For colour textures, by vertex. Empty: those of the mesh, which normal maps always have,
     /// with its tangents or MikkTSpace's.
     std::vector<glm::vec2> color_texcoords;
+    std::optional<HighMaterial> otherwise{};  ///< Of triangles without a material.
 };
 
 }  // namespace relief
