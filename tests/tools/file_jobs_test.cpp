@@ -29,6 +29,19 @@ std::string refusal(const FileWords& words) {
     return message_of<UsageError>([&] { jobs(words); });
 }
 
+TEST(FileJobs, AFileIsTheSameByAnyPath) {
+    const TemporaryDirectory folder;
+    touch(folder / "a.png");
+    std::filesystem::create_symlink("a.png", folder / "b.png");
+    EXPECT_EQ(identity_of(folder / "b.png"), identity_of(folder / "a.png"));
+    EXPECT_EQ(identity_of("none.png"), identity_of(std::filesystem::absolute("./none.png")));
+    EXPECT_NE(identity_of(folder / "c.png"), identity_of(folder / "a.png"));
+    // No file has such a name, but to say so is not this function's business.
+    const std::string endless(300, 'x');
+    EXPECT_EQ(identity_of("./" + endless), identity_of(endless));
+    EXPECT_NE(identity_of(endless + "y"), identity_of(endless));
+}
+
 TEST(FileJobs, TwoFilesAreInAndOut) {
     const JobList list = jobs({{"a.png", "b.exr"}, {}});
     EXPECT_EQ(jobs_in_words(list), "a.png -> b.exr");

@@ -132,6 +132,25 @@ TEST(MeshBakeCommand, TakesTheAxesOfAGltfNodeForObjectSpace) {
     EXPECT_THAT(baked("tangent"), near(0.5F, 0.2F, 0.9F));
 }
 
+/// By whatever path: nothing that is read or written beside is replaced.
+TEST(MeshBakeCommand, ReportsAndPicturesAreFilesOfTheirOwn) {
+    const Workplace workplace;
+    workplace.write_square("low.obj");
+    workplace.write("high.obj", tilted_square("0 0 1"));
+    const std::string low = workplace.read("low.obj");
+    const std::string here = (workplace / "out").parent_path().string() + "/";
+    for (const std::string& option :
+         {"--report " + here + "low.obj", "--report " + here + "out/map.png",
+          "--preview " + here + "out/map.png", "--verify --error-map " + here + "out/map.png"}) {
+        const ProgramResult result =
+            workplace.run("relief-bake mesh high.obj low.obj out/map.png --size 8 " + option);
+        EXPECT_EQ(result.exit_code, 2) << option;
+        EXPECT_THAT(result.error, HasSubstr(": is also the input or the output")) << option;
+        EXPECT_EQ(workplace.read("low.obj"), low) << option;
+        EXPECT_EQ(workplace.outputs(), "") << option;
+    }
+}
+
 class MeshBakeRefusal : public testing::TestWithParam<Refused> {};
 
 TEST_P(MeshBakeRefusal, LeavesEverythingAsItWas) {

@@ -132,7 +132,12 @@ JobList into_folder(const FileWords& words, const NameInFolder& name_in_folder) 
 }  // namespace
 
 fs::path identity_of(const fs::path& file) {
-    return fs::weakly_canonical(fs::absolute(file));
+    const fs::path whole = fs::absolute(file);
+    std::error_code error;
+    fs::path canonical = fs::weakly_canonical(whole, error);
+    // What cannot be looked at, such as a name that is too long, is no other file's; whoever opens
+    // it says what is wrong with it.
+    return error ? whole.lexically_normal() : canonical;
 }
 
 fs::path with_word(const fs::path& file, std::string_view word, const std::string& replacement) {

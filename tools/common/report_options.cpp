@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "common/file_jobs.h"
 #include "common/options.h"
 #include "common/text.h"
 
@@ -20,7 +21,7 @@ void add_report_options(CLI::App& app, ReportOptions& options) {
 void check(const ReportOptions& options, const std::vector<std::filesystem::path>& files) {
     if (!options.file) return;
     for (const std::filesystem::path& file : files) {
-        if (options.file->lexically_normal() == file.lexically_normal())
+        if (identity_of(*options.file) == identity_of(file))
             throw UsageError(fmt::format("--report {}: is also the input or the output",
                                          options.file->string()));
     }

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "common/file_jobs.h"
 #include "common/options.h"
 #include "common/text.h"
 
@@ -24,7 +25,7 @@ void add_preview_options(CLI::App& app, PreviewOptions& options) {
 }
 
 void require_another(const PreviewOptions& options, const std::filesystem::path& file) {
-    if (!options.file || options.file->lexically_normal() != file.lexically_normal()) return;
+    if (!options.file || identity_of(*options.file) != identity_of(file)) return;
     throw UsageError(
         fmt::format("--preview {}: is also the input or the output", options.file->string()));
 }

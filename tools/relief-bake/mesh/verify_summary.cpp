@@ -136,7 +136,7 @@ void check_error_map(const std::optional<std::filesystem::path>& file,
                          "use .png, .exr or .tif");
     }
     for (const std::filesystem::path& other : files) {
-        if (file->lexically_normal() == other.lexically_normal())
+        if (identity_of(*file) == identity_of(other))
             throw UsageError(
                 fmt::format("--error-map {}: is also the input or the output", file->string()));
     }
