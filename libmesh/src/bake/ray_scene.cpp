@@ -38,6 +38,26 @@ glm::dvec3 drawn_inside(glm::dvec3 weights) {
     return weights / (weights.x + weights.y + weights.z);
 }
 
+/// Origins further away than this, over the size of the scene, are moved along their rays.
+constexpr double far_away = 4.0;
+/// And so far away doubles are as coarse as floats are within the scene.
+constexpr double too_far_away = 1e10;
+
+/// The same ray from where it comes near the scene, which lies within -1 to 1: floats far away are
+/// coarse, and Embree ends the program at origins beyond 1.8e18. One that does not come near, or
+/// that nobody can tell of, ends before it begins.
+Ray from_nearby(const Ray& ray) {
+    const double distance = glm::length(ray.origin);
+    if (distance <= far_away) return ray;
+    const double middle = -glm::dot(ray.origin, ray.direction);
+    const glm::dvec3 nearest = ray.origin + middle * ray.direction;
+    if (!(distance <= too_far_away && glm::length(nearest) <= 2.0 && middle > -far_away))
+        return {glm::dvec3(0.0), ray.direction, 0.0, -1.0};
+    const double skipped = std::max(middle - far_away, 0.0);
+    return {nearest - (middle - skipped) * ray.direction, ray.direction,
+            std::max(ray.near - skipped, 0.0), ray.far - skipped};
+}
+
 SceneBuild build_for(double expected_rays, const std::vector<RayMesh>& meshes) {
     std::size_t triangles = 0;
     for (const RayMesh& mesh : meshes)
@@ -85,16 +105,17 @@ RayScene::RayScene(std::vector<RayMesh> meshes, double expected_rays)
 
 void RayScene::set(RayPacket& packet, std::size_t lane, const Ray& ray) const {
     const double scale = 1.0 / half_size_;
-    const glm::dvec3 origin = (ray.origin - centre_) * scale;
-    packet.origin_x[lane] = static_cast<float>(origin.x);
-    packet.origin_y[lane] = static_cast<float>(origin.y);
-    packet.origin_z[lane] = static_cast<float>(origin.z);
-    packet.near[lane] = static_cast<float>(ray.near * scale);
-    packet.direction_x[lane] = static_cast<float>(ray.direction.x);
-    packet.direction_y[lane] = static_cast<float>(ray.direction.y);
-    packet.direction_z[lane] = static_cast<float>(ray.direction.z);
+    const Ray near = from_nearby(
+        {(ray.origin - centre_) * scale, ray.direction, ray.near * scale, ray.far * scale});
+    packet.origin_x[lane] = static_cast<float>(near.origin.x);
+    packet.origin_y[lane] = static_cast<float>(near.origin.y);
+    packet.origin_z[lane] = static_cast<float>(near.origin.z);
+    packet.near[lane] = static_cast<float>(near.near);
+    packet.direction_x[lane] = static_cast<float>(near.direction.x);
+    packet.direction_y[lane] = static_cast<float>(near.direction.y);
+    packet.direction_z[lane] = static_cast<float>(near.direction.z);
     packet.time[lane] = 0.0F;
-    packet.far[lane] = static_cast<float>(ray.far * scale);
+    packet.far[lane] = static_cast<float>(near.far);
     packet.mask[lane] = std::numeric_limits<std::uint32_t>::max();
     packet.id[lane] = 0;
     packet.flags[lane] = 0;

@@ -138,6 +138,28 @@ TEST(RayScene, NumbersThatAreNoneAndTrianglesWithoutAreaAreNotHit) {
     EXPECT_FALSE(scene.nearest({{2, 0, 1}, {0, 0, -1}, 0.0, 2.0}).is_hit());
 }
 
+TEST(RayScene, RaysFromFarAwayHitTheSamePlace) {
+    const RayScene scene = scene_of(moved(make_quad(8), 1.0, {3.0, 0.0, 0.0}));
+    const glm::dvec3 place(3.3, -0.4, 0.0);
+    const glm::dvec3 direction = glm::normalize(glm::dvec3(0.5, 0.25, -1.0));
+    for (const double away : {3.9, 4.1, 100.0, 1e6, 1e9}) {
+        const Ray ray{place - away * direction, direction, 0.0, 2.0 * away};
+        const RayHit hit = scene.nearest(ray);
+        ASSERT_TRUE(hit.is_hit()) << away;
+        EXPECT_NEAR(hit.distance, away, 1e-15 * away + 1e-15);
+        EXPECT_LT(glm::distance(place_of(scene, hit), place), 1e-15 * away + 1e-15);
+        EXPECT_FALSE(scene.nearest({ray.origin, -direction, 0.0, 2.0 * away}).is_hit()) << away;
+        EXPECT_FALSE(scene.nearest({ray.origin, direction, 0.0, 0.99 * away}).is_hit()) << away;
+        EXPECT_FALSE(scene.nearest({ray.origin, direction, 1.01 * away, 2.0 * away}).is_hit());
+        EXPECT_FALSE(scene.nearest({ray.origin + 3.0, direction, 0.0, 2.0 * away}).is_hit());
+    }
+    // Where doubles say no more, or end, nothing is met; and nothing else happens.
+    for (const double away : {1e11, 1e19, 1e30, 1e300, std::numeric_limits<double>::infinity()}) {
+        const Ray ray{place - away * direction, direction, 0.0, 2.0 * away};
+        EXPECT_FALSE(scene.nearest(ray).is_hit()) << away;
+    }
+}
+
 TEST(RayScene, AnEmptySceneHasNoHits) {
     const RayScene nothing({});
     EXPECT_TRUE(nothing.is_empty());
