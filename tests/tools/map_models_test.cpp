@@ -133,6 +133,19 @@ TEST_F(MapModels, JoinedKeepsWhatAllPartsHave) {
     EXPECT_THAT(all.texcoords, IsEmpty());
 }
 
+TEST_F(MapModels, PartsWithoutColoursAreWhiteWhereOthersHaveSome) {
+    Report report;
+    MapModel model = read(ModelSpace::world, report);
+    EXPECT_THAT(joined(model.parts).colors, IsEmpty());
+    const std::size_t first = model.parts[0].mesh.positions.size();
+    model.parts[1].mesh.colors.assign(model.parts[1].mesh.positions.size(),
+                                      glm::vec4(1.0F, 0.0F, 0.0F, 1.0F));
+    const Mesh all = joined(std::move(model.parts));
+    ASSERT_EQ(all.colors.size(), all.positions.size());
+    EXPECT_EQ(all.colors[first - 1], glm::vec4(1.0F));
+    EXPECT_EQ(all.colors[first], glm::vec4(1.0F, 0.0F, 0.0F, 1.0F));
+}
+
 TEST_F(MapModels, BakedAndConvertedByTheSameRules) {
     document_["scenes"][0]["nodes"] = {0};
     write();

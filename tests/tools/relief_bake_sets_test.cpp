@@ -188,6 +188,14 @@ TEST_F(Sets, NamesThatWouldBeTheSameFileAreRefusedBeforeAnyIsWritten) {
     EXPECT_EQ(place_.outputs(), "");
 }
 
+TEST_F(Sets, NoReportTakesThePlaceOfAMap) {
+    write({{"A", 0, 0, right}, {"B", 0, 0, up}});
+    const ProgramResult result = bake("out/<material>.png", "--report out/../out/B.png");
+    EXPECT_EQ(result.exit_code, 2);
+    EXPECT_THAT(result.error, HasSubstr("--report out/../out/B.png: is also the input"));
+    EXPECT_EQ(place_.outputs(), "");
+}
+
 TEST_F(Sets, ThoseWrittenBeforeAFailureAreNamed) {
     write({{"A", 0, 0, right}, {"B", 0, 0, up}});
     std::filesystem::create_directory(place_ / "out/B.png");

@@ -71,9 +71,34 @@ MapModel model_of(const GltfDocument& document, ModelSpace space, Report& report
         model.parts.push_back(std::move(part));
     }
     model.looks = {std::move(view.materials), std::move(view.images)};
+    add_missing_tangents(model, report);
     if (view.primitives.size() == 1)
         model.world_from_object = glm::dmat3(glm::dmat4(view.primitives[0].world_from_object));
     return model;
+}
+
+/// Where some parts have tangents, the others get what a renderer gives them.
+void add_missing_tangents(MapModel& model, Report& report) {
+    const auto has_tangents = [](const MapModelPart& part) { return !part.mesh.tangents.empty(); };
+    if (std::none_of(model.parts.begin(), model.parts.end(), has_tangents)) return;
+    for (MapModelPart& part : model.parts) {
+        if (has_tangents(part) || part.mesh.texcoords.empty()) continue;
+        FrameOptions options;
+        options.tangents = TangentMode::mikktspace;
+        part.mesh = with_frames(std::move(part.mesh), options, report).mesh;
+    }
+}
+
+/// Parts without colours are white, where others have some.
+std::vector<glm::vec4> joined_colors(const std::vector<MapModelPart>& parts) {
+    const auto has_colors = [](const MapModelPart& part) { return !part.mesh.colors.empty(); };
+    std::vector<glm::vec4> all;
+    if (std::none_of(parts.begin(), parts.end(), has_colors)) return all;
+    for (const MapModelPart& part : parts) {
+        all.insert(all.end(), part.mesh.colors.begin(), part.mesh.colors.end());
+        if (!has_colors(part)) all.resize(all.size() + part.mesh.positions.size(), glm::vec4(1.0F));
+    }
+    return all;
 }
 
 /// One attribute of all parts, or nothing where one of them has none.
@@ -136,7 +161,7 @@ Mesh joined(std::vector<MapModelPart> parts) {
     all.normals = joined(parts, &Mesh::normals);
     all.tangents = joined(parts, &Mesh::tangents);
     all.texcoords = joined(parts, &Mesh::texcoords);
-    all.colors = joined(parts, &Mesh::colors);
+    all.colors = joined_colors(parts);
     if (all.positions.size() > std::numeric_limits<std::uint32_t>::max()) {
         throw InvalidInput(
             fmt::format("{} vertices are too many for one mesh", all.positions.size()));

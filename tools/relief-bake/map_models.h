@@ -49,9 +49,10 @@ struct MapModel {
 ///
 /// Texture coordinates are those that glTF's tangents belong to: the set of a primitive's normal
 /// texture (GltfDocument::tangent_texcoords). Normals and tangents are the file's. Where a glTF
-/// primitive has no normals, they are flat, as glTF asks, and its tangents are left out; other
-/// files without normals have none here either.
-/// \throws FileError, UsageError if the file cannot be read
+/// primitive has no normals, they are flat, as glTF asks, and its tangents are left out; where some
+/// primitives of a scene have tangents, the others get MikkTSpace's, as a renderer gives them.
+/// Other files without normals have none here either. \throws FileError, UsageError if the file
+/// cannot be read
 MapModel read_map_model(const std::filesystem::path& file, ModelSpace space, Report& report);
 
 /// Every part must have texture coordinates, without which no map lies on it.
@@ -60,7 +61,7 @@ void require_texcoords(const std::filesystem::path& file, const MapModel& model,
                        const std::string& problem, const std::string& remedy);
 
 /// The parts as one mesh, in their order, with those attributes that all of them have, and their
-/// material ranges.
+/// material ranges. Colours also where only some have them: the others are white, as glTF says.
 /// \throws InvalidInput if there are more vertices than indices can name
 Mesh joined(std::vector<MapModelPart> parts);
 

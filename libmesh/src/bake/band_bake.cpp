@@ -30,8 +30,10 @@ bool is_first(int x, int y, int side) {
 struct TexelSum {
     glm::dvec3 normal{0.0};
     double height = 0.0;
-    glm::dvec3 first{0.0};  ///< The normal of the first sample that hit.
-    double widest = 1.0;    ///< Least cosine between it and others.
+    glm::dvec3 first{0.0};     ///< The normal of the first sample that hit.
+    double widest = 1.0;       ///< Least cosine between it and others.
+    bool lacks_frame = false;  ///< Some sample of it.
+    bool is_behind = false;    ///< Some sample's normal, behind the low surface.
     std::uint32_t hits = 0;
     std::uint32_t cast = 0;
 };
@@ -185,24 +187,24 @@ class Piece {
     void take_normal(const Sample& sample, const ProjectedPoint& point, TexelSum& sum) {
         glm::dvec3 normal = seen_->high.normal(point.hit, map_index(sample.texel), found_);
         if (!point.hit.faces_origin) normal = -normal;
-        normal = in_output_space(normal, sample);
+        normal = in_output_space(normal, sample, sum);
         if (sum.hits == 0) sum.first = normal;
         sum.widest = std::min(sum.widest, glm::dot(sum.first, normal));
         sum.normal += normal;
     }
 
-    [[nodiscard]] glm::dvec3 in_output_space(const glm::dvec3& normal, const Sample& sample) {
+    [[nodiscard]] glm::dvec3 in_output_space(const glm::dvec3& normal, const Sample& sample,
+                                             TexelSum& sum) const {
         if (work_.options.space == BakeSpace::object)
             return direction_or_zero(work_.options.output_from_mesh * normal);
         const TexelFrame frame(work_.low.mesh(), sample.owner.triangle,
                                glm::dvec3(sample.owner.weights()));
-        const std::size_t index = map_index(sample.texel);
         if (!frame.is_usable()) {
-            found_.add("texel without a frame", "texel", index, "is (0, 0, 1)");
+            sum.lacks_frame = true;
             return {0.0, 0.0, 1.0};
         }
         const glm::dvec3 result = direction_or_zero(frame.to_tangent(normal));
-        if (result.z < 0.0) found_.add("normal behind the surface", "texel", index, "kept");
+        sum.is_behind |= result.z < 0.0;
         return result;
     }
 
@@ -211,6 +213,10 @@ class Piece {
         const TexelSum& sum = sums_[texel];
         const std::size_t at =
             static_cast<std::size_t>(begin_) * static_cast<std::size_t>(width_) + texel;
+        if (sum.lacks_frame)
+            found_.add("texel without a frame", "texel", map_index(texel), "is (0, 0, 1)");
+        if (sum.is_behind)
+            found_.add("normal behind the surface", "texel", map_index(texel), "kept");
         TexelState state = sum.cast == 0 ? TexelState::empty : TexelState::missed;
         if (sum.hits > 0) {
             state = TexelState::baked;

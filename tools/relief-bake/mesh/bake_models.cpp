@@ -105,6 +105,7 @@ BakeModels read_bake_models(const MeshBakeRequest& request, Findings& findings) 
     add_looks(request, looks, file_of, models, findings);
     models.materials = low.materials;
     models.world_from_low = low.world_from_object;
+    models.origin = low.origin;
     models.low = joined_of(request.low, std::move(low));
     return models;
 }

@@ -30,6 +30,7 @@ struct BakeModels {
     Mesh low;
     std::vector<std::string> materials;  ///< Of the low mesh.
     std::optional<glm::dmat3> world_from_low;
+    glm::dvec3 origin{0.0};  ///< In the world; positions are relative to it.
     std::optional<Mesh> cage;
     HighLooks looks;
     std::vector<BakePair> pairs;  ///< None: all is seen by all.

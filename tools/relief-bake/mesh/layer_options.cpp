@@ -29,8 +29,7 @@ constexpr LayerWords all_words[] = {
      "Write the mean curvature of the high meshes, over their unit: positive where they bulge, "
      "1/r on a sphere."},
     {LayerKind::position, "--position-map", "positions",
-     "Write where rays have met the surface: in the world, or with --space object in the low "
-     "model's axes."},
+     "Write where rays have met the surface, in the world."},
     {LayerKind::color, "--color-map", "colours",
      "Write the colour of the high meshes: of vertices, materials and textures, multiplied."},
 };
@@ -67,9 +66,9 @@ void add_numbers(CLI::App& app, LayerOptions& options, const std::string& group)
                "Which height is white in 8 and 16 bits; -H is black, 0 is the middle code exactly. "
                "Default: how far rays reach.")
         ->group(group);
-    add_number(
-        app, "--curvature-range", "C", options.curvature_range, above,
-        "Which curvature is white, likewise. Default: what 99% of the high meshes do not exceed.")
+    add_number(app, "--curvature-range", "C", options.curvature_range, above,
+               "Which curvature is white, likewise. Default: the largest; in 8 bits what 99% of "
+               "the high meshes do not exceed.")
         ->group(group);
     add_number(app, "--position-range", "P", options.position_range, above,
                "Which coordinate is white, likewise. Default: the largest of the high meshes.")

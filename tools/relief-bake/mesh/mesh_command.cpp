@@ -18,7 +18,6 @@ namespace {
 struct MeshCommand {
     std::vector<std::filesystem::path> files;
     MeshBakeRequest request;
-    ReportOptions report;
     GeneralOptions general;
 };
 
@@ -28,8 +27,8 @@ void check(MeshCommand& command) {
     if (command.request.cage) files.push_back(*command.request.cage);
     for (const auto& [kind, file] : command.request.layers.files)
         files.push_back(file);
-    check(command.report, files);
-    if (command.report.file) files.push_back(*command.report.file);
+    check(command.request.report, files);
+    if (command.request.report.file) files.push_back(*command.request.report.file);
     check(command.request.preview, files);
     if (command.request.preview.file) files.push_back(*command.request.preview.file);
     check_verify(command.request, files);
@@ -48,7 +47,7 @@ ExitCode run(const CLI::App& app, MeshCommand& command) {
     if (!remedy.empty()) warn(app, remedy);
     nlohmann::ordered_json report = {{"tool", "relief-bake mesh"}, {"version", version()}};
     report.update(results_json(command.request, baked, stages));
-    return finish(app, command.report, command.request.low, baked.findings, report);
+    return finish(app, command.request.report, command.request.low, baked.findings, report);
 }
 
 }  // namespace
@@ -58,7 +57,7 @@ Command add_mesh_command(CLI::App& tool) {
         tool, "mesh", "Bakes the normals of detailed models into a map for a simple one.");
     const auto command = std::make_shared<MeshCommand>();
     add_mesh_options(app, command->request, command->files);
-    add_report_options(app, command->report);
+    add_report_options(app, command->request.report);
     add_general_options(app, command->general);
     set_examples(
         app,

@@ -194,6 +194,18 @@ void take_samples(const MeshBakeRequest& settled, BakeOptions& options) {
     options.sample_angle = anew.sample_angle;
 }
 
+/// Whether maps, whose names are known by now, are in the way of what is written after them.
+void check_outputs(const MeshBakeRequest& request, const std::vector<MapPlan>& plans) {
+    std::vector<std::filesystem::path> outputs;
+    for (const MapPlan& plan : plans) {
+        outputs.push_back(plan.output);
+        for (const auto& [kind, file] : request.layers.files)
+            outputs.push_back(plan.named(file));
+    }
+    check(request.report, outputs);
+    check(request.preview, outputs);
+}
+
 }  // namespace
 
 MeshBake bake_maps(const MeshBakeRequest& request, Stages& stages) {
@@ -215,14 +227,11 @@ MeshBake bake_maps(const MeshBakeRequest& request, Stages& stages) {
         MapPlans plans = plan_maps(request, models.low, models.materials);
         baked.materials = plans.materials;
         baked.findings.add("", plans.report);
-        for (const MapPlan& plan : plans.maps) {
-            require_another(request.preview, plan.output);
-            for (const auto& [kind, file] : request.layers.files)
-                require_another(request.preview, plan.named(file));
-        }
+        check_outputs(request, plans.maps);
         BakeOptions options = bake_options_of(request);
         options.map_count = plans.maps.size();
         options.output_from_mesh = output_axes(request, models.world_from_low);
+        options.layers.position_from_mesh[3] = glm::dvec4(models.origin, 1.0);
         options.details = models.looks.details();
         baked.looks = models.looks.words();
         if (models.cage) options.cage = &*models.cage;

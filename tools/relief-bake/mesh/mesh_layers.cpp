@@ -32,7 +32,9 @@ double range_of(LayerKind kind, const LayerOptions& options, const LayerBounds& 
         case LayerKind::height:
             return options.height_range.value_or(bounds.height);
         case LayerKind::curvature:
-            return options.curvature_range.value_or(bounds.usual_curvature);
+            // Outliers would leave few of 256 codes to the rest.
+            return options.curvature_range.value_or(
+                bits_of(options, kind) == 8 ? bounds.usual_curvature : bounds.curvature);
         case LayerKind::position:
             return options.position_range.value_or(bounds.position);
         default:

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "common/command.h"
+#include "common/report_options.h"
 #include "map_output.h"
 #include "mesh/error_bound.h"
 #include "mesh/high_looks.h"
@@ -68,6 +69,7 @@ struct MeshBakeRequest {
     LayerOptions layers;
     HighLookOptions looks;
     PreviewOptions preview;
+    ReportOptions report;
     VerifyChoice verify;
     AccuracyChoice accuracy;
 };

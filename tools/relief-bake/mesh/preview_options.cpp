@@ -24,11 +24,15 @@ void add_preview_options(CLI::App& app, PreviewOptions& options) {
         ->group(group);
 }
 
+namespace {
+
 void require_another(const PreviewOptions& options, const std::filesystem::path& file) {
     if (!options.file || identity_of(*options.file) != identity_of(file)) return;
     throw UsageError(
         fmt::format("--preview {}: is also the input or the output", options.file->string()));
 }
+
+}  // namespace
 
 void check(const PreviewOptions& options, const std::vector<std::filesystem::path>& files) {
     if (!options.file) {

@@ -25,7 +25,4 @@ void add_preview_options(CLI::App& app, PreviewOptions& options);
 ///         an option has no effect; FileError if there is no folder to write it in
 void check(const PreviewOptions& options, const std::vector<std::filesystem::path>& files);
 
-/// The same for a file that is known later. \throws UsageError if the picture is that file
-void require_another(const PreviewOptions& options, const std::filesystem::path& file);
-
 }  // namespace relief::tools
