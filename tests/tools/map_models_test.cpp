@@ -149,11 +149,14 @@ TEST_F(MapModels, PartsWithoutColoursAreWhiteWhereOthersHaveSome) {
 TEST_F(MapModels, BakedAndConvertedByTheSameRules) {
     document_["scenes"][0]["nodes"] = {0};
     write();
-    ASSERT_EQ(workplace_
-                  .run("relief-bake mesh fold.gltf fold.gltf out/map.exr --size 8 --space object "
-                       "--quiet")
-                  .error,
-              "");
+    const std::string bake =
+        "relief-bake mesh fold.gltf fold.gltf out/map.exr --size 8 --space object --quiet";
+    // Its normal map would go on top, if it were there.
+    const auto refused = workplace_.run(bake);
+    EXPECT_EQ(refused.exit_code, 1);
+    EXPECT_THAT(refused.error,
+                HasSubstr("map.png is missing (put it there, or use --high-normal-map none"));
+    ASSERT_EQ(workplace_.run(bake + " --high-normal-map none").error, "");
     const Image baked = read_image(workplace_ / "out/map.exr", ImageUse::data);
     const auto texel = [](const Image& image, std::size_t index) {
         const auto samples = image.as<float>();

@@ -54,6 +54,18 @@ MapLooks looks_of(const std::vector<MtlMaterial>& materials) {
     return looks;
 }
 
+/// Where some parts have tangents, the others get what a renderer gives them.
+void add_missing_tangents(MapModel& model, Report& report) {
+    const auto has_tangents = [](const MapModelPart& part) { return !part.mesh.tangents.empty(); };
+    if (std::none_of(model.parts.begin(), model.parts.end(), has_tangents)) return;
+    for (MapModelPart& part : model.parts) {
+        if (has_tangents(part) || part.mesh.texcoords.empty()) continue;
+        FrameOptions options;
+        options.tangents = TangentMode::mikktspace;
+        part.mesh = with_frames(std::move(part.mesh), options, report).mesh;
+    }
+}
+
 MapModel model_of(const GltfDocument& document, ModelSpace space, Report& report) {
     MapModel model;
     if (space == ModelSpace::object) {
@@ -75,18 +87,6 @@ MapModel model_of(const GltfDocument& document, ModelSpace space, Report& report
     if (view.primitives.size() == 1)
         model.world_from_object = glm::dmat3(glm::dmat4(view.primitives[0].world_from_object));
     return model;
-}
-
-/// Where some parts have tangents, the others get what a renderer gives them.
-void add_missing_tangents(MapModel& model, Report& report) {
-    const auto has_tangents = [](const MapModelPart& part) { return !part.mesh.tangents.empty(); };
-    if (std::none_of(model.parts.begin(), model.parts.end(), has_tangents)) return;
-    for (MapModelPart& part : model.parts) {
-        if (has_tangents(part) || part.mesh.texcoords.empty()) continue;
-        FrameOptions options;
-        options.tangents = TangentMode::mikktspace;
-        part.mesh = with_frames(std::move(part.mesh), options, report).mesh;
-    }
 }
 
 /// Parts without colours are white, where others have some.

@@ -47,16 +47,19 @@ const Image* HighLooks::image(const std::filesystem::path& file, ImageUse use) {
 const Image* HighLooks::image(const std::filesystem::path& model, const MapLooks& looks,
                               std::size_t index, ImageUse use) {
     const GltfImage& source = looks.images[index];
-    if (const auto* file = std::get_if<std::filesystem::path>(&source.source))
+    const char* remedy = "put it there, or use --high-normal-map none, --high-color none";
+    if (const auto* file = std::get_if<std::filesystem::path>(&source.source)) {
+        if (!std::filesystem::exists(*file))
+            throw failure(model, fmt::format("image {} is missing", file->string()), remedy);
         return image(*file, use);
+    }
     const std::string name = fmt::format("{}, image {}", model.string(), index);
     const std::string key = fmt::format("{} {}", name, static_cast<int>(use));
     const auto known = images_.find(key);
     if (known != images_.end()) return &known->second;
     const auto& bytes = std::get<std::vector<std::byte>>(source.source);
     if (bytes.empty()) {
-        throw failure(model, fmt::format("image {} is outside of its folder", index),
-                      "put it there, or use --high-normal-map none, --high-color none");
+        throw failure(model, fmt::format("image {} is outside of its folder", index), remedy);
     }
     return &images_.emplace(key, read_image(bytes, name, use)).first->second;
 }

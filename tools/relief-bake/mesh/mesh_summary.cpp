@@ -61,8 +61,8 @@ std::vector<std::string> read_lines(const MeshBakeRequest& request, const MeshBa
         std::vector<std::string> names;
         for (const BakePair& pair : baked.pairs)
             names.push_back(pair.name);
-        lines.push_back(fmt::format("{} matched by name: {}", counted(names.size(), "part"),
-                                    first_of(std::move(names))));
+        const std::string count = counted(names.size(), "part");
+        lines.push_back(fmt::format("{} matched by name: {}", count, first_of(std::move(names))));
     }
     if (!baked.unpaired.empty()) {
         lines.push_back("not matched by name, as these have no counterpart: " +
