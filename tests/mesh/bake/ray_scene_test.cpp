@@ -139,7 +139,8 @@ TEST(RayScene, NumbersThatAreNoneAndTrianglesWithoutAreaAreNotHit) {
 }
 
 TEST(RayScene, RaysFromFarAwayHitTheSamePlace) {
-    const RayScene scene = scene_of(moved(make_quad(8), 1.0, {3.0, 0.0, 0.0}));
+    const Mesh quad = moved(make_quad(8), 1.0, {3.0, 0.0, 0.0});  // The scene looks into it.
+    const RayScene scene = scene_of(quad);
     const glm::dvec3 place(3.3, -0.4, 0.0);
     const glm::dvec3 direction = glm::normalize(glm::dvec3(0.5, 0.25, -1.0));
     for (const double away : {3.9, 4.1, 100.0, 1e6, 1e9}) {
