@@ -45,7 +45,8 @@ TEST(BakeMemory, DoesNotGrowWithSamplesNorWithTheMap) {
     options.padding = 16;
     EXPECT_EQ(texels_of(options, 0.02F), 8192U * 1024U);
     const double large = peak_megabytes();
-    EXPECT_LT(large, small + 300.0);
+    // All its samples' owners would take 2.1 GB; sanitizers keep 256 MB of what is freed.
+    EXPECT_LT(large, small + 600.0);
     // Eight times as high, 760 MB more of it: the same memory.
     options.samples = 4;
     options.height = 8192;
