@@ -21,6 +21,8 @@
 #include "sequence.h"
 #include "view_options.h"
 #include "view_summary.h"
+#include "window/bindings.h"
+#include "window/window_loop.h"
 
 namespace relief::tools {
 namespace {
@@ -73,7 +75,12 @@ Drawn draw(const ViewOptions& options, ComposedScene& composed, FramePlan plan, 
 
 ExitCode run(ViewOptions& options) {
     settle(options);
+    if (options.list_bindings) {
+        fmt::print("{}", bindings_text());
+        return ExitCode::done;
+    }
     set_thread_limit(options.general.threads);
+    if (options.wants_window()) return run_window(options);
     Stages stages(options.general.quiet);
     Report report;
     ComposedScene composed = compose_scene(options, stages, report);
@@ -114,7 +121,7 @@ Command add_view_command(CLI::App& tool) {
     add_view_options(tool, *options);
     set_examples(
         tool,
-        {"relief-view data/vase.obj --output out/vase.png",
+        {"relief-view --list-bindings", "relief-view data/vase.obj --output out/vase.png",
          "relief-view data/vase.obj --height-map data/bricks-height.png --strength 12 --output "
          "out/bricks.png",
          "relief-view data/vase.obj --environment data/sky --reflectivity 0.4 --output "

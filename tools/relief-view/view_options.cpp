@@ -65,6 +65,16 @@ void add_output_options(CLI::App& app, ViewOptions& options) {
     add_switch(app, "--json", options.json, "Print the summary as one JSON object.")->group(group);
 }
 
+void add_window_options(CLI::App& app, ViewOptions& options) {
+    const std::string group = "Window";
+    add_switch(app, "--list-bindings", options.list_bindings,
+               "Print what keys and the mouse do in the window.")
+        ->group(group);
+    add_path(app, "--dump-state", options.dump_state,
+             "Keep what the window shows in FILE, as JSON, for tests and scripts.")
+        ->group(group);
+}
+
 void add_light_options(CLI::App& app, ViewOptions& options) {
     const std::string group = "Light and camera";
     add_repeatable(app, "--light", "LIGHT",
@@ -104,10 +114,10 @@ void add_light_options(CLI::App& app, ViewOptions& options) {
 }
 
 void check_output(const ViewOptions& options) {
-    const bool explains = options.explain_effects || options.effects.print_shaders;
-    if (!options.output && !explains && !options.reference && !options.effects.measures())
-        throw UsageError("--output is missing",
-                         "name a picture to write, or ask for --explain-effects");
+    refuse(options.dump_state && !options.wants_window(), "--dump-state",
+           "is what a window shows, and none is opened", "leave --output and the like out");
+    refuse(options.wants_window() && options.json, "--json", "is a summary, and a window has none",
+           "name a picture with --output");
     refuse(is_linear_output(options) && (options.exposure || options.tone_mapping),
            options.exposure ? "--exposure" : "--tone-mapping",
            "belongs to display colours, and this picture holds linear radiance",
@@ -159,9 +169,12 @@ CameraOption parse_camera(const std::string& subject, const std::string& text) {
 
 void add_view_options(CLI::App& app, ViewOptions& options) {
     // Not required in CLI11's eyes: settle() looks for it behind --environment.
-    add_path(app, "MODEL", options.model,
-             "Model to show: .glb .gltf .obj .ply .stl .off, or a scene: .json");
+    add_path(
+        app, "MODEL", options.model,
+        "Model to show: .glb .gltf .obj .ply .stl .off, or a scene: .json. Without --output, in "
+        "a window");
     add_output_options(app, options);
+    add_window_options(app, options);
     add_map_options(app, options);
     add_material_options(app, options);
     add_environment_options(app, options);
@@ -179,7 +192,8 @@ void add_view_options(CLI::App& app, ViewOptions& options) {
 
 void settle(ViewOptions& options) {
     give_back_model(options);
-    if (options.model.empty()) throw UsageError("MODEL is missing");
+    if (options.model.empty() && !options.wants_window() && !options.list_bindings)
+        throw UsageError("MODEL is missing");
     check_output(options);
     check_sequence(options);
     check_reference(options);

@@ -105,6 +105,15 @@ struct ViewOptions {
     std::optional<double> frames_per_second;
     std::optional<double> time;
 
+    std::optional<std::filesystem::path> dump_state;  ///< Of the window, as JSON.
+    bool list_bindings = false;
+
+    /// Neither a picture nor words are asked for: a window it is.
+    [[nodiscard]] bool wants_window() const {
+        return !output && !reference && !explain_effects && !effects.print_shaders &&
+               !effects.measures();
+    }
+
     Backend backend = Backend::automatic;
     bool explain_effects = false;
     EffectChoices effects;

@@ -20,7 +20,7 @@ thread_local bool thread_has_context = false;
 
 /// A context that works.
 struct Opened {
-    std::unique_ptr<gl::PlatformContext> platform;
+    std::unique_ptr<gl::PlatformContext> platform;  ///< None where the caller owns it.
     std::unique_ptr<gl::Api> api;
     std::string name;
 };
@@ -72,6 +72,11 @@ Opened open_egl(bool hardware, Failures& failures) {
     return {};
 }
 
+void require_no_context() {
+    if (thread_has_context)
+        throw InvalidInput("this thread has an OpenGL context already; destroy it first");
+}
+
 Opened open(Backend backend, Failures& failures) {
     Opened opened;
     if (backend != Backend::osmesa) opened = open_egl(true, failures);
@@ -83,25 +88,32 @@ Opened open(Backend backend, Failures& failures) {
 }  // namespace
 
 struct Context::Implementation {
+    explicit Implementation(Opened made)
+        : opened(std::move(made)),
+          renderer_name(
+              fmt::format("{}, {}", opened.api->renderer(), opened.api->version())) {}
+
     Opened opened;
     std::string renderer_name;
     std::thread::id thread = std::this_thread::get_id();
 };
 
 Context::Context(Backend backend) {
-    if (thread_has_context) {
-        throw InvalidInput("this thread has an OpenGL context already; destroy it first");
-    }
+    require_no_context();
     Failures failures;
     Opened opened = open(backend, failures);
     if (!opened.api) {
         throw GpuError(
             fmt::format("no OpenGL 3.3 context could be made: {}", fmt::join(failures, "; ")));
     }
-    const std::string renderer =
-        fmt::format("{}, {}", opened.api->renderer(), opened.api->version());
+    implementation_ = std::make_unique<Implementation>(std::move(opened));
+    thread_has_context = true;
+}
+
+Context::Context(GlLoader loader, std::string name) {
+    require_no_context();
     implementation_ = std::make_unique<Implementation>(
-        Implementation{.opened = std::move(opened), .renderer_name = renderer});
+        Opened{nullptr, std::make_unique<gl::Api>(loader), std::move(name)});
     thread_has_context = true;
 }
 

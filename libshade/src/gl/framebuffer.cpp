@@ -127,6 +127,14 @@ void RenderTarget::bind() const {
     (*api_)->Viewport(0, 0, width_, height_);
 }
 
+void RenderTarget::copy(const RenderTarget& other) const {
+    const Api& api = *api_;
+    api->BindFramebuffer(GL_READ_FRAMEBUFFER, other.draw_.name());
+    api->BindFramebuffer(GL_DRAW_FRAMEBUFFER, draw_.name());
+    api->BlitFramebuffer(0, 0, width_, height_, 0, 0, width_, height_, GL_COLOR_BUFFER_BIT,
+                         GL_NEAREST);
+}
+
 Image RenderTarget::read(ColorSpace color_space) const {
     const Api& api = *api_;
     if (samples_ > 1) {

@@ -37,6 +37,9 @@ class RenderTarget {
     /// converted
     [[nodiscard]] Image read(ColorSpace color_space) const;
 
+    /// Copies the colour of another of the same size, one sample a pixel both.
+    void copy(const RenderTarget& other) const;
+
   private:
     const Api* api_;
     int width_;

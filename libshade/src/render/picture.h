@@ -36,17 +36,15 @@ class Picture {
     [[nodiscard]] Image read() const;
 
     /// Where the finished picture is: one level, row 0 at the bottom.
-    [[nodiscard]] GLuint texture() const { return target().color().name(); }
+    [[nodiscard]] const gl::RenderTarget& target() const {
+        return finished_ ? *finished_ : *samples_;
+    }
 
     [[nodiscard]] float aspect() const {
         return static_cast<float>(samples_->width()) / static_cast<float>(samples_->height());
     }
 
   private:
-    [[nodiscard]] const gl::RenderTarget& target() const {
-        return finished_ ? *finished_ : *samples_;
-    }
-
     const gl::Api* api_;
     int sample_count_;
     OutputCoding output_;

@@ -385,6 +385,10 @@ void Renderer::move(const Scene& scene) {
     implementation_->move(scene);
 }
 
+const gl::RenderTarget& Renderer::target() const {
+    return implementation_->picture.target();
+}
+
 DrawnFrame Renderer::draw_only(const Camera& camera) {
     validate(camera);
     Implementation& self = *implementation_;
@@ -392,7 +396,7 @@ DrawnFrame Renderer::draw_only(const Camera& camera) {
     self.draw_frame(camera);
     self.times.draw = stopwatch.lap();
     self.times.read_back = 0;
-    return {self.picture.texture(), self.times, self.programs.size(),
+    return {self.picture.target().color().name(), self.times, self.programs.size(),
             self.textures.size() + self.environment->texture_count()};
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// An OpenGL context without a window.
+/// An OpenGL context: without a window, or a window's.
 /// Tests: tests/shade/gl/context_test.cpp, tests/shade/gl/egl_devices_test.cpp.
 #pragma once
 
@@ -20,11 +20,14 @@ enum class Backend {
     egl,
 };
 
+/// How a window library finds OpenGL functions of the context that is current.
+using GlLoader = void (*(*)(const char* name))();
+
 namespace gl {
 class Api;  // The table of entry points (libshade/src/gl/api.h).
 }
 
-/// One headless OpenGL 3.3 core context, current on the thread that made it until destroyed.
+/// One OpenGL 3.3 core context, current on the thread that made it until destroyed.
 ///
 /// At most one exists at a time in a thread, since OSMesa and EGL do not notice each other; any
 /// number of threads may have one each. It is destroyed on the thread that made it, after
@@ -35,11 +38,18 @@ class Context {
     /// \throws GpuError saying for every backend tried why it could not serve
     /// \throws InvalidInput if this thread has a context already
     explicit Context(Backend backend = Backend::automatic);
+
+    /// One that the caller has made current on this thread, and keeps so for longer than this.
+    ///
+    /// \param name  for backend_name()
+    /// \throws GpuError if it offers less than OpenGL 3.3
+    /// \throws InvalidInput if this thread has a context already
+    Context(GlLoader loader, std::string name);
     ~Context();
     Context(const Context&) = delete;
     Context& operator=(const Context&) = delete;
 
-    /// "OSMesa", "EGL (hardware)" or "EGL (software)".
+    /// "OSMesa", "EGL (hardware)" or "EGL (software)"; of a given one, its name.
     [[nodiscard]] const std::string& backend_name() const;
     /// "llvmpipe (LLVM 15.0.6, 256 bits), 4.5 (Core Profile) Mesa 22.3.6".
     [[nodiscard]] const std::string& renderer_name() const;

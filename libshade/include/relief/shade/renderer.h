@@ -15,6 +15,10 @@
 
 namespace relief {
 
+namespace gl {
+class RenderTarget;
+}
+
 /// What drawing took, in milliseconds of wall clock around finished work.
 struct FrameTimes {
     double decode_images = 0;  ///< Reading and decoding the textures that the plan calls for.
@@ -86,6 +90,9 @@ class Renderer {
 
     /// The same without reading the picture back.
     DrawnFrame draw_only(const Camera& camera);
+
+    /// Where that is, for who knows render targets (libshade/src/gl/framebuffer.h).
+    [[nodiscard]] const gl::RenderTarget& target() const;
 
   private:
     struct Implementation;

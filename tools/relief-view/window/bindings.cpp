@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+// Tests: tests/tools/window/bindings_test.cpp.
+#include "window/bindings.h"
+
+#include <fmt/format.h>
+
+namespace relief::tools {
+
+const std::vector<Binding>& bindings() {
+    static const std::vector<Binding> all = {
+        {Action::fit, "F", "Show all of the model"},
+        {Action::front, "1", "Look from the front (+z)"},
+        {Action::back, "Ctrl+1", "Look from behind"},
+        {Action::right, "3", "Look from the right (+x)"},
+        {Action::left, "Ctrl+3", "Look from the left"},
+        {Action::top, "7", "Look from above (+y)"},
+        {Action::bottom, "Ctrl+7", "Look from below"},
+        {Action::narrower, "[", "Narrower field of view"},
+        {Action::wider, "]", "Wider field of view"},
+        {Action::turntable, "Space", "Go round the model by itself, or stop"},
+        {Action::nearer, "+", "Come nearer"},
+        {Action::nearer, "=", "Come nearer"},
+        {Action::farther, "-", "Go farther away"},
+        {Action::orbit_left, "Left", "Go round to the left"},
+        {Action::orbit_right, "Right", "Go round to the right"},
+        {Action::orbit_up, "Up", "Go higher"},
+        {Action::orbit_down, "Down", "Go lower"},
+        {Action::copy_camera, "Ctrl+C", "Copy the camera as the option that repeats it"},
+        {Action::panels, "Tab", "Hide the panels, or show them"},
+        {Action::help, "H", "Show these bindings"},
+        {Action::quit, "Ctrl+Q", "Close the window"},
+    };
+    return all;
+}
+
+const std::vector<Gesture>& gestures() {
+    static const std::vector<Gesture> all = {
+        {"Drag", "Go round the model"},
+        {"Shift+drag, middle drag", "Move the view"},
+        {"Wheel, two fingers, right drag", "Come nearer or go farther, to where the pointer is"},
+        {"Ctrl+drag", "Move the lights round the model"},
+        {"Drop a file", "Show this model, or put this map on it"},
+    };
+    return all;
+}
+
+std::string bindings_text() {
+    std::string text;
+    for (const Binding& binding : bindings())
+        text += fmt::format("{:<32}{}\n", binding.key, binding.what);
+    for (const Gesture& gesture : gestures())
+        text += fmt::format("{:<32}{}\n", gesture.hand, gesture.what);
+    return text;
+}
+
+}  // namespace relief::tools

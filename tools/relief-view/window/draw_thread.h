@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// The thread that draws: it takes the newest wish, however many came meanwhile, and leaves
+/// finished pictures for the window, which never waits for one. A scene that cannot be drawn leaves
+/// the picture as it was, with an error. Tests: tests/tools/window/draw_thread_test.cpp.
+#pragma once
+
+#include <condition_variable>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+
+#include "relief/mesh/report.h"
+#include "relief/shade/effect_forcing.h"
+#include "relief/shade/handover.h"
+#include "relief/shade/renderer.h"
+
+namespace relief::tools {
+
+/// What is to be drawn.
+struct DrawWish {
+    std::shared_ptr<const Scene> scene;
+    std::uint64_t revision = 0;  ///< Another one where anything but the camera is different.
+    EffectWishes effects;
+    FrameSettings settings;
+    Camera camera;
+};
+
+/// What was drawn last, or why it could not be.
+struct DrawnPicture {
+    std::uint64_t revision = 0;
+    std::uint64_t frames = 0;     ///< Drawn so far, all in all.
+    std::uint64_t renderers = 0;  ///< Made so far.
+    FrameTimes times;
+    std::shared_ptr<const FramePlan> plan;
+    Report findings;
+    std::string error;  ///< Empty: none.
+    Camera camera;
+};
+
+/// A context for the thread: made current there, and given back.
+struct DrawContext {
+    std::function<void()> use;
+    std::function<void()> release;
+    GlLoader loader = nullptr;
+    std::function<void()> wake;  ///< Called when there is something new.
+};
+
+class DrawThread {
+  public:
+    /// Waits until the thread's context is ready. \throws GpuError if it is of no use
+    explicit DrawThread(DrawContext context);
+    ~DrawThread();
+    DrawThread(const DrawThread&) = delete;
+    DrawThread& operator=(const DrawThread&) = delete;
+
+    void wish(DrawWish wish);
+
+    /// Shader files were edited: programs are linked anew for the next picture.
+    void relink();
+
+    [[nodiscard]] DrawnPicture drawn();
+    [[nodiscard]] Handover::Shown shown();
+    /// Whether a wish is waiting or being drawn.
+    [[nodiscard]] bool is_busy();
+    [[nodiscard]] const std::string& renderer_name() const { return renderer_name_; }
+
+  private:
+    class Drawer;
+
+    void run();
+    std::optional<DrawWish> next(Drawer& drawer);
+
+    DrawContext context_;
+    std::string renderer_name_;
+    std::mutex mutex_;
+    std::condition_variable changed_;
+    std::optional<DrawWish> wish_;
+    bool is_drawing_ = false;
+    bool is_relinking_ = false;
+    bool is_ending_ = false;
+    bool is_ready_ = false;
+    std::exception_ptr failure_;
+    DrawnPicture drawn_;
+    Handover* handover_ = nullptr;
+    std::thread thread_;
+};
+
+}  // namespace relief::tools

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+// Tests: tests/tools/window/window_test.cpp.
+#include "window/panels.h"
+
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include "common/text.h"
+
+namespace relief::tools {
+namespace {
+
+constexpr float column_width = 20.0F;  // In heights of a line.
+
+std::size_t triangles_of(const Scene& scene) {
+    std::size_t count = 0;
+    for (const Instance& instance : scene.instances)
+        count += scene.meshes[instance.mesh]->triangles.size();
+    return count;
+}
+
+std::string status_text(const PanelInput& input) {
+    if (!input.state.has_scene()) return "";
+    return fmt::format("{}   {} x {}   {:.1f} ms   {} pictures drawn   {}",
+                       counted(triangles_of(input.state.scene()), "triangle"), input.state.view().x,
+                       input.state.view().y, input.drawn.times.draw, input.drawn.frames,
+                       input.renderer);
+}
+
+}  // namespace
+
+float draw_panels(const PanelInput& input, PanelWishes& wishes) {
+    (void)wishes;
+    const ImGuiIO& io = ImGui::GetIO();
+    const float width = column_width * ImGui::GetFontSize();
+    const float status_height = ImGui::GetFrameHeightWithSpacing();
+    ImGui::SetNextWindowPos({0, 0});
+    ImGui::SetNextWindowSize({width, io.DisplaySize.y - status_height});
+    ImGui::Begin("Panels", nullptr,
+                 ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove);
+    if (ImGui::CollapsingHeader("Scene", ImGuiTreeNodeFlags_DefaultOpen)) draw_scene_panel(input);
+    if (ImGui::CollapsingHeader("Lights")) draw_light_panel(input);
+    if (ImGui::CollapsingHeader("Materials")) draw_material_panel(input);
+    if (ImGui::CollapsingHeader("Picture")) draw_picture_panel(input);
+    if (ImGui::CollapsingHeader("Effects", ImGuiTreeNodeFlags_DefaultOpen))
+        draw_effects_panel(input);
+    ImGui::End();
+    return width;
+}
+
+void draw_status(const PanelInput& input, PanelWishes& wishes) {
+    const ImGuiIO& io = ImGui::GetIO();
+    const float height = ImGui::GetFrameHeightWithSpacing();
+    ImGui::SetNextWindowPos({0, io.DisplaySize.y - height});
+    ImGui::SetNextWindowSize({io.DisplaySize.x, height});
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {8.0F, 2.0F});
+    ImGui::Begin("Status", nullptr, ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove);
+    const std::string& error =
+        input.state.error().empty() ? input.drawn.error : input.state.error();
+    if (input.loading_seconds > 0.0) {
+        ImGui::Text("Reading %s, %.1f s", input.state.options().model.filename().c_str(),
+                    input.loading_seconds);
+        ImGui::SameLine();
+        if (ImGui::SmallButton("Cancel")) wishes.cancel_loading = true;
+    } else if (!error.empty()) {
+        ImGui::TextColored({1.0F, 0.5F, 0.4F, 1.0F}, "%s", error.c_str());
+    } else {
+        ImGui::TextUnformatted(status_text(input).c_str());
+    }
+    ImGui::End();
+    ImGui::PopStyleVar();
+}
+
+void draw_help(bool& is_open) {
+    const ImGuiIO& io = ImGui::GetIO();
+    ImGui::SetNextWindowPos({0.5F * io.DisplaySize.x, 0.5F * io.DisplaySize.y}, ImGuiCond_Always,
+                            {0.5F, 0.5F});
+    ImGui::Begin("Keys and hands", &is_open,
+                 ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_AlwaysAutoResize);
+    const auto row = [](std::string_view how, std::string_view what) {
+        ImGui::TableNextRow();
+        ImGui::TableNextColumn();
+        ImGui::TextUnformatted(how.data(), how.data() + how.size());
+        ImGui::TableNextColumn();
+        ImGui::TextUnformatted(what.data(), what.data() + what.size());
+    };
+    if (ImGui::BeginTable("bindings", 2, ImGuiTableFlags_SizingFixedFit)) {
+        for (const Gesture& gesture : gestures())
+            row(gesture.hand, gesture.what);
+        for (const Binding& binding : bindings())
+            row(binding.key, binding.what);
+        ImGui::EndTable();
+    }
+    ImGui::End();
+}
+
+}  // namespace relief::tools

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// What stands beside the picture: the scene, its lights and materials, the effects with their
+/// reasons. Each panel reads the state and edits it. Tests: tests/tools/window/window_test.cpp.
+#pragma once
+
+#include "window/draw_thread.h"
+#include "window/viewer_state.h"
+
+namespace relief::tools {
+
+/// Everything drawn with Dear ImGui for one frame of the window.
+struct PanelInput {
+    ViewerState& state;
+    const DrawnPicture& drawn;
+    const std::string& renderer;
+    double loading_seconds = 0.0;  ///< 0: nothing is being read.
+};
+
+/// What a panel asks the window to do.
+struct PanelWishes {
+    bool cancel_loading = false;
+};
+
+void draw_scene_panel(const PanelInput& input);
+void draw_light_panel(const PanelInput& input);
+void draw_material_panel(const PanelInput& input);
+void draw_picture_panel(const PanelInput& input);
+void draw_effects_panel(const PanelInput& input);
+
+/// All of them in one column. \return its width in pixels
+float draw_panels(const PanelInput& input, PanelWishes& wishes);
+
+/// The line at the bottom: triangles, the frame's time, what is going on.
+void draw_status(const PanelInput& input, PanelWishes& wishes);
+
+/// The list of bindings, in the middle of the window.
+void draw_help(bool& is_open);
+
+}  // namespace relief::tools

@@ -1,0 +1,203 @@
+// SPDX-License-Identifier: Apache-2.0
+// Tests: tests/tools/window/window_test.cpp.
+#include "window/user_interface.h"
+
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+#include <backends/imgui_impl_glfw.h>
+#include <backends/imgui_impl_opengl3.h>
+#include <imgui.h>
+
+#include <array>
+#include <cmath>
+#include <string_view>
+#include <utility>
+
+namespace relief::tools {
+namespace {
+
+constexpr float drag_zoom = 0.02F;  // Steps of the wheel for each pixel of a right drag.
+
+/// GLFW's code of a key by its name.
+int key_code(std::string_view name) {
+    static constexpr std::array<std::pair<std::string_view, int>, 8> named{{
+        {"Left", GLFW_KEY_LEFT},
+        {"Right", GLFW_KEY_RIGHT},
+        {"Up", GLFW_KEY_UP},
+        {"Down", GLFW_KEY_DOWN},
+        {"Space", GLFW_KEY_SPACE},
+        {"Tab", GLFW_KEY_TAB},
+        {"+", GLFW_KEY_KP_ADD},
+        {"Escape", GLFW_KEY_ESCAPE},
+    }};
+    for (const auto& [known, code] : named) {
+        if (known == name) return code;
+    }
+    return name.empty() ? GLFW_KEY_UNKNOWN : static_cast<int>(name.back());
+}
+
+/// Whether a key with these modifiers is the one that a binding names.
+bool is_named(std::string_view name, int key, int modifiers) {
+    constexpr std::string_view control = "Ctrl+";
+    const bool needs_control = name.substr(0, control.size()) == control;
+    if (needs_control) name.remove_prefix(control.size());
+    const bool has_control = (modifiers & GLFW_MOD_CONTROL) != 0;
+    return has_control == needs_control && key == key_code(name);
+}
+
+UserInterface& interface_of(GLFWwindow* window) {
+    return *static_cast<UserInterface*>(glfwGetWindowUserPointer(window));
+}
+
+/// Dear ImGui's own callbacks come after these, and call them.
+void install_callbacks(GLFWwindow* window) {
+    glfwSetDropCallback(window, [](GLFWwindow* where, int count, const char** names) {
+        for (int i = 0; i < count; ++i)
+            interface_of(where).on_drop(names[i]);
+    });
+    glfwSetKeyCallback(window, [](GLFWwindow* where, int key, int, int action, int modifiers) {
+        if (action != GLFW_RELEASE) interface_of(where).on_key(key, modifiers);
+    });
+    glfwSetMouseButtonCallback(window, [](GLFWwindow* where, int button, int action, int mods) {
+        interface_of(where).on_button(button, action == GLFW_PRESS, mods);
+    });
+    glfwSetCursorPosCallback(window, [](GLFWwindow* where, double x, double y) {
+        interface_of(where).on_move(glm::vec2(x, y));
+    });
+    glfwSetScrollCallback(window, [](GLFWwindow* where, double, double steps) {
+        interface_of(where).on_wheel(static_cast<float>(steps));
+    });
+}
+
+bool is_windows_own(Action action) {
+    switch (action) {
+        case Action::copy_camera:
+        case Action::panels:
+        case Action::help:
+        case Action::quit:
+            return true;
+        default:
+            return false;
+    }
+}
+
+glm::vec2 vec(const ImVec2& v) {
+    return {v.x, v.y};
+}
+
+}  // namespace
+
+UserInterface::UserInterface(const WindowSystem& system) : system_(system) {
+    GLFWwindow* window = system.window();
+    glfwSetWindowUserPointer(window, this);
+    install_callbacks(window);
+    ImGui::CreateContext();
+    ImGuiIO& io = ImGui::GetIO();
+    io.IniFilename = nullptr;
+    const float scale = system.content_scale();
+    ImFontConfig font;
+    font.SizePixels = std::round(13.0F * scale);
+    io.Fonts->AddFontDefault(&font);
+    ImGui::StyleColorsDark();
+    ImGui::GetStyle().ScaleAllSizes(scale);
+    ImGui::GetStyle().WindowRounding = 0.0F;
+    ImGui_ImplGlfw_InitForOpenGL(window, true);
+    ImGui_ImplOpenGL3_Init("#version 330 core");
+}
+
+UserInterface::~UserInterface() {
+    ImGui_ImplOpenGL3_Shutdown();
+    ImGui_ImplGlfw_Shutdown();
+    ImGui::DestroyContext();
+}
+
+void UserInterface::on_key(int key, int modifiers) {
+    if (ImGui::GetIO().WantTextInput) return;
+    for (const Binding& binding : bindings()) {
+        if (is_named(binding.key, key, modifiers)) pressed_.push_back(binding.action);
+    }
+}
+
+bool UserInterface::is_on_picture() const {
+    int width = 0, height = 0;
+    glfwGetWindowSize(system_.window(), &width, &height);
+    const bool is_over = pointer_.x >= left_ && pointer_.x < static_cast<float>(width) &&
+                         pointer_.y >= 0.0F && pointer_.y < static_cast<float>(height) - bottom_;
+    return is_over && !is_help_open_ && !ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopup);
+}
+
+void UserInterface::on_button(int button, bool is_down, int modifiers) {
+    drag_ = Drag::none;
+    if (!is_down || !is_on_picture()) return;
+    if (button == GLFW_MOUSE_BUTTON_RIGHT) {
+        drag_ = Drag::zoom;
+    } else if (button == GLFW_MOUSE_BUTTON_MIDDLE || (modifiers & GLFW_MOD_SHIFT) != 0) {
+        drag_ = Drag::pan;
+    } else {
+        drag_ = (modifiers & GLFW_MOD_CONTROL) != 0 ? Drag::lights : Drag::orbit;
+    }
+}
+
+void UserInterface::on_move(const glm::vec2& place) {
+    const glm::vec2 moved = place - pointer_;
+    pointer_ = place;
+    if (drag_ != Drag::none) moves_.push_back({drag_, moved, 0.0F, place});
+}
+
+void UserInterface::on_wheel(float steps) {
+    if (is_on_picture()) moves_.push_back({Drag::none, {}, steps, pointer_});
+}
+
+void UserInterface::apply(const Move& move, ViewerState& state) const {
+    const ImGuiIO& io = ImGui::GetIO();
+    const glm::vec2 scale = vec(io.DisplayFramebufferScale);
+    const glm::vec2 moved = move.pixels * scale;
+    const int height = state.view().y;
+    if (move.drag == Drag::orbit) return orbit_by(state.camera(), moved, height);
+    if (move.drag == Drag::pan) return pan_by(state.camera(), moved, height);
+    if (move.drag == Drag::lights) return state.orbit_lights(moved);
+    const bool is_drag = move.drag == Drag::zoom;
+    const glm::vec2 middle(0.5F * (left_ + io.DisplaySize.x), 0.5F * (io.DisplaySize.y - bottom_));
+    const glm::vec2 offset = is_drag ? glm::vec2(0.0F) : (move.place - middle) * scale;
+    const glm::vec2 pointer =
+        glm::vec2(offset.x, -offset.y) / (0.5F * static_cast<float>(std::max(height, 1)));
+    zoom_by(state.camera(), is_drag ? -drag_zoom * moved.y : move.steps, pointer, state.ball());
+}
+
+UserInterface::Events UserInterface::draw(const PanelInput& input, const Handover::Shown& picture) {
+    ImGui_ImplOpenGL3_NewFrame();
+    ImGui_ImplGlfw_NewFrame();
+    ImGui::NewFrame();
+    Events events;
+    events.dropped = std::exchange(dropped_, {});
+    left_ = has_panels_ ? draw_panels(input, events.panels) : 0.0F;
+    bottom_ = ImGui::GetFrameHeightWithSpacing();
+    draw_status(input, events.panels);
+    if (is_help_open_) draw_help(is_help_open_);
+
+    const ImGuiIO& io = ImGui::GetIO();
+    const glm::vec2 size(io.DisplaySize.x - left_, io.DisplaySize.y - bottom_);
+    const glm::vec2 pixels = size * vec(io.DisplayFramebufferScale);
+    input.state.set_view(glm::ivec2(glm::max(pixels, glm::vec2(1.0F))));
+    if (picture.texture != 0) {
+        // Row 0 of the texture is at the bottom.
+        ImGui::GetBackgroundDrawList()->AddImage(
+            reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(picture.texture)),
+            {left_, 0.0F}, {io.DisplaySize.x, io.DisplaySize.y - bottom_}, {0, 1}, {1, 0});
+    }
+    for (const Move& move : std::exchange(moves_, {}))
+        apply(move, input.state);
+    for (const Action action : std::exchange(pressed_, {})) {
+        if (is_windows_own(action)) {
+            events.actions.push_back(action);
+        } else {
+            input.state.act(action);
+        }
+    }
+    ImGui::Render();
+    ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+    system_.swap();
+    return events;
+}
+
+}  // namespace relief::tools

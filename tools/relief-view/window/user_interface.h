@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// Dear ImGui in a window, and hands on the picture behind it: drags, wheel, keys, dropped files.
+/// Tests: tests/tools/window/window_test.cpp.
+#pragma once
+
+#include <filesystem>
+#include <glm/vec2.hpp>
+#include <vector>
+
+#include "window/panels.h"
+#include "window/window_system.h"
+
+namespace relief::tools {
+
+class UserInterface {
+  public:
+    explicit UserInterface(const WindowSystem& system);
+    ~UserInterface();
+    UserInterface(const UserInterface&) = delete;
+    UserInterface& operator=(const UserInterface&) = delete;
+
+    /// What came in since the last frame, beside what went into the state.
+    struct Events {
+        std::vector<Action> actions;  ///< Those that are the window's own.
+        std::vector<std::filesystem::path> dropped;
+        PanelWishes panels;
+    };
+
+    /// One frame: panels, picture, hands. The view's size goes into the state.
+    Events draw(const PanelInput& input, const Handover::Shown& picture);
+
+    void show_help() { is_help_open_ = !is_help_open_; }
+    void show_panels() { has_panels_ = !has_panels_; }
+
+    // From GLFW, as it happens: two events between frames are still two.
+    void on_key(int key, int modifiers);
+    void on_button(int button, bool is_down, int modifiers);
+    void on_move(const glm::vec2& place);
+    void on_wheel(float steps);
+    void on_drop(const std::filesystem::path& file) { dropped_.push_back(file); }
+
+  private:
+    enum class Drag { none, orbit, pan, zoom, lights };
+
+    /// What hands did to the picture, in pixels.
+    struct Move {
+        Drag drag = Drag::none;  ///< None: the wheel.
+        glm::vec2 pixels{0.0F};
+        float steps = 0.0F;
+        glm::vec2 place{0.0F};
+    };
+
+    [[nodiscard]] bool is_on_picture() const;
+    void apply(const Move& move, ViewerState& state) const;
+
+    const WindowSystem& system_;
+    std::vector<std::filesystem::path> dropped_;
+    std::vector<Action> pressed_;
+    std::vector<Move> moves_;
+    Drag drag_ = Drag::none;
+    glm::vec2 pointer_{0.0F};  ///< In the window's units.
+    bool is_help_open_ = false;
+    bool has_panels_ = true;
+    float left_ = 0.0F;    ///< Of the picture, in the interface's units.
+    float bottom_ = 0.0F;  ///< What is below it.
+};
+
+}  // namespace relief::tools

@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: Apache-2.0
+// Tests: tests/tools/window/viewer_state_test.cpp.
+#include "window/viewer_state.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <glm/gtc/matrix_transform.hpp>
+#include <numbers>
+
+#include "window/draw_thread.h"
+
+namespace relief::tools {
+namespace {
+
+constexpr float quarter = 0.5F * std::numbers::pi_v<float>;
+constexpr float key_turn = quarter / 18.0F;  // 5 degrees.
+constexpr float turntable_speed = 0.5F;      // Radians a second.
+constexpr float fov_step = 1.1F;
+
+float changed_fov(float fov, float factor) {
+    return std::clamp(fov * factor, glm::radians(2.0F), glm::radians(150.0F));
+}
+
+}  // namespace
+
+ViewerState::ViewerState(ViewOptions options)
+    : options_(std::move(options)), effects_(options_.effects.wishes) {}
+
+void ViewerState::take(Loaded loaded) {
+    error_ = loaded.error;
+    if (!loaded.composed) return;
+    const bool is_new = loaded.options.model != shown_model_;
+    options_ = std::move(loaded.options);
+    shown_model_ = options_.model;
+    notes_ = std::move(loaded.composed->notes);
+    findings_ = std::move(loaded.findings);
+    const Camera camera = loaded.composed->camera;
+    scene_ = std::make_shared<const Scene>(std::move(loaded.composed->scene()));
+    ball_ = ball_around(world_bounds(*scene_));
+    ++revision_;
+    if (is_new) camera_ = orbit_of(camera, ball_);
+}
+
+void ViewerState::orbit_lights(const glm::vec2& pixels) {
+    if (!scene_ || view_.y == 0) return;
+    const float unit = 2.0F * quarter / static_cast<float>(view_.y);
+    const glm::vec3 right(std::cos(camera_.azimuth), 0.0F, -std::sin(camera_.azimuth));
+    glm::mat4 turn = glm::rotate(glm::mat4(1.0F), unit * pixels.y, right);
+    turn = glm::rotate(turn, unit * pixels.x, {0.0F, 1.0F, 0.0F});
+    edit([&](Scene& scene) {
+        const glm::mat3 rotation(turn);
+        const auto moved = [&](const glm::vec3& position) {
+            return ball_.center + rotation * (position - ball_.center);
+        };
+        for (DirectionalLight& light : scene.directional_lights)
+            light.direction_world = rotation * light.direction_world;
+        for (PointLight& light : scene.point_lights)
+            light.position_world = moved(light.position_world);
+        for (SpotLight& light : scene.spot_lights) {
+            light.point.position_world = moved(light.point.position_world);
+            light.direction_world = rotation * light.direction_world;
+        }
+    });
+}
+
+void ViewerState::set_effects(EffectWishes effects) {
+    effects_ = std::move(effects);
+    ++revision_;
+}
+
+void ViewerState::look_from(float azimuth, float elevation) {
+    camera_.azimuth = azimuth;
+    camera_.elevation = elevation;
+}
+
+void ViewerState::act(Action action) {
+    const float aspect =
+        view_.y > 0 ? static_cast<float>(view_.x) / static_cast<float>(view_.y) : 1.0F;
+    switch (action) {
+        case Action::fit:
+            return fit(camera_, ball_, aspect);
+        case Action::front:
+            return look_from(0.0F, 0.0F);
+        case Action::back:
+            return look_from(2.0F * quarter, 0.0F);
+        case Action::right:
+            return look_from(quarter, 0.0F);
+        case Action::left:
+            return look_from(-quarter, 0.0F);
+        case Action::top:
+            return look_from(0.0F, quarter);
+        case Action::bottom:
+            return look_from(0.0F, -quarter);
+        case Action::narrower:
+            camera_.vertical_fov = changed_fov(camera_.vertical_fov, 1.0F / fov_step);
+            return;
+        case Action::wider:
+            camera_.vertical_fov = changed_fov(camera_.vertical_fov, fov_step);
+            return;
+        case Action::turntable:
+            is_turning_ = !is_turning_;
+            return;
+        case Action::nearer:
+            return zoom_by(camera_, 1.0F, glm::vec2(0.0F), ball_);
+        case Action::farther:
+            return zoom_by(camera_, -1.0F, glm::vec2(0.0F), ball_);
+        case Action::orbit_left:
+            return look_from(camera_.azimuth - key_turn, camera_.elevation);
+        case Action::orbit_right:
+            return look_from(camera_.azimuth + key_turn, camera_.elevation);
+        case Action::orbit_up:
+            return look_from(camera_.azimuth, std::min(camera_.elevation + key_turn, quarter));
+        case Action::orbit_down:
+            return look_from(camera_.azimuth, std::max(camera_.elevation - key_turn, -quarter));
+        default:
+            return;  // The window's own.
+    }
+}
+
+void ViewerState::set_view(const glm::ivec2& pixels) {
+    view_ = pixels;
+}
+
+bool ViewerState::pass(double seconds) {
+    if (!is_turning_) return false;
+    camera_.azimuth = std::remainder(
+        camera_.azimuth - turntable_speed * static_cast<float>(seconds), 4.0F * quarter);
+    return true;
+}
+
+std::optional<DrawWish> ViewerState::wish() const {
+    if (!scene_ || view_.x <= 0 || view_.y <= 0) return std::nullopt;
+    DrawWish wish;
+    wish.scene = scene_;
+    wish.revision = revision_;
+    wish.effects = effects_;
+    wish.settings.width = view_.x;
+    wish.settings.height = view_.y;
+    wish.settings.samples = options_.samples;
+    wish.camera = camera_of(camera_, ball_);
+    return wish;
+}
+
+std::string ViewerState::command_line() const {
+    return fmt::format("--camera {} --fov {:.6g} --size {}x{}", to_text(camera_),
+                       glm::degrees(camera_.vertical_fov), view_.x, view_.y);
+}
+
+nlohmann::ordered_json ViewerState::json(const DrawnPicture& drawn) const {
+    const auto numbers = [](const glm::vec3& v) { return nlohmann::json{v.x, v.y, v.z}; };
+    nlohmann::ordered_json state = {{"model", options_.model.string()},
+                                    {"error", !error_.empty() ? error_ : drawn.error},
+                                    {"view", {view_.x, view_.y}},
+                                    {"camera",
+                                     {{"azimuth", glm::degrees(camera_.azimuth)},
+                                      {"elevation", glm::degrees(camera_.elevation)},
+                                      {"distance", camera_.distance},
+                                      {"target", numbers(camera_.target)},
+                                      {"fov", glm::degrees(camera_.vertical_fov)}}},
+                                    {"turntable", is_turning_},
+                                    {"revision", revision_},
+                                    {"drawn",
+                                     {{"revision", drawn.revision},
+                                      {"frames", drawn.frames},
+                                      {"renderers", drawn.renderers},
+                                      {"milliseconds", drawn.times.draw}}}};
+    if (!scene_) return state;
+    std::size_t triangles = 0;
+    for (const Instance& instance : scene_->instances)
+        triangles += scene_->meshes[instance.mesh]->triangles.size();
+    state["triangles"] = triangles;
+    state["materials"] = scene_->materials.size();
+    nlohmann::json lights = nlohmann::json::array();
+    for (const DirectionalLight& light : scene_->directional_lights)
+        lights.push_back(numbers(light.direction_world));
+    state["directional_lights"] = lights;
+    if (drawn.plan) state["effects"] = effects_in(*drawn.plan);
+    return state;
+}
+
+}  // namespace relief::tools
