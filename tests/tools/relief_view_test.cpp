@@ -322,9 +322,12 @@ TEST_P(ViewRefusal, SaysWhyAndLeavesNothingBehind) {
 INSTANTIATE_TEST_SUITE_P(
     Usage, ViewRefusal,
     testing::Values(
-        Refused{"", 2, "MODEL is missing (see relief-view --help)"},
-        Refused{"square.obj", 2,
-                "--output is missing (name a picture to write, or ask for --explain-effects)"},
+        Refused{"--explain-effects", 2, "MODEL is missing (see relief-view --help)"},
+        Refused{"square.obj --json", 2,
+                "--json: is a summary, and a window has none (name a picture with --output)"},
+        Refused{"square.obj --output out/old.png --dump-state out/state.json", 2,
+                "--dump-state: is what a window shows, and none is opened (leave --output and the "
+                "like out)"},
         Refused{"square.obj --output out/p.jpg", 2,
                 "--output out/p.jpg: no format to write a picture in (use .png, .exr or .apng)"},
         Refused{"square.obj --output out/old.png --size 5", 2,

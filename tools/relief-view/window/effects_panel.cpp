@@ -7,6 +7,7 @@
 
 #include "relief/shade/shader_listing.h"
 #include "window/panels.h"
+#include "window/places.h"
 
 namespace relief::tools {
 namespace {
@@ -30,6 +31,7 @@ void draw_switch(ViewerState& state, const std::string& name) {
         if (choice != 0) wishes.forced.push_back({name, choice == 1});
         state.set_effects(std::move(wishes));
     }
+    mark_place("force " + name);
     ImGui::PopID();
 }
 

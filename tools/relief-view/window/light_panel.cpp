@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "window/panels.h"
+#include "window/places.h"
 
 namespace relief::tools {
 namespace {
@@ -90,6 +91,7 @@ void draw_light_panel(const PanelInput& input) {
         directional.push_back({});
         changed = true;
     }
+    mark_place("Add directional");
     ImGui::SameLine();
     if (ImGui::Button("Add point")) {
         PointLight light;

@@ -65,7 +65,7 @@ std::optional<Loaded> Loader::take() {
 
 bool Loader::is_loading() const {
     const std::lock_guard lock(mutex_);
-    return is_wanted_ && !result_;
+    return is_wanted_;
 }
 
 double Loader::seconds_so_far() const {

@@ -45,6 +45,7 @@ class Loader {
     /// What was begun last, once it is there; only once.
     std::optional<Loaded> take();
 
+    /// From start() until the result is taken, or cancel().
     [[nodiscard]] bool is_loading() const;
     [[nodiscard]] double seconds_so_far() const;
 

@@ -107,9 +107,12 @@ void fit(OrbitCamera& orbit, const Ball& ball, float aspect) {
 }
 
 std::string to_text(const OrbitCamera& orbit) {
-    return fmt::format("{},{}@{},{},{},{}", glm::degrees(orbit.azimuth),
-                       glm::degrees(orbit.elevation), orbit.target.x, orbit.target.y,
-                       orbit.target.z, orbit.distance);
+    // In float, the conversion itself would show in the last digit.
+    const auto degrees = [](float radians) {
+        return static_cast<float>(glm::degrees(static_cast<double>(radians)));
+    };
+    return fmt::format("{},{}@{},{},{},{}", degrees(orbit.azimuth), degrees(orbit.elevation),
+                       orbit.target.x, orbit.target.y, orbit.target.z, orbit.distance);
 }
 
 }  // namespace relief::tools

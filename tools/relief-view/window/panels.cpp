@@ -6,6 +6,7 @@
 #include <imgui.h>
 
 #include "common/text.h"
+#include "window/places.h"
 
 namespace relief::tools {
 namespace {
@@ -27,6 +28,13 @@ std::string status_text(const PanelInput& input) {
                        input.renderer);
 }
 
+/// A panel's header. \return whether it is open
+bool begins(const char* name, ImGuiTreeNodeFlags flags = 0) {
+    const bool is_open = ImGui::CollapsingHeader(name, flags);
+    mark_place(name);
+    return is_open;
+}
+
 }  // namespace
 
 float draw_panels(const PanelInput& input, PanelWishes& wishes) {
@@ -38,12 +46,11 @@ float draw_panels(const PanelInput& input, PanelWishes& wishes) {
     ImGui::SetNextWindowSize({width, io.DisplaySize.y - status_height});
     ImGui::Begin("Panels", nullptr,
                  ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove);
-    if (ImGui::CollapsingHeader("Scene", ImGuiTreeNodeFlags_DefaultOpen)) draw_scene_panel(input);
-    if (ImGui::CollapsingHeader("Lights")) draw_light_panel(input);
-    if (ImGui::CollapsingHeader("Materials")) draw_material_panel(input);
-    if (ImGui::CollapsingHeader("Picture")) draw_picture_panel(input);
-    if (ImGui::CollapsingHeader("Effects", ImGuiTreeNodeFlags_DefaultOpen))
-        draw_effects_panel(input);
+    if (begins("Scene", ImGuiTreeNodeFlags_DefaultOpen)) draw_scene_panel(input);
+    if (begins("Lights")) draw_light_panel(input);
+    if (begins("Materials")) draw_material_panel(input);
+    if (begins("Picture")) draw_picture_panel(input);
+    if (begins("Effects", ImGuiTreeNodeFlags_DefaultOpen)) draw_effects_panel(input);
     ImGui::End();
     return width;
 }

@@ -13,6 +13,8 @@
 #include <string_view>
 #include <utility>
 
+#include "window/places.h"
+
 namespace relief::tools {
 namespace {
 
@@ -168,6 +170,7 @@ UserInterface::Events UserInterface::draw(const PanelInput& input, const Handove
     ImGui_ImplOpenGL3_NewFrame();
     ImGui_ImplGlfw_NewFrame();
     ImGui::NewFrame();
+    forget_places();
     Events events;
     events.dropped = std::exchange(dropped_, {});
     left_ = has_panels_ ? draw_panels(input, events.panels) : 0.0F;

@@ -31,6 +31,7 @@ class UserInterface {
     Events draw(const PanelInput& input, const Handover::Shown& picture);
 
     void show_help() { is_help_open_ = !is_help_open_; }
+    [[nodiscard]] bool is_help_open() const { return is_help_open_; }
     void show_panels() { has_panels_ = !has_panels_; }
 
     // From GLFW, as it happens: two events between frames are still two.

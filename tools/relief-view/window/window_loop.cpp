@@ -9,6 +9,7 @@
 
 #include "file_replacement.h"
 #include "window/dropped_files.h"
+#include "window/places.h"
 #include "window/user_interface.h"
 
 namespace relief::tools {
@@ -30,6 +31,7 @@ class WindowLoop {
           interface_(system_),
           state_(options),
           dump_(options.dump_state) {
+        if (dump_) keep_places();
         if (!options.model.empty()) loader_.start(options);
     }
 
@@ -66,6 +68,8 @@ class WindowLoop {
     }
 
     void draw() {
+        // Asked first: not busy now means that what comes next is the newest.
+        const bool was_busy = drawer_.is_busy();
         const DrawnPicture drawn = drawer_.drawn();
         const PanelInput input{state_, drawn, drawer_.renderer_name(),
                                loader_.is_loading() ? loader_.seconds_so_far() : 0.0};
@@ -75,8 +79,8 @@ class WindowLoop {
             act(action);
         for (const std::filesystem::path& file : events.dropped)
             loader_.start(with_dropped(state_.options(), file));
-        request();
-        dump(drawn);
+        const bool is_busy = request() || was_busy;
+        dump(drawn, is_busy);
     }
 
     void act(Action action) {
@@ -87,26 +91,29 @@ class WindowLoop {
             glfwSetClipboardString(system_.window(), state_.command_line().c_str());
     }
 
-    /// Asks for a picture where the last one asked for shows something else.
-    void request() {
+    /// Asks for a picture where the last one asked for shows something else. \return whether it did
+    bool request() {
         const std::optional<DrawWish> wish = state_.wish();
-        if (!wish) return;
+        if (!wish) return false;
         const bool is_same = wished_ && wished_->revision == wish->revision &&
                              wished_->camera.world_from_view == wish->camera.world_from_view &&
                              wished_->camera.vertical_fov == wish->camera.vertical_fov &&
                              wished_->settings.width == wish->settings.width &&
                              wished_->settings.height == wish->settings.height;
-        if (is_same) return;
+        if (is_same) return false;
         wished_ = wish;
         drawer_.wish(*wish);
+        return true;
     }
 
     /// Tests and scripts see what the window sees.
-    void dump(const DrawnPicture& drawn) {
+    void dump(const DrawnPicture& drawn, bool is_busy) {
         if (!dump_) return;
         nlohmann::ordered_json json = state_.json(drawn);
         json["loading"] = loader_.is_loading();
-        json["busy"] = drawer_.is_busy();
+        json["busy"] = is_busy;
+        json["help"] = interface_.is_help_open();
+        json["places"] = places_json();
         const std::string text = json.dump(2) + "\n";
         if (text == dumped_) return;
         dumped_ = text;

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+// Pictures handed over are those that were drawn, and one that is shown is left alone.
+#include "relief/shade/handover.h"
+
+#include <gtest/gtest.h>
+
+#include "draw_test.h"
+#include "gl/api.h"
+
+namespace relief {
+namespace {
+
+class Handing : public test::DrawTest {
+  protected:
+    /// A picture of one colour, of this size.
+    void put(Handover& handover, const glm::vec3& color, int width, int height) {
+        Material material = test::black_material();
+        material.unlit = true;
+        material.diffuse = color;
+        const Scene scene = test::scene_of(test::facing_square(), material);
+        const FrameSettings settings{width, height, 1};
+        Report report;
+        Renderer renderer(context(), scene, plan_effects(scene, settings), settings, report);
+        renderer.draw_only(*scene.camera);
+        handover.put(renderer);
+    }
+
+    /// The middle of a texture.
+    glm::ivec3 color_of(unsigned texture, int width, int height) {
+        const gl::Api& api = context().api();
+        std::vector<std::uint8_t> texels(static_cast<std::size_t>(4 * width * height));
+        api->BindTexture(GL_TEXTURE_2D, texture);
+        api->GetTexImage(GL_TEXTURE_2D, 0, GL_RGBA, GL_UNSIGNED_BYTE, texels.data());
+        api->BindTexture(GL_TEXTURE_2D, 0);
+        const auto at = static_cast<std::size_t>(4 * (height / 2 * width + width / 2));
+        return {texels[at], texels[at + 1], texels[at + 2]};
+    }
+};
+
+TEST_F(Handing, NothingIsShownBeforeAnythingIsDrawn) {
+    Handover handover(context());
+    EXPECT_EQ(handover.get().texture, 0U);
+}
+
+TEST_F(Handing, TheNewestIsShownInItsSize) {
+    Handover handover(context());
+    put(handover, {1, 0, 0}, 20, 10);
+    put(handover, {0, 1, 0}, 30, 10);
+    const Handover::Shown shown = handover.get();
+    EXPECT_EQ(shown.width, 30);
+    EXPECT_EQ(shown.height, 10);
+    EXPECT_EQ(color_of(shown.texture, 30, 10), glm::ivec3(0, 255, 0));
+}
+
+TEST_F(Handing, WhatIsShownStaysAsItIsHoweverManyComeAfter) {
+    Handover handover(context());
+    put(handover, {1, 0, 0}, 8, 8);
+    const Handover::Shown shown = handover.get();
+    for (int i = 0; i < 5; ++i) {
+        put(handover, {0, 0, 1}, 8, 8);
+        EXPECT_EQ(color_of(shown.texture, 8, 8), glm::ivec3(255, 0, 0)) << i;
+    }
+    EXPECT_NE(handover.get().texture, shown.texture);
+    EXPECT_EQ(color_of(handover.get().texture, 8, 8), glm::ivec3(0, 0, 255));
+}
+
+}  // namespace
+}  // namespace relief

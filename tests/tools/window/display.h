@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// A screen without a screen: Xvfb, which keeps its pixels in a file that can be read.
+/// 1280 x 800 pixels of 24 bits.
+#pragma once
+
+#include <sys/types.h>
+
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "relief/mesh/image.h"
+#include "support/shared_data.h"
+
+namespace relief::test {
+
+/// A child process; ended with the object.
+class ChildProcess {
+  public:
+    ChildProcess(const std::vector<std::string>& words, const std::filesystem::path& streams);
+    ~ChildProcess();
+    ChildProcess(const ChildProcess&) = delete;
+    ChildProcess& operator=(const ChildProcess&) = delete;
+
+    [[nodiscard]] pid_t pid() const { return pid_; }
+    /// Waits for its own end. \return the exit code; -1 if it goes on for longer than so long
+    int wait_for_end(double seconds);
+    [[nodiscard]] bool has_ended();
+
+  private:
+    pid_t pid_ = 0;
+    int status_ = 0;
+    bool has_ended_ = false;
+};
+
+class Display {
+  public:
+    /// One on a free number; nothing where Xvfb or xdotool is not installed.
+    static std::unique_ptr<Display> open();
+
+    [[nodiscard]] const std::string& name() const { return name_; }  ///< ":1234"
+
+    /// What is on the screen, 8-bit RGB.
+    [[nodiscard]] Image picture() const;
+
+    /// Runs xdotool there. \throws std::runtime_error if it fails
+    void act(const std::string& words) const;
+
+  private:
+    Display() = default;
+
+    TemporaryDirectory folder_;
+    std::unique_ptr<ChildProcess> server_;
+    std::string name_;
+};
+
+/// Waits until something holds, looking often. \return whether it did within so many seconds
+template <typename Condition>
+bool eventually(const Condition& holds, double seconds = 30.0);
+
+/// Sleeps a little, between two looks.
+void pause_a_little();
+double seconds_now();
+
+template <typename Condition>
+bool eventually(const Condition& holds, double seconds) {
+    const double end = seconds_now() + seconds;
+    while (!holds()) {
+        if (seconds_now() > end) return false;
+        pause_a_little();
+    }
+    return true;
+}
+
+std::string contents_of(const std::filesystem::path& file);
+
+}  // namespace relief::test
+
+/// Opens a display as `variable`, or skips the test with a word.
+#define RELIEF_NEEDS_DISPLAY(variable)                                                     \
+    const std::unique_ptr<relief::test::Display> variable = relief::test::Display::open(); \
+    if (!variable) GTEST_SKIP() << "needs Xvfb and xdotool"

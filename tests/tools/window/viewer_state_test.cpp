@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "window/viewer_state.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tools/workplace.h"
+#include "window/draw_thread.h"
+
+namespace relief::tools {
+namespace {
+
+using test::Workplace;
+
+class State : public testing::Test {
+  protected:
+    State() {
+        workplace_.write_square("square.obj");
+        workplace_.write("far.obj", "v 90 0 0\nv 91 0 0\nv 90 1 0\nf 1 2 3\n");
+        state_.set_view({400, 300});
+    }
+
+    Loaded read(const std::string& model) {
+        Loaded loaded;
+        loaded.options.model = workplace_ / model;
+        Stages silent(true);
+        loaded.composed = compose_scene(loaded.options, silent, loaded.findings);
+        return loaded;
+    }
+    void show(const std::string& model) { state_.take(read(model)); }
+    ViewerState& state() { return state_; }
+
+  private:
+    Workplace workplace_;
+    ViewerState state_{ViewOptions{}};
+};
+
+TEST_F(State, WishesNothingWithoutASceneOrAView) {
+    EXPECT_FALSE(state().wish());
+    show("square.obj");
+    ASSERT_TRUE(state().wish());
+    EXPECT_EQ(state().wish()->settings.width, 400);
+    EXPECT_EQ(state().wish()->settings.height, 300);
+    state().set_view({0, 300});
+    EXPECT_FALSE(state().wish());
+}
+
+TEST_F(State, AnotherModelIsShownWholeTheSameKeepsTheView) {
+    show("square.obj");
+    EXPECT_NEAR(glm::length(state().camera().target), 0.0F, 1e-5F);
+    state().act(Action::top);
+    state().act(Action::nearer);
+    const OrbitCamera before = state().camera();
+    const std::uint64_t revision = state().wish()->revision;
+    show("square.obj");
+    EXPECT_EQ(state().camera().elevation, before.elevation);
+    EXPECT_EQ(state().camera().distance, before.distance);
+    EXPECT_GT(state().wish()->revision, revision);
+    show("far.obj");
+    EXPECT_NEAR(state().camera().target.x, 90.5F, 0.2F);
+}
+
+TEST_F(State, AnErrorLeavesTheSceneAndGoesWithTheNext) {
+    show("square.obj");
+    const std::shared_ptr<const Scene> scene = state().wish()->scene;
+    Loaded broken;
+    broken.options.model = "broken.obj";
+    broken.error = "broken.obj: no triangles";
+    state().take(std::move(broken));
+    EXPECT_EQ(state().wish()->scene, scene);
+    EXPECT_EQ(state().error(), "broken.obj: no triangles");
+    EXPECT_EQ(state().options().model.filename(), "square.obj");
+    show("far.obj");
+    EXPECT_EQ(state().error(), "");
+}
+
+TEST_F(State, EditsCopyTheSceneAndShareItsMeshes) {
+    show("square.obj");
+    const std::shared_ptr<const Scene> before = state().wish()->scene;
+    const std::uint64_t revision = state().wish()->revision;
+    state().edit([](Scene& scene) { scene.exposure = 4.0F; });
+    EXPECT_EQ(before->exposure, 1.0F);
+    EXPECT_EQ(state().scene().exposure, 4.0F);
+    EXPECT_EQ(&*state().scene().meshes[0], &*before->meshes[0]);
+    EXPECT_EQ(state().wish()->revision, revision + 1);
+}
+
+TEST_F(State, MovingTheCameraIsNoRevision) {
+    show("square.obj");
+    const DrawWish before = *state().wish();
+    state().act(Action::orbit_left);
+    EXPECT_EQ(state().wish()->revision, before.revision);
+    EXPECT_NE(state().wish()->camera.world_from_view, before.camera.world_from_view);
+}
+
+TEST_F(State, AxisKeysLookAlongAxes) {
+    show("square.obj");
+    const auto looks_from = [&](Action action) {
+        state().act(action);
+        return glm::vec3(state().wish()->camera.world_from_view[2]);
+    };
+    EXPECT_NEAR(glm::distance(looks_from(Action::front), {0, 0, 1}), 0.0F, 1e-6F);
+    EXPECT_NEAR(glm::distance(looks_from(Action::back), {0, 0, -1}), 0.0F, 1e-6F);
+    EXPECT_NEAR(glm::distance(looks_from(Action::right), {1, 0, 0}), 0.0F, 1e-6F);
+    EXPECT_NEAR(glm::distance(looks_from(Action::left), {-1, 0, 0}), 0.0F, 1e-6F);
+    EXPECT_NEAR(glm::distance(looks_from(Action::top), {0, 1, 0}), 0.0F, 1e-6F);
+    EXPECT_NEAR(glm::distance(looks_from(Action::bottom), {0, -1, 0}), 0.0F, 1e-6F);
+}
+
+TEST_F(State, TheFieldOfViewStaysWithinItsLimits) {
+    show("square.obj");
+    for (int i = 0; i < 100; ++i)
+        state().act(Action::wider);
+    EXPECT_NEAR(glm::degrees(state().camera().vertical_fov), 150.0F, 1e-3F);
+    for (int i = 0; i < 200; ++i)
+        state().act(Action::narrower);
+    EXPECT_NEAR(glm::degrees(state().camera().vertical_fov), 2.0F, 1e-3F);
+}
+
+TEST_F(State, TheTurntableTurnsByTimeAndStops) {
+    show("square.obj");
+    EXPECT_FALSE(state().pass(1.0));
+    const float begin = state().camera().azimuth;
+    state().act(Action::turntable);
+    EXPECT_TRUE(state().pass(0.25));
+    EXPECT_TRUE(state().pass(0.25));
+    EXPECT_NEAR(state().camera().azimuth, begin - 0.25F, 1e-6F);
+    state().act(Action::turntable);
+    EXPECT_FALSE(state().pass(1.0));
+}
+
+TEST_F(State, LightsTurnRoundTheModelAndKeepTheirStrength) {
+    show("square.obj");
+    ASSERT_FALSE(state().scene().directional_lights.empty());
+    const DirectionalLight before = state().scene().directional_lights[0];
+    state().orbit_lights({300.0F, 0.0F});  // As far as the view is high: half a turn.
+    const DirectionalLight after = state().scene().directional_lights[0];
+    EXPECT_NEAR(after.direction_world.y, before.direction_world.y, 1e-5F);
+    EXPECT_NEAR(after.direction_world.x, -before.direction_world.x, 1e-5F);
+    EXPECT_NEAR(after.direction_world.z, -before.direction_world.z, 1e-5F);
+    EXPECT_EQ(after.irradiance, before.irradiance);
+}
+
+TEST_F(State, SaysItselfAsJson) {
+    show("square.obj");
+    state().camera().azimuth = glm::radians(40.0F);
+    const nlohmann::ordered_json json = state().json(DrawnPicture{});
+    EXPECT_NEAR(json["camera"]["azimuth"].get<double>(), 40.0, 1e-5);
+    EXPECT_EQ(json["view"], nlohmann::json({400, 300}));
+    EXPECT_EQ(json["triangles"], 2);
+    EXPECT_EQ(json["drawn"]["frames"], 0);
+    EXPECT_EQ(json["error"], "");
+}
+
+}  // namespace
+}  // namespace relief::tools

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/window/viewer_window.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+
+namespace relief::test {
+
+ViewerWindow::ViewerWindow(const Display& display, const Workplace& workplace,
+                           const std::string& words, const std::string& environment)
+    : display_(display) {
+    // The shell becomes the program: one process, whose time can be counted.
+    const std::string line = fmt::format(
+        "cd {} && DISPLAY={} XDG_STATE_HOME={} {} exec build/release/bin/relief-view {} "
+        "--dump-state {}",
+        (workplace / "").string(), display.name(), (streams_ / "xdg").string(), environment, words,
+        (streams_ / "state.json").string());
+    process_ = std::make_unique<ChildProcess>(std::vector<std::string>{"/bin/sh", "-c", line},
+                                              streams_.path());
+    const auto has_begun = [&] {
+        return std::filesystem::exists(streams_ / "state.json") || process_->has_ended();
+    };
+    EXPECT_TRUE(eventually(has_begun)) << said();
+    EXPECT_FALSE(process_->has_ended()) << said();
+}
+
+nlohmann::json ViewerWindow::state() const {
+    const std::string text = contents_of(streams_ / "state.json");
+    return text.empty() ? nlohmann::json::object() : nlohmann::json::parse(text);
+}
+
+nlohmann::json ViewerWindow::wait_for(const std::string& what, const Condition& holds) {
+    nlohmann::json now;
+    const auto is_so = [&] {
+        if (process_->has_ended()) return true;
+        now = state();
+        return !now.value("loading", true) && !now.value("busy", true) && holds(now);
+    };
+    EXPECT_TRUE(eventually(is_so)) << "never: " << what << "\n" << now.dump(2) << said();
+    EXPECT_FALSE(process_->has_ended()) << what << "\n" << said();
+    return now;
+}
+
+nlohmann::json ViewerWindow::wait_for_rest() {
+    return wait_for("rest", [](const nlohmann::json& now) {
+        return now["revision"] > 0 && now["drawn"]["revision"] == now["revision"];
+    });
+}
+
+void ViewerWindow::drag(int x, int y, int dx, int dy, int button) const {
+    std::string words = fmt::format("mousemove {} {} mousedown {}", x, y, button);
+    for (int i = 0; i < 10; ++i)
+        words += fmt::format(" mousemove {} {}", x + dx * (i + 1) / 10, y + dy * (i + 1) / 10);
+    display_.act(words + fmt::format(" mouseup {}", button));
+}
+
+void ViewerWindow::click(int x, int y) const {
+    display_.act(fmt::format("mousemove {} {} sleep 0.1 click 1", x, y));
+}
+
+double changed_share(const Image& before, const Image& after, int x, int y, int width, int height,
+                     int codes) {
+    const std::span<const std::uint8_t> a = before.as<std::uint8_t>();
+    const std::span<const std::uint8_t> b = after.as<std::uint8_t>();
+    int changed = 0;
+    for (int row = y; row < y + height; ++row) {
+        for (int column = x; column < x + width; ++column) {
+            const auto at = static_cast<std::size_t>(3 * (row * before.width + column));
+            int worst = 0;
+            for (std::size_t channel = 0; channel < 3; ++channel)
+                worst = std::max(worst, std::abs(a[at + channel] - b[at + channel]));
+            changed += worst > codes ? 1 : 0;
+        }
+    }
+    return static_cast<double>(changed) / (width * height);
+}
+
+}  // namespace relief::test

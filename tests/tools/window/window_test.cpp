@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: Apache-2.0
+// The real window, on a display of its own, driven by hands that xdotool moves. What it shows is
+// judged by the pixels of the screen and by what it says of itself.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <sstream>
+#include <thread>
+
+#include "tools/window/viewer_window.h"
+
+namespace relief::tools {
+namespace {
+
+using nlohmann::json;
+using relief::Image;
+using test::changed_share;
+using test::eventually;
+using test::ViewerWindow;
+using test::Workplace;
+using testing::HasSubstr;
+
+/// The part of the screen that is surely picture, in the middle of the view.
+double changed_picture(const Image& before, const Image& after) {
+    return changed_share(before, after, 600, 200, 400, 400);
+}
+
+/// Seconds of processor time that a process has used.
+double processor_seconds(pid_t pid) {
+    std::istringstream stat(test::contents_of("/proc/" + std::to_string(pid) + "/stat"));
+    std::string field;
+    std::getline(stat, field, ')');  // "pid (name"
+    for (int i = 3; i < 14; ++i)
+        stat >> field;
+    double user = 0.0, system = 0.0;
+    stat >> user >> system;
+    return (user + system) / static_cast<double>(::sysconf(_SC_CLK_TCK));
+}
+
+std::pair<int, int> place(const json& state, const std::string& name) {
+    const json& at = state.at("places").at(name);
+    return {at[0].get<int>(), at[1].get<int>()};
+}
+
+TEST(Window, ADragTurnsTheCameraAndThePicture) {
+    RELIEF_NEEDS_DISPLAY(display);
+    const Workplace workplace;
+    ViewerWindow window(*display, workplace, "data/vase.obj");
+    const json before = window.wait_for_rest();
+    const Image picture = display->picture();
+    const double height = before["view"][1].get<double>();
+    window.drag(700, 300, 100, 40);
+    // A drag over the height of the view is half a turn.
+    const json moved = window.wait_for("turned", [&](const json& now) {
+        const double turned =
+            before["camera"]["azimuth"].get<double>() - now["camera"]["azimuth"].get<double>();
+        const double raised =
+            now["camera"]["elevation"].get<double>() - before["camera"]["elevation"].get<double>();
+        return std::abs(turned - 180.0 * 100.0 / height) < 1e-3 &&
+               std::abs(raised - 180.0 * 40.0 / height) < 1e-3;
+    });
+    EXPECT_TRUE(eventually([&] { return changed_picture(picture, display->picture()) > 0.05; }));
+    EXPECT_EQ(moved["camera"]["distance"], before["camera"]["distance"]);
+    EXPECT_EQ(moved["drawn"]["renderers"], 1) << "a camera makes no renderer";
+}
+
+TEST(Window, KeysAndTheWheelMoveTheCameraAndQuitEndsIt) {
+    RELIEF_NEEDS_DISPLAY(display);
+    const Workplace workplace;
+    ViewerWindow window(*display, workplace, "data/vase.obj --camera 30,20");
+    const json before = window.wait_for_rest();
+    const Image picture = display->picture();
+    EXPECT_NEAR(before["camera"]["azimuth"].get<double>(), 30.0, 1e-3);
+    window.key("7");
+    window.wait_for("above", [](const json& now) {
+        return std::abs(now["camera"]["elevation"].get<double>() - 90.0) < 1e-3;
+    });
+    EXPECT_TRUE(eventually([&] { return changed_picture(picture, display->picture()) > 0.05; }));
+    window.key("ctrl+3");
+    window.wait_for("left", [](const json& now) {
+        return std::abs(now["camera"]["azimuth"].get<double>() + 90.0) < 1e-3;
+    });
+    const double distance = before["camera"]["distance"].get<double>();
+    display->act("mousemove 800 400 click 4 click 4 click 5 click 4");
+    window.wait_for("nearer by two steps", [&](const json& now) {
+        return std::abs(now["camera"]["distance"].get<double>() / distance - 0.81) < 1e-4;
+    });
+    window.drag(800, 400, 50, 0, 2);
+    window.wait_for("panned", [&](const json& now) {
+        const json& target = now["camera"]["target"];
+        return target[2] != before["camera"]["target"][2];
+    });
+    window.key("f");
+    window.wait_for("fitted", [&](const json& now) {
+        const json& target = now["camera"]["target"];
+        return std::abs(target[2].get<double>()) < 1e-3 &&
+               now["camera"]["distance"].get<double>() > 0.9 * distance;
+    });
+    window.key("ctrl+q");
+    EXPECT_EQ(window.process().wait_for_end(20.0), 0) << window.said();
+    EXPECT_EQ(window.said(), "");
+}
+
+TEST(Window, HelpComesAndGoesAndPanelsGiveTheirRoom) {
+    RELIEF_NEEDS_DISPLAY(display);
+    const Workplace workplace;
+    workplace.write_square("square.obj");
+    ViewerWindow window(*display, workplace, "square.obj");
+    const json before = window.wait_for_rest();
+    const Image picture = display->picture();
+    window.key("h");
+    window.wait_for("help", [](const json& now) { return now["help"] == true; });
+    EXPECT_TRUE(eventually([&] { return changed_picture(picture, display->picture()) > 0.2; }));
+    window.key("h");
+    window.wait_for("no help", [](const json& now) { return now["help"] == false; });
+    EXPECT_TRUE(eventually([&] { return changed_picture(picture, display->picture()) == 0.0; }))
+        << "the same picture again";
+    window.key("Tab");
+    window.wait_for("a wider view", [&](const json& now) { return now["view"][0] == 1280; });
+    window.key("Tab");
+    window.wait_for("panels", [&](const json& now) { return now["view"] == before["view"]; });
+}
+
+TEST(Window, PanelsEditTheScene) {
+    RELIEF_NEEDS_DISPLAY(display);
+    const Workplace workplace;
+    ViewerWindow window(*display, workplace, "data/vase.obj");
+    const json before = window.wait_for_rest();
+    const Image picture = display->picture();
+    const auto [lights_x, lights_y] = place(before, "Lights");
+    window.click(lights_x, lights_y);
+    const json open = window.wait_for(
+        "the lights", [](const json& now) { return now["places"].contains("Add directional"); });
+    const auto [add_x, add_y] = place(open, "Add directional");
+    window.click(add_x, add_y);
+    const json lit = window.wait_for("one light more", [&](const json& now) {
+        return now["directional_lights"].size() == before["directional_lights"].size() + 1;
+    });
+    EXPECT_EQ(lit["camera"], before["camera"]) << "a drag on a panel is none on the picture";
+    EXPECT_GT(lit["revision"], before["revision"]);
+    EXPECT_TRUE(eventually([&] { return changed_picture(picture, display->picture()) > 0.05; }));
+}
+
+TEST(Window, AtRestItDrawsNothingAndTakesNoTime) {
+    RELIEF_NEEDS_DISPLAY(display);
+    const Workplace workplace;
+    ViewerWindow window(*display, workplace, "data/vase.obj");
+    display->act("mousemove 800 400");
+    window.wait_for_rest();
+    window.key("1");
+    window.wait_for("the front", [](const json& now) { return now["camera"]["azimuth"] == 0.0; });
+    const json before = window.wait_for_rest();
+    const double used = processor_seconds(window.process().pid());
+    EXPECT_GT(used, 0.01) << "it has drawn, and that is counted";
+    std::this_thread::sleep_for(std::chrono::seconds(10));
+    const double more = processor_seconds(window.process().pid()) - used;
+    EXPECT_LT(more, 0.1) << "under 1% of a core";
+    EXPECT_EQ(window.state(), before) << "not one picture more";
+}
+
+TEST(Window, ABrokenModelIsSaidInTheWindow) {
+    RELIEF_NEEDS_DISPLAY(display);
+    const Workplace workplace;
+    workplace.write("broken.obj", "f 1 2 3\n");
+    ViewerWindow window(*display, workplace, "broken.obj");
+    const json state =
+        window.wait_for("an error", [](const json& now) { return now["error"] != ""; });
+    EXPECT_THAT(state["error"].get<std::string>(), HasSubstr("broken.obj"));
+    EXPECT_EQ(state["drawn"]["frames"], 0);
+    window.key("ctrl+q");
+    EXPECT_EQ(window.process().wait_for_end(20.0), 0);
+}
+
+TEST(Window, ADriverThatIsTooOldIsSaid) {
+    RELIEF_NEEDS_DISPLAY(display);
+    const Workplace workplace;
+    const test::ProgramResult result = workplace.run(
+        "DISPLAY=" + display->name() + " MESA_GL_VERSION_OVERRIDE=2.1 relief-view data/vase.obj");
+    EXPECT_EQ(result.exit_code, 1);
+    EXPECT_THAT(result.error, HasSubstr("no window with OpenGL 3.3 can be opened"));
+    EXPECT_THAT(result.error, HasSubstr("--output FILE.png"));
+    EXPECT_EQ(result.out, "");
+}
+
+}  // namespace
+}  // namespace relief::tools
