@@ -39,6 +39,7 @@ const std::vector<Gesture>& gestures() {
         {"Shift+drag, middle drag", "Move the view"},
         {"Wheel, two fingers, right drag", "Come nearer or go farther, to where the pointer is"},
         {"Ctrl+drag", "Move the lights round the model"},
+        {"Double click", "Go round this point of the surface"},
         {"Drop a file", "Show this model, or put this map on it"},
     };
     return all;

@@ -30,6 +30,7 @@ class DrawThread::Drawer {
         drawn.times = renderer_->draw_only(wish.camera).times;
         handover_.put(*renderer_);
         drawn.camera = wish.camera;
+        drawn.settings = wish.settings;
         ++drawn.frames;
     }
 

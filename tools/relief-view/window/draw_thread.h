@@ -39,6 +39,7 @@ struct DrawnPicture {
     std::shared_ptr<const FramePlan> plan;
     Report findings;
     std::string error;  ///< Empty: none.
+    FrameSettings settings;
     Camera camera;
 };
 

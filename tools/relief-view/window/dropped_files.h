@@ -5,6 +5,7 @@
 #pragma once
 
 #include <filesystem>
+#include <vector>
 
 #include "view_options.h"
 
@@ -18,7 +19,9 @@ enum class DroppedAs { model, height_map, normal_map, diffuse_map, environment }
 /// not.
 DroppedAs dropped_as(const std::filesystem::path& file);
 
-/// The options that show it: a model takes the place of the model, a map that of such a map.
-ViewOptions with_dropped(ViewOptions options, const std::filesystem::path& file);
+/// The options that show what was dropped at once: a model takes the place of the model, a map that
+/// of such a map. Six images are the faces of a cube, by the ends of their names ("posx", "px" or
+/// "right", and so on) or else in the order of their names.
+ViewOptions with_dropped(ViewOptions options, const std::vector<std::filesystem::path>& files);
 
 }  // namespace relief::tools

@@ -22,10 +22,11 @@ std::size_t triangles_of(const Scene& scene) {
 
 std::string status_text(const PanelInput& input) {
     if (!input.state.has_scene()) return "";
-    return fmt::format("{}   {} x {}   {:.1f} ms   {} pictures drawn   {}",
-                       counted(triangles_of(input.state.scene()), "triangle"), input.state.view().x,
-                       input.state.view().y, input.drawn.times.draw, input.drawn.frames,
-                       input.renderer);
+    return fmt::format("{}   {} x {} pixels   {:.1f} ms a picture   picture {}, {}   {}",
+                       counted(triangles_of(input.state.scene()), "triangle"),
+                       input.drawn.settings.width, input.drawn.settings.height,
+                       input.drawn.times.draw, input.drawn.frames,
+                       input.is_drawing ? "drawing" : "idle", input.renderer);
 }
 
 /// A panel's header. \return whether it is open

@@ -15,6 +15,7 @@ struct PanelInput {
     const DrawnPicture& drawn;
     const std::string& renderer;
     double loading_seconds = 0.0;  ///< 0: nothing is being read.
+    bool is_drawing = false;       ///< Else the picture is the newest, and nothing goes on.
 };
 
 /// What a panel asks the window to do.

@@ -13,12 +13,15 @@
 #include <string_view>
 #include <utility>
 
+#include "window/picking.h"
 #include "window/places.h"
 
 namespace relief::tools {
 namespace {
 
-constexpr float drag_zoom = 0.02F;  // Steps of the wheel for each pixel of a right drag.
+constexpr double double_click_seconds = 0.35;
+constexpr float double_click_reach = 6.0F;  // In the window's units.
+constexpr float drag_zoom = 0.02F;          // Steps of the wheel for each pixel of a right drag.
 
 /// GLFW's code of a key by its name.
 int key_code(std::string_view name) {
@@ -128,9 +131,21 @@ bool UserInterface::is_on_picture() const {
     return is_over && !is_help_open_ && !ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopup);
 }
 
+/// A second click soon after the first and near it; a third one is a first one again.
+bool UserInterface::is_second_click() {
+    const double now = glfwGetTime();
+    const bool is_second = now - clicked_at_ < double_click_seconds &&
+                           glm::distance(pointer_, clicked_) < double_click_reach;
+    clicked_ = pointer_;
+    clicked_at_ = is_second ? -1e9 : now;
+    return is_second;
+}
+
 void UserInterface::on_button(int button, bool is_down, int modifiers) {
     drag_ = Drag::none;
     if (!is_down || !is_on_picture()) return;
+    if (button == GLFW_MOUSE_BUTTON_LEFT && modifiers == 0 && is_second_click())
+        moves_.push_back({Drag::aim, {}, 0.0F, pointer_});
     if (button == GLFW_MOUSE_BUTTON_RIGHT) {
         drag_ = Drag::zoom;
     } else if (button == GLFW_MOUSE_BUTTON_MIDDLE || (modifiers & GLFW_MOD_SHIFT) != 0) {
@@ -150,6 +165,15 @@ void UserInterface::on_wheel(float steps) {
     if (is_on_picture()) moves_.push_back({Drag::none, {}, steps, pointer_});
 }
 
+/// From the centre of the view, in halves of its height, y up.
+glm::vec2 UserInterface::on_view(const glm::vec2& place, const ViewerState& state) const {
+    const ImGuiIO& io = ImGui::GetIO();
+    const glm::vec2 middle(0.5F * (left_ + io.DisplaySize.x), 0.5F * (io.DisplaySize.y - bottom_));
+    const glm::vec2 offset = (place - middle) * vec(io.DisplayFramebufferScale);
+    return glm::vec2(offset.x, -offset.y) /
+           (0.5F * static_cast<float>(std::max(state.view().y, 1)));
+}
+
 void UserInterface::apply(const Move& move, ViewerState& state) const {
     const ImGuiIO& io = ImGui::GetIO();
     const glm::vec2 scale = vec(io.DisplayFramebufferScale);
@@ -158,11 +182,9 @@ void UserInterface::apply(const Move& move, ViewerState& state) const {
     if (move.drag == Drag::orbit) return orbit_by(state.camera(), moved, height);
     if (move.drag == Drag::pan) return pan_by(state.camera(), moved, height);
     if (move.drag == Drag::lights) return state.orbit_lights(moved);
+    if (move.drag == Drag::aim) return state.aim(on_view(move.place, state));
     const bool is_drag = move.drag == Drag::zoom;
-    const glm::vec2 middle(0.5F * (left_ + io.DisplaySize.x), 0.5F * (io.DisplaySize.y - bottom_));
-    const glm::vec2 offset = is_drag ? glm::vec2(0.0F) : (move.place - middle) * scale;
-    const glm::vec2 pointer =
-        glm::vec2(offset.x, -offset.y) / (0.5F * static_cast<float>(std::max(height, 1)));
+    const glm::vec2 pointer = is_drag ? glm::vec2(0.0F) : on_view(move.place, state);
     zoom_by(state.camera(), is_drag ? -drag_zoom * moved.y : move.steps, pointer, state.ball());
 }
 

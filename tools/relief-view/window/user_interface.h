@@ -42,17 +42,19 @@ class UserInterface {
     void on_drop(const std::filesystem::path& file) { dropped_.push_back(file); }
 
   private:
-    enum class Drag { none, orbit, pan, zoom, lights };
+    enum class Drag { none, orbit, pan, zoom, lights, aim };
 
     /// What hands did to the picture, in pixels.
     struct Move {
-        Drag drag = Drag::none;  ///< None: the wheel.
+        Drag drag = Drag::none;  ///< None: the wheel; aim: a double click.
         glm::vec2 pixels{0.0F};
         float steps = 0.0F;
         glm::vec2 place{0.0F};
     };
 
     [[nodiscard]] bool is_on_picture() const;
+    [[nodiscard]] bool is_second_click();
+    [[nodiscard]] glm::vec2 on_view(const glm::vec2& place, const ViewerState& state) const;
     void apply(const Move& move, ViewerState& state) const;
 
     const WindowSystem& system_;
@@ -60,7 +62,9 @@ class UserInterface {
     std::vector<Action> pressed_;
     std::vector<Move> moves_;
     Drag drag_ = Drag::none;
-    glm::vec2 pointer_{0.0F};  ///< In the window's units.
+    glm::vec2 pointer_{0.0F};   ///< In the window's units.
+    glm::vec2 clicked_{-1e6F};  ///< Where and when a button last went down.
+    double clicked_at_ = -1e9;
     bool is_help_open_ = false;
     bool has_panels_ = true;
     float left_ = 0.0F;    ///< Of the picture, in the interface's units.

@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "window/draw_thread.h"
+#include "window/picking.h"
 
 namespace relief::tools {
 namespace {
@@ -62,6 +63,12 @@ void ViewerState::orbit_lights(const glm::vec2& pixels) {
             light.direction_world = rotation * light.direction_world;
         }
     });
+}
+
+void ViewerState::aim(const glm::vec2& pointer) {
+    if (!scene_) return;
+    const Ray ray = ray_through(camera_of(camera_, ball_), pointer);
+    if (const std::optional<glm::vec3> point = surface_on(*scene_, ray)) aim_at(camera_, *point);
 }
 
 void ViewerState::set_effects(EffectWishes effects) {

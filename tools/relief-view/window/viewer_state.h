@@ -49,6 +49,10 @@ class ViewerState {
     /// Turns the lights about the world's y and the view's right-hand side.
     void orbit_lights(const glm::vec2& pixels);
 
+    /// The surface there becomes what the camera goes round; where there is none, nothing happens.
+    /// \param pointer  from the centre of the view, in halves of its height, y up
+    void aim(const glm::vec2& pointer);
+
     void set_effects(EffectWishes effects);
     [[nodiscard]] const EffectWishes& effects() const { return effects_; }
 

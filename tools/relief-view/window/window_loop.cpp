@@ -10,6 +10,7 @@
 #include "file_replacement.h"
 #include "window/dropped_files.h"
 #include "window/places.h"
+#include "window/resolution.h"
 #include "window/user_interface.h"
 
 namespace relief::tools {
@@ -54,6 +55,8 @@ class WindowLoop {
         }
         if (state_.is_turning()) {
             WindowSystem::wait(turning_step);
+        } else if (is_resting_later_) {
+            WindowSystem::wait(0.5 * Resolution::resting_seconds);
         } else {
             WindowSystem::wait(loader_.is_loading() ? loading_step : 0.0);
             settling_ = frames_to_settle - 1;
@@ -71,15 +74,17 @@ class WindowLoop {
         // Asked first: not busy now means that what comes next is the newest.
         const bool was_busy = drawer_.is_busy();
         const DrawnPicture drawn = drawer_.drawn();
+        if (drawn.frames > 0 && !is_reduced(drawn.settings))
+            resolution_.whole_took(drawn.times.draw);
         const PanelInput input{state_, drawn, drawer_.renderer_name(),
-                               loader_.is_loading() ? loader_.seconds_so_far() : 0.0};
+                               loader_.is_loading() ? loader_.seconds_so_far() : 0.0,
+                               was_busy || is_resting_later_};
         const UserInterface::Events events = interface_.draw(input, drawer_.shown());
         if (events.panels.cancel_loading) loader_.cancel();
         for (const Action action : events.actions)
             act(action);
-        for (const std::filesystem::path& file : events.dropped)
-            loader_.start(with_dropped(state_.options(), file));
-        const bool is_busy = request() || was_busy;
+        if (!events.dropped.empty()) drop(events.dropped);
+        const bool is_busy = request() || was_busy || is_resting_later_;
         dump(drawn, is_busy);
     }
 
@@ -91,18 +96,49 @@ class WindowLoop {
             glfwSetClipboardString(system_.window(), state_.command_line().c_str());
     }
 
+    /// Whether two wishes show the same, in whatever resolution.
+    static bool is_same(const DrawWish& a, const DrawWish& b) {
+        return a.revision == b.revision && a.camera.world_from_view == b.camera.world_from_view &&
+               a.camera.vertical_fov == b.camera.vertical_fov &&
+               a.settings.width == b.settings.width && a.settings.height == b.settings.height;
+    }
+
+    [[nodiscard]] bool is_reduced(const FrameSettings& settings) const {
+        return settings.width < state_.view().x || settings.height < state_.view().y ||
+               settings.samples < state_.options().samples;
+    }
+
+    /// What contradicts the options is said like what cannot be read.
+    void drop(const std::vector<std::filesystem::path>& files) {
+        ViewOptions options = with_dropped(state_.options(), files);
+        try {
+            settle(options);
+            loader_.start(options);
+        } catch (const UsageError& error) {
+            Loaded refused;
+            refused.error = error.what();
+            state_.take(std::move(refused));
+        }
+    }
+
     /// Asks for a picture where the last one asked for shows something else. \return whether it did
     bool request() {
         const std::optional<DrawWish> wish = state_.wish();
         if (!wish) return false;
-        const bool is_same = wished_ && wished_->revision == wish->revision &&
-                             wished_->camera.world_from_view == wish->camera.world_from_view &&
-                             wished_->camera.vertical_fov == wish->camera.vertical_fov &&
-                             wished_->settings.width == wish->settings.width &&
-                             wished_->settings.height == wish->settings.height;
-        if (is_same) return false;
+        const bool is_moved = !wished_ || !is_same(*wished_, *wish);
+        const double now = glfwGetTime();
+        if (is_moved && wished_) resolution_.moved(now);
+        DrawWish reduced = *wish;
+        reduced.settings = resolution_.settings_for(wish->settings, now);
+        is_resting_later_ = is_reduced(reduced.settings);
+        const bool is_as_asked = asked_.width == reduced.settings.width &&
+                                 asked_.height == reduced.settings.height &&
+                                 asked_.samples == reduced.settings.samples;
+        if (!is_moved && is_as_asked) return false;
+        if (is_resting_later_) ++reduced_;
         wished_ = wish;
-        drawer_.wish(*wish);
+        asked_ = reduced.settings;
+        drawer_.wish(std::move(reduced));
         return true;
     }
 
@@ -112,6 +148,10 @@ class WindowLoop {
         nlohmann::ordered_json json = state_.json(drawn);
         json["loading"] = loader_.is_loading();
         json["busy"] = is_busy;
+        json["drawn"]["size"] = {drawn.settings.width, drawn.settings.height};
+        json["drawn"]["samples"] = drawn.settings.samples;
+        json["drawn"]["whole"] = !is_reduced(drawn.settings);
+        json["reduced"] = reduced_;
         json["help"] = interface_.is_help_open();
         json["places"] = places_json();
         const std::string text = json.dump(2) + "\n";
@@ -128,6 +168,10 @@ class WindowLoop {
     std::optional<std::filesystem::path> dump_;
     std::string dumped_;
     std::optional<DrawWish> wished_;
+    Resolution resolution_;
+    FrameSettings asked_;            ///< Of the last wish, whole or not.
+    std::uint64_t reduced_ = 0;      ///< Wishes that were not.
+    bool is_resting_later_ = false;  ///< The whole picture is still to come.
     int settling_ = frames_to_settle;
     std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };
