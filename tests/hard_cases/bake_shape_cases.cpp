@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Shapes of high and low meshes, and of maps.
 #include <fmt/format.h>
-#include <sys/resource.h>
 
 #include <algorithm>
 #include <cmath>
@@ -11,6 +10,7 @@
 #include "relief/mesh/map_tiles.h"
 #include "relief/mesh/shapes.h"
 #include "relief/mesh/threads.h"
+#include "support/peak_memory.h"
 
 namespace relief::test {
 namespace {
@@ -255,13 +255,8 @@ HardCase memory_case() {
             "A map of 8192 x 512 whose chart is a 64th of it; baked in strips from the top.",
             "TexTools-Blender#35: buffers of 32K x 32K",
             {{"bake", "under half of the GB that its samples would take, on two threads", [] {
-                  const auto peak = [] {
-                      rusage usage{};
-                      ::getrusage(RUSAGE_SELF, &usage);
-                      return usage.ru_maxrss / 1000;  // MB.
-                  };
                   set_thread_limit(2);
-                  const long before = peak();
+                  const double before = test::peak_megabytes();
                   const Mesh low = with_texcoords(make_quad(), 0.125F, glm::vec2(0.5F));
                   BakeOptions options;
                   options.width = 8192;
@@ -275,8 +270,8 @@ HardCase memory_case() {
                   if (result.texels_baked != 1024UL * 64)
                       return fmt::format("{} texels baked", result.texels_baked);
                   // 50 MB a thread for owners of samples, 134 for a strip of them, and Embree.
-                  const long more = peak() - before;
-                  return says(more < 512, fmt::format("{} MB more", more));
+                  const double more = test::peak_megabytes() - before;
+                  return says(more < 512, fmt::format("{:.0f} MB more", more));
               }}}};
 }
 

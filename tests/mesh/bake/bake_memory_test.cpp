@@ -2,21 +2,15 @@
 // How much memory large maps take: a program of its own, whose peak says it for everything
 // together, libraries and all.
 #include <gtest/gtest.h>
-#include <sys/resource.h>
 
 #include "relief/mesh/bake.h"
 #include "relief/mesh/shapes.h"
 #include "relief/mesh/threads.h"
+#include "support/peak_memory.h"
 #include "support/shared_data.h"
 
 namespace relief {
 namespace {
-
-double peak_megabytes() {
-    rusage usage{};
-    ::getrusage(RUSAGE_SELF, &usage);
-    return static_cast<double>(usage.ru_maxrss) * 1024 / 1e6;
-}
 
 /// Bakes a square whose chart is a small part of a map: what takes memory is the map.
 std::size_t texels_of(BakeOptions options, float chart) {
@@ -39,32 +33,32 @@ TEST(BakeMemory, DoesNotGrowWithSamplesNorWithTheMap) {
     options.height = 512;
     options.samples = 16;
     texels_of(options, 0.1F);
-    const double small = peak_megabytes();
+    const double small = test::peak_megabytes();
     options.width = 8192;
     options.height = 1024;
     options.padding = 16;
     EXPECT_EQ(texels_of(options, 0.02F), 8192U * 1024U);
-    const double large = peak_megabytes();
+    const double large = test::peak_megabytes();
     // All its samples' owners would take 2.1 GB; sanitizers keep 256 MB of what is freed.
     EXPECT_LT(large, small + 600.0);
     // Eight times as high, 760 MB more of it: the same memory.
     options.samples = 4;
     options.height = 8192;
     EXPECT_EQ(texels_of(options, 0.02F), 8192U * 8192U);
-    EXPECT_LT(peak_megabytes(), large + 100.0);
+    EXPECT_LT(test::peak_megabytes(), large + 100.0);
 }
 
 /// 15 bytes a texel are in the file: 250 MB.
 TEST(BakeMemory, OfMapsFilledToTheBorderIsTheirFiles) {
     const test::TemporaryDirectory folder;
     set_thread_limit(2);
-    const double before = peak_megabytes();
+    const double before = test::peak_megabytes();
     BakeOptions options;
     options.width = 4096;
     options.height = 4096;
     options.border_folder = folder / ".";
     EXPECT_EQ(texels_of(options, 0.02F), 4096U * 4096U);
-    EXPECT_LT(peak_megabytes(), before + 100.0);
+    EXPECT_LT(test::peak_megabytes(), before + 100.0);
 }
 
 }  // namespace

@@ -3,7 +3,6 @@
 // which must end in an error or an image, quickly and without much memory.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sys/resource.h>
 
 #include <bit>
 #include <chrono>
@@ -13,6 +12,7 @@
 #include "io/image/image_file_module.h"
 #include "relief/mesh/error.h"
 #include "relief/mesh/image_file.h"
+#include "support/peak_memory.h"
 #include "support/samples.h"
 #include "support/shared_data.h"
 
@@ -140,23 +140,17 @@ Outcome outcome_of(const std::filesystem::path& file) {
     return outcome;
 }
 
-long peak_megabytes() {
-    rusage usage{};
-    ::getrusage(RUSAGE_SELF, &usage);
-    return usage.ru_maxrss / 1024;
-}
-
 TEST(ImageFileBroken, EveryHostileFileEndsInAnErrorOrAnImage) {
     RELIEF_NEEDS_SHARED(folder, "data/broken/image");
     image_module("the memory that it takes");  // Is not what is measured.
-    const long peak_before = peak_megabytes();
+    const double peak_before = test::peak_megabytes();
     std::vector<std::string> images;
     for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
         if (!entry.is_regular_file()) continue;
         const Outcome outcome = outcome_of(entry.path());
         EXPECT_EQ(outcome.printed, "") << entry.path();
         EXPECT_LT(outcome.seconds, 5.0) << entry.path();
-        EXPECT_LT(peak_megabytes() - peak_before, 100) << entry.path();
+        EXPECT_LT(test::peak_megabytes() - peak_before, 100.0) << entry.path();
         if (!outcome.error) images.push_back(entry.path().filename().string());
     }
     std::sort(images.begin(), images.end());

@@ -4,22 +4,16 @@
 #include "relief/mesh/image_rows.h"
 
 #include <gtest/gtest.h>
-#include <sys/resource.h>
 
 #include <algorithm>
 #include <vector>
 
 #include "relief/mesh/threads.h"
+#include "support/peak_memory.h"
 #include "support/shared_data.h"
 
 namespace relief {
 namespace {
-
-double peak_megabytes() {
-    rusage usage{};
-    ::getrusage(RUSAGE_SELF, &usage);
-    return static_cast<double>(usage.ru_maxrss) * 1024 / 1e6;
-}
 
 /// Rows of some slopes and some noise.
 void fill_row(std::vector<std::uint16_t>& row, int y) {
@@ -66,12 +60,12 @@ TEST(ImageRowsMemory, FromFileToFileIsBoundedWhateverTheHeight) {
         const auto to = folder / ("to" + std::string(extension));
         write_large(from, 4096, 128);
         copy_as_rgb(from, to);
-        const double small = peak_megabytes();
+        const double small = test::peak_megabytes();
         write_large(from, 4096, 6144);
         copy_as_rgb(from, to);
         // The samples are 50 MB grey and 151 MB in colour. Of the small image all was in the
         // buffers already that hold a batch of pieces, but for what no small image fills.
-        EXPECT_LT(peak_megabytes() - small, 60.0) << extension;
+        EXPECT_LT(test::peak_megabytes() - small, 60.0) << extension;
     }
 }
 

@@ -1,0 +1,8 @@
+// SPDX-License-Identifier: Apache-2.0
+// AddressSanitizer asks the program for options of its own; other builds call nothing here.
+
+extern "C" const char* __asan_default_options();
+
+extern "C" const char* __asan_default_options() {
+    return "quarantine_size_mb=1:thread_local_quarantine_size_kb=64";
+}
