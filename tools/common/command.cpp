@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <csignal>
 #include <cstdio>
@@ -214,6 +215,14 @@ CLI::App& add_subcommand(CLI::App& tool, const std::string& name, const std::str
 
 void set_examples(CLI::App& app, const std::vector<std::string>& commands) {
     app.footer(fmt::format("Examples:\n  {}", fmt::join(commands, "\n  ")));
+}
+
+std::string command_name(const CLI::App& app) {
+    return app.get_name();
+}
+
+bool is_given(const CLI::App& app, const std::string& name) {
+    return app.count(name) > 0;
 }
 
 void warn(const CLI::App& app, const std::string& text) {

@@ -7,7 +7,6 @@
 /// the data or the command line is at fault. Tests: tests/tools/command_test.cpp.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <chrono>
 #include <filesystem>
 #include <functional>
@@ -18,6 +17,12 @@
 #include <vector>
 
 #include "relief/mesh/error.h"
+
+/// The parser of command lines: a heavy header, for the few files that call it.
+namespace CLI {
+class App;
+class Option;
+}  // namespace CLI
 
 namespace relief::tools {
 
@@ -141,6 +146,12 @@ CLI::App& add_subcommand(CLI::App& tool, const std::string& name, const std::str
 
 /// Examples for the end of a --help page, one command a line. Each is run by a test.
 void set_examples(CLI::App& app, const std::vector<std::string>& commands);
+
+/// "process"
+std::string command_name(const CLI::App& app);
+
+/// Whether an option, "--cage", stood on the command line.
+bool is_given(const CLI::App& app, const std::string& name);
 
 /// Prints a warning in the form of the errors: "relief-mesh: warning: TEXT".
 void warn(const CLI::App& app, const std::string& text);

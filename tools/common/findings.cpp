@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include <nlohmann/json.hpp>
+
 namespace relief::tools {
 
 void Findings::add(const std::string& where, const Report& report) {

@@ -4,7 +4,7 @@
 /// and as JSON. Tests: tests/tools/findings_test.cpp.
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 

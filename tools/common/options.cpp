@@ -3,6 +3,7 @@
 // trailing text is ignored. Tests: tests/tools/options_test.cpp.
 #include "common/options.h"
 
+#include <CLI/CLI.hpp>
 #include <charconv>
 #include <cmath>
 
@@ -33,8 +34,8 @@ std::string limits(const Range& range) {
 
 using Take = std::function<void(const std::string& subject, const std::string& text)>;
 
-CLI::Option* add(CLI::App& app, const std::string& name, const std::string& value_name,
-                 const std::string& description, const Take& take, bool repeatable) {
+AddedOption add(CLI::App& app, const std::string& name, const std::string& value_name,
+                const std::string& description, const Take& take, bool repeatable) {
     const auto callback = [name, take, repeatable](const CLI::results_t& values) {
         if (!repeatable && values.size() > 1) throw UsageError(name + ": given more than once");
         for (const std::string& value : values) {
@@ -49,7 +50,7 @@ CLI::Option* add(CLI::App& app, const std::string& name, const std::string& valu
     option->type_name(value_name);
     option->expected(1);
     option->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-    return option;
+    return AddedOption(*option);
 }
 
 }  // namespace
@@ -109,31 +110,44 @@ std::vector<double> parse_numbers(const std::string& subject, std::string_view t
     return numbers;
 }
 
-CLI::Option* add_value(CLI::App& app, const std::string& name, const std::string& value_name,
-                       const std::string& description, const Take& take) {
+AddedOption AddedOption::group(const std::string& heading) const {
+    option_->group(heading);
+    return *this;
+}
+
+AddedOption AddedOption::required() const {
+    option_->required();
+    return *this;
+}
+
+AddedOption AddedOption::takes(int fewest, int most) const {
+    option_->expected(fewest, most);
+    return *this;
+}
+
+AddedOption add_value(CLI::App& app, const std::string& name, const std::string& value_name,
+                      const std::string& description, const Take& take) {
     return add(app, name, value_name, description, take, false);
 }
 
-CLI::Option* add_repeatable(CLI::App& app, const std::string& name, const std::string& value_name,
-                            const std::string& description, const Take& take) {
+AddedOption add_repeatable(CLI::App& app, const std::string& name, const std::string& value_name,
+                           const std::string& description, const Take& take) {
     return add(app, name, value_name, description, take, true);
 }
 
-CLI::Option* add_switch(CLI::App& app, const std::string& name, bool& target,
-                        const std::string& description) {
-    return app.add_flag(
-        name, [&target](std::int64_t) { target = true; }, description);
+AddedOption add_switch(CLI::App& app, const std::string& name, bool& target,
+                       const std::string& description) {
+    return AddedOption(*app.add_flag(
+        name, [&target](std::int64_t) { target = true; }, description));
 }
 
-CLI::Option* add_file(CLI::App& app, const std::string& name, std::filesystem::path& target,
-                      const std::string& description) {
-    CLI::Option* option = add_path(app, name, target, description);
-    option->required();
-    return option;
+AddedOption add_file(CLI::App& app, const std::string& name, std::filesystem::path& target,
+                     const std::string& description) {
+    return add_path(app, name, target, description).required();
 }
 
-CLI::Option* add_files(CLI::App& app, const std::string& name,
-                       std::vector<std::filesystem::path>& target, const std::string& description) {
+AddedOption add_files(CLI::App& app, const std::string& name,
+                      std::vector<std::filesystem::path>& target, const std::string& description) {
     const auto callback = [&target](const CLI::results_t& values) {
         target.assign(values.begin(), values.end());
         return true;
@@ -141,7 +155,7 @@ CLI::Option* add_files(CLI::App& app, const std::string& name,
     CLI::Option* option = app.add_option(name, callback, description);
     option->expected(-1);
     option->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-    return option;
+    return AddedOption(*option);
 }
 
 void add_general_options(CLI::App& app, GeneralOptions& options) {

@@ -9,7 +9,6 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <functional>
 #include <glm/glm.hpp>
@@ -73,35 +72,50 @@ std::string name_of(Enum wanted, const Choices<Enum>& choices) {
     return "";
 }
 
+/// An option that was added, to say more of it.
+class AddedOption {
+  public:
+    explicit AddedOption(CLI::Option& option) : option_(&option) {}
+
+    /// The heading under which --help lists it.
+    AddedOption group(const std::string& heading) const;
+    AddedOption required() const;
+    /// How many values may follow it.
+    AddedOption takes(int fewest, int most) const;
+
+  private:
+    CLI::Option* option_;
+};
+
 /// An option with one value, given at most once. `take` gets "--name VALUE" for messages, and the
 /// value.
-CLI::Option* add_value(
+AddedOption add_value(
     CLI::App& app, const std::string& name, const std::string& value_name,
     const std::string& description,
     const std::function<void(const std::string& subject, const std::string& text)>& take);
 
 /// The same for an option that may be given many times.
-CLI::Option* add_repeatable(
+AddedOption add_repeatable(
     CLI::App& app, const std::string& name, const std::string& value_name,
     const std::string& description,
     const std::function<void(const std::string& subject, const std::string& text)>& take);
 
 /// A flag without a value.
-CLI::Option* add_switch(CLI::App& app, const std::string& name, bool& target,
-                        const std::string& description);
+AddedOption add_switch(CLI::App& app, const std::string& name, bool& target,
+                       const std::string& description);
 
 /// A required file argument.
-CLI::Option* add_file(CLI::App& app, const std::string& name, std::filesystem::path& target,
-                      const std::string& description);
+AddedOption add_file(CLI::App& app, const std::string& name, std::filesystem::path& target,
+                     const std::string& description);
 
 /// File arguments, any number of them; how many there must be is for the caller to say.
-CLI::Option* add_files(CLI::App& app, const std::string& name,
-                       std::vector<std::filesystem::path>& target, const std::string& description);
+AddedOption add_files(CLI::App& app, const std::string& name,
+                      std::vector<std::filesystem::path>& target, const std::string& description);
 
 /// An option that takes a file. Target: std::filesystem::path or an optional of it.
 template <typename Target>
-CLI::Option* add_path(CLI::App& app, const std::string& name, Target& target,
-                      const std::string& description) {
+AddedOption add_path(CLI::App& app, const std::string& name, Target& target,
+                     const std::string& description) {
     return add_value(app, name, "FILE", description,
                      [&target](const std::string&, const std::string& text) {
                          target = std::filesystem::path(text);
@@ -110,8 +124,8 @@ CLI::Option* add_path(CLI::App& app, const std::string& name, Target& target,
 
 /// An option that takes a number. Target: double, float, or an optional of one.
 template <typename Target>
-CLI::Option* add_number(CLI::App& app, const std::string& name, const std::string& value_name,
-                        Target& target, const Range& range, const std::string& description) {
+AddedOption add_number(CLI::App& app, const std::string& name, const std::string& value_name,
+                       Target& target, const Range& range, const std::string& description) {
     return add_value(app, name, value_name, description,
                      [&target, range](const std::string& subject, const std::string& text) {
                          const double number = parse_number(subject, text, range);
@@ -126,8 +140,8 @@ CLI::Option* add_number(CLI::App& app, const std::string& name, const std::strin
 
 /// An option that takes one of several words. Target: the enumeration or an optional of it.
 template <typename Enum, typename Target>
-CLI::Option* add_choice(CLI::App& app, const std::string& name, Target& target,
-                        const Choices<Enum>& choices, const std::string& description) {
+AddedOption add_choice(CLI::App& app, const std::string& name, Target& target,
+                       const Choices<Enum>& choices, const std::string& description) {
     std::vector<std::string_view> names;
     for (const auto& choice : choices)
         names.push_back(choice.first);

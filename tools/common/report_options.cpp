@@ -11,11 +11,11 @@ namespace relief::tools {
 
 void add_report_options(CLI::App& app, ReportOptions& options) {
     add_path(app, "--report", options.file, "Write what was done and found to FILE, as JSON.")
-        ->group("Report");
+        .group("Report");
     add_switch(app, "--strict", options.strict,
                "Exit with 3 if anything was found wrong in the input; the output is written all "
                "the same.")
-        ->group("Report");
+        .group("Report");
 }
 
 void check(const ReportOptions& options, const std::vector<std::filesystem::path>& files) {

@@ -6,6 +6,7 @@
 
 #include <cctype>
 #include <cstdio>
+#include <nlohmann/json.hpp>
 #include <span>
 
 #include "file_replacement.h"

@@ -80,7 +80,7 @@ void add_map_folder(CLI::App& app, MapFiles& files) {
               "Where to write: a folder, which ends in / or exists, or for one map a file. In a "
               "folder each map keeps its name. One that fails does not stop the others.",
               [&files](const std::string&, const std::string& text) { files.words.output = text; })
-        ->group("Output");
+        .group("Output");
 }
 
 void refuse_to_replace(const std::filesystem::path& file, const std::string& kind, const Job& job) {

@@ -42,29 +42,29 @@ void add_map_output_options(CLI::App& app, MapOutputOptions& options, bool follo
                "Where green is bright: on slopes that face up in the image, as OpenGL and glTF "
                "want it (up), or down, as DirectX does (down)." +
                    or_input("up."))
-        ->group(group);
+        .group(group);
     add_choice(app, "--bits", options.bits, depths,
                "Bits per channel: 8 or 16 for .png, 8, 16 or 32 (float) for .tif, 32 for .exr." +
                    or_input("16, and 32 for .exr."))
-        ->group(group);
+        .group(group);
     add_choice(app, "--flat", options.flat, flat_choices(),
                "Which code stands for zero in 8 and 16 bits: 128 of 255, so that flat is exactly "
                "flat (middle), or 127.5, as glTF's formula has it and no code can say (half)." +
                    or_input("middle."))
-        ->group(group);
+        .group(group);
     add_choice(app, "--dither", options.dither, dither_choices(),
                "How normals between two codes are rounded: to the nearest (none), or so that the "
                "mean over a few texels is right, by a short pattern (ordered) or one that the eye "
                "sees least (blue-noise). Flat stays exactly flat. Default: none.")
-        ->group(group);
+        .group(group);
     add_switch(app, "--half", options.half,
                "Store .exr as half floats, 11 bits each: half the size.")
-        ->group(group);
+        .group(group);
     add_switch(app, "--fast", options.fast, "Write as fast as possible, at a larger file.")
-        ->group(group);
+        .group(group);
     add_switch(app, "--small", options.small,
                "Write the smallest file, which takes many times as long.")
-        ->group(group);
+        .group(group);
 }
 
 bool can_hold_normals(const std::filesystem::path& file) {

@@ -31,7 +31,7 @@ std::pair<Choice, Choice> parse_axes(const std::string& subject, const std::stri
 
 }  // namespace
 
-CLI::Option* add_wrap(CLI::App& app, WrapsOrAuto& target, const std::string& description) {
+AddedOption add_wrap(CLI::App& app, WrapsOrAuto& target, const std::string& description) {
     return add_value(app, "--wrap", "WORD[,WORD]", description,
                      [&target](const std::string& subject, const std::string& text) {
                          const auto [x, y] = parse_axes(subject, text, wrap_or_auto_choices());
@@ -39,7 +39,7 @@ CLI::Option* add_wrap(CLI::App& app, WrapsOrAuto& target, const std::string& des
                      });
 }
 
-CLI::Option* add_wrap(CLI::App& app, std::optional<Wraps>& target, const std::string& description) {
+AddedOption add_wrap(CLI::App& app, std::optional<Wraps>& target, const std::string& description) {
     return add_value(app, "--wrap", "WORD[,WORD]", description,
                      [&target](const std::string& subject, const std::string& text) {
                          const auto [x, y] = parse_axes(subject, text, wrap_choices());

@@ -23,10 +23,10 @@ struct WrapsOrAuto {
 };
 
 /// For commands that can look at the map: takes the word "auto" as well.
-CLI::Option* add_wrap(CLI::App& app, WrapsOrAuto& target, const std::string& description);
+AddedOption add_wrap(CLI::App& app, WrapsOrAuto& target, const std::string& description);
 
 /// For commands that do not.
-CLI::Option* add_wrap(CLI::App& app, std::optional<Wraps>& target, const std::string& description);
+AddedOption add_wrap(CLI::App& app, std::optional<Wraps>& target, const std::string& description);
 
 /// "repeat", or "repeat,clamp" where the axes differ.
 std::string wrap_words(const Wraps& wraps);

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <nlohmann/json.hpp>
 
 #include "commands.h"
 #include "common/model_file.h"
@@ -101,7 +102,7 @@ Command add_check_command(CLI::App& tool) {
         "Says how healthy model files are, and by which method their tangents were made.");
     const auto options = std::make_shared<CheckOptions>();
     add_files(app, "FILES", options->files, "Models to read: .glb .gltf .obj .ply .stl .off")
-        ->required();
+        .required();
     add_switch(
         app, "--json", options->json,
         "Print one JSON object: tool, version, sound, with_trouble and unreadable (numbers "

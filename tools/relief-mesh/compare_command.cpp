@@ -5,6 +5,7 @@
 
 #include <limits>
 #include <memory>
+#include <nlohmann/json.hpp>
 
 #include "commands.h"
 #include "common/options.h"
@@ -102,19 +103,19 @@ void add_matching_options(CLI::App& app, CompareRequest& request) {
                "Positions no further apart than this, in the models' unit, are the same; equal "
                "ones go first, then the nearest. Default: 1e-5 of the model's size, which is what "
                "text files of six digits lose.")
-        ->group(group);
+        .group(group);
     add_number(app, "--uv-tolerance", "DISTANCE", request.uv_tolerance, distance,
                "The same for texture coordinates. Default: 1e-6, times the largest if that is "
                "above 1.")
-        ->group(group);
+        .group(group);
     add_switch(app, "--world", request.in_world_space,
                "Compare where the nodes of a scene place their meshes, once for each place, for "
                "files whose nodes differ (quantised, flattened, re-exported). Default: in the "
                "object space of each primitive if both files are glTF.")
-        ->group(group);
+        .group(group);
     add_switch(app, "--ignore-uv", request.ignore_uv,
                "Match by position alone. So it is anyway where a file has no texture coordinates.")
-        ->group(group);
+        .group(group);
 }
 
 }  // namespace
@@ -129,12 +130,12 @@ Command add_compare_command(CLI::App& tool) {
         app, "--max-angle", "DEG", options->max_angle, {0.0, 180.0, "degrees"},
         "Exit with 1 if a normal or tangent differs by more, or a tangent's sign does, or if "
         "there is none to compare.")
-        ->group("Verdict");
+        .group("Verdict");
     add_switch(
         app, "--strict", options->strict,
         "Exit with 3 if a triangle has no partner or no certain one, normals or tangents are "
         "in one file alone, or a direction is zero or not finite.")
-        ->group("Verdict");
+        .group("Verdict");
     add_matching_options(app, options->request);
     add_switch(app, "--json", options->json,
                "Print one JSON object: tool, version, a, b, world_space, by_texture_coordinate, "

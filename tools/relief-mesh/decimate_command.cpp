@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <optional>
 
 #include "commands.h"
@@ -73,14 +74,14 @@ void add_options(CLI::App& app, DecimateWords& words) {
         [&words](const std::string& subject, const std::string& text) {
             words.triangles = parse_integer(subject, text, 1, std::numeric_limits<int>::max());
         })
-        ->group(limits);
+        .group(limits);
     add_number(app, "--ratio", "R", words.ratio, {0.0, 1.0, ""},
                "At this part of the triangles, 0 to 1.")
-        ->group(limits);
+        .group(limits);
     add_number(app, "--max-error", "E", words.max_error, {0.0, Range().max, ""},
                "Where a vertex of IN would be further than E from the result, in the model's unit "
                "(relief-mesh info prints its size).")
-        ->group(limits);
+        .group(limits);
     set_examples(
         app, {"relief-mesh decimate data/vase.obj out/vase-1000.glb --triangles 1000",
               "relief-mesh decimate data/vase.obj out/vase-tenth.obj --ratio 0.1 --normals angle",

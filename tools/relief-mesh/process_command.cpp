@@ -6,6 +6,7 @@
 
 #include <limits>
 #include <memory>
+#include <nlohmann/json.hpp>
 
 #include "commands.h"
 #include "common/frame_choices.h"
@@ -119,11 +120,11 @@ void add_file_options(CLI::App& app, ProcessOptions& options) {
               "Where to write: a folder, which ends in / or exists, or for one model a file. In a "
               "folder each model keeps its name. One that fails does not stop the others.",
               [&words](const std::string&, const std::string& text) { words.output = text; })
-        ->group("Output");
+        .group("Output");
     add_choice(app, "--format", options.format, writable_choices(),
                "The format of what is written to a folder. Default: that of the input, or glb for "
                ".stl and .off, which cannot be written.")
-        ->group("Output");
+        .group("Output");
 }
 
 void add_normal_options(CLI::App& app, ProcessRequest& request) {
@@ -134,24 +135,24 @@ void add_normal_options(CLI::App& app, ProcessRequest& request) {
                "accurate on smooth meshes, but area where triangles fold over. docs/normals.md has "
                "errors and times. Default: keep; a mesh that has none gets flat ones from glTF, as "
                "its rules ask, and angle ones otherwise.")
-        ->group(group);
+        .group(group);
     add_number(app, "--crease", "DEG", request.crease_degrees, {0.0, 180.0, "degrees"},
                "Edges sharper than this many degrees are hard: vertices are split along them. "
                "Triangles that only touch in a vertex are apart too. Default: no hard edges but "
                "those between an OBJ file's smoothing groups.")
-        ->group(group);
+        .group(group);
     add_switch(app, "--ignore-smoothing-groups", request.ignore_smoothing_groups,
                "Smooth across the smoothing groups of an OBJ file, and where it says off.")
-        ->group(group);
+        .group(group);
     add_number(app, "--weld", "TOLERANCE", request.weld_tolerance,
                {0.0, std::numeric_limits<float>::max(), "units"},
                "Vertices no further apart than this, in the model's unit, share their normal. "
                "Default: 0, those at equal positions.")
-        ->group(group);
+        .group(group);
     add_switch(app, "--repair-normals", request.repair_normals,
                "Of the file's own normals, replace those that are zero or not finite by averaged "
                "ones, and scale others to unit length. Default: they are kept and reported.")
-        ->group(group);
+        .group(group);
 }
 
 void add_tangent_options(CLI::App& app, ProcessRequest& request) {
@@ -162,7 +163,7 @@ void add_tangent_options(CLI::App& app, ProcessRequest& request) {
                "(mikktspace), weighted by area, so that thin bevels do not disturb large faces, or "
                "by Lengyel's sum over each vertex. A map is right only in the frame that it was "
                "baked for: docs/tangents.md. Default: keep.")
-        ->group(group);
+        .group(group);
     add_value(app, "--uv-set", "N",
               "Compute tangents from texture coordinate set N (TEXCOORD_N of glTF; other formats "
               "have set 0 alone). Default: for each primitive the set of its normal texture, as "
@@ -171,7 +172,7 @@ void add_tangent_options(CLI::App& app, ProcessRequest& request) {
               [&request](const std::string& subject, const std::string& text) {
                   request.uv_set = parse_integer(subject, text, 0, largest_uv_set);
               })
-        ->group(group);
+        .group(group);
 }
 
 void add_options(CLI::App& app, ProcessOptions& options) {

@@ -4,7 +4,7 @@
 /// Tests: tests/tools/relief_mesh_test.cpp.
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 
 #include "common/command.h"
 #include "processing.h"

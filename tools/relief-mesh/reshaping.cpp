@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <nlohmann/json.hpp>
 #include <numeric>
 
 #include "common/frame_choices.h"
@@ -269,7 +270,7 @@ nlohmann::ordered_json report_json(const std::string& command, const ReshapeRequ
 void add_reshape_options(CLI::App& app, ReshapeRequest& request, const std::string& about_normals) {
     add_file(app, "IN", request.input, "Model to read: .glb .gltf .obj .ply .stl .off");
     add_file(app, "OUT", request.output, "Model to write: .glb .gltf .obj .ply. May be IN itself.");
-    add_choice(app, "--normals", request.normals, normal_choices(), about_normals)->group("Frames");
+    add_choice(app, "--normals", request.normals, normal_choices(), about_normals).group("Frames");
     add_report_options(app, request.report);
     add_general_options(app, request.general);
 }
@@ -282,10 +283,10 @@ ExitCode reshape(const CLI::App& app, const ReshapeRequest& request, const MeshC
     require_folder_of(request.output);
     set_thread_limit(request.general.threads);
     Stages stages(request.general.quiet);
-    const Reshaped done = run(request, app.get_name(), change, stages);
+    const Reshaped done = run(request, command_name(app), change, stages);
     if (!request.general.quiet) print_summary(request, done, stages);
     return finish(app, request.report, request.input, done.findings,
-                  report_json(app.get_name(), request, options, done, stages));
+                  report_json(command_name(app), request, options, done, stages));
 }
 
 }  // namespace relief::tools

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // `relief-mesh subdivide IN OUT`: a finer, smoother surface. Tests: tests/tools/reshaping_test.cpp.
 #include <memory>
+#include <nlohmann/json.hpp>
 
 #include "commands.h"
 #include "common/frame_choices.h"
@@ -35,7 +36,7 @@ void add_options(CLI::App& app, SubdivideWords& words) {
               [&words](const std::string& subject, const std::string& text) {
                   words.levels = parse_integer(subject, text, 1, most_levels);
               })
-        ->group("Shape");
+        .group("Shape");
     set_examples(app, {"relief-mesh subdivide data/vase.obj out/vase-fine.glb",
                        "relief-mesh subdivide data/vase.obj out/vase-finer.ply --levels 2"});
 }

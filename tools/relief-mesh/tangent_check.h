@@ -4,7 +4,7 @@
 /// Tests: tests/tools/relief_mesh_check_tangents_test.cpp.
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <vector>

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 
 #include "common/text.h"
 #include "effects_text.h"
@@ -101,25 +102,25 @@ void add_effect_options(CLI::App& app, ViewOptions& options) {
               [&choices](const std::string& subject, const std::string& text) {
                   choices.wishes = parse_effects(subject, text);
               })
-        ->group(group);
+        .group(group);
     add_value(app, "--benchmark", "N",
               "Draw N frames more, after a few that are not counted, and print what one takes. "
               "Needs no --output.",
               [&choices](const std::string& subject, const std::string& text) {
                   choices.benchmark = parse_integer(subject, text, 1, 100000);
               })
-        ->group(group);
+        .group(group);
     add_value(app, "--budget", "MS",
               "Milliseconds that a frame may take: where it takes longer, the effects that show "
               "least for their time are dropped.",
               [&choices](const std::string& subject, const std::string& text) {
                   choices.budget = parse_number(subject, text, {1e-3, 1e6, "ms"});
               })
-        ->group(group);
+        .group(group);
     add_switch(app, "--print-shaders", choices.print_shaders,
                "Print the shaders as they are put together for this scene. Needs no --output, and "
                "then no OpenGL.")
-        ->group(group);
+        .group(group);
 }
 
 EffectWishes parse_effects(const std::string& subject, const std::string& text) {

@@ -7,7 +7,7 @@
 /// Tests: tests/tools/effect_options_test.cpp.
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 
 #include "relief/shade/effect_costs.h"
 #include "relief/shade/shader_listing.h"

@@ -4,7 +4,7 @@
 /// tests/tools/relief_view_test.cpp.
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 
 #include "relief/shade/effects.h"
 #include "relief/shade/scene.h"

@@ -24,26 +24,26 @@ void add_model_options(CLI::App& app, ViewOptions& options) {
                Choices<Model>{{"as_authored", Model::as_authored}, {"phong", Model::phong}},
                "glTF's materials by their own metallic-roughness model, or translated to Phong's. "
                "Default: as_authored, unless an option asks for what only Phong's model has.")
-        ->group(group);
+        .group(group);
     add_choice(app, "--interpolation", options.interpolation,
                Choices<Interpolation>{{"per_pixel", Interpolation::per_pixel},
                                       {"gouraud", Interpolation::gouraud},
                                       {"flat", Interpolation::flat}},
                "Light at every pixel, at vertices only (Phong's model), or from the triangles' own "
                "planes. Default: as the scene says, else per_pixel.")
-        ->group(group);
+        .group(group);
     add_value(
         app, "--material", "NAME",
         "One of the classic materials: gold, chrome, emerald, \"red plastic\", ... An unknown "
         "name lists near ones.",
         [&](const std::string&, const std::string& text) { options.material = text; })
-        ->group(group);
+        .group(group);
     add_value(app, "--metallic-roughness", "METALLIC,ROUGHNESS",
               "glTF's model with these numbers, coloured as the material was.",
               [&](const std::string& subject, const std::string& text) {
                   options.metallic_roughness = parse_metallic(subject, text);
               })
-        ->group(group);
+        .group(group);
 }
 
 }  // namespace
@@ -58,11 +58,11 @@ void add_material_options(CLI::App& app, ViewOptions& options) {
                "Model of highlights; the normalized one keeps their light whatever the shininess. "
                "Materials without a specular colour get a grey one of 0.25. "
                "Default: as the model says, else blinn_phong.")
-        ->group(group);
+        .group(group);
     add_number(app, "--shininess", "N", options.shininess, {0, 1e6, ""},
                "Exponent of highlights: larger is smaller and sharper. Materials without a "
                "specular colour get a grey one of 0.25. Default: as the model says, else 32.")
-        ->group(group);
+        .group(group);
 }
 
 void check_materials(const ViewOptions& options) {

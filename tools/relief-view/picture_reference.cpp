@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <nlohmann/json.hpp>
+
 #include "common/text.h"
 #include "relief/mesh/heat_picture.h"
 #include "relief/mesh/image_file.h"
@@ -70,15 +72,15 @@ void add_reference_options(CLI::App& app, ViewOptions& options) {
     add_path(app, "--reference", options.reference,
              "Picture that is known to be right. What is drawn is compared with it, and where they "
              "differ by more than --max-difference, the exit code is 1. Needs no --output.")
-        ->group(group);
+        .group(group);
     add_number(app, "--max-difference", "D", options.max_difference, {0, 65535, ""},
                "Largest difference from the reference that is no mismatch, in any channel of any "
                "pixel: in steps of its 255, or in the units of an .exr. Default: 0.")
-        ->group(group);
+        .group(group);
     add_path(app, "--difference-map", options.difference_map,
              "Where to write what an eye sees of the difference (FLIP): .png from black, no "
              "difference, to pale yellow, or .exr as numbers from 0 to 1.")
-        ->group(group);
+        .group(group);
 }
 
 void check_reference(const ViewOptions& options) {

@@ -4,7 +4,7 @@
 /// --difference-map. Tests: tests/tools/picture_reference_test.cpp.
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 
 #include "relief/shade/image_compare.h"
 #include "view_options.h"

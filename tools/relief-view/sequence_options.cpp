@@ -25,7 +25,7 @@ void add_sequence_options(CLI::App& app, ViewOptions& options) {
                   [&target](const std::string& subject, const std::string& text) {
                       target = parse_integer(subject, text, 1, most_frames);
                   })
-            ->group(group);
+            .group(group);
     };
     add_count("--turntable", options.turntable,
               "Draw N pictures in which the model turns once about its vertical axis. A .png or "
@@ -35,13 +35,13 @@ void add_sequence_options(CLI::App& app, ViewOptions& options) {
               "Draw N pictures of the scene's animation, evenly spaced in time.");
     add_number(app, "--seconds", "S", options.seconds, {1e-3, 1e6, ""},
                "How much of the animation --frames shows. Default: until all of it has run once.")
-        ->group(group);
+        .group(group);
     add_number(app, "--fps", "F", options.frames_per_second, {0.1, 1000, ""},
                "Pictures per second of an .apng animation. Default: 25.")
-        ->group(group);
+        .group(group);
     add_number(app, "--time", "T", options.time, {-1e6, 1e6, ""},
                "When in the scene's animation the picture is taken, in seconds. Default: 0.")
-        ->group(group);
+        .group(group);
 }
 
 void check_sequence(const ViewOptions& options) {

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <memory>
+#include <nlohmann/json.hpp>
 
 #include "common/findings.h"
 #include "common/text.h"

@@ -21,17 +21,17 @@ void add_output_options(CLI::App& app, ViewOptions& options) {
     const std::string group = "Output";
     add_path(app, "--output", options.output,
              "Picture to write: .png (8 bit, sRGB), .exr (linear float) or .apng (animated).")
-        ->group(group);
+        .group(group);
     add_value(app, "--size", "WxH",
               "Width and height in pixels. Default: as the scene says, else 1024x1024.",
               [&](const std::string& subject, const std::string& text) {
                   options.size = parse_size(subject, text);
                   options.size_given = true;
               })
-        ->group(group);
+        .group(group);
     add_choice(app, "--samples", options.samples, Choices<int>{{"1", 1}, {"4", 4}},
                "Samples per pixel; 4 smooth the edges of triangles. Default: 4.")
-        ->group(group);
+        .group(group);
     add_value(app, "--background", "#RRGGBB|transparent",
               "Colour behind the model where no environment shows. Default: #1e2126.",
               [&](const std::string& subject, const std::string& text) {
@@ -39,7 +39,7 @@ void add_output_options(CLI::App& app, ViewOptions& options) {
                                            ? glm::vec4(0.0F)
                                            : glm::vec4(parse_color(subject, text), 1.0F);
               })
-        ->group(group);
+        .group(group);
     add_value(app, "--exposure", "STOPS",
               "Doubles the light for every stop, halves it for every stop below 0. Default: as the "
               "scene says, else 0.",
@@ -48,31 +48,31 @@ void add_output_options(CLI::App& app, ViewOptions& options) {
                   options.exposure =
                       static_cast<float>(std::exp2(parse_number(subject, text, range)));
               })
-        ->group(group);
+        .group(group);
     add_choice(app, "--tone-mapping", options.tone_mapping,
                Choices<ToneMapping>{{"none", ToneMapping::none},
                                     {"reinhard", ToneMapping::reinhard},
                                     {"aces", ToneMapping::aces}},
                "How light brighter than white is shown: as white, or brought down by a curve. "
                "Default: as the scene says, else none.")
-        ->group(group);
+        .group(group);
     add_switch(
         app, "--explain-effects", options.explain_effects,
         "Print which effects the scene calls for and which not, with the reason, and with an "
         "--output or --benchmark also what each costs and what the picture would lose. "
         "Alone, it needs no OpenGL.")
-        ->group(group);
-    add_switch(app, "--json", options.json, "Print the summary as one JSON object.")->group(group);
+        .group(group);
+    add_switch(app, "--json", options.json, "Print the summary as one JSON object.").group(group);
 }
 
 void add_window_options(CLI::App& app, ViewOptions& options) {
     const std::string group = "Window";
     add_switch(app, "--list-bindings", options.list_bindings,
                "Print what keys and the mouse do in the window.")
-        ->group(group);
+        .group(group);
     add_path(app, "--dump-state", options.dump_state,
              "Keep what the window shows in FILE, as JSON, for tests and scripts.")
-        ->group(group);
+        .group(group);
 }
 
 void add_light_options(CLI::App& app, ViewOptions& options) {
@@ -88,13 +88,13 @@ void add_light_options(CLI::App& app, ViewOptions& options) {
                    [&](const std::string& subject, const std::string& text) {
                        options.lights.push_back(parse_light(subject, text));
                    })
-        ->group(group);
+        .group(group);
     add_number(app, "--ambient", "A", options.ambient, {0, 1000, ""},
                "Light from everywhere. Default: 0, or 0.08 with the key and fill light.")
-        ->group(group);
+        .group(group);
     add_number(app, "--light-markers", "R", options.light_markers, {1e-6, 1, ""},
                "Show point and spot lights as small spheres, of R times the scene's size.")
-        ->group(group);
+        .group(group);
     add_value(app, "--camera", "AZIMUTH,ELEVATION[,FACTOR]",
               "From where the camera looks, in degrees from +z towards +x and above the horizon, "
               "and how far away it is as a factor of the distance that shows all. Default: the "
@@ -102,7 +102,7 @@ void add_light_options(CLI::App& app, ViewOptions& options) {
               [&](const std::string& subject, const std::string& text) {
                   options.camera = parse_camera(subject, text);
               })
-        ->group(group);
+        .group(group);
     add_value(app, "--fov", "DEGREES",
               "Vertical field of view. Default: the model's camera's, else 35.",
               [&](const std::string& subject, const std::string& text) {
@@ -110,7 +110,7 @@ void add_light_options(CLI::App& app, ViewOptions& options) {
                   options.vertical_fov =
                       glm::radians(static_cast<float>(parse_number(subject, text, range)));
               })
-        ->group(group);
+        .group(group);
 }
 
 void check_output(const ViewOptions& options) {

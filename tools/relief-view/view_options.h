@@ -5,7 +5,6 @@
 /// Tests: tests/tools/relief_view_test.cpp.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <glm/glm.hpp>
 #include <optional>

@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <nlohmann/json.hpp>
+
 #include "common/text.h"
 #include "relief/mesh/timing.h"
 #include "sequence_options.h"

@@ -3,7 +3,7 @@
 /// What relief-view did, in words and as JSON. Tests: tests/tools/relief_view_test.cpp.
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 

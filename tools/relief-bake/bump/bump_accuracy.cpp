@@ -112,30 +112,30 @@ void add_accuracy_options(CLI::App& app, AccuracyRequest& request) {
                "looks at bits, noise and detail of the map and takes the truest for it. central5 "
                "and central7 are for smooth maps of 16 bits or float; sobel5, scharr5 and gaussian "
                "smooth steps and noise; forward is half a texel off. Default: auto.")
-        ->group(group);
+        .group(group);
     add_switch(app, "--destaircase", request.destaircase,
                "Smooth the steps of maps of few bits away first; no height moves by more than half "
                "a step.")
-        ->group(group);
+        .group(group);
     const Choices<std::optional<Arithmetic>> precisions = {
         {"float32", Arithmetic::float32}, {"float64", Arithmetic::float64}, {"auto", std::nullopt}};
     add_choice(
         app, "--precision", request.precision, precisions,
         "What slopes and normals are computed in. Default: auto, which is float64 for 32-bit "
         "output and float32 else.")
-        ->group(group);
+        .group(group);
     add_number(app, "--max-error", "DEG", request.max_error, {0.0, 180.0, "degrees"},
                "Take the cheapest kernel, precision and depth whose error, measured on this map, "
                "stays within DEG degrees of the truest result known; refuse if there is none.")
-        ->group(group);
+        .group(group);
     const Choices<ErrorKind> kinds = {{"rms", ErrorKind::rms}, {"max", ErrorKind::max}};
     add_choice(app, "--max-error-kind", request.max_error_kind, kinds,
                "Whether --max-error is for the root mean square or the greatest error. Default: "
                "rms.")
-        ->group(group);
+        .group(group);
     add_switch(app, "--compare", request.compare,
                "Also convert in every way, and print error beside time.")
-        ->group(group);
+        .group(group);
 }
 
 void check(const AccuracyRequest& request, bool slope_moments, bool half) {

@@ -4,7 +4,7 @@
 /// tests/tools/bump_accuracy_test.cpp.
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 
 #include "bump/bump_accuracy.h"
 

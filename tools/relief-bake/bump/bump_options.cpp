@@ -22,14 +22,14 @@ void add_height_options(CLI::App& app, BumpRequest& request) {
     add_choice(app, "--channel", request.channel, height_channel_choices(),
                "What of a colour is the height; luminance is that of decoded sRGB. Grey has one "
                "height, which mean, luminance and red take. Default: mean.")
-        ->group(group);
+        .group(group);
     add_switch(app, "--ignore-alpha", request.ignore_alpha,
                "Take transparent texels for a part of the surface. Default: where alpha is 0, the "
                "map becomes flat, and the surface beside does not see what colour stands there.")
-        ->group(group);
+        .group(group);
     add_switch(app, "--invert", request.invert,
                "Black is high and white is deep: as the same --strength with the other sign.")
-        ->group(group);
+        .group(group);
 }
 
 void add_depth_options(CLI::App& app, BumpRequest& request) {
@@ -38,17 +38,17 @@ void add_depth_options(CLI::App& app, BumpRequest& request) {
     add_number(app, "--strength", "S", request.strength, depths,
                "Height in texels that the value 1.0 (white) stands for; negative turns bumps into "
                "dents. Default: 16.")
-        ->group(group);
+        .group(group);
     add_number(app, "--height", "H", request.height, depths,
                "Instead of --strength: the height of white in a unit of length; with "
                "--texel-size.")
-        ->group(group);
+        .group(group);
     add_value(app, "--texel-size", "W[xH]",
               "Width (and height, where texels are not square) of a texel in the unit of --height.",
               [&](const std::string& subject, const std::string& text) {
                   request.texel = parse_texel(subject, text);
               })
-        ->group(group);
+        .group(group);
 }
 
 void add_slope_options(CLI::App& app, BumpRequest& request) {
@@ -58,14 +58,14 @@ void add_slope_options(CLI::App& app, BumpRequest& request) {
               [&](const std::string& subject, const std::string& text) {
                   request.gaussian_radius = parse_integer(subject, text, 1, largest_kernel_radius);
               })
-        ->group("Accuracy");
+        .group("Accuracy");
     add_wrap(
         app, request.wrap,
         "What lies beyond the border: the opposite edge, for maps that tile (repeat), "
         "nothing, so that slopes there are one-sided (clamp), the map mirrored (mirror); or by "
         "whether it goes on smoothly across the seam, repeat or clamp (auto). Two words: left "
         "and right, then top and bottom. Default: auto.")
-        ->group(group);
+        .group(group);
 }
 
 }  // namespace
@@ -81,16 +81,16 @@ void add_bump_content_options(CLI::App& app, BumpRequest& request) {
     const std::string group = "Output";
     add_switch(app, "--xy", request.xy_only,
                "Leave z out, which shaders find from x and y: blue is 0.")
-        ->group(group);
+        .group(group);
     add_choice(app, "--alpha", request.alpha, map_alpha_choices(),
                "What goes into alpha: nothing, the height (as parallax mapping needs it), or the "
                "alpha of the height map. Default: none.")
-        ->group(group);
+        .group(group);
     add_switch(app, "--slope-moments", request.slope_moments,
                "Write height, dh/dx, dh/dy, their squares and their product instead of normals: "
                "six float channels (.exr or .tif), which can be filtered (LEAN mapping), by the "
                "names that maketx --bumpslopes gives them.")
-        ->group(group);
+        .group(group);
 }
 
 BumpOptions bump_of(const BumpRequest& request) {

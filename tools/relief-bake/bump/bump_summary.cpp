@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include <nlohmann/json.hpp>
+
 #include "bump/bump_accuracy_summary.h"
 #include "common/map_choices.h"
 #include "common/text.h"

@@ -4,7 +4,7 @@
 /// the --report file. Tests: tests/tools/relief_bake_test.cpp.
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 
 #include "bump/bump_job.h"

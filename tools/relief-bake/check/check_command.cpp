@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <memory>
+#include <nlohmann/json.hpp>
 
 #include "check/map_check.h"
 #include "check/surface_check.h"
@@ -110,7 +111,7 @@ Command add_check_command(CLI::App& tool) {
                                    "Says whether images are normal maps, what their numbers mean "
                                    "and what is wrong with them.");
     const auto options = std::make_shared<CheckOptions>();
-    add_files(app, "MAPS", options->files, "Images to read: PNG, JPEG, TIFF, EXR, ...")->required();
+    add_files(app, "MAPS", options->files, "Images to read: PNG, JPEG, TIFF, EXR, ...").required();
     add_surface_check_options(app, options->surface);
     add_choice(app, "--green", options->green, green_choices(),
                "Which way green should grow: it is trouble if the slopes show the other. Default: "

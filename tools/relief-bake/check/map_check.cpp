@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <nlohmann/json.hpp>
+
 #include "check/map_remedies.h"
 #include "common/command.h"
 #include "common/findings.h"

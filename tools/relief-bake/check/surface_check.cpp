@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include <nlohmann/json.hpp>
+
 #include "common/file_jobs.h"
 #include "common/options.h"
 #include "common/text.h"
@@ -68,16 +70,16 @@ void add_surface_check_options(CLI::App& app, SurfaceCheckRequest& request) {
         "Hold the map, one alone, against this detailed model, as a renderer shows it "
         "on --low. May be given several times.",
         [&](const std::string&, const std::string& text) { request.bake.high.emplace_back(text); })
-        ->group("Models");
+        .group("Models");
     add_path(app, "--low", request.bake.low,
              "The simple model that the map is for. How the map was baked is what its file says, "
              "if relief baked it; options of rays and texels come before that.")
-        ->group("Models");
+        .group("Models");
     add_value(app, "--udim", "N", "The map is tile N of the model's texture, 1001 and on.",
               [&](const std::string& subject, const std::string& text) {
                   request.udim = parse_integer(subject, text, 1001, 9999);
               })
-        ->group("Models");
+        .group("Models");
     add_ray_options(app, request.bake);
     add_texel_options(app, request.bake);
     add_high_normal_map_option(app, request.bake.looks);
@@ -96,7 +98,7 @@ void check(const CLI::App& app, const SurfaceCheckRequest& request,
            const std::vector<std::filesystem::path>& maps) {
     if (!is_wanted(request)) {
         for (const char* name : of_surface) {
-            if (app.count(name) > 0)
+            if (is_given(app, name))
                 throw UsageError(fmt::format("{}: has no effect without --high", name),
                                  "give --high FILE and --low FILE");
         }

@@ -5,7 +5,6 @@
 /// Tests: tests/tools/relief_bake_verify_test.cpp.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <optional>
 
 #include "mesh/bake_words.h"

@@ -57,8 +57,8 @@ glm::dvec2 parse_repeat(const std::string& subject, const std::string& text) {
 }
 
 /// "up", "down" or "auto"
-CLI::Option* add_green(CLI::App& app, const std::string& name, MapInputOptions& input,
-                       const std::string& description) {
+AddedOption add_green(CLI::App& app, const std::string& name, MapInputOptions& input,
+                      const std::string& description) {
     Choices<std::optional<Green>> choices = {{"auto", std::nullopt}};
     for (const auto& [word, green] : green_choices())
         choices.emplace_back(word, green);
@@ -75,34 +75,34 @@ void add_input_options(CLI::App& app, ConvertRequest& request) {
               "Where green is bright in the input: on slopes that face up (OpenGL) or down "
               "(DirectX), or whichever its slopes show, as relief-bake check finds it (auto). "
               "Default: what the file says; else it is unknown, which --green alone minds.")
-        ->group(group);
+        .group(group);
     add_choice(app, "--input-flat", request.input.flat, flat_choices(),
                "Which code stands for zero in the input: see --flat. Default: what the file says, "
                "else the commoner of the two among its flat texels.")
-        ->group(group);
+        .group(group);
     add_switch(app, "--input-signed", request.input.is_signed,
                "Float samples of the input hold n itself, from -1 to 1, not (n + 1) / 2, which is "
                "what is written.")
-        ->group(group);
+        .group(group);
     add_choice(app, "--rebuild-z", request.rebuild_z, xy_choices(),
                "Take x and y from red and green (rg), or from alpha and green (ag), and compute z. "
                "Where x and y are longer than 1, z is 0.")
-        ->group(group);
+        .group(group);
     add_switch(app, "--normalize", request.normalize,
                "Make every normal of length 1, and say how many were not. All that follows does "
                "so too.")
-        ->group(group);
+        .group(group);
     add_choice(app, "--alpha", request.alpha, alpha_choices(),
                "A fourth channel of the input: keep it, resized as the normals are, or drop it. "
                "Default: keep.")
-        ->group(group);
+        .group(group);
 }
 
 void add_axis_options(CLI::App& app, ConvertRequest& request) {
     const std::string group = "Axes: code by code, so that the way back gives the same bits";
     add_choice(app, "--flip", request.flip, flip_choices(),
                "Turn green round (OpenGL to DirectX and back), or red, or both.")
-        ->group(group);
+        .group(group);
     add_value(app, "--axes", "X,Y,Z",
               "What becomes x, y and z: x, y and z in any order, each with - before it or not; "
               "x,-y,z flips green, y,x,z swaps red and green. One that begins with - goes as "
@@ -110,7 +110,7 @@ void add_axis_options(CLI::App& app, ConvertRequest& request) {
               [&](const std::string& subject, const std::string& text) {
                   request.axes = parse_axes(subject, text);
               })
-        ->group(group);
+        .group(group);
 }
 
 void add_resize_options(CLI::App& app, ResizeChoice& resize) {
@@ -119,52 +119,52 @@ void add_resize_options(CLI::App& app, ResizeChoice& resize) {
               [&](const std::string& subject, const std::string& text) {
                   resize.size = parse_resize(subject, text);
               })
-        ->group(group);
+        .group(group);
     add_choice(app, "--resize-filter", resize.filter, filter_choices(),
                "How texels are weighed. best: lanczos to shrink, cubic to enlarge. Default: best.")
-        ->group(group);
+        .group(group);
     add_choice(app, "--resize-of", resize.domain, domain_choices(),
                "What is averaged: slopes, which gives the normals of the surface filtered so, or "
                "the normals themselves (vectors), by which steep texels count for less. Default: "
                "slopes.")
-        ->group(group);
+        .group(group);
     add_wrap(app, resize.wrap,
              "What lies beyond the border: the opposite edge (repeat), the last texel (clamp), or "
              "the map mirrored (mirror). Two words: left and right, then top and bottom. Default: "
              "repeat.")
-        ->group(group);
+        .group(group);
 }
 
 void add_slope_options(CLI::App& app, ConvertRequest& request) {
     add_number(app, "--strength", "S", request.strength, {-1e6, 1e6, ""},
                "Multiply all slopes, as if heights had been: 2 is twice as deep, -1 turns bumps "
                "into dents.")
-        ->group("Slopes");
+        .group("Slopes");
 }
 
 void add_detail_options(CLI::App& app, DetailChoice& detail) {
     const std::string group = "Detail";
-    add_path(app, "--detail", detail.file, "Lay another normal map over this one.")->group(group);
+    add_path(app, "--detail", detail.file, "Lay another normal map over this one.").group(group);
     add_choice(app, "--blend", detail.blend, blend_choices(),
                "How: docs/normal-maps.md has formulas, errors and times. reoriented carves the "
                "detail into the base, partial-derivative adds their heights. Default: reoriented.")
-        ->group(group);
+        .group(group);
     add_number(app, "--detail-strength", "S", detail.strength, {-1e6, 1e6, ""},
                "Multiply the slopes of the detail first. Default: 1.")
-        ->group(group);
+        .group(group);
     add_value(app, "--detail-repeat", "N[xM]",
               "How often the detail is seen across the base, and up and down. It is resized for "
               "that, as slopes, by --resize-filter. Default: 1, stretched over all of it.",
               [&](const std::string& subject, const std::string& text) {
                   detail.repeat = parse_repeat(subject, text);
               })
-        ->group(group);
+        .group(group);
     add_green(app, "--detail-green", detail.input,
               "The same for the detail. Default: what its file says, else as in the base.")
-        ->group(group);
+        .group(group);
     add_choice(app, "--detail-flat", detail.input.flat, flat_choices(),
                "Which code stands for zero in the detail. Default: as for --input-flat.")
-        ->group(group);
+        .group(group);
 }
 
 void add_mip_options(CLI::App& app, MipChoice& mips) {
@@ -172,16 +172,16 @@ void add_mip_options(CLI::App& app, MipChoice& mips) {
     add_switch(app, "--mips", mips.wanted,
                "Write all smaller levels too: OUT-mip01, at half the size, and so on, with OUT's "
                "extension. Each holds the directions of mean vectors.")
-        ->group(group);
+        .group(group);
     add_switch(app, "--mip-lengths", mips.lengths,
                "Store in the alpha of OUT and of each level how long the mean vectors are: 1 where "
                "all normals agree.")
-        ->group(group);
+        .group(group);
     add_number(app, "--roughness-from-variance", "R", mips.roughness, {0.0, 1.0, ""},
                "For a surface of roughness R (glTF's), write for OUT and each level the roughness "
                "that makes up for the normals averaged away: OUT-roughness, OUT-roughness-mip01, "
                "and so on.")
-        ->group(group);
+        .group(group);
 }
 
 void need(bool is_given, const std::string& option, const std::string& other) {

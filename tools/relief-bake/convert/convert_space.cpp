@@ -99,18 +99,18 @@ void add_space_options(CLI::App& app, SpaceChoice& choice) {
     add_path(
         app, "--to-object", choice.to_object,
         "Turn tangent-space normals into those of the mesh in FILE, in its own axes; done last.")
-        ->group(group);
+        .group(group);
     add_path(app, "--to-tangent", choice.to_tangent,
              "Take the input for object-space normals of the mesh in FILE, and turn them into its "
              "tangent space; done first.")
-        ->group(group);
+        .group(group);
     add_choice(app, "--tangents", choice.tangents, made_tangents(),
                "Make the mesh's tangents by this method. Default: its own, else mikktspace.")
-        ->group(group);
+        .group(group);
     add_choice(app, "--outside", choice.outside, outside_choices(),
                "Triangles outside the unit square of texture coordinates: leave them out (ignore), "
                "or move them there, for maps that repeat. Default: ignore.")
-        ->group(group);
+        .group(group);
     add_value(
         app, "--udim", "N",
         "The map is tile N of the mesh's texture, 1001 and on; 1011 lies above 1001. Default: "
@@ -118,7 +118,7 @@ void add_space_options(CLI::App& app, SpaceChoice& choice) {
         [&](const std::string& subject, const std::string& text) {
             choice.udim = parse_integer(subject, text, first_tile, 9999);
         })
-        ->group(group);
+        .group(group);
 }
 
 void check_space_options(const SpaceChoice& choice) {

@@ -4,7 +4,7 @@
 /// or the --report file. Tests: tests/tools/convert_test.cpp.
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 
 #include "convert/convert_job.h"

@@ -4,7 +4,7 @@
 /// Tests: tests/tools/relief_bake_heights_test.cpp.
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 
 #include "common/file_jobs.h"
 #include "common/findings.h"

@@ -29,38 +29,38 @@ void add_heights_options(CLI::App& app, HeightsRequest& request) {
     add_choice(app, "--input-green", request.input.green, green_choices(),
                "Where green is bright in the input: on slopes that face up (OpenGL) or down "
                "(DirectX). Default: what the file says, else what its slopes show.")
-        ->group(input);
+        .group(input);
     add_choice(app, "--input-flat", request.input.flat, flat_choices(),
                "Which code stands for zero in the input: 128 of 255 (middle) or 127.5 (half). "
                "Default: what the file says, else the commoner of the two among its flat texels.")
-        ->group(input);
+        .group(input);
     add_switch(app, "--input-signed", request.input.is_signed,
                "Float samples of the input hold the components themselves, not (n + 1) / 2.")
-        ->group(input);
+        .group(input);
     const std::string group = "Heights";
     add_choice(app, "--kernel", request.integration.kernel, kernel_choices(),
                "The kernel by which relief-bake bump will give the normals back. central7 knows "
                "the slopes of smooth maps best. Default: central7.")
-        ->group(group);
+        .group(group);
     add_wrap(app, request.wrap,
              "What lies beyond the border: the opposite edge, for maps that tile (repeat), nothing "
              "(clamp), the map mirrored (mirror); or repeat or clamp by whether the map goes on "
              "smoothly across the seam (auto). Two words: left and right, then top and bottom. "
              "Default: auto.")
-        ->group(group);
+        .group(group);
     add_number(app, "--steepest", "S", request.integration.steepest, {1e-3, 1e6, ""},
                "Cut steeper slopes to this, and those of normals that face sideways or back; they "
                "are counted. Default: 16, which is 86 degrees.")
-        ->group(group);
+        .group(group);
     add_switch(app, "--level", request.integration.level,
                "Take the mean slope out first: maps whose flat texels are a code off would tilt.")
-        ->group(group);
+        .group(group);
     const Choices<int> depths = {{"8", 8}, {"16", 16}, {"32", 32}};
     add_choice(app, "--bits", request.bits, depths,
                "Bits of a height: 8 or 16 for .png, 8, 16 or 32 (float) for .tif, 32 for .exr. "
                "Floats hold texels; codes span the lowest to the highest. Default: 16, and 32 for "
                ".exr.")
-        ->group("Output");
+        .group("Output");
 }
 
 int bits_of(const HeightsRequest& request, const std::filesystem::path& output) {

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 
 #include "common/map_choices.h"
 #include "common/options.h"
@@ -107,7 +108,7 @@ void add_accuracy_options(CLI::App& app, AccuracyChoice& choice) {
                       "degrees; refuse if it never is.");
     add_switch(app, "--compare", choice.compare,
                "Also bake in every way, in memory, and print error beside time.")
-        ->group("Accuracy");
+        .group("Accuracy");
 }
 
 void print_accuracy(const MeshBakeRequest& request, const MeshAccuracy& accuracy) {

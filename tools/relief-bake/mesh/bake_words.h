@@ -4,7 +4,6 @@
 /// without being told again. Tests: tests/tools/relief_bake_verify_test.cpp.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <map>
 #include <string>

@@ -16,7 +16,7 @@ void add_look(CLI::App& app, const std::string& name, std::optional<std::filesys
               [&target](const std::string&, const std::string& text) {
                   target = text == "none" ? std::filesystem::path() : std::filesystem::path(text);
               })
-        ->group("High models");
+        .group("High models");
 }
 
 FlatCode flat_code_of(const Image& map) {

@@ -60,30 +60,30 @@ void add_numbers(CLI::App& app, LayerOptions& options, const std::string& group)
     add_choice(app, "--layer-bits", options.bits, Choices<int>{{"8", 8}, {"16", 16}, {"32", 32}},
                "Bits per channel of these files: 8 or 16 for .png, 8, 16 or 32 (float) for .tif, "
                "32 for .exr. Default: 16, 8 for colours, and 32 for .exr.")
-        ->group(group);
+        .group(group);
     const Range above{1e-30, 1e30, ""};
     add_number(app, "--height-range", "H", options.height_range, above,
                "Which height is white in 8 and 16 bits; -H is black, 0 is the middle code exactly. "
                "Default: how far rays reach.")
-        ->group(group);
+        .group(group);
     add_number(app, "--curvature-range", "C", options.curvature_range, above,
                "Which curvature is white, likewise. Default: the largest; in 8 bits what 99% of "
                "the high meshes do not exceed.")
-        ->group(group);
+        .group(group);
     add_number(app, "--position-range", "P", options.position_range, above,
                "Which coordinate is white, likewise. Default: the largest of the high meshes.")
-        ->group(group);
+        .group(group);
     add_value(app, "--occlusion-rays", "N",
               "Rays for each texel, shared by its samples: 1 to 65536; twice as many have 0.6 of "
               "the error. Default: 64.",
               [&options](const std::string& subject, const std::string& text) {
                   options.occlusion_rays = parse_integer(subject, text, 1, 65536);
               })
-        ->group(group);
+        .group(group);
     add_number(app, "--occlusion-distance", "D", options.occlusion_distance, {0.0, 1e30, ""},
                "What is further away than this hides nothing. Default: half of the longest side of "
                "the high meshes' box.")
-        ->group(group);
+        .group(group);
 }
 
 }  // namespace
@@ -99,7 +99,7 @@ void add_layer_options(CLI::App& app, LayerOptions& options) {
                   [&options, kind = words.kind](const std::string&, const std::string& text) {
                       options.files[kind] = text;
                   })
-            ->group(group);
+            .group(group);
     }
     add_numbers(app, options, group);
 }

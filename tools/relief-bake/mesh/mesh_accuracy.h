@@ -4,7 +4,7 @@
 /// them beside their times. Tests: tests/tools/relief_bake_accuracy_test.cpp.
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <vector>
 

@@ -37,7 +37,7 @@ void add_map_options(CLI::App& app, MeshBakeRequest& request) {
               [&](const std::string& subject, const std::string& text) {
                   request.size = parse_map_size(subject, text);
               })
-        ->group(group);
+        .group(group);
     add_texel_options(app, request);
     add_value(app, "--padding", "PX|border",
               "Fill so many texels around charts from the nearest ones, 0 to 1024; or all, up to "
@@ -48,13 +48,13 @@ void add_map_options(CLI::App& app, MeshBakeRequest& request) {
                   request.padding =
                       request.fills_to_border ? 0 : parse_integer(subject, text, 0, 1024);
               })
-        ->group(group);
+        .group(group);
     add_choice(
         app, "--background", request.background,
         Choices<Background>{{"flat", Background::flat}, {"transparent", Background::transparent}},
         "What is further away: flat, in three channels; or transparent, with a fourth that "
         "is 1 where the map is baked or padded (with --padding border: baked). Default: flat.")
-        ->group(group);
+        .group(group);
 }
 
 /// Samples are counted along the sides of the map.
@@ -87,22 +87,22 @@ void add_ray_options(CLI::App& app, MeshBakeRequest& request) {
                "Along what rays run: normals averaged over all that meets at a place, whatever is "
                "hard or split there; the low mesh's own; or those of its triangles. Default: "
                "averaged.")
-        ->group(group);
+        .group(group);
     add_number(app, "--hardness", "H", request.hardness, {0.0, 1.0, ""},
                "How far averaged rays are drawn to the low mesh's own normals: at hard edges, 0 "
                "leaves no gap, 1 skews no detail. Default: 0.")
-        ->group(group);
+        .group(group);
     add_path(app, "--cage", request.cage,
              "Cast rays from this mesh to the low one instead: its triangles, moved outwards.")
-        ->group(group);
+        .group(group);
     add_number(app, "--offset", "D", request.offset, {0.0, 1e30, ""},
                "How far outside of the low mesh rays begin, in its unit. Default: 1.5 times what "
                "the surfaces are apart, and 1% of the low mesh's half size.")
-        ->group(group);
+        .group(group);
     add_number(app, "--max-distance", "D", request.max_distance, {0.0, 1e30, ""},
                "How far inside of the low mesh rays end. Default: as for --offset; with --cage, as "
                "far again as it is outside.")
-        ->group(group);
+        .group(group);
     add_choice(app, "--match", request.match,
                Choices<MatchChoice>{{"auto", MatchChoice::automatic},
                                     {"name", MatchChoice::name},
@@ -110,13 +110,13 @@ void add_ray_options(CLI::App& app, MeshBakeRequest& request) {
                "Which high parts each low part sees: those of its name (X_low sees X_high, as "
                "objects or files are called), all, or by name if all have a counterpart (auto). "
                "Default: auto.")
-        ->group(group);
+        .group(group);
     add_choice(
         app, "--back-faces", request.back_faces,
         Choices<BackFaces>{{"skip", BackFaces::skip}, {"take", BackFaces::take}},
         "High triangles seen from behind: rays pass through them, or hit them as if they were "
         "turned round. Default: skip.")
-        ->group(group);
+        .group(group);
 }
 
 void add_texel_options(CLI::App& app, MeshBakeRequest& request) {
@@ -127,23 +127,23 @@ void add_texel_options(CLI::App& app, MeshBakeRequest& request) {
                                     {"world", SpaceChoice::world}},
                "What the normals are relative to: the low mesh's normals and tangents (its own, "
                "else MikkTSpace's), its axes, or the world's. Default: tangent.")
-        ->group(group);
+        .group(group);
     add_value(app, "--samples", "N|auto",
               "Rays for each texel: 1, 4, 16 or 64 in a square grid; auto casts 4, and 16 where "
               "they disagree. Default: 1.",
               [&](const std::string& subject, const std::string& text) {
                   request.samples = parse_samples(subject, text);
               })
-        ->group(group);
+        .group(group);
     add_number(app, "--sample-angle", "DEG", request.sample_angle, {0.0, 180.0, "degrees"},
                fmt::format("By how much, with --samples auto. Default: {:g}.", default_angle))
-        ->group(group);
+        .group(group);
     add_choice(
         app, "--outside", request.outside,
         Choices<OutsideChoice>{{"drop", OutsideChoice::drop}, {"repeat", OutsideChoice::repeat}},
         "Texture coordinates outside of the unit square: not baked, or moved into it by "
         "whole numbers, as textures repeat. Default: drop.")
-        ->group(group);
+        .group(group);
 }
 
 void add_mesh_options(CLI::App& app, MeshBakeRequest& request,

@@ -15,13 +15,13 @@ void add_preview_options(CLI::App& app, PreviewOptions& options) {
     add_path(app, "--preview", options.file,
              "Write a picture (.png) as well: the high models, the low one with the finished map, "
              "and the low one without, side by side.")
-        ->group(group);
+        .group(group);
     add_value(app, "--preview-size", "WxH",
               "Of each of its three panels, in pixels. Default: 512x512.",
               [&](const std::string& subject, const std::string& text) {
                   options.size = parse_size(subject, text);
               })
-        ->group(group);
+        .group(group);
 }
 
 namespace {

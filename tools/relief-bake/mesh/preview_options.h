@@ -3,11 +3,12 @@
 /// Whether a picture is wanted as well, and of what size. Tests: tests/tools/mesh_preview_test.cpp.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <glm/vec2.hpp>
 #include <optional>
 #include <vector>
+
+#include "common/command.h"
 
 namespace relief::tools {
 

@@ -3,6 +3,8 @@
 // Tests: tests/tools/relief_bake_verify_test.cpp.
 #include <fmt/format.h>
 
+#include <nlohmann/json.hpp>
+
 #include "common/file_jobs.h"
 #include "common/options.h"
 #include "common/text.h"
@@ -80,11 +82,11 @@ nlohmann::ordered_json convention_json(const ConventionFit& fit) {
 void add_bound_options(CLI::App& app, ErrorBound& bound, const std::string& description) {
     const std::string group = "Accuracy";
     add_number(app, "--max-error", "DEG", bound.degrees, {0.0, 180.0, "degrees"}, description)
-        ->group(group);
+        .group(group);
     add_choice(app, "--max-error-kind", bound.kind, bound_kinds(),
                "Whether --max-error is for the root mean square, for 99 of 100 texels, or for the "
                "greatest error. Default: rms.")
-        ->group(group);
+        .group(group);
 }
 
 void check(const ErrorBound& bound) {
@@ -116,14 +118,14 @@ void add_error_map_option(CLI::App& app, std::optional<std::filesystem::path>& f
     add_path(app, "--error-map", file,
              "Write the error of every texel: .png from black, none, to pale yellow, the scale "
              "printed; .exr or .tif in degrees.")
-        ->group("Accuracy");
+        .group("Accuracy");
 }
 
 void add_verify_options(CLI::App& app, VerifyChoice& choice) {
     add_switch(app, "--verify", choice.wanted,
                "Read the finished map back, hold every texel against the high models as a renderer "
                "shows it, and say how far off it is and why.")
-        ->group("Accuracy");
+        .group("Accuracy");
     add_error_map_option(app, choice.error_map);
 }
 
