@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
+#include <utility>
 
 namespace relief::test {
 
@@ -58,6 +59,18 @@ void ViewerWindow::drag(int x, int y, int dx, int dy, int button) const {
 
 void ViewerWindow::click(int x, int y) const {
     display_.act(fmt::format("mousemove {} {} sleep 0.1 click 1", x, y));
+}
+
+void ViewerWindow::click_on(const std::string& name) const {
+    nlohmann::json place;
+    const auto stays = [&] {  // What is above it may still come.
+        const nlohmann::json before = std::exchange(place, state()["places"].value(name, place));
+        if (!place.is_null() && place == before) return true;
+        display_.act("sleep 0.1");
+        return false;
+    };
+    ASSERT_TRUE(eventually(stays)) << name << " is not there";
+    click(place[0].get<int>(), place[1].get<int>());
 }
 
 double changed_share(const Image& before, const Image& after, int x, int y, int width, int height,

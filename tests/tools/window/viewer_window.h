@@ -34,6 +34,8 @@ class ViewerWindow {
     /// Presses a button at a place, moves on by so much in small steps, lets go.
     void drag(int x, int y, int dx, int dy, int button = 1) const;
     void click(int x, int y) const;
+    /// Clicks on what the state's "places" names, once it is there and stays.
+    void click_on(const std::string& name) const;
 
     ChildProcess& process() { return *process_; }
     [[nodiscard]] std::string said() const { return contents_of(streams_ / "error"); }

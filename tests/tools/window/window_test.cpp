@@ -9,6 +9,7 @@
 #include <sstream>
 #include <thread>
 
+#include "relief/mesh/image_file.h"
 #include "tools/window/drag_and_drop.h"
 #include "tools/window/viewer_window.h"
 
@@ -38,11 +39,6 @@ double processor_seconds(pid_t pid) {
     double user = 0.0, system = 0.0;
     stat >> user >> system;
     return (user + system) / static_cast<double>(::sysconf(_SC_CLK_TCK));
-}
-
-std::pair<int, int> place(const json& state, const std::string& name) {
-    const json& at = state.at("places").at(name);
-    return {at[0].get<int>(), at[1].get<int>()};
 }
 
 TEST(Window, ADragTurnsTheCameraAndThePicture) {
@@ -129,12 +125,8 @@ TEST(Window, PanelsEditTheScene) {
     ViewerWindow window(*display, workplace, "data/vase.obj");
     const json before = window.wait_for_rest();
     const Image picture = display->picture();
-    const auto [lights_x, lights_y] = place(before, "Lights");
-    window.click(lights_x, lights_y);
-    const json open = window.wait_for(
-        "the lights", [](const json& now) { return now["places"].contains("Add directional"); });
-    const auto [add_x, add_y] = place(open, "Add directional");
-    window.click(add_x, add_y);
+    window.click_on("Lights");
+    window.click_on("Add directional");
     const json lit = window.wait_for("one light more", [&](const json& now) {
         return now["directional_lights"].size() == before["directional_lights"].size() + 1;
     });
@@ -255,6 +247,34 @@ TEST(Window, SlowPicturesAreSmallerWhileMovingAndWholeAtRest) {
     EXPECT_EQ(after["drawn"]["size"], after["view"]);
     EXPECT_EQ(after["drawn"]["samples"], 4);
     EXPECT_GT(after["reduced"], 0);
+}
+
+TEST(Window, SavesThePictureThatItShows) {
+    RELIEF_NEEDS_DISPLAY(display);
+    const Workplace workplace;
+    workplace.write("vase.obj", workplace.read("data/vase.obj"));
+    display->act("mousemove 5 795");  // The pointer is on the screen, and not in the file.
+    ViewerWindow window(*display, workplace, "vase.obj");
+    const json before = window.wait_for_rest();
+    window.key("s");
+    const json saved =
+        window.wait_for("a file", [](const json& now) { return now["saved"]["done"] == 1; });
+    EXPECT_EQ(saved["saved"]["file"], "vase-1.png");
+    const Image image = read_image(workplace / "vase-1.png", ImageUse::color);
+    const Image screen = display->picture();
+    ASSERT_EQ(json({image.width, image.height}), before["view"]);
+    int differing = 0;  // The view ends at the right and begins at the top.
+    const int left = screen.width - image.width;
+    for (int y = 0; y < image.height; ++y) {
+        for (int x = 0; x < 3 * image.width; ++x) {
+            const auto a =
+                image.as<std::uint8_t>()[static_cast<std::size_t>(y * 3 * image.width + x)];
+            const auto b = screen.as<std::uint8_t>()[static_cast<std::size_t>(
+                3 * (y * screen.width + left) + x)];
+            differing += a == b ? 0 : 1;
+        }
+    }
+    EXPECT_EQ(differing, 0) << "codes";
 }
 
 TEST(Window, ADriverThatIsTooOldIsSaid) {

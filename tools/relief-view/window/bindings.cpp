@@ -26,6 +26,7 @@ const std::vector<Binding>& bindings() {
         {Action::orbit_up, "Up", "Go higher"},
         {Action::orbit_down, "Down", "Go lower"},
         {Action::copy_camera, "Ctrl+C", "Copy the camera as the option that repeats it"},
+        {Action::save_picture, "S", "Save a picture beside the model"},
         {Action::panels, "Tab", "Hide the panels, or show them"},
         {Action::help, "H", "Show these bindings"},
         {Action::quit, "Ctrl+Q", "Close the window"},

@@ -28,6 +28,7 @@ enum class Action {
     orbit_up,
     orbit_down,
     copy_camera,
+    save_picture,
     panels,
     help,
     quit,

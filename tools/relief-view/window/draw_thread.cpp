@@ -20,6 +20,8 @@ class DrawThread::Drawer {
         is_stale_ = true;
     }
 
+    bool run(const DrawTask& task) { return task(context_, cache_); }
+
     /// Draws, or throws; what was drawn before stays.
     void draw(const DrawWish& wish, DrawnPicture& drawn) {
         const bool is_same = renderer_ && !is_stale_ && revision_ == wish.revision &&
@@ -88,6 +90,14 @@ void DrawThread::wish(DrawWish wish) {
     changed_.notify_all();
 }
 
+void DrawThread::add(DrawTask task) {
+    {
+        const std::lock_guard lock(mutex_);
+        tasks_.push_back(std::move(task));
+    }
+    changed_.notify_all();
+}
+
 void DrawThread::relink() {
     const std::lock_guard lock(mutex_);
     is_relinking_ = true;
@@ -107,12 +117,26 @@ bool DrawThread::is_busy() {
     return is_drawing_ || wish_.has_value();
 }
 
+/// One step of the first task, while others may wish.
+void DrawThread::do_step(Drawer& drawer, std::unique_lock<std::mutex>& lock) {
+    const DrawTask task = tasks_.front();
+    lock.unlock();
+    const bool has_more = drawer.run(task);
+    context_.wake();
+    lock.lock();
+    if (!has_more) tasks_.pop_front();
+}
+
 /// Waits for a wish; none: the end.
 std::optional<DrawWish> DrawThread::next(Drawer& drawer) {
     std::unique_lock lock(mutex_);
     is_drawing_ = false;
-    changed_.wait(lock, [&] { return is_ending_ || wish_; });
-    if (is_ending_) return std::nullopt;
+    for (;;) {
+        changed_.wait(lock, [&] { return is_ending_ || wish_ || !tasks_.empty(); });
+        if (is_ending_) return std::nullopt;
+        if (wish_) break;
+        do_step(drawer, lock);
+    }
     is_drawing_ = true;
     if (std::exchange(is_relinking_, false)) drawer.relink();
     return std::exchange(wish_, std::nullopt);
@@ -144,6 +168,8 @@ void DrawThread::run() {
             }
             context_.wake();
         }
+        const std::lock_guard lock(mutex_);
+        tasks_.clear();  // They hold what lives in this context.
     } catch (...) {
         const std::lock_guard lock(mutex_);
         failure_ = std::current_exception();

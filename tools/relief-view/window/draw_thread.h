@@ -7,6 +7,7 @@
 
 #include <condition_variable>
 #include <cstdint>
+#include <deque>
 #include <functional>
 #include <memory>
 #include <mutex>
@@ -18,6 +19,7 @@
 #include "relief/shade/effect_forcing.h"
 #include "relief/shade/handover.h"
 #include "relief/shade/renderer.h"
+#include "window/capture.h"
 
 namespace relief::tools {
 
@@ -64,6 +66,9 @@ class DrawThread {
     /// Shader files were edited: programs are linked anew for the next picture.
     void relink();
 
+    /// Done a step at a time, where no picture is wished; what is left at the end is not done.
+    void add(DrawTask task);
+
     [[nodiscard]] DrawnPicture drawn();
     [[nodiscard]] Handover::Shown shown();
     /// Whether a wish is waiting or being drawn.
@@ -74,6 +79,7 @@ class DrawThread {
     class Drawer;
 
     void run();
+    void do_step(Drawer& drawer, std::unique_lock<std::mutex>& lock);
     std::optional<DrawWish> next(Drawer& drawer);
 
     DrawContext context_;
@@ -81,6 +87,7 @@ class DrawThread {
     std::mutex mutex_;
     std::condition_variable changed_;
     std::optional<DrawWish> wish_;
+    std::deque<DrawTask> tasks_;
     bool is_drawing_ = false;
     bool is_relinking_ = false;
     bool is_ending_ = false;

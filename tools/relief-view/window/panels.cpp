@@ -11,7 +11,7 @@
 namespace relief::tools {
 namespace {
 
-constexpr float column_width = 20.0F;  // In heights of a line.
+constexpr float column_width = 23.0F;  // In heights of a line.
 
 std::size_t triangles_of(const Scene& scene) {
     std::size_t count = 0;
@@ -22,11 +22,12 @@ std::size_t triangles_of(const Scene& scene) {
 
 std::string status_text(const PanelInput& input) {
     if (!input.state.has_scene()) return "";
-    return fmt::format("{}   {} x {} pixels   {:.1f} ms a picture   picture {}, {}   {}",
+    const std::string saved = input.captured.empty() ? "" : "   " + input.captured;
+    return fmt::format("{}   {} x {} pixels   {:.1f} ms a picture   picture {}, {}   {}{}",
                        counted(triangles_of(input.state.scene()), "triangle"),
                        input.drawn.settings.width, input.drawn.settings.height,
                        input.drawn.times.draw, input.drawn.frames,
-                       input.is_drawing ? "drawing" : "idle", input.renderer);
+                       input.is_drawing ? "drawing" : "idle", input.renderer, saved);
 }
 
 /// A panel's header. \return whether it is open
@@ -39,7 +40,6 @@ bool begins(const char* name, ImGuiTreeNodeFlags flags = 0) {
 }  // namespace
 
 float draw_panels(const PanelInput& input, PanelWishes& wishes) {
-    (void)wishes;
     const ImGuiIO& io = ImGui::GetIO();
     const float width = column_width * ImGui::GetFontSize();
     const float status_height = ImGui::GetFrameHeightWithSpacing();
@@ -47,11 +47,14 @@ float draw_panels(const PanelInput& input, PanelWishes& wishes) {
     ImGui::SetNextWindowSize({width, io.DisplaySize.y - status_height});
     ImGui::Begin("Panels", nullptr,
                  ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove);
+    ImGui::PushItemWidth(0.5F * width);
     if (begins("Scene", ImGuiTreeNodeFlags_DefaultOpen)) draw_scene_panel(input);
     if (begins("Lights")) draw_light_panel(input);
     if (begins("Materials")) draw_material_panel(input);
     if (begins("Picture")) draw_picture_panel(input);
+    if (begins("Save")) draw_capture_panel(input, wishes);
     if (begins("Effects", ImGuiTreeNodeFlags_DefaultOpen)) draw_effects_panel(input);
+    ImGui::PopItemWidth();
     ImGui::End();
     return width;
 }

@@ -4,6 +4,7 @@
 /// reasons. Each panel reads the state and edits it. Tests: tests/tools/window/window_test.cpp.
 #pragma once
 
+#include "window/capture.h"
 #include "window/draw_thread.h"
 #include "window/viewer_state.h"
 
@@ -16,17 +17,22 @@ struct PanelInput {
     const std::string& renderer;
     double loading_seconds = 0.0;  ///< 0: nothing is being read.
     bool is_drawing = false;       ///< Else the picture is the newest, and nothing goes on.
+    CaptureSettings* capture = nullptr;
+    std::string captured;  ///< What was saved, in words.
 };
 
 /// What a panel asks the window to do.
 struct PanelWishes {
     bool cancel_loading = false;
+    bool save_picture = false;
+    bool save_turn = false;
 };
 
 void draw_scene_panel(const PanelInput& input);
 void draw_light_panel(const PanelInput& input);
 void draw_material_panel(const PanelInput& input);
 void draw_picture_panel(const PanelInput& input);
+void draw_capture_panel(const PanelInput& input, PanelWishes& wishes);
 void draw_effects_panel(const PanelInput& input);
 
 /// All of them in one column. \return its width in pixels

@@ -76,13 +76,19 @@ class WindowLoop {
         const DrawnPicture drawn = drawer_.drawn();
         if (drawn.frames > 0 && !is_reduced(drawn.settings))
             resolution_.whole_took(drawn.times.draw);
-        const PanelInput input{state_, drawn, drawer_.renderer_name(),
+        const PanelInput input{state_,
+                               drawn,
+                               drawer_.renderer_name(),
                                loader_.is_loading() ? loader_.seconds_so_far() : 0.0,
-                               was_busy || is_resting_later_};
+                               was_busy || is_resting_later_,
+                               &capture_settings_,
+                               text_of(captured_->state())};
         const UserInterface::Events events = interface_.draw(input, drawer_.shown());
         if (events.panels.cancel_loading) loader_.cancel();
         for (const Action action : events.actions)
             act(action);
+        if (events.panels.save_picture) save(0);
+        if (events.panels.save_turn) save(capture_settings_.pictures);
         if (!events.dropped.empty()) drop(events.dropped);
         const bool is_busy = request() || was_busy || is_resting_later_;
         dump(drawn, is_busy);
@@ -92,6 +98,7 @@ class WindowLoop {
         if (action == Action::help) interface_.show_help();
         if (action == Action::panels) interface_.show_panels();
         if (action == Action::quit) system_.close();
+        if (action == Action::save_picture) save(0);
         if (action == Action::copy_camera)
             glfwSetClipboardString(system_.window(), state_.command_line().c_str());
     }
@@ -119,6 +126,25 @@ class WindowLoop {
             refused.error = error.what();
             state_.take(std::move(refused));
         }
+    }
+
+    /// One at a time; the panel and the status line say how far it is.
+    void save(int turntable) {
+        const std::optional<DrawWish> wish = state_.wish();
+        if (!wish || captured_->state().is_going_on()) return;
+        CaptureWish capture{.scene = wish->scene,
+                            .effects = wish->effects,
+                            .settings = wish->settings,
+                            .camera = wish->camera,
+                            .transparent = capture_settings_.transparent,
+                            .turntable = turntable,
+                            .middle = state_.ball().center,
+                            .file = free_file(state_.options().model, turntable > 0)};
+        if (capture_settings_.own_size) {
+            capture.settings.width = capture_settings_.width;
+            capture.settings.height = capture_settings_.height;
+        }
+        drawer_.add(capture_task(std::move(capture), captured_));
     }
 
     /// Asks for a picture where the last one asked for shows something else. \return whether it did
@@ -152,6 +178,7 @@ class WindowLoop {
         json["drawn"]["samples"] = drawn.settings.samples;
         json["drawn"]["whole"] = !is_reduced(drawn.settings);
         json["reduced"] = reduced_;
+        json["saved"] = json_of(captured_->state());
         json["help"] = interface_.is_help_open();
         json["places"] = places_json();
         const std::string text = json.dump(2) + "\n";
@@ -167,6 +194,8 @@ class WindowLoop {
     ViewerState state_;
     std::optional<std::filesystem::path> dump_;
     std::string dumped_;
+    CaptureSettings capture_settings_;
+    std::shared_ptr<CaptureProgress> captured_ = std::make_shared<CaptureProgress>();
     std::optional<DrawWish> wished_;
     Resolution resolution_;
     FrameSettings asked_;            ///< Of the last wish, whole or not.
