@@ -13,12 +13,14 @@
 
 #include "large_memory.h"
 #include "parallel.h"
+#include "progress_stage.h"
 #include "random_access_file.h"
 #include "relief/mesh/error.h"
 
 namespace relief {
 
 std::string read_file(const std::filesystem::path& file) {
+    note_file(file);
     std::error_code error;
     const std::filesystem::file_status status = std::filesystem::status(file, error);
     if (!std::filesystem::exists(status)) throw FileError(file, "no such file");
@@ -30,10 +32,17 @@ std::string read_file(const std::filesystem::path& file) {
     bytes.reserve(size);
     expect_filling(bytes.data(), size);
     bytes.resize(size);
-    stream.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-    if (static_cast<std::size_t>(stream.gcount()) != bytes.size()) {
-        throw FileError(file, fmt::format("could be read only up to byte {} of {}", stream.gcount(),
-                                          bytes.size()));
+    constexpr std::size_t piece = 1 << 22;
+    ProgressStage stage("reading", size);
+    for (std::size_t begin = 0; begin < size; begin += piece) {
+        const std::size_t length = std::min(piece, size - begin);
+        stream.read(&bytes[begin], static_cast<std::streamsize>(length));
+        const auto got = static_cast<std::size_t>(stream.gcount());
+        if (got != length) {
+            throw FileError(
+                file, fmt::format("could be read only up to byte {} of {}", begin + got, size));
+        }
+        stage.advance(length);
     }
     return bytes;
 }
@@ -44,10 +53,12 @@ FileContents::FileContents(const std::filesystem::path& file) {
     size_ = static_cast<std::size_t>(opened.size());
     bytes_ = std::make_unique_for_overwrite<char[]>(size_);
     expect_filling(bytes_.get(), size_);
+    ProgressStage stage("reading", size_);
     parallel_for((size_ + piece - 1) / piece, 1, [&](std::size_t first, std::size_t last) {
         const std::size_t begin = first * piece;
         const std::size_t end = std::min(last * piece, size_);
         opened.read(begin, std::as_writable_bytes(std::span(&bytes_[begin], end - begin)));
+        stage.advance(end - begin);
     });
 }
 

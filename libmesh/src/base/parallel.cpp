@@ -10,13 +10,38 @@
 #include <exception>
 #include <memory>
 
+#include "progress_stage.h"
 #include "relief/mesh/threads.h"
 
 namespace relief {
+namespace {
+
+/// In pieces so small that somebody who wants the work to end is heard soon.
+void parallel_for_watched(std::size_t count, std::size_t grain, Progress* progress,
+                          const std::function<void(std::size_t, std::size_t)>& body) {
+    constexpr std::size_t looks = 256;  // 2 s of work are 8 ms apart on one thread.
+    const std::size_t step = std::max(grain, count / looks);
+    check_cancelled();
+    if (count <= grain) {
+        const ProgressPiece piece(progress);
+        return body(0, count);
+    }
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, grain), [&](const auto& range) {
+        const ProgressPiece piece(progress);
+        for (std::size_t begin = range.begin(); begin < range.end(); begin += step) {
+            check_cancelled();
+            body(begin, std::min(begin + step, range.end()));
+        }
+    });
+}
+
+}  // namespace
 
 void parallel_for(std::size_t count, std::size_t grain,
                   const std::function<void(std::size_t, std::size_t)>& body) {
     if (count == 0) return;
+    if (current_progress != nullptr)
+        return parallel_for_watched(count, grain, current_progress, body);
     // Nothing to share out: a program that never has more than this never starts oneTBB.
     if (count <= grain) return body(0, count);
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, grain),

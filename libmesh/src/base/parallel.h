@@ -17,6 +17,8 @@ namespace relief {
 ///
 /// The body may write only to elements of its own piece, and read only what no piece writes: then
 /// the outcome is the same for any number of threads. An exception from a body reaches the caller.
+/// Where somebody waits for the work (relief/mesh/progress.h), pieces are smaller and report to it
+/// too, and a wish to end it is heard between them.
 void parallel_for(std::size_t count, std::size_t grain,
                   const std::function<void(std::size_t begin, std::size_t end)>& body);
 

@@ -13,11 +13,13 @@
 #include <cstring>
 #include <utility>
 
+#include "progress_stage.h"
 #include "relief/mesh/error.h"
 
 namespace relief {
 
 RandomAccessFile::RandomAccessFile(std::filesystem::path file) : path_(std::move(file)) {
+    note_file(path_);
     std::error_code error;
     const std::filesystem::file_status status = std::filesystem::status(path_, error);
     if (!std::filesystem::exists(status)) throw FileError(path_, "no such file");

@@ -17,6 +17,7 @@
 
 #include "large_memory.h"
 #include "parallel.h"
+#include "progress_stage.h"
 
 namespace relief {
 
@@ -60,6 +61,7 @@ class CornersByVertex {
         const auto for_triangles = [&](std::size_t part, const auto& body) {
             const std::size_t end = triangles.size() * (part + 1) / parts;
             for (std::size_t t = triangles.size() * part / parts; t < end; ++t) {
+                check_cancelled(t);
                 if (counts(t)) body(t);
             }
         };

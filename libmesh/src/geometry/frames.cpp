@@ -13,6 +13,7 @@
 #include "geometry/corners.h"
 #include "geometry/direction.h"
 #include "geometry/unit_tolerance.h"
+#include "progress_stage.h"
 #include "relief/mesh/error.h"
 #include "relief/mesh/normals.h"
 #include "relief/mesh/split.h"
@@ -45,8 +46,10 @@ void store_corners(FramedMesh& framed, const std::vector<T>& values,
     mesh = carried(mesh, split);
     std::vector<T>& stored = mesh.*attribute;
     stored.resize(mesh.positions.size(), T(0.0F));
-    for (std::size_t corner = 0; corner < values.size(); ++corner)
+    for (std::size_t corner = 0; corner < values.size(); ++corner) {
+        check_cancelled(corner);
         stored[vertex_of(static_cast<Corner>(corner), mesh.triangles)] = values[corner] + 0.0F;
+    }
     for (std::size_t v = 0; v < stored.size(); ++v) {
         if (stored[v] == T(0.0F)) stored[v] = isolated(v);
     }
@@ -134,6 +137,7 @@ KeptNormal judge(const glm::vec3& normal) {
 
 void report_kept(std::span<const glm::vec3> normals, bool repaired, Report& report) {
     for (std::size_t v = 0; v < normals.size(); ++v) {
+        check_cancelled(v);
         switch (judge(normals[v])) {
             case KeptNormal::sound:
                 break;
@@ -245,7 +249,10 @@ FramedMesh with_frames(Mesh mesh, const FrameOptions& options, Report& report) {
 
     const TangentMode tangents = resolved_tangents(framed.mesh, options.tangents, mode, report);
     if (tangents != TangentMode::keep) framed.mesh.tangents.clear();
-    make_normals(framed, mode, options, report);
+    {
+        const ProgressStage stage("normals");
+        make_normals(framed, mode, options, report);
+    }
     if (computes_tangents(tangents)) make_tangents(framed, tangents, report);
     return framed;
 }

@@ -13,6 +13,7 @@
 
 #include "geometry/check_triangles.h"
 #include "geometry/corners.h"
+#include "progress_stage.h"
 #include "relief/mesh/error.h"
 
 namespace relief {
@@ -47,6 +48,7 @@ VertexSplit split(std::size_t vertex_count, std::span<const glm::uvec3> triangle
     const CornersByVertex corners(vertex_count, triangles);
     std::vector<Corner> around;
     for (std::size_t v = 0; v < vertex_count; ++v) {
+        check_cancelled(v);
         around.assign(corners.at(v).begin(), corners.at(v).end());
         std::sort(around.begin(), around.end(),
                   [&](Corner a, Corner b) { return comes_before<N>(values[a], values[b]); });
@@ -78,6 +80,7 @@ VertexSplit split_where_corners_differ(std::size_t vertex_count,
 }
 
 Mesh carried(const Mesh& mesh, const VertexSplit& split) {
+    check_cancelled();
     Mesh result;
     result.name = mesh.name;
     result.positions = carried<glm::vec3>(mesh.positions, split);

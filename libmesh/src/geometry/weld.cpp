@@ -14,6 +14,7 @@
 
 #include "large_memory.h"
 #include "parallel.h"
+#include "progress_stage.h"
 
 namespace relief {
 namespace {
@@ -72,8 +73,10 @@ class Buckets {
             ++first_[bucket_of(hash) + 1];
         std::partial_sum(first_.begin(), first_.end(), first_.begin());
         std::vector<std::size_t> end(first_.begin(), first_.end() - 1);
-        for (std::size_t i = 0; i < hashes.size(); ++i)
+        for (std::size_t i = 0; i < hashes.size(); ++i) {
+            check_cancelled(i);
             entries_[end[bucket_of(hashes[i])]++] = {hashes[i], static_cast<std::uint32_t>(i)};
+        }
     }
 
     [[nodiscard]] std::size_t count() const { return first_.size() - 1; }

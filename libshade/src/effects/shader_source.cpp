@@ -16,6 +16,7 @@
 #include <optional>
 #include <system_error>
 
+#include "progress_stage.h"
 #include "relief/shade/error.h"
 
 namespace relief {
@@ -169,7 +170,9 @@ std::string with_file_names(const std::string& message, const ShaderSource& sour
 
 std::string shader_file(std::string_view name) {
     if (const char* folder = std::getenv("RELIEF_SHADER_DIR")) {
-        std::ifstream file(std::filesystem::path(folder) / name, std::ios::binary);
+        const std::filesystem::path path = std::filesystem::path(folder) / name;
+        note_file(path);
+        std::ifstream file(path, std::ios::binary);
         if (file) return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
     }
     const auto& all = embedded_shaders();

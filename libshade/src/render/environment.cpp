@@ -14,6 +14,7 @@
 #include "gl/prefilter.h"
 #include "gl/texture.h"
 #include "parallel.h"
+#include "progress_stage.h"
 #include "scene/image_source.h"
 
 namespace relief {
@@ -94,9 +95,12 @@ bool is_left_handed(const Environment& environment) {
 std::vector<Image> decoded(const Environment& environment) {
     const std::span<const ImageSource> sources = sources_of(environment);
     std::vector<Image> images(sources.size());
+    ProgressStage stage("environment", sources.size());
     parallel_for(sources.size(), 1, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i)
+        for (std::size_t i = begin; i < end; ++i) {
             images[i] = decode(sources[i], ImageUse::color);
+            stage.advance(1);
+        }
     });
     return images;
 }
@@ -121,6 +125,8 @@ std::shared_ptr<GpuEnvironment> EnvironmentCache::find(const Environment& enviro
 
 void EnvironmentCache::decode(const Environment& environment) {
     decoded_.clear();
+    for (const ImageSource& source : sources_of(environment))
+        note_image_file(source);
     if (!find(environment)) decoded_ = decoded(environment);
 }
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "progress_stage.h"
 #include "relief/mesh/frames.h"
 
 namespace relief {
@@ -33,6 +34,7 @@ GpuMesh::GpuMesh(const gl::Api& api, const Mesh& mesh, const PlannedStreams& str
     api->BindVertexArray(vertices_.name());
     const auto add_stream = [&](Attribute attribute, const auto& values, GLint components) {
         if (values.empty()) return;
+        check_cancelled();
         buffers_.push_back(gl::make_buffer(api, values, "vertices of mesh '" + mesh.name + "'"));
         const auto location = static_cast<GLuint>(attribute);
         api->BindBuffer(GL_ARRAY_BUFFER, buffers_.back().name());

@@ -13,6 +13,7 @@
 #include <set>
 #include <utility>
 
+#include "progress_stage.h"
 #include "relief/mesh/error.h"
 #include "render/draw_values.h"
 #include "render/gpu_cache.h"
@@ -147,7 +148,10 @@ Renderer::Implementation::Implementation(const Context& context, const Scene& sc
     if (plan.skybox) {
         skybox.emplace(api, cache.programs, scene, drawn_coding(settings, plan.finishing_pass));
     }
-    prepare_draws(scene);
+    {
+        const ProgressStage stage("programs");
+        prepare_draws(scene);
+    }
     api->Finish();
     api.check("preparing the scene");
     times.link = cache.programs.milliseconds() - linked_before;
@@ -158,13 +162,17 @@ void Renderer::Implementation::prepare_meshes(const Scene& scene, Report& report
     std::map<std::size_t, PlannedStreams> streams;
     for (const DrawPlan& draw : plan.draws)
         streams[scene.instances[draw.instance].mesh].add(planned_interface(draw.features));
-    for (const auto& [mesh, planned] : streams)
+    ProgressStage stage("uploading meshes", streams.size());
+    for (const auto& [mesh, planned] : streams) {
         meshes.emplace(mesh, cache.meshes.get(scene.meshes[mesh], planned, report));
+        stage.advance(1);
+    }
 }
 
 void Renderer::Implementation::prepare_draws(const Scene& scene) {
     for (const DrawPlan& draw : plan.draws) {
         if (draw.range.triangle_count == 0) continue;
+        check_cancelled();
         lights.add(api, scene, draw.features);
         draws.push_back(prepare_draw(scene, draw));
     }

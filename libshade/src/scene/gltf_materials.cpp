@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "parallel.h"
+#include "progress_stage.h"
 #include "relief/mesh/error.h"
 #include "scene/image_source.h"
 #include "scene/texture_means.h"
@@ -43,6 +44,8 @@ std::optional<glm::vec3> mean_of(ImageSource& image, ImageUse use, bool keep) {
         const glm::vec3 mean = mean_color(decoded);
         if (keep) image.source = std::move(decoded);
         return mean;
+    } catch (const Cancelled&) {
+        throw;
     } catch (const Error&) {
         return std::nullopt;
     }
@@ -62,9 +65,11 @@ class MeansOfImages {
         for (const auto& [image, mean] : means_)
             wanted.push_back(image);
         std::vector<std::optional<glm::vec3>> results(wanted.size());
+        ProgressStage stage("images", wanted.size());
         parallel_for(wanted.size(), 1, [&](std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i) {
                 results[i] = mean_of(images_[wanted[i]], use_, keep_[wanted[i]]);
+                stage.advance(1);
             }
         });
         for (std::size_t i = 0; i < wanted.size(); ++i)

@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "progress_stage.h"
 #include "relief/mesh/frames.h"
 #include "scene/gltf_materials.h"
 
@@ -59,6 +60,7 @@ void add_instances(const GltfDocument& document, const GltfView& view, SceneGrap
     options.tangents = TangentMode::none;
     Scene& scene = graph.scene;
     std::map<std::pair<std::size_t, std::size_t>, std::size_t> mesh_of;
+    ProgressStage stage("meshes", view.primitives.size());
     for (const auto& placed : view.primitives) {
         const auto key = std::pair(placed.what.mesh, placed.what.primitive);
         const auto [entry, is_new] = mesh_of.try_emplace(key, scene.meshes.size());
@@ -69,6 +71,7 @@ void add_instances(const GltfDocument& document, const GltfView& view, SceneGrap
         }
         scene.instances.push_back({entry->second, placed.world_from_object, placed.name});
         graph.instances.push_back({placed.node, placed.node_from_object});
+        stage.advance(1);
     }
     report_rest(view, report);
 }

@@ -5,6 +5,8 @@
 
 #include <span>
 
+#include "progress_stage.h"
+
 namespace relief {
 
 namespace {
@@ -28,6 +30,10 @@ struct Decoder {
 
 Image decode(const ImageSource& source, ImageUse use) {
     return std::visit(Decoder{source.name, use}, source.source);
+}
+
+void note_image_file(const ImageSource& source) {
+    if (const auto* file = std::get_if<std::filesystem::path>(&source.source)) note_file(*file);
 }
 
 FlatCode detected_flat_code(const ImageSource& source, const Image& image) {

@@ -16,6 +16,10 @@ namespace relief {
 /// \throws FileError as read_image does
 Image decode(const ImageSource& source, ImageUse use);
 
+/// Tells who waits (relief/mesh/progress.h) that a picture depends on a file, whether or not it is
+/// decoded anew.
+void note_image_file(const ImageSource& source);
+
 /// Which stored code of a normal map stands for zero: as the file's text says, or as the image
 /// looks. \param image  decoded from the source
 FlatCode detected_flat_code(const ImageSource& source, const Image& image);

@@ -14,6 +14,7 @@
 #include "geometry/normals/normal_votes.h"
 #include "large_memory.h"
 #include "parallel.h"
+#include "progress_stage.h"
 #include "relief/mesh/threads.h"
 #include "vector_targets.h"
 
@@ -180,6 +181,7 @@ RELIEF_INLINE void add_votes(Job& job, const Vote& vote) {
     BlockVotes votes{};
     VertexRange touched{std::numeric_limits<std::uint32_t>::max(), 0};
     for (std::size_t first = 0; first < job.triangles.size(); first += triangles_at_once) {
+        check_cancelled(first);
         const std::size_t size = std::min(triangles_at_once, job.triangles.size() - first);
         const Block block = job.triangles.subspan(first, size);
         const VertexRange range = range_of(block);

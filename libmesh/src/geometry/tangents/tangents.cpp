@@ -24,6 +24,7 @@
 #include "geometry/weld.h"
 #include "large_memory.h"
 #include "parallel.h"
+#include "progress_stage.h"
 #include "relief/mesh/error.h"
 
 namespace relief {
@@ -113,19 +114,25 @@ class WeldedTriangles {
 
 std::vector<glm::vec4> tangents_of(TangentInput input, TangentWeight weight, TangentGroups groups,
                                    Report& report) {
+    ProgressStage stage("tangents", 6);
     check(input);
     const WeldedTriangles welded(input);
     input.triangles = welded.get();
+    stage.advance(1);
 
     std::vector<glm::vec4> tangents;
     reserve_to_fill(tangents, 3 * input.triangles.size());
     tangents.resize(3 * input.triangles.size());
     const TriangleGradients gradients = cast_votes(input, weight, tangents);
+    stage.advance(1);
     const CornersByVertex corners(input.positions.size(), input.triangles,
                                   [&](std::size_t t) { return takes_part(gradients.kinds[t]); });
+    stage.advance(1);
     const TriangleSigns signs = triangle_signs(input.triangles, corners, gradients);
+    stage.advance(1);
     const GroupInput group_input{input, corners, gradients, signs, groups};
     const GroupFindings findings = average_groups(group_input, tangents);
+    stage.advance(1);
 
     report_normals(input.normals, report);
     report_triangles(gradients, report);

@@ -12,6 +12,7 @@
 #include <limits>
 
 #include "large_memory.h"
+#include "progress_stage.h"
 #include "relief/mesh/error.h"
 
 namespace relief {
@@ -82,6 +83,7 @@ template <typename Component, typename Vector>
 void convert(std::string_view elements, std::size_t element_size, bool is_fraction,
              std::vector<Vector>& result) {
     for (std::size_t i = 0; i < result.size(); ++i) {
+        check_cancelled(i);
         const char* at = elements.data() + i * element_size;
         for (int k = 0; k < Vector::length(); ++k) {
             result[i][k] = converted(
@@ -180,6 +182,7 @@ PackedElements packed_elements(const GltfContents& contents, std::size_t accesso
     }
     elements.copy.resize(count * size);
     for (std::size_t i = 0; !bytes.empty() && i < count; ++i) {
+        check_cancelled(i);
         std::memcpy(elements.copy.data() + i * size, bytes.data() + i * stride, size);
     }
     apply_sparse(contents, json, accessor, elements.copy);
@@ -235,6 +238,7 @@ std::vector<std::uint32_t> index_elements(const GltfContents& contents, std::siz
     const std::string_view elements = packed.bytes();
     std::vector<std::uint32_t> result(elements.size() / layout.size);
     for (std::size_t i = 0; i < result.size(); ++i) {
+        check_cancelled(i);
         result[i] = index_at(elements.data() + i * layout.size, layout.component_type);
     }
     return result;
@@ -251,6 +255,7 @@ std::vector<glm::uvec3> index_triples(const GltfContents& contents, std::size_t 
     if (layout.component_type == gltf_code::uint32) return copied<glm::uvec3>(elements);
     std::vector<glm::uvec3> result(count / 3);
     for (std::size_t i = 0; i < count; ++i) {
+        check_cancelled(i);
         result[i / 3][static_cast<int>(i % 3)] =
             index_at(elements.data() + i * layout.size, layout.component_type);
     }

@@ -14,6 +14,7 @@
 #include "io/gltf/draco_mesh.h"
 #include "io/gltf/gltf_accessor.h"
 #include "io/gltf/gltf_edit.h"
+#include "progress_stage.h"
 #include "relief/mesh/error.h"
 
 namespace relief {
@@ -199,9 +200,11 @@ void unpack_draco(GltfContents& contents, Report& report) {
     Unpacking unpacking(contents, report);
     const std::size_t mesh_count = array_in(contents.root, "meshes").size();
     bool any = false;
+    const ProgressStage stage("unpacking");
     for (std::size_t i = 0; i < mesh_count; ++i) {
         Json& primitives = contents.root["meshes"][i]["primitives"];
         for (std::size_t k = 0; k < primitives.size(); ++k) {
+            check_cancelled();
             if (!unpacking.is_needed(primitives[k])) continue;
             try {
                 unpacking.unpack(primitives[k]);

@@ -13,6 +13,7 @@
 
 #include "io/gltf/gltf_edit.h"
 #include "io/gltf/meshopt_bitstream.h"
+#include "progress_stage.h"
 #include "relief/mesh/error.h"
 
 namespace relief {
@@ -195,8 +196,11 @@ void unpack_meshopt(GltfContents& contents) {
         packed_size += buffer.size;
     // At once, but no more than the data at hand may call for.
     reserve_bytes(contents, std::min(total, 16 * packed_size));
-    for (const std::size_t i : packed_views)
+    ProgressStage stage("unpacking", packed_views.size());
+    for (const std::size_t i : packed_views) {
         unpack_view(contents, i, extension_of(contents.root["bufferViews"][i]));
+        stage.advance(1);
+    }
     for (const char* extension : meshopt_extensions) {
         for (std::size_t i = 0; i < contents.buffers.size(); ++i) {
             if (contents.buffers[i].is_placeholder)

@@ -16,6 +16,7 @@
 #include "geometry/check_triangles.h"
 #include "io/gltf/gltf_accessor.h"
 #include "parallel.h"
+#include "progress_stage.h"
 #include "relief/mesh/error.h"
 
 namespace relief {
@@ -106,9 +107,10 @@ void check_counts(const GltfContents& contents, const Json& primitive, std::size
 std::optional<std::vector<std::uint32_t>> used_vertices(const std::vector<glm::uvec3>& triangles,
                                                         std::size_t vertex_count) {
     std::vector<bool> is_used(vertex_count, false);
-    for (const glm::uvec3& triangle : triangles) {
+    for (std::size_t t = 0; t < triangles.size(); ++t) {
+        check_cancelled(t);
         for (int k = 0; k < 3; ++k)
-            is_used[triangle[k]] = true;
+            is_used[triangles[t][k]] = true;
     }
     std::vector<std::uint32_t> used;
     for (std::uint32_t i = 0; i < vertex_count; ++i) {

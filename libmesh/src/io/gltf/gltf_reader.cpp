@@ -16,6 +16,7 @@
 #include "io/gltf/gltf_draco.h"
 #include "io/gltf/gltf_meshopt.h"
 #include "io/gltf/gltf_uri.h"
+#include "progress_stage.h"
 #include "relief/mesh/error.h"
 
 namespace relief {
@@ -210,6 +211,7 @@ void count_position_uses(GltfContents& contents) {
 GltfContents read_gltf(const std::filesystem::path& file, Report& report) {
     try {
         Container container = parse_container(read_file(file), file, report);
+        const ProgressStage stage("parsing");
         GltfContents contents;
         contents.root = parse_json(
             std::string_view(container.bytes).substr(container.json_begin, container.json_size),

@@ -9,6 +9,7 @@
 #include <cstring>
 #include <utility>
 
+#include "progress_stage.h"
 #include "relief/mesh/error.h"
 #include "relief/mesh/image_rows.h"
 
@@ -52,6 +53,7 @@ std::vector<Sample> all_samples(RowSource& rows) {
     for (std::size_t first = 0; first < height; first += step) {
         const std::size_t end = std::min(first + step, height);
         samples.resize(row * end);
+        check_cancelled();
         rows.read(std::as_writable_bytes(std::span(samples)).data() + first * row_bytes,
                   end - first);
     }

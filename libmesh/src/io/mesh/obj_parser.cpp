@@ -17,7 +17,7 @@
 #include <utility>
 
 #include "io/mesh/mesh_file_text.h"
-
+#include "progress_stage.h"
 #include "relief/mesh/error.h"
 
 namespace relief {
@@ -336,6 +336,7 @@ ObjPiece ObjParser::parse() {
             }
         }
         skip_line();
+        check_cancelled(line_);
     }
     if (material_ < 0) piece_.faces_before_material = result_.faces.size();
     if (!result_.has_smoothing_groups) piece_.faces_before_smoothing = result_.faces.size();

@@ -11,6 +11,7 @@
 
 #include "large_memory.h"
 #include "parallel.h"
+#include "progress_stage.h"
 
 namespace relief {
 namespace {
@@ -99,6 +100,7 @@ void append_all(std::vector<ObjPiece>& pieces, std::vector<Value> ObjStatements:
         count += (piece.statements.*values).size();
     reserve_to_fill(all, count);
     for (ObjPiece& piece : pieces) {
+        check_cancelled();
         std::vector<Value>& own = piece.statements.*values;
         all.insert(all.end(), own.begin(), own.end());
         own = {};

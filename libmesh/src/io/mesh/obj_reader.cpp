@@ -17,6 +17,7 @@
 #include "io/mesh/obj_parser.h"
 #include "io/mesh/obj_vertices.h"
 #include "io/mesh/polygon_mesh.h"
+#include "progress_stage.h"
 #include "relief/mesh/error.h"
 
 namespace relief {
@@ -49,6 +50,7 @@ void complete_corners(ObjStatements& statements, Report& report) {
     const bool any_normal = with_normal > 0;
     if (count == 0 || (with_texcoord % count == 0 && with_normal % count == 0)) return;
     for (std::size_t i = 0; i < statements.faces.size(); ++i) {
+        check_cancelled(i);
         const ObjFace& face = statements.faces[i];
         std::int32_t own_normal = -1;
         for (std::uint32_t k = 0; k < face.corner_count; ++k) {
@@ -89,6 +91,7 @@ void group_by_material(CutPolygons cut, const ObjStatements& statements, MeshFil
     }
     if (statements.has_smoothing_groups) mesh.smoothing_groups.resize(cut.triangles.size());
     const auto place = [&](std::size_t triangle, std::size_t at) {
+        check_cancelled(triangle);
         mesh.triangles[at] = cut.triangles[triangle];
         if (!objects.of_face.empty()) file.object_of[at] = objects.of_face[cut.polygons[triangle]];
         if (statements.has_smoothing_groups)

@@ -9,6 +9,7 @@
 #include "io/mesh/obj_parser.h"
 #include "io/mesh/obj_pieces.h"
 #include "parallel.h"
+#include "progress_stage.h"
 #include "relief/mesh/error.h"
 
 namespace relief {
@@ -73,12 +74,14 @@ std::optional<ObjStatements> parse_pieces(std::string_view text,
                                           const std::filesystem::path& file,
                                           const glm::dvec3& origin, Report& report) {
     std::vector<ObjPiece> pieces(ends.size());
+    ProgressStage stage("parsing", text.size());
     try {
         parallel_for(ends.size(), 1, [&](std::size_t first, std::size_t last) {
             for (std::size_t i = first; i < last; ++i) {
                 const std::size_t begin = i == 0 ? 0 : ends[i - 1];
                 const std::string_view part = text.substr(begin, ends[i] - begin);
                 pieces[i] = parse_obj_piece(part, file, origin, i == 0);
+                stage.advance(part.size());
             }
         });
     } catch (const FileError&) {

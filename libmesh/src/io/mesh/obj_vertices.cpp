@@ -12,6 +12,7 @@
 #include "geometry/weld.h"
 #include "io/mesh/polygon_key_numbers.h"
 #include "large_memory.h"
+#include "progress_stage.h"
 
 namespace relief {
 namespace {
@@ -87,6 +88,7 @@ class VertexNumbers {
 }  // namespace
 
 std::vector<std::uint32_t> unify_vertices(const ObjStatements& statements, Mesh& mesh) {
+    ProgressStage stage("joining vertices", statements.corners.size());
     const std::vector<std::uint32_t> positions = first_equal_vertex(statements);
     const std::vector<std::uint32_t> texcoords = weld_bits<glm::vec2>(statements.texcoords);
     const std::vector<std::uint32_t> normals = weld_bits<glm::vec3>(statements.normals);
@@ -96,6 +98,7 @@ std::vector<std::uint32_t> unify_vertices(const ObjStatements& statements, Mesh&
     std::vector<std::uint32_t> vertex_of_corner;
     reserve_to_fill(vertex_of_corner, statements.corners.size());
     for (const ObjCorner& corner : statements.corners) {
+        stage.at(vertex_of_corner.size());
         assert((corner.texcoord >= 0) == has_texcoords && (corner.normal >= 0) == has_normals);
         vertex_of_corner.push_back(numbers.number_of(
             {positions[static_cast<std::uint32_t>(corner.position)],
@@ -105,6 +108,7 @@ std::vector<std::uint32_t> unify_vertices(const ObjStatements& statements, Mesh&
     const std::vector<VertexNumbers::Vertex>& vertices = numbers.vertices();
     const auto gather = [&](const auto& values, std::uint32_t VertexNumbers::Vertex::*index,
                             auto& gathered) {
+        check_cancelled();
         gathered.reserve(vertices.size());
         for (const VertexNumbers::Vertex& vertex : vertices)
             gathered.push_back(values[vertex.*index]);

@@ -18,6 +18,7 @@
 #include "io/mesh/ply_header.h"
 #include "io/mesh/ply_values.h"
 #include "io/mesh/polygon_mesh.h"
+#include "progress_stage.h"
 #include "relief/mesh/error.h"
 
 namespace relief {
@@ -141,6 +142,7 @@ class PlyElements {
 
     void skip(const PlyElement& element) {
         for (std::uint64_t i = 0; i < element.count; ++i) {
+            check_cancelled(i);
             for (const PlyProperty& property : element.properties)
                 skip_property(property);
         }
@@ -189,7 +191,9 @@ void PlyElements<Values>::read_vertices(const PlyElement& element) {
     Mesh& mesh = data_.mesh;
     std::array<double, slot_count + 2> row{};
     row[alpha] = 1.0;
+    ProgressStage stage("vertices", element.count);
     for (std::uint64_t i = 0; i < element.count; ++i) {
+        stage.at(i);
         for (std::size_t k = 0; k < slots.size(); ++k) {
             const PlyProperty& property = element.properties[k];
             if (slots[k] == unread) {
@@ -260,7 +264,9 @@ void PlyElements<Values>::read_faces(const PlyElement& element) {
     for (const PlyProperty& property : element.properties) {
         if (&property != &*corners && !is_texcoords(property)) count_unread(element, property);
     }
+    ProgressStage stage("faces", element.count);
     for (std::uint64_t i = 0; i < element.count; ++i) {
+        stage.at(i);
         for (const PlyProperty& property : element.properties) {
             if (&property == &*corners) {
                 read_corners(property);
@@ -283,6 +289,7 @@ void unify_corners(PlyData& data, const std::filesystem::path& file) {
     statements.texcoords = std::move(data.corner_texcoords);
     data.mesh = Mesh();
     for (std::size_t i = 0; i < data.polygons.corners.size(); ++i) {
+        check_cancelled(i);
         const std::uint32_t vertex = data.polygons.corners[i];
         if (vertex >= statements.positions.size()) {
             throw FileError(file, fmt::format("a face names vertex {}, but there are only {}",

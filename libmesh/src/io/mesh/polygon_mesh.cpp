@@ -10,6 +10,7 @@
 
 #include "io/mesh/polygon_triangulation.h"
 #include "large_memory.h"
+#include "progress_stage.h"
 #include "relief/mesh/error.h"
 
 namespace relief {
@@ -19,6 +20,7 @@ void check_indices(const Polygons& polygons, std::size_t vertex_count,
                    const std::filesystem::path& file) {
     std::size_t corner = 0;
     for (std::size_t i = 0; i < polygons.corner_counts.size(); ++i) {
+        check_cancelled(i);
         for (const std::size_t end = corner + polygons.corner_counts[i]; corner < end; ++corner) {
             if (polygons.corners[corner] < vertex_count) continue;
             throw FileError(file, fmt::format("face {} names vertex {}, but there are only {}", i,
@@ -38,6 +40,7 @@ CutPolygons whole_triangles(const Polygons& polygons) {
     const std::size_t count = polygons.corner_counts.size();
     reserve_to_fill(result.triangles, count);
     for (std::size_t i = 0; i < count; ++i) {
+        check_cancelled(i);
         const std::uint32_t* corner = &polygons.corners[3 * i];
         result.triangles.emplace_back(corner[0], corner[1], corner[2]);
     }
@@ -57,7 +60,9 @@ CutPolygons cut_polygons(const Mesh& vertices, const Polygons& polygons, Report&
     std::vector<glm::vec2> texcoords;
     std::vector<glm::uvec3> cuts;
     const std::uint32_t* corner = polygons.corners.data();
+    ProgressStage stage("cutting polygons", polygons.corner_counts.size());
     for (std::size_t i = 0; i < polygons.corner_counts.size(); ++i) {
+        stage.at(i);
         const std::uint32_t count = polygons.corner_counts[i];
         positions.clear();
         texcoords.clear();

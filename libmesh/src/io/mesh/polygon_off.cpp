@@ -14,6 +14,7 @@
 #include "file_bytes.h"
 #include "io/mesh/mesh_file_text.h"
 #include "io/mesh/polygon_mesh.h"
+#include "progress_stage.h"
 #include "relief/mesh/error.h"
 
 namespace relief {
@@ -125,11 +126,16 @@ MeshFile read_off(const std::filesystem::path& file, const glm::dvec3& origin, R
     TextScanner text(bytes, file, '#');
     const OffHeader header = parse_header(text, bytes.size());
     MeshFile result;
-    for (std::uint64_t i = 0; i < header.vertex_count; ++i)
+    ProgressStage stage("parsing", header.vertex_count + header.face_count);
+    for (std::uint64_t i = 0; i < header.vertex_count; ++i) {
+        stage.at(i);
         read_vertex(text, header, origin, result.mesh);
+    }
     Polygons polygons;
-    for (std::uint64_t i = 0; i < header.face_count; ++i)
+    for (std::uint64_t i = 0; i < header.face_count; ++i) {
+        stage.at(i);
         read_face(text, polygons);
+    }
     result.mesh.name = file.stem().string();
     add_triangles(result.mesh, polygons, file, report);
     return result;

@@ -11,10 +11,12 @@
 #include <array>
 #include <bit>
 #include <cstring>
+#include <utility>
 
 #include "file_bytes.h"
 #include "io/mesh/mesh_file_text.h"
 #include "io/mesh/polygon_key_numbers.h"
+#include "progress_stage.h"
 #include "relief/mesh/error.h"
 
 namespace relief {
@@ -45,7 +47,9 @@ Mesh read_binary(std::string_view bytes, std::size_t count, const glm::dvec3& or
     CornerWelder welder(count / 2);
     Mesh mesh;
     mesh.triangles.reserve(count);
+    ProgressStage stage("triangles", count);
     for (std::size_t i = 0; i < count; ++i) {
+        stage.at(i);
         std::array<glm::vec3, 4> facet;  // The normal, then three corners.
         std::memcpy(facet.data(), bytes.data() + header_size + i * facet_size, sizeof(facet));
         for (glm::vec3& corner : facet)
@@ -64,7 +68,11 @@ Mesh read_ascii(std::string_view bytes, const std::filesystem::path& file,
     CornerWelder welder(bytes.size() / 256);
     Mesh mesh;
     std::vector<std::uint32_t> corners;
+    ProgressStage stage("parsing", bytes.size());
+    std::size_t rest = bytes.size();
     for (std::string_view word = text.word(); !word.empty(); word = text.word()) {
+        if (rest - text.rest().size() > 0x100000)
+            stage.advance(rest - std::exchange(rest, text.rest().size()));
         if (equal_ignoring_case(word, "vertex")) {
             corners.push_back(welder.vertex_at(position_in(text, origin)));
         } else if (equal_ignoring_case(word, "endloop")) {

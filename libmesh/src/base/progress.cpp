@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Apache-2.0
+// Who waits is known by a variable of each thread, which shared-out loops hand to their workers.
+// Tests: tests/mesh/base/progress_test.cpp.
+#include "relief/mesh/progress.h"
+
+#include <sys/stat.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "progress_stage.h"
+
+namespace relief {
+
+constinit thread_local Progress* current_progress = nullptr;
+
+namespace {
+
+constinit thread_local bool is_in_piece = false;
+
+}  // namespace
+
+FileStamp stamp_of(const std::filesystem::path& file) {
+    struct stat facts {};
+    if (::stat(file.c_str(), &facts) != 0) return {};
+    return {static_cast<std::int64_t>(facts.st_mtim.tv_sec) * 1'000'000'000 + facts.st_mtim.tv_nsec,
+            static_cast<std::uint64_t>(facts.st_size), static_cast<std::uint64_t>(facts.st_ino)};
+}
+
+Progress::State Progress::state() const {
+    const std::lock_guard lock(mutex_);
+    State state{stage_.name, std::nullopt};
+    if (stage_.total > 0) {
+        const auto done = static_cast<double>(done_.load(std::memory_order_relaxed));
+        state.part = std::min(done / static_cast<double>(stage_.total), 1.0);
+    }
+    return state;
+}
+
+std::map<std::filesystem::path, FileStamp> Progress::files() const {
+    const std::lock_guard lock(mutex_);
+    return files_;
+}
+
+/// \return what was going on before
+Progress::Stage Progress::begin(Stage stage) {
+    {
+        const std::lock_guard lock(mutex_);
+        std::swap(stage, stage_);
+    }
+    told_ = -1;
+    return stage;
+}
+
+void Progress::advance(std::size_t count) {
+    const std::size_t done = done_.fetch_add(count, std::memory_order_relaxed) + count;
+    // A stage changes only while nobody advances it.
+    if (!tell_ || stage_.total == 0) return;
+    const auto percent = static_cast<int>(100 * done / stage_.total);
+    if (told_.exchange(percent, std::memory_order_relaxed) != percent) tell();
+}
+
+void Progress::tell() {
+    if (!tell_) return;
+    const std::lock_guard lock(telling_);
+    tell_(state());
+}
+
+void note_file(const std::filesystem::path& file) {
+    Progress* const progress = current_progress;
+    if (progress == nullptr) return;
+    std::error_code error;
+    std::filesystem::path absolute = std::filesystem::absolute(file, error).lexically_normal();
+    const FileStamp stamp = stamp_of(absolute);
+    const std::lock_guard lock(progress->mutex_);
+    progress->files_.try_emplace(std::move(absolute), stamp);
+}
+
+ProgressStage::ProgressStage(const char* name, std::size_t total)
+    : progress_(current_progress), speaks_(progress_ != nullptr && !is_in_piece) {
+    check_cancelled();
+    if (!speaks_) return;
+    done_before_ = progress_->done_.exchange(0);
+    before_ = progress_->begin({name, total});
+    progress_->tell();
+}
+
+ProgressStage::~ProgressStage() {
+    if (!speaks_) return;
+    progress_->done_ = done_before_;
+    progress_->begin(std::move(before_));
+}
+
+void ProgressStage::advance(std::size_t count) {
+    if (progress_ == nullptr) return;
+    if (speaks_) progress_->advance(count);
+    if (progress_->is_cancelled()) throw Cancelled();
+}
+
+ProgressScope::ProgressScope(Progress& progress)
+    : before_(std::exchange(current_progress, &progress)) {}
+
+ProgressScope::~ProgressScope() {
+    current_progress = before_;
+}
+
+ProgressPiece::ProgressPiece(Progress* progress)
+    : before_(std::exchange(current_progress, progress)),
+      was_piece_(std::exchange(is_in_piece, true)) {}
+
+ProgressPiece::~ProgressPiece() {
+    current_progress = before_;
+    is_in_piece = was_piece_;
+}
+
+}  // namespace relief
