@@ -11,6 +11,7 @@
 
 #include "common/findings.h"
 #include "common/text.h"
+#include "debug_options.h"
 #include "effect_options.h"
 #include "effects_text.h"
 #include "picture_reference.h"
@@ -32,11 +33,13 @@ OutputCoding coding_of(const ViewOptions& options) {
     return is_linear_output(options) ? OutputCoding::linear : OutputCoding::srgb;
 }
 
-FrameSettings settings_of(const ViewOptions& options) {
+FrameSettings settings_of(const ViewOptions& options, const HealthMarkers& markers) {
     return {.width = options.size.x,
             .height = options.size.y,
             .samples = options.samples,
-            .output = coding_of(options)};
+            .output = coding_of(options),
+            .view = options.debug.view,
+            .overlays = overlays_of(options.debug, markers)};
 }
 
 /// Alpha is kept only where it was asked for, since viewers disagree about what to show behind it.
@@ -47,12 +50,11 @@ Image picture_of(const Frame& frame, const Scene& scene) {
 }
 
 /// Draws every picture that is asked for, writes them where they are to go, and compares.
-Drawn draw(const ViewOptions& options, ComposedScene& composed, FramePlan plan, Stages& stages,
-           Report& report) {
+Drawn draw(const ViewOptions& options, const FrameSettings& settings, ComposedScene& composed,
+           FramePlan plan, Stages& stages, Report& report) {
     const Image reference = options.reference ? read_reference(options) : Image{};
     const std::unique_ptr<Context> context =
         stages.run("context", [&] { return std::make_unique<Context>(options.backend); });
-    const FrameSettings settings = settings_of(options);
     FrameMeasures measures = measure_frame(
         options, {*context, composed.scene(), settings, composed.camera}, plan, stages);
     const std::unique_ptr<Renderer> renderer = stages.run("prepare", [&] {
@@ -85,13 +87,19 @@ ExitCode run(ViewOptions& options) {
     Stages stages(options.general.quiet);
     Report report;
     ComposedScene composed = compose_scene(options, stages, report);
-    const FramePlan plan = chosen_plan(options, composed.scene(), settings_of(options));
+    HealthMarkers markers;
+    if (options.debug.health_markers)
+        markers =
+            stages.run("check", [&] { return chosen_markers(options.debug, composed.scene()); });
+    const FrameSettings settings = settings_of(options, markers);
+    const FramePlan plan = viewed_plan(options, composed.scene(), settings,
+                                       chosen_plan(options, composed.scene(), settings), report);
     if (options.explain_effects && !options.json) print_effects(composed.scene(), plan);
     if (options.effects.print_shaders && !options.json) print_shaders(composed.scene(), plan);
 
     std::optional<Drawn> drawn;
     if (options.output || options.reference || options.effects.measures()) {
-        drawn = draw(options, composed, plan, stages, report);
+        drawn = draw(options, settings, composed, plan, stages, report);
     }
 
     Findings findings;
@@ -103,12 +111,14 @@ ExitCode run(ViewOptions& options) {
         if (drawn && drawn->comparison) {
             json["comparison"] = comparison_json(options, *drawn->comparison);
         }
+        if (options.debug.health_markers) json["markers"] = legend_json(markers);
         if (options.explain_effects) json["effects"] = effects_json(composed.scene(), plan);
         if (options.effects.print_shaders) json["shaders"] = shaders_json(plan);
         print_json(json);
     } else if (drawn && !options.general.quiet) {
         if (options.explain_effects || options.effects.print_shaders) fmt::print("\n");
         print_summary(options, composed, *drawn, findings, stages);
+        if (options.debug.health_markers) print_entry("markers", legend(markers));
         print_measures(drawn->measures, options, drawn->frame);
     }
     if (drawn && drawn->comparison) require_match(options, *drawn->comparison);
@@ -131,6 +141,7 @@ Command add_view_command(CLI::App& tool) {
          "point:2,2,2,4,#ff8040 --camera 0,10,1.5 --output out/lit.exr",
          "relief-view data/vase.obj --material gold --turntable 24 --size 256x256 --output "
          "out/spin.apng",
+         "relief-view data/vase.obj --show shading-normal --wireframe --output out/normals.png",
          "relief-view data/vase.obj --diffuse-map data/bricks-diffuse.png --explain-effects"});
     return {&tool, [options] { return run(*options); }};
 }

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "common/text.h"
+#include "debug_options.h"
 #include "effect_options.h"
 #include "environment_options.h"
 #include "map_options.h"
@@ -182,6 +183,7 @@ void add_view_options(CLI::App& app, ViewOptions& options) {
     add_sequence_options(app, options);
     add_reference_options(app, options);
     add_effect_options(app, options);
+    add_debug_options(app, options);
     const Choices<Backend> backends = {
         {"auto", Backend::automatic}, {"osmesa", Backend::osmesa}, {"egl", Backend::egl}};
     add_choice(app, "--backend", options.backend, backends,
@@ -201,6 +203,7 @@ void settle(ViewOptions& options) {
     check_materials(options);
     check_environment(options);
     check_lights(options);
+    check_debug_options(options);
 }
 
 bool is_linear_output(const ViewOptions& options) {

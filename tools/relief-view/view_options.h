@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "common/options.h"
+#include "debug_choices.h"
 #include "effect_choices.h"
 #include "light_option.h"
 #include "relief/mesh/bump.h"
@@ -116,6 +117,7 @@ struct ViewOptions {
     Backend backend = Backend::automatic;
     bool explain_effects = false;
     EffectChoices effects;
+    DebugChoices debug;
     bool json = false;
     GeneralOptions general;
 };

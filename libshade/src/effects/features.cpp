@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "effects/light_rows.h"
+#include "effects/view_features.h"
 #include "relief/shade/effects.h"
 
 namespace relief {
@@ -119,6 +120,8 @@ std::string counted(std::uint32_t count, std::string_view kind) {
 }  // namespace
 
 Features canonical(Features f) {
+    if (is_data(f.view)) return data_features(f);
+    if (is_term(f.view)) f = term_features(f);
     if (f.unlit) return unlit_only(f);
     settle_model(f);
     drop_lamps(f);
@@ -143,6 +146,8 @@ std::string describe(const Features& f) {
             parts.push_back(counted(lamp->second, lamp->first));
         }
     }
+    if (f.view != DebugView::picture)
+        parts.push_back(fmt::format("view of {}", debug_view_info(f.view).name));
     constexpr std::array<const char*, 4> codings = {"linear", "clamped", "sRGB", "half"};
     parts.emplace_back(codings.at(static_cast<std::size_t>(f.output)));
     return fmt::format("{}", fmt::join(parts, ", "));

@@ -6,12 +6,13 @@
 #include <algorithm>
 
 #include "effects/environment_needs.h"
+#include "effects/view_features.h"
 
 namespace relief {
 
 namespace {
 
-void plan_environment(const Scene& scene, FramePlan& plan) {
+void plan_environment(const Scene& scene, const FrameSettings& settings, FramePlan& plan) {
     const auto decide = [&](const char* effect, bool on, const char* why, const char* why_not) {
         plan.reasons.push_back({effect, on,
                                 on                  ? why
@@ -19,9 +20,11 @@ void plan_environment(const Scene& scene, FramePlan& plan) {
                                                     : "the scene has no environment"});
         return on;
     };
-    plan.skybox = decide("skybox", scene.environment && scene.environment->skybox,
+    const bool is_picture = settings.view == DebugView::picture;
+    plan.skybox = decide("skybox", scene.environment && scene.environment->skybox && is_picture,
                          "the environment is to be seen behind the model",
-                         "the environment is not to be seen itself");
+                         is_picture ? "the environment is not to be seen itself"
+                                    : "a debug view shows surfaces alone");
     const EnvironmentNeeds needs = environment_needs(plan);
     plan.prefiltered_map = decide("prefiltered environment", needs.blurred,
                                   "a rough material reflects it", "no rough material reflects it");
@@ -43,8 +46,9 @@ EnvironmentNeeds environment_needs(const FramePlan& plan) {
     EnvironmentNeeds needs;
     for (const DrawPlan& draw : plan.draws) {
         const Features& f = draw.features;
-        const bool blurs = f.reflection == ReflectionTerm::glossy;
-        needs.sharp |= f.reflection == ReflectionTerm::mirror || f.refraction;
+        const bool blurs = f.reflection == ReflectionTerm::glossy && !has_black_mirror(f);
+        needs.sharp |= (f.reflection == ReflectionTerm::mirror && !has_black_mirror(f)) ||
+                       (f.refraction && !has_black_transmission(f));
         needs.blurred |= blurs;
         needs.irradiance |= f.environment_diffuse;
         needs.brdf |= f.metallic_roughness && (blurs || f.environment_diffuse);
@@ -54,14 +58,14 @@ EnvironmentNeeds environment_needs(const FramePlan& plan) {
 
 void plan_frame(const Scene& scene, const FrameSettings& settings, FramePlan& plan) {
     plan.reasons.clear();
-    plan_environment(scene, plan);
+    plan_environment(scene, settings, plan);
     plan.sorted_blending =
         std::any_of(plan.draws.begin(), plan.draws.end(),
                     [](const DrawPlan& draw) { return draw.features.alpha == AlphaMode::blend; });
     plan.reasons.push_back({"sorted blending", plan.sorted_blending,
                             plan.sorted_blending ? "a material lets through what is behind it"
                                                  : "every material is opaque or has holes only"});
-    const bool averaged = settings.samples > 1;
+    const bool averaged = settings.samples > 1 && !is_data(settings.view);
     plan.finishing_pass = averaged || plan.sorted_blending;
     plan.reasons.push_back(
         {"finishing pass", plan.finishing_pass,

@@ -6,6 +6,7 @@
 #include "effects/shader_parts.h"
 
 #include "effects/light_rows.h"
+#include "effects/view_features.h"
 
 namespace relief {
 
@@ -52,7 +53,9 @@ Needs vertex_needs(F f) {
     return needs_of(f, is_gouraud(f), false);
 }
 Needs fragment_needs(F f) {
-    return needs_of(f, !is_gouraud(f), true);
+    Needs needs = needs_of(f, !is_gouraud(f), true);
+    needs.normal |= shows_normal(f);
+    return needs;
 }
 
 /// Whether a tangent frame bends the normal, and which.
@@ -61,11 +64,18 @@ bool is_bent(F f) {
         f.detail == NormalDetail::normal_map || f.detail == NormalDetail::bump_map;
     return tangent_space && fragment_needs(f).normal;
 }
+bool has_frame(F f) {
+    return is_bent(f) || shows_frame(f);
+}
 bool has_stored_frame(F f) {
-    return is_bent(f) && f.frame == TangentFrame::stored;
+    return has_frame(f) && f.frame == TangentFrame::stored;
 }
 bool has_derived_frame(F f) {
-    return is_bent(f) && f.frame == TangentFrame::derivatives;
+    return has_frame(f) && f.frame == TangentFrame::derivatives;
+}
+/// Whether a map's vector in tangent space is asked for.
+bool has_detail(F f, NormalDetail detail) {
+    return f.detail == detail && (is_bent(f) || f.view == DebugView::normal_map);
 }
 
 bool passes_position(F f) {
@@ -75,12 +85,12 @@ bool passes_position(F f) {
            has_derived_frame(f) || (here.normal && is_flat(f));
 }
 bool passes_normal(F f) {
-    return vertex_needs(f).normal || (fragment_needs(f).normal && !is_flat(f));
+    return has_frame(f) || vertex_needs(f).normal || (fragment_needs(f).normal && !is_flat(f));
 }
 bool passes_texcoord(F f) {
     return f.diffuse_texture || f.specular_texture || f.metallic_roughness_texture ||
            f.occlusion_texture || f.opacity_texture || f.emission_texture ||
-           f.detail != NormalDetail::none;
+           f.detail != NormalDetail::none || has_derived_frame(f) || f.view == DebugView::texcoords;
 }
 
 /// Vertex attributes on their way.
@@ -149,10 +159,10 @@ Parts normal_parts(F f) {
          object_map,
          {.uniforms = {"normal_map_scale", "normal_map_bias", "world_from_object_normal"},
           .samplers = {"normal_texture"}}},
-        {"detail", "detail/normal_map.glsl", bent && f.detail == NormalDetail::normal_map, texel},
+        {"detail", "detail/normal_map.glsl", has_detail(f, NormalDetail::normal_map), texel},
         {"detail",
          "detail/bump_map.glsl",
-         bent && f.detail == NormalDetail::bump_map,
+         has_detail(f, NormalDetail::bump_map),
          {.uniforms = {"bump_strength"}, .samplers = {"bump_texture"}}},
         {"frame", "frame/stored.glsl", has_stored_frame(f)},
         {"frame", "frame/derivatives.glsl", has_derived_frame(f)},
@@ -245,9 +255,13 @@ Parts surrounding_parts(F f) {
 /// Textures and colours that multiply.
 Parts color_parts(F f) {
     const bool physical = f.metallic_roughness;
+    // glTF's lamps scatter and mirror at once; a view of one of the two blackens the other.
+    const bool no_scattering = physical && f.view == DebugView::specular;
+    const bool no_highlights = physical && f.view == DebugView::diffuse;
     return {
         {"tint", "color/tint.glsl", !physical},
-        {"tint", "color/tint_physical.glsl", physical},
+        {"tint", "color/tint_physical.glsl", physical && !no_scattering},
+        {"tint", "absent/scattering.glsl", no_scattering},
         {"diffuse_texture", "absent/diffuse_texture.glsl", !f.diffuse_texture},
         {"diffuse_texture",
          "color/texture.glsl",
@@ -255,7 +269,8 @@ Parts color_parts(F f) {
          {.samplers = {"diffuse_texture"}}},
         {"vertex_color", "absent/vertex_color.glsl", !f.vertex_colors},
         {"vertex_color", "color/vertex.glsl", f.vertex_colors},
-        {"specular_texture", "absent/specular_texture.glsl", !f.specular_texture},
+        {"specular_texture", "absent/specular_texture.glsl", !f.specular_texture && !no_highlights},
+        {"specular_texture", "absent/highlights.glsl", no_highlights},
         {"specular_texture",
          "color/specular_texture.glsl",
          f.specular_texture,
@@ -298,7 +313,14 @@ Parts reflection_parts(F f) {
     const bool none = f.reflection == ReflectionTerm::none;
     const bool physical = !none && f.metallic_roughness;
     const bool phong = !none && !f.metallic_roughness;
+    const bool mirrors = phong && !has_black_mirror(f);
+    const bool dims = f.refraction && has_black_transmission(f);
     return {
+        {"mirror_image", "absent/mirror_image.glsl", phong && has_black_mirror(f)},
+        {"refraction",
+         "reflection/dimmed_by_refraction.glsl",
+         dims,
+         {.uniforms = {"transmission"}}},
         {"reflection", "absent/reflection.glsl", none && !f.refraction},
         {"reflection", "reflection/transparent.glsl", none && f.refraction},
         {"reflection",
@@ -309,11 +331,11 @@ Parts reflection_parts(F f) {
         {"reflection", "reflection/mirrored.glsl", phong},
         {"mirror_image",
          "reflection/mirror.glsl",
-         phong && f.reflection == ReflectionTerm::mirror,
+         mirrors && f.reflection == ReflectionTerm::mirror,
          {.uniforms = {"environment_intensity"}, .samplers = {"environment"}}},
         {"mirror_image",
          "reflection/glossy.glsl",
-         phong && f.reflection == ReflectionTerm::glossy,
+         mirrors && f.reflection == ReflectionTerm::glossy,
          {.uniforms = {"environment_intensity", "blurred_levels", "reflection_roughness"},
           .samplers = {"blurred_environment"}}},
         {"fresnel",
@@ -335,9 +357,31 @@ Parts reflection_parts(F f) {
         {"refraction", "absent/refraction.glsl", phong && !f.refraction},
         {"refraction",
          "reflection/refraction.glsl",
-         f.refraction,
+         f.refraction && !dims,
          {.uniforms = {"environment_intensity", "transmission", "refraction_ratio"},
           .samplers = {"environment"}}},
+    };
+}
+
+/// What a view of data writes.
+Parts view_parts(F f) {
+    const auto is = [&](DebugView view) { return f.view == view; };
+    const bool object_map =
+        is(DebugView::normal_map) && f.detail == NormalDetail::object_normal_map;
+    return {
+        {"view", "view/normal.glsl", shows_normal(f)},
+        {"view", "view/tangent.glsl", is(DebugView::tangent)},
+        {"view", "view/bitangent.glsl", is(DebugView::bitangent)},
+        {"view", "view/handedness.glsl", is(DebugView::handedness)},
+        {"view", "view/texcoords.glsl", is(DebugView::texcoords)},
+        {"view", "view/normal_map.glsl", is(DebugView::normal_map) && !object_map},
+        {"view",
+         "view/object_normal_map.glsl",
+         object_map,
+         {.uniforms = {"normal_map_scale", "normal_map_bias"}, .samplers = {"normal_texture"}}},
+        {"view", "view/height.glsl", is(DebugView::height), {.samplers = {"bump_texture"}}},
+        {"view", "view/overdraw.glsl", is(DebugView::overdraw)},
+        {"view", "view/hatched.glsl", is(DebugView::nothing_to_show)},
     };
 }
 
@@ -395,6 +439,14 @@ std::vector<Parts> fragment_parts(const Features& f) {
             alpha_parts(f),
             reflection_parts(f),
             output_parts(f)};
+}
+
+std::vector<Parts> data_parts(const Features& f) {
+    return {{{"stage", "data.frag.glsl", true}},
+            view_parts(f),
+            normal_parts(f),
+            color_parts(f),
+            alpha_parts(f)};
 }
 
 std::vector<Parts> unlit_parts(const Features& f) {

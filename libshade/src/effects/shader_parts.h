@@ -39,6 +39,9 @@ std::vector<Parts> fragment_parts(const Features& features);
 /// The fragment stage of a surface without light.
 std::vector<Parts> unlit_parts(const Features& features);
 
+/// The fragment stage of a debug view of data.
+std::vector<Parts> data_parts(const Features& features);
+
 /// How the picture is coded.
 Parts output_parts(const Features& features);
 

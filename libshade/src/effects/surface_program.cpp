@@ -30,7 +30,9 @@ struct ChosenParts {
 };
 
 ChosenParts chosen_parts(const Features& f) {
-    return {chosen_of(vertex_parts(f)), chosen_of(f.unlit ? unlit_parts(f) : fragment_parts(f))};
+    return {chosen_of(vertex_parts(f)), chosen_of(is_data(f.view) ? data_parts(f)
+                                                  : f.unlit       ? unlit_parts(f)
+                                                                  : fragment_parts(f))};
 }
 
 ShaderSteps steps_of(const Parts& parts) {

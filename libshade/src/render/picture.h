@@ -33,6 +33,9 @@ class Picture {
     /// Finishes the samples, and waits until all is drawn.
     void finish() const;
 
+    /// Makes the finished picture the target, to be drawn over.
+    void bind_finished() const { target().bind(); }
+
     [[nodiscard]] Image read() const;
 
     /// Where the finished picture is: one level, row 0 at the bottom.

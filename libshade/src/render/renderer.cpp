@@ -19,6 +19,7 @@
 #include "render/gpu_cache.h"
 #include "render/light_storage.h"
 #include "render/material_textures.h"
+#include "render/overlays.h"
 #include "render/picture.h"
 #include "render/scene_textures.h"
 #include "render/sorted_triangles.h"
@@ -104,6 +105,8 @@ struct Renderer::Implementation {
     void set_state(const Draw& draw) const;
     void issue(Draw& draw, const glm::dmat4& to_clip, const Camera& camera);
     void issue_blended(const glm::dmat4& to_clip, const Camera& camera);
+    void count_fragments() const;
+    void draw_overlays(const glm::dmat4& to_clip) const;
     void draw_frame(const Camera& camera);
 
     const gl::Api& api;
@@ -120,6 +123,8 @@ struct Renderer::Implementation {
     std::vector<Draw> draws;                                 ///< Opaque ones first.
     std::optional<EnvironmentMaps> environment;
     std::optional<Skybox> skybox;
+    std::unique_ptr<OverlayDrawing> overlays;  ///< Where any is asked for.
+    bool counts_fragments;                     ///< Overdraw is what is shown.
 };
 
 Renderer::Implementation::Implementation(const Context& context, const Scene& scene,
@@ -131,7 +136,8 @@ Renderer::Implementation::Implementation(const Context& context, const Scene& sc
       plan(std::move(frame_plan)),
       things(population(scene)),
       picture(api, cache.targets, cache.programs, scene, settings, plan.finishing_pass),
-      textures(cache.textures) {
+      textures(cache.textures),
+      counts_fragments(settings.view == DebugView::overdraw) {
     report_missing_texcoords(scene, plan, report);
 
     Stopwatch stopwatch;
@@ -151,6 +157,10 @@ Renderer::Implementation::Implementation(const Context& context, const Scene& sc
     {
         const ProgressStage stage("programs");
         prepare_draws(scene);
+    }
+    if (settings.overlays.any()) {
+        overlays =
+            std::make_unique<OverlayDrawing>(api, cache.programs, scene, plan, settings, report);
     }
     api->Finish();
     api.check("preparing the scene");
@@ -229,6 +239,7 @@ void Renderer::Implementation::move(const Scene& scene) {
     lights.update(api, scene);
     for (Draw& draw : draws)
         set_place(draw.values, scene.instances[draw.instance].world_from_object);
+    if (overlays) overlays->move(scene);
 }
 
 void Renderer::Implementation::bind_textures(const Draw& draw) const {
@@ -296,6 +307,27 @@ void Renderer::Implementation::issue_blended(const glm::dmat4& to_clip, const Ca
     api->Disable(GL_BLEND);
 }
 
+/// Fragments add up on black, whatever is nearer.
+void Renderer::Implementation::count_fragments() const {
+    api->ClearColor(0.0F, 0.0F, 0.0F, 1.0F);
+    api->Clear(GL_COLOR_BUFFER_BIT);
+    api->Disable(GL_DEPTH_TEST);
+    api->Enable(GL_BLEND);
+    api->BlendEquation(GL_FUNC_ADD);
+    api->BlendFuncSeparate(GL_ONE, GL_ONE, GL_ZERO, GL_ONE);
+}
+
+void Renderer::Implementation::draw_overlays(const glm::dmat4& to_clip) const {
+    std::vector<OverlaySurface> surfaces;
+    for (const Draw& draw : draws) {
+        surfaces.push_back({meshes.at(draw.mesh).get(), draw.range, draw.values.world_from_object,
+                            draw.both_sides, draw.values.handedness < 0.0F,
+                            draw.features.alpha == AlphaMode::opaque});
+    }
+    picture.bind_finished();
+    overlays->draw(to_clip, surfaces);
+}
+
 void Renderer::Implementation::draw_frame(const Camera& camera) {
     picture.begin();
     api->Disable(GL_BLEND);
@@ -304,6 +336,7 @@ void Renderer::Implementation::draw_frame(const Camera& camera) {
     api->CullFace(GL_BACK);
     environment->bind(api);
     set_attribute_constants(api);
+    if (counts_fragments) count_fragments();
     const glm::dmat4 to_clip = clip_from_world(camera, static_cast<double>(picture.aspect()));
     for (Draw& draw : draws) {
         if (!is_blended(draw)) issue(draw, to_clip, camera);
@@ -313,16 +346,24 @@ void Renderer::Implementation::draw_frame(const Camera& camera) {
         skybox->draw(api, camera, picture.aspect());
     }
     if (plan.sorted_blending) issue_blended(to_clip, camera);
+    if (counts_fragments) api->Disable(GL_BLEND);
     picture.finish();
+    if (overlays) draw_overlays(to_clip);
     api.check("drawing the scene");
 }
 
 namespace {
 
 /// The plan that the renderer makes itself, of a scene found valid.
-FramePlan checked_plan(const Scene& scene, const FrameSettings& settings) {
+FramePlan checked_plan(const Scene& scene, const FrameSettings& settings, Report& report) {
     validate(scene);
-    return plan_effects(scene, settings);
+    return plan_view(scene, settings, plan_effects(scene, settings), report);
+}
+
+/// Views of data take one sample a pixel.
+FrameSettings drawn_settings(FrameSettings settings) {
+    if (is_data(settings.view)) settings.samples = 1;
+    return settings;
 }
 
 void check_draw(const Scene& scene, const DrawPlan& draw) {
@@ -344,7 +385,8 @@ void check_draw(const Scene& scene, const DrawPlan& draw) {
 }
 
 /// Another's plan must name what the scene has; what draws need of the frame is put in.
-FramePlan checked_plan(const Scene& scene, FramePlan plan, const FrameSettings& settings) {
+FramePlan checked_plan(const Scene& scene, FramePlan plan, const FrameSettings& settings,
+                       Report& report) {
     validate(scene);
     for (DrawPlan& draw : plan.draws) {
         check_draw(scene, draw);
@@ -356,27 +398,28 @@ FramePlan checked_plan(const Scene& scene, FramePlan plan, const FrameSettings& 
         draw.features.output = drawn_coding(settings, plan.finishing_pass);
         draw.features = canonical(draw.features);
     }
-    return plan;
+    return plan_view(scene, settings, std::move(plan), report);
 }
 
 }  // namespace
 
 Renderer::Renderer(const Context& context, const Scene& scene, const FrameSettings& settings,
                    Report& report)
-    : implementation_(std::make_unique<Implementation>(
-          context, scene, checked_plan(scene, settings), settings, nullptr, report)) {}
+    : implementation_(
+          std::make_unique<Implementation>(context, scene, checked_plan(scene, settings, report),
+                                           drawn_settings(settings), nullptr, report)) {}
 
 Renderer::Renderer(const Context& context, const Scene& scene, FramePlan plan,
                    const FrameSettings& settings, Report& report)
     : implementation_(std::make_unique<Implementation>(
-          context, scene, checked_plan(scene, std::move(plan), settings), settings, nullptr,
-          report)) {}
+          context, scene, checked_plan(scene, std::move(plan), settings, report),
+          drawn_settings(settings), nullptr, report)) {}
 
 Renderer::Renderer(RenderCache& cache, const Context& context, const Scene& scene, FramePlan plan,
                    const FrameSettings& settings, Report& report)
     : implementation_(std::make_unique<Implementation>(
-          context, scene, checked_plan(scene, std::move(plan), settings), settings, &cache,
-          report)) {}
+          context, scene, checked_plan(scene, std::move(plan), settings, report),
+          drawn_settings(settings), &cache, report)) {}
 
 Renderer::~Renderer() = default;
 

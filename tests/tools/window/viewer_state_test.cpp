@@ -141,6 +141,29 @@ TEST_F(State, LightsTurnRoundTheModelAndKeepTheirStrength) {
     EXPECT_EQ(after.irradiance, before.irradiance);
 }
 
+TEST_F(State, ShowsDebugViewsByKeyAndKeepsThemForAnotherModel) {
+    show("square.obj");
+    const std::uint64_t revision = state().wish()->revision;
+    state().act(Action::next_view);
+    state().act(Action::wireframe);
+    state().act(Action::health_markers);
+    const DrawWish wish = *state().wish();
+    EXPECT_NE(wish.revision, revision);
+    EXPECT_EQ(wish.settings.view, DebugView::geometric_normal);
+    EXPECT_TRUE(wish.settings.overlays.wireframe);
+    EXPECT_TRUE(wish.settings.overlays.markers);
+    EXPECT_THAT(state().command_line(), testing::HasSubstr(" --show geometric-normal --wireframe "
+                                                           "--health-markers trouble"));
+    show("far.obj");
+    EXPECT_EQ(state().json(DrawnPicture{})["show"], "geometric-normal");
+    EXPECT_EQ(state().json(DrawnPicture{})["overlays"]["wireframe"], true);
+    state().act(Action::previous_view);
+    state().act(Action::previous_view);
+    EXPECT_EQ(state().wish()->settings.view, DebugView::overdraw);
+    state().act(Action::plain_view);
+    EXPECT_EQ(state().wish()->settings, (FrameSettings{.width = 400, .height = 300}));
+}
+
 TEST_F(State, SaysItselfAsJson) {
     show("square.obj");
     state().camera().azimuth = glm::radians(40.0F);

@@ -24,10 +24,8 @@ class DrawThread::Drawer {
 
     /// Draws, or throws; what was drawn before stays.
     void draw(const DrawWish& wish, DrawnPicture& drawn) {
-        const bool is_same = renderer_ && !is_stale_ && revision_ == wish.revision &&
-                             settings_.width == wish.settings.width &&
-                             settings_.height == wish.settings.height &&
-                             settings_.samples == wish.settings.samples;
+        const bool is_same =
+            renderer_ && !is_stale_ && revision_ == wish.revision && settings_ == wish.settings;
         if (!is_same) prepare(wish, drawn);
         drawn.times = renderer_->draw_only(wish.camera).times;
         handover_.put(*renderer_);

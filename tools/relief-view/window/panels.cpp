@@ -52,6 +52,7 @@ float draw_panels(const PanelInput& input, PanelWishes& wishes) {
     if (begins("Lights")) draw_light_panel(input);
     if (begins("Materials")) draw_material_panel(input);
     if (begins("Picture")) draw_picture_panel(input);
+    if (begins("View")) draw_view_panel(input);
     if (begins("Save")) draw_capture_panel(input, wishes);
     if (begins("Effects", ImGuiTreeNodeFlags_DefaultOpen)) draw_effects_panel(input);
     ImGui::PopItemWidth();

@@ -34,6 +34,7 @@ void draw_material_panel(const PanelInput& input);
 void draw_picture_panel(const PanelInput& input);
 void draw_capture_panel(const PanelInput& input, PanelWishes& wishes);
 void draw_effects_panel(const PanelInput& input);
+void draw_view_panel(const PanelInput& input);
 
 /// All of them in one column. \return its width in pixels
 float draw_panels(const PanelInput& input, PanelWishes& wishes);

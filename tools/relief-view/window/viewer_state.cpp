@@ -8,6 +8,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <numbers>
 
+#include "debug_options.h"
 #include "window/draw_thread.h"
 #include "window/picking.h"
 
@@ -32,13 +33,16 @@ void ViewerState::take(Loaded loaded) {
     error_ = loaded.error;
     if (!loaded.composed) return;
     const bool is_new = loaded.options.model != shown_model_;
+    const DebugChoices debug = options_.debug;  // Stays as it is now.
     options_ = std::move(loaded.options);
+    options_.debug = debug;
     shown_model_ = options_.model;
     notes_ = std::move(loaded.composed->notes);
     findings_ = std::move(loaded.findings);
     const Camera camera = loaded.composed->camera;
     scene_ = std::make_shared<const Scene>(std::move(loaded.composed->scene()));
     ball_ = ball_around(world_bounds(*scene_));
+    mark_health();
     ++revision_;
     if (is_new) camera_ = orbit_of(camera, ball_);
 }
@@ -74,6 +78,37 @@ void ViewerState::aim(const glm::vec2& pointer) {
 void ViewerState::set_effects(EffectWishes effects) {
     effects_ = std::move(effects);
     ++revision_;
+}
+
+void ViewerState::mark_health() {
+    markers_ = scene_ ? chosen_markers(options_.debug, *scene_) : HealthMarkers{};
+}
+
+void ViewerState::set_debug(const DebugChoices& choices) {
+    const bool marks_change = choices.health_markers != options_.debug.health_markers;
+    options_.debug = choices;
+    if (marks_change) mark_health();
+    ++revision_;
+}
+
+void ViewerState::act_on_debug(Action action) {
+    DebugChoices choices = options_.debug;
+    const std::size_t count = debug_views().size();
+    const auto turn = [&](std::size_t by) {
+        choices.view =
+            static_cast<DebugView>((static_cast<std::size_t>(choices.view) + by) % count);
+    };
+    if (action == Action::next_view) turn(1);
+    if (action == Action::previous_view) turn(count - 1);
+    if (action == Action::plain_view) choices = {};
+    if (action == Action::wireframe) choices.wireframe = !choices.wireframe;
+    if (action == Action::vertex_frames) choices.vertex_frames = !choices.vertex_frames;
+    if (action == Action::health_markers) {
+        const bool were_on = choices.health_markers.has_value();
+        choices.health_markers.reset();
+        if (!were_on) choices.health_markers = HealthChoice::trouble;
+    }
+    set_debug(choices);
 }
 
 void ViewerState::look_from(float azimuth, float elevation) {
@@ -120,6 +155,13 @@ void ViewerState::act(Action action) {
             return look_from(camera_.azimuth, std::min(camera_.elevation + key_turn, quarter));
         case Action::orbit_down:
             return look_from(camera_.azimuth, std::max(camera_.elevation - key_turn, -quarter));
+        case Action::next_view:
+        case Action::previous_view:
+        case Action::plain_view:
+        case Action::wireframe:
+        case Action::vertex_frames:
+        case Action::health_markers:
+            return act_on_debug(action);
         default:
             return;  // The window's own.
     }
@@ -145,13 +187,16 @@ std::optional<DrawWish> ViewerState::wish() const {
     wish.settings.width = view_.x;
     wish.settings.height = view_.y;
     wish.settings.samples = options_.samples;
+    wish.settings.view = options_.debug.view;
+    wish.settings.overlays = overlays_of(options_.debug, markers_);
     wish.camera = camera_of(camera_, ball_);
     return wish;
 }
 
 std::string ViewerState::command_line() const {
     return fmt::format("--camera {} --fov {:.6g} --size {}x{}", to_text(camera_),
-                       glm::degrees(camera_.vertical_fov), view_.x, view_.y);
+                       glm::degrees(camera_.vertical_fov), view_.x, view_.y) +
+           command_line_of(options_.debug);
 }
 
 nlohmann::ordered_json ViewerState::json(const DrawnPicture& drawn) const {
@@ -165,6 +210,8 @@ nlohmann::ordered_json ViewerState::json(const DrawnPicture& drawn) const {
                                       {"distance", camera_.distance},
                                       {"target", numbers(camera_.target)},
                                       {"fov", glm::degrees(camera_.vertical_fov)}}},
+                                    {"show", debug_view_info(options_.debug.view).name},
+                                    {"overlays", overlays_json(options_.debug, markers_)},
                                     {"turntable", is_turning_},
                                     {"revision", revision_},
                                     {"drawn",

@@ -11,6 +11,7 @@
 #include <string>
 
 #include "relief/shade/effect_forcing.h"
+#include "relief/shade/health_markers.h"
 #include "scene_options.h"
 #include "window/bindings.h"
 #include "window/loader.h"
@@ -56,6 +57,11 @@ class ViewerState {
     void set_effects(EffectWishes effects);
     [[nodiscard]] const EffectWishes& effects() const { return effects_; }
 
+    /// Debug view and overlays.
+    void set_debug(const DebugChoices& choices);
+    [[nodiscard]] const DebugChoices& debug() const { return options_.debug; }
+    [[nodiscard]] const HealthMarkers& markers() const { return markers_; }
+
     /// What keys do; help, panels, screenshot and quit are the window's.
     void act(Action action);
 
@@ -78,12 +84,15 @@ class ViewerState {
     [[nodiscard]] nlohmann::ordered_json json(const DrawnPicture& drawn) const;
 
   private:
+    void mark_health();
+    void act_on_debug(Action action);
     void look_from(float azimuth, float elevation);
 
     ViewOptions options_;
     std::shared_ptr<const Scene> scene_;
     std::filesystem::path shown_model_;
     std::uint64_t revision_ = 0;
+    HealthMarkers markers_;  ///< Of the scene, where they are asked for.
     EffectWishes effects_;
     OrbitCamera camera_;
     Ball ball_;

@@ -86,7 +86,8 @@ const MeshConditionInfo& condition_info(MeshCondition condition);
 struct FoundCondition {
     MeshCondition condition;
     std::size_t count = 0;
-    std::vector<std::size_t> first;  ///< The smallest indices, ascending, at most 8.
+    /// The smallest indices, ascending, at most DiagnoseOptions::listed.
+    std::vector<std::size_t> first;
 
     friend bool operator==(const FoundCondition&, const FoundCondition&) = default;
 };
@@ -109,6 +110,7 @@ struct DiagnoseOptions {
     bool edges = true;            ///< Repeated and backed triangles, edges, bow-ties.
     bool near_duplicates = true;  ///< vertex_near_duplicate
     bool texture_overlap = true;  ///< texture_overlapping
+    std::size_t listed = 8;       ///< How many elements of a condition are named.
 };
 
 /// Everything that MeshCondition lists, counted. Changes nothing, judges every value.

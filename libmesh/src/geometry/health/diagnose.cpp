@@ -15,7 +15,6 @@
 namespace relief {
 namespace {
 
-constexpr std::size_t first_limit = 8;
 constexpr std::size_t small_mesh = 2048;
 
 // What is coarser than this part of its size keeps fewer than 16 of a float's 24 bits: steps that
@@ -80,7 +79,7 @@ void diagnose_overlap(const Subject& subject, Diagnosis& diagnosis, Tally& tally
 
 }  // namespace
 
-Tally::Tally() {
+Tally::Tally(std::size_t listed) : listed_(listed) {
     for (const MeshConditionInfo& condition : mesh_conditions())
         conditions_.push_back({condition.condition, 0, {}});
 }
@@ -88,7 +87,7 @@ Tally::Tally() {
 void Tally::add(MeshCondition condition, std::size_t index) {
     FoundCondition& found = conditions_[static_cast<std::size_t>(condition)];
     ++found.count;
-    if (found.first.size() < first_limit && (found.first.empty() || found.first.back() != index))
+    if (found.first.size() < listed_ && (found.first.empty() || found.first.back() != index))
         found.first.push_back(index);
 }
 
@@ -139,13 +138,13 @@ Diagnosis diagnose(const Mesh& mesh, const DiagnoseOptions& options) {
         },
         [&](Tally& tally) { diagnose_places(mesh, diagnosis, tally); },
     };
-    std::vector<Tally> tallies(parts.size());
+    std::vector<Tally> tallies(parts.size(), Tally(options.listed));
     std::vector<std::function<void()>> tasks;
     for (std::size_t i = 0; i < parts.size(); ++i)
         tasks.emplace_back([&, i] { parts[i](tallies[i]); });
     parallel_tasks(tasks, mesh.triangles.size() < small_mesh);
 
-    Tally all;
+    Tally all(options.listed);
     for (const Tally& tally : tallies)
         all.merge(tally);
     diagnosis.found = all.found();

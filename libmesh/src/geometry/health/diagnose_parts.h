@@ -19,7 +19,8 @@ namespace relief {
 /// What was counted, one entry for each condition.
 class Tally {
   public:
-    Tally();
+    /// \param listed  how many elements of a condition are named
+    explicit Tally(std::size_t listed);
 
     /// Counts one element. Elements of one condition come in ascending order; one that comes again
     /// (a triangle with two such edges) is named once.
@@ -32,6 +33,7 @@ class Tally {
     [[nodiscard]] std::vector<FoundCondition> found() const;
 
   private:
+    std::size_t listed_;
     std::vector<FoundCondition> conditions_;
 };
 

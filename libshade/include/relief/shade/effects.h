@@ -14,6 +14,7 @@
 #include <string>
 #include <vector>
 
+#include "relief/mesh/report.h"
 #include "relief/shade/frame_settings.h"
 #include "relief/shade/scene.h"
 
@@ -83,6 +84,7 @@ struct Features {
     OutputCoding output = OutputCoding::srgb;
     ToneMapping tone_mapping = ToneMapping::none;
     bool exposure = false;
+    DebugView view = DebugView::picture;  ///< What is shown of all this.
 
     friend auto operator<=>(const Features&, const Features&) = default;
 };
@@ -128,6 +130,14 @@ FramePlan plan_effects(const Scene& scene, const FrameSettings& settings);
 
 /// Sets what is frame-wide from the draws: after features were changed by hand.
 void plan_frame(const Scene& scene, const FrameSettings& settings, FramePlan& plan);
+
+/// The plan with every draw showing what the settings' view says, and nothing planned that the view
+/// does not need; as it was if that is the picture. Renderer does this itself.
+///
+/// \param report  counts draws for which the view has no meaning
+/// \throws InvalidInput if it has none for any of them, with the reason
+FramePlan plan_view(const Scene& scene, const FrameSettings& settings, FramePlan plan,
+                    Report& report);
 
 /// Drops what cannot show: without light no normal, without normal no normal map, and so on.
 /// features_of() already returns canonical values; canonical(canonical(f)) == canonical(f).

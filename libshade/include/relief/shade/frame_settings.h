@@ -5,6 +5,8 @@
 
 #include <cstdint>
 
+#include "relief/shade/debug_views.h"
+
 namespace relief {
 
 /// How the finished radiance is stored.
@@ -24,6 +26,12 @@ struct FrameSettings {
     /// srgb: 8-bit RGBA, ready for a screen. linear: float RGBA radiance. clamped: the same up
     /// to 1.
     OutputCoding output = OutputCoding::srgb;
+    /// What is shown instead of the picture. Views of data take one sample a pixel, whatever
+    /// `samples` says.
+    DebugView view = DebugView::picture;
+    Overlays overlays = {};
+
+    friend bool operator==(const FrameSettings&, const FrameSettings&) = default;
 };
 
 }  // namespace relief

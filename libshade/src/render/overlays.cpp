@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: Apache-2.0
+// Lines and points over a finished picture, in colours that are coded as it is. World space. Depth
+// is drawn anew, pushed away by polygon offset, so that lines on a surface are not hidden by it.
+// Tests: tests/shade/render/overlays_test.cpp.
+#include "render/overlays.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <glm/gtc/matrix_transform.hpp>
+
+#include "relief/mesh/error.h"
+#include "relief/mesh/image.h"
+
+namespace relief {
+
+namespace {
+
+ShaderSteps steps(const char* color, const char* shape) {
+    ShaderSteps result;
+    result["overlay_color"] = color;
+    result["shape"] = shape;
+    return result;
+}
+
+void check_markers(const Scene& scene, const std::vector<Marker>& markers) {
+    for (std::size_t i = 0; i < markers.size(); ++i) {
+        if (markers[i].instance < scene.instances.size()) continue;
+        throw InvalidInput(fmt::format("marker {} is on instance {}, but there are only {}", i,
+                                       markers[i].instance, scene.instances.size()));
+    }
+}
+
+void check_length(const std::optional<float>& share) {
+    if (!share || (*share > 0.0F && *share <= 1000.0F)) return;
+    throw InvalidInput(fmt::format(
+        "vertex frames of {} times the scene's size; from above 0 to 1000 can be drawn", *share));
+}
+
+}  // namespace
+
+OverlayDrawing::OverlayDrawing(const gl::Api& api, ProgramCache& programs, const Scene& scene,
+                               const FramePlan& plan, const FrameSettings& settings, Report& report)
+    : api_(&api), overlays_(settings.overlays), output_(settings.output) {
+    check_length(overlays_.vertex_frames);
+    if (overlays_.markers) check_markers(scene, *overlays_.markers);
+    for (const DrawPlan& draw : plan.draws)
+        instances_.insert(draw.instance);
+    lines_program_ = programs.get("overlay", steps("overlay/one_color.glsl", "overlay/whole.glsl"));
+    if (overlays_.markers)
+        discs_program_ =
+            programs.get("overlay", steps("overlay/own_color.glsl", "overlay/disc.glsl"));
+    if (overlays_.vertex_frames) {
+        for (const std::size_t instance : instances_) {
+            const std::size_t mesh = scene.instances[instance].mesh;
+            if (framed_.contains(mesh)) continue;
+            const PlannedStreams streams{.normals = true, .tangents = true};
+            framed_.emplace(mesh, with_planned_frames(scene.meshes[mesh], streams, report));
+        }
+    }
+    make_markers(scene);
+    move(scene);
+}
+
+OverlayDrawing::Points OverlayDrawing::upload(const std::vector<glm::vec3>& positions,
+                                              const std::vector<glm::vec4>& colors) const {
+    Points points;
+    points.count = static_cast<GLsizei>(positions.size());
+    if (positions.empty()) return points;
+    const gl::Api& gl = *api_;
+    points.vertices = gl::VertexArray(gl);
+    gl->BindVertexArray(points.vertices.name());
+    const auto add = [&](Attribute attribute, const auto& values, GLint components) {
+        if (values.empty()) return;
+        points.buffers.push_back(gl::make_buffer(gl, values, "lines and points"));
+        gl->BindBuffer(GL_ARRAY_BUFFER, points.buffers.back().name());
+        gl->EnableVertexAttribArray(static_cast<GLuint>(attribute));
+        gl->VertexAttribPointer(static_cast<GLuint>(attribute), components, GL_FLOAT, GL_FALSE, 0,
+                                nullptr);
+    };
+    add(Attribute::position_object, positions, 3);
+    add(Attribute::color_linear, colors, 4);
+    gl->BindVertexArray(0);
+    return points;
+}
+
+void OverlayDrawing::make_frames(const Scene& scene) {
+    const Bounds bounds = world_bounds(scene);
+    const double size =
+        bounds.empty() ? 1.0 : glm::length(glm::dvec3(bounds.max) - glm::dvec3(bounds.min));
+    center_ =
+        bounds.empty() ? glm::dvec3(0.0) : 0.5 * (glm::dvec3(bounds.min) + glm::dvec3(bounds.max));
+    const double length = static_cast<double>(*overlays_.vertex_frames) * size;
+    VertexFrameLines lines;
+    for (const std::size_t i : instances_) {
+        const Instance& instance = scene.instances[i];
+        add_vertex_frames(framed_.at(instance.mesh), instance.world_from_object, center_, length,
+                          lines);
+    }
+    frames_ = {upload(lines.tangents, {}), upload(lines.bitangents, {}), upload(lines.normals, {})};
+}
+
+void OverlayDrawing::make_markers(const Scene& scene) {
+    if (!overlays_.markers) return;
+    for (std::size_t i = 0; i < scene.instances.size(); ++i) {
+        std::vector<glm::vec3> positions;
+        std::vector<glm::vec4> colors;
+        for (const Marker& marker : *overlays_.markers) {
+            if (marker.instance != i) continue;
+            positions.push_back(marker.position_object);
+            colors.emplace_back(coded(marker.color_srgb), 1.0F);
+        }
+        if (!positions.empty()) markers_.emplace(i, upload(positions, colors));
+    }
+}
+
+void OverlayDrawing::move(const Scene& scene) {
+    world_from_object_.clear();
+    for (const Instance& instance : scene.instances)
+        world_from_object_.push_back(instance.world_from_object);
+    if (overlays_.vertex_frames) make_frames(scene);
+}
+
+glm::vec3 OverlayDrawing::coded(const glm::vec3& srgb) const {
+    if (output_ == OutputCoding::srgb) return srgb;
+    return {linear_from_srgb(srgb.r), linear_from_srgb(srgb.g), linear_from_srgb(srgb.b)};
+}
+
+void OverlayDrawing::draw_depth(const glm::dmat4& clip_from_world,
+                                std::span<const OverlaySurface> surfaces) const {
+    const gl::Api& gl = *api_;
+    gl->ColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+    gl->Enable(GL_POLYGON_OFFSET_FILL);
+    gl->PolygonOffset(1.0F, 1.0F);
+    for (const OverlaySurface& surface : surfaces) {
+        if (!surface.hides) continue;
+        lines_program_->set("clip_from_object",
+                            glm::mat4(clip_from_world * glm::dmat4(surface.world_from_object)));
+        if (surface.both_sides) {
+            gl->Disable(GL_CULL_FACE);
+        } else {
+            gl->Enable(GL_CULL_FACE);
+        }
+        gl->FrontFace(surface.mirrored ? GL_CW : GL_CCW);
+        surface.mesh->draw(gl, surface.range);
+    }
+    gl->Disable(GL_POLYGON_OFFSET_FILL);
+    gl->ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+}
+
+void OverlayDrawing::draw_wires(const glm::dmat4& clip_from_world,
+                                std::span<const OverlaySurface> surfaces) const {
+    const gl::Api& gl = *api_;
+    lines_program_->set("all_color", coded(wireframe_color));
+    gl->PolygonMode(GL_FRONT_AND_BACK, GL_LINE);
+    for (const OverlaySurface& surface : surfaces) {
+        lines_program_->set("clip_from_object",
+                            glm::mat4(clip_from_world * glm::dmat4(surface.world_from_object)));
+        if (surface.both_sides) {
+            gl->Disable(GL_CULL_FACE);
+        } else {
+            gl->Enable(GL_CULL_FACE);
+        }
+        gl->FrontFace(surface.mirrored ? GL_CW : GL_CCW);
+        surface.mesh->draw(gl, surface.range);
+    }
+    gl->PolygonMode(GL_FRONT_AND_BACK, GL_FILL);
+}
+
+void OverlayDrawing::draw_frames(const glm::dmat4& clip_from_world) const {
+    const gl::Api& gl = *api_;
+    lines_program_->set("clip_from_object", glm::mat4(glm::translate(clip_from_world, center_)));
+    const std::array<glm::vec3, 3> colors = {tangent_color, bitangent_color, normal_color};
+    for (std::size_t i = 0; i < frames_.size(); ++i) {
+        if (frames_[i].count == 0) continue;
+        lines_program_->set("all_color", coded(colors[i]));
+        gl->BindVertexArray(frames_[i].vertices.name());
+        gl->DrawArrays(GL_LINES, 0, frames_[i].count);
+    }
+}
+
+void OverlayDrawing::draw_markers(const glm::dmat4& clip_from_world) const {
+    const gl::Api& gl = *api_;
+    discs_program_->use();
+    gl->Disable(GL_DEPTH_TEST);
+    gl->PointSize(static_cast<float>(marker_pixels));
+    for (const auto& [instance, points] : markers_) {
+        discs_program_->set("clip_from_object",
+                            glm::mat4(clip_from_world * glm::dmat4(world_from_object_[instance])));
+        gl->BindVertexArray(points.vertices.name());
+        gl->DrawArrays(GL_POINTS, 0, points.count);
+    }
+    gl->Enable(GL_DEPTH_TEST);
+}
+
+void OverlayDrawing::draw(const glm::dmat4& clip_from_world,
+                          std::span<const OverlaySurface> surfaces) const {
+    const gl::Api& gl = *api_;
+    gl->DepthMask(GL_TRUE);
+    gl->ClearDepth(1.0);
+    gl->Clear(GL_DEPTH_BUFFER_BIT);
+    gl->Disable(GL_BLEND);
+    gl->Enable(GL_DEPTH_TEST);
+    gl->DepthFunc(GL_LEQUAL);
+    gl->CullFace(GL_BACK);
+    lines_program_->use();
+    if (overlays_.wireframe || overlays_.vertex_frames) draw_depth(clip_from_world, surfaces);
+    if (overlays_.wireframe) draw_wires(clip_from_world, surfaces);
+    if (overlays_.vertex_frames) draw_frames(clip_from_world);
+    if (overlays_.markers) draw_markers(clip_from_world);
+    gl->Finish();
+}
+
+}  // namespace relief

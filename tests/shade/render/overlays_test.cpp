@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: Apache-2.0
+// Wireframe, vertex frames and markers as pixels: where they are, in which colour, what hides them,
+// and that nothing else changes.
+#include "render/overlays.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "draw_test.h"
+#include "relief/mesh/error.h"
+#include "support/message_of.h"
+#include "support/shapes.h"
+
+namespace relief {
+namespace {
+
+using test::pixel;
+
+constexpr int size = 64;
+
+/// A square of 2 x 2 seen face on: it covers pixels 16 to 47 of 64.
+Scene small_square() {
+    Scene scene = test::scene_of(test::facing_square(), test::black_material());
+    scene.materials[0].emission = glm::vec3(0.25F);
+    scene.instances[0].world_from_object[0][0] = scene.instances[0].world_from_object[1][1] = 0.5F;
+    return scene;
+}
+
+FrameSettings picture(int samples = 1) {
+    return {.width = size, .height = size, .samples = samples, .output = OutputCoding::srgb};
+}
+
+glm::dvec4 code(const glm::vec3& srgb) {
+    return {glm::round(255.0 * glm::dvec3(srgb)), 255.0};
+}
+
+class Overlay : public test::DrawTest {};
+
+TEST_F(Overlay, WireframeDrawsEdgesAndNothingElse) {
+    Scene scene = small_square();
+    scene.exposure = 3.0F;
+    scene.tone_mapping = ToneMapping::reinhard;
+    scene.background = {0, 0, 0, 1};
+    for (const int samples : {1, 4}) {
+        FrameSettings settings = picture(samples);
+        const Image plain = render(scene, settings).image;
+        settings.overlays.wireframe = true;
+        const Image wired = render(scene, settings).image;
+        int drawn = 0;
+        for (int y = 0; y < size; ++y) {
+            for (int x = 0; x < size; ++x) {
+                const bool is_wire = pixel(wired, x, y) == code(wireframe_color);
+                if (!is_wire) {
+                    EXPECT_EQ(pixel(wired, x, y), pixel(plain, x, y)) << x << "," << y;
+                }
+                // Within a pixel of a side of the square, or of one of its diagonals.
+                const double right = std::abs(std::abs(x + 0.5 - 32.0) - 16.0);
+                const double up = std::abs(std::abs(y + 0.5 - 32.0) - 16.0);
+                const double diagonal =
+                    std::abs(std::abs(x + 0.5 - 32.0) - std::abs(y + 0.5 - 32.0));
+                if (is_wire) {
+                    EXPECT_LE(std::min({right, up, diagonal}), 1.0) << x << "," << y;
+                }
+                drawn += is_wire ? 1 : 0;
+            }
+        }
+        EXPECT_NEAR(drawn, 4 * 32 + 32, 8) << samples << " samples";
+    }
+}
+
+TEST_F(Overlay, LinesAreHiddenByOpaqueSurfacesAlone) {
+    Scene scene = small_square();
+    Instance cover = scene.instances[0];  // Larger, and nearer.
+    cover.world_from_object = glm::mat4(1.0F);
+    cover.world_from_object[3].z = 0.5F;
+    scene.instances.push_back(cover);
+    FrameSettings settings = picture();
+    settings.overlays.vertex_frames = 0.05F;
+    const auto count = [&](const Image& image, const glm::vec3& color) {
+        int found = 0;
+        for (int i = 0; i < size * size; ++i)
+            found += pixel(image, i % size, i / size) == code(color) ? 1 : 0;
+        return found;
+    };
+    EXPECT_EQ(count(render(scene, settings).image, tangent_color), 0);
+    scene.instances.pop_back();
+    // Four vertices, each with a line of 0.05 times the diagonal: 0.14 units of 16 pixels.
+    EXPECT_NEAR(count(render(scene, settings).image, tangent_color), 4 * 2.3, 4.0);
+    EXPECT_NEAR(count(render(scene, settings).image, bitangent_color), 4 * 2.3, 4.0);
+}
+
+TEST_F(Overlay, FramesPointAlongTheirDirections) {
+    const Scene scene = small_square();
+    FrameSettings settings = picture();
+    settings.overlays.vertex_frames = 0.25F;  // Of sqrt(8): 0.707 units, 11.3 pixels.
+    const Image image = render(scene, settings).image;
+    // From the lower left corner at pixel (16, 48): the tangent to the right, the bitangent up.
+    EXPECT_TRUE(pixel(image, 22, 47) == code(tangent_color) ||
+                pixel(image, 22, 48) == code(tangent_color));
+    EXPECT_TRUE(pixel(image, 15, 42) == code(bitangent_color) ||
+                pixel(image, 16, 42) == code(bitangent_color));
+    EXPECT_NE(pixel(image, 30, 47), code(tangent_color));
+    EXPECT_NE(pixel(image, 30, 48), code(tangent_color));
+}
+
+TEST_F(Overlay, MarkersAreDiscsOnTopInTheirColour) {
+    Scene scene = small_square();
+    FrameSettings settings = picture();
+    const glm::vec3 color(1.0F, 0.0F, 0.4F);
+    // Behind the surface, 0.5 units to the right of the middle once the instance is scaled.
+    settings.overlays.markers =
+        std::make_shared<std::vector<Marker>>(1, Marker{0, {1.0F, 0.0F, -0.001F}, color});
+    Report report;
+    Renderer renderer(context(), scene, settings, report);
+    const Image image = renderer.draw(*scene.camera).image;
+    for (const int reach : {-3, 0, 3}) {
+        EXPECT_EQ(pixel(image, 40 + reach, 32), code(color));
+        EXPECT_EQ(pixel(image, 40, 32 + reach), code(color));
+    }
+    EXPECT_NE(pixel(image, 40 + 6, 32), code(color));
+    EXPECT_NE(pixel(image, 40 + 4, 32 + 4), code(color)) << "a disc has no corners";
+    // It moves with its instance.
+    scene.instances[0].world_from_object[3].x = -0.5F;
+    renderer.move(scene);
+    const Image moved = renderer.draw(*scene.camera).image;
+    EXPECT_EQ(pixel(moved, 32, 32), code(color));
+    EXPECT_NE(pixel(moved, 40, 32), code(color));
+}
+
+TEST_F(Overlay, ColoursAreLinearInALinearPicture) {
+    const Scene scene = small_square();
+    FrameSettings settings = picture();
+    settings.output = OutputCoding::linear;
+    settings.overlays.markers =
+        std::make_shared<std::vector<Marker>>(1, Marker{0, {}, glm::vec3(0.5F, 0, 1)});
+    const glm::dvec4 found = pixel(render(scene, settings).image, 32, 32);
+    EXPECT_NEAR(found.x, 0.2140411, 1e-6);
+    EXPECT_EQ(found.y, 0.0);
+    EXPECT_EQ(found.z, 1.0);
+}
+
+TEST_F(Overlay, WhatCannotBeDrawnIsRefused) {
+    const Scene scene = small_square();
+    FrameSettings settings = picture();
+    const auto message = [&] {
+        return test::message_of<InvalidInput>([&] { (void)render(scene, settings); });
+    };
+    settings.overlays.vertex_frames = 0.0F;
+    EXPECT_THAT(message(), testing::HasSubstr("vertex frames of 0 times"));
+    settings.overlays.vertex_frames.reset();
+    settings.overlays.markers = std::make_shared<std::vector<Marker>>(1, Marker{7, {}, {}});
+    EXPECT_THAT(message(), testing::HasSubstr("marker 0 is on instance 7, but there are only 1"));
+}
+
+}  // namespace
+}  // namespace relief
