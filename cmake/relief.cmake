@@ -10,11 +10,13 @@ target_compile_options(
 if(RELIEF_WERROR)
     target_compile_options(relief_flags INTERFACE $<$<COMPILE_LANGUAGE:CXX>:-Werror>)
 endif()
+# What is tested is compiled as users run it; the tests' own code only has to be compiled soon.
+set(is_test $<PATH:IS_PREFIX,${PROJECT_SOURCE_DIR}/tests,$<TARGET_PROPERTY:SOURCE_DIR>>)
+target_compile_options(relief_flags INTERFACE $<$<AND:$<CONFIG:Release>,${is_test}>:-O1>)
 if(RELIEF_SANITIZE)
     # Instrumented code is slow to compile, and two thirds of it was the tests' own: there,
     # AddressSanitizer alone is asked for, and neither optimising nor line numbers. Instrumented,
     # GCC 12 takes parts of std::regex for uninitialised; other builds keep the warning.
-    set(is_test $<PATH:IS_PREFIX,${PROJECT_SOURCE_DIR}/tests,$<TARGET_PROPERTY:SOURCE_DIR>>)
     target_compile_options(
         relief_flags INTERFACE -fsanitize=address "$<IF:${is_test},-O0;-g0,-fsanitize=undefined>"
                                -fno-sanitize-recover=all -fno-omit-frame-pointer
