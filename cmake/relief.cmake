@@ -10,7 +10,8 @@ target_compile_options(
 if(RELIEF_WERROR)
     target_compile_options(relief_flags INTERFACE $<$<COMPILE_LANGUAGE:CXX>:-Werror>)
 endif()
-# What is tested is compiled as users run it; the tests' own code only has to be compiled soon.
+# The libraries and tools are compiled as users run them; the tests' own code only has to be compiled
+# soon. (Where both hold an inline function that was not inlined, the linker takes either.)
 set(is_test $<PATH:IS_PREFIX,${PROJECT_SOURCE_DIR}/tests,$<TARGET_PROPERTY:SOURCE_DIR>>)
 target_compile_options(relief_flags INTERFACE $<$<AND:$<CONFIG:Release>,${is_test}>:-O1>)
 if(RELIEF_SANITIZE)

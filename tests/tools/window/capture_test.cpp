@@ -104,12 +104,15 @@ TEST_F(Capturing, WhatCannotBeWrittenIsSaidAndEnds) {
 }
 
 TEST_F(Capturing, TakesTheNextFreeName) {
-    EXPECT_EQ(free_file("models/vase.obj", false), "models/vase-1.png");
+    EXPECT_EQ(free_file("models/vase.obj", 0), "models/vase-1.png");
     workplace().write("out/vase-1.png", "");
-    EXPECT_EQ(free_file(workplace() / "out/vase.obj", false), workplace() / "out/vase-2.png");
-    EXPECT_EQ(free_file(workplace() / "out/vase.obj", true), workplace() / "out/vase-turn-1.png");
+    EXPECT_EQ(free_file(workplace() / "out/vase.obj", 0), workplace() / "out/vase-2.png");
+    EXPECT_EQ(free_file(workplace() / "out/vase.obj", 3), workplace() / "out/vase-turn-1.png");
     workplace().write("out/vase-turn-1-0001.png", "");
-    EXPECT_EQ(free_file(workplace() / "out/vase.obj", true), workplace() / "out/vase-turn-2.png");
+    EXPECT_EQ(free_file(workplace() / "out/vase.obj", 3), workplace() / "out/vase-turn-2.png");
+    workplace().write("out/vase-turn-2-0003.png", "");
+    EXPECT_EQ(free_file(workplace() / "out/vase.obj", 2), workplace() / "out/vase-turn-2.png");
+    EXPECT_EQ(free_file(workplace() / "out/vase.obj", 3), workplace() / "out/vase-turn-3.png");
 }
 
 }  // namespace

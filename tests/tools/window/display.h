@@ -57,7 +57,7 @@ class Display {
 
 /// Waits until something holds, looking often. \return whether it did within so many seconds
 template <typename Condition>
-bool eventually(const Condition& holds, double seconds = 30.0);
+bool eventually(const Condition& holds, double seconds = 100.0);
 
 /// Sleeps a little, between two looks.
 void pause_a_little();

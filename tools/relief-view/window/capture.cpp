@@ -105,12 +105,31 @@ DrawTask capture_task(CaptureWish wish, std::shared_ptr<CaptureProgress> progres
     };
 }
 
-std::filesystem::path free_file(const std::filesystem::path& model, bool is_turn) {
+namespace {
+
+/// A link into nowhere is something too.
+bool is_there(const std::filesystem::path& file) {
+    std::error_code error;
+    return std::filesystem::symlink_status(file, error).type() !=
+           std::filesystem::file_type::not_found;
+}
+
+bool is_free(const std::filesystem::path& file, int turntable) {
+    if (turntable == 0) return !is_there(file);
+    for (int i = 1; i <= turntable; ++i) {
+        if (is_there(numbered_file(file, i))) return false;
+    }
+    return true;
+}
+
+}  // namespace
+
+std::filesystem::path free_file(const std::filesystem::path& model, int turntable) {
     for (int number = 1;; ++number) {
         const std::filesystem::path file =
             model.parent_path() /
-            fmt::format("{}-{}{}.png", model.stem().string(), is_turn ? "turn-" : "", number);
-        if (!std::filesystem::exists(is_turn ? numbered_file(file, 1) : file)) return file;
+            fmt::format("{}-{}{}.png", model.stem().string(), turntable > 0 ? "turn-" : "", number);
+        if (is_free(file, turntable)) return file;
     }
 }
 

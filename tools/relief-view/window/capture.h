@@ -68,6 +68,7 @@ DrawTask capture_task(CaptureWish wish, std::shared_ptr<CaptureProgress> progres
 
 /// "vase-1.png" beside the model, or with the next number that is free; of a turn
 /// "vase-turn-1.png", whose pictures are "vase-turn-1-0001.png" and so on.
-std::filesystem::path free_file(const std::filesystem::path& model, bool is_turn);
+/// \param turntable  how many pictures, of which none may be there; 0: one, and no turn
+std::filesystem::path free_file(const std::filesystem::path& model, int turntable);
 
 }  // namespace relief::tools

@@ -129,6 +129,8 @@ void DrawThread::do_step(Drawer& drawer, std::unique_lock<std::mutex>& lock) {
 std::optional<DrawWish> DrawThread::next(Drawer& drawer) {
     std::unique_lock lock(mutex_);
     is_drawing_ = false;
+    // After every picture, or a model that turns would let no task through.
+    if (!is_ending_ && !tasks_.empty()) do_step(drawer, lock);
     for (;;) {
         changed_.wait(lock, [&] { return is_ending_ || wish_ || !tasks_.empty(); });
         if (is_ending_) return std::nullopt;

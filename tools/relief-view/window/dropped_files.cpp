@@ -50,9 +50,15 @@ std::vector<std::filesystem::path> faces_by_name(const std::vector<std::filesyst
     return {};
 }
 
+/// What cannot be looked at is none; reading it says why.
+bool is_folder(const std::filesystem::path& file) {
+    std::error_code error;
+    return std::filesystem::is_directory(file, error);
+}
+
 bool are_images(const std::vector<std::filesystem::path>& files) {
     return std::none_of(files.begin(), files.end(), [](const auto& file) {
-        return dropped_as(file) == DroppedAs::model || std::filesystem::is_directory(file);
+        return dropped_as(file) == DroppedAs::model || is_folder(file);
     });
 }
 
@@ -85,7 +91,7 @@ DroppedAs dropped_as(const std::filesystem::path& file) {
                                                                ".stl", ".off",  ".json"};
     const std::string extension = extension_of(file);
     if (std::find(models.begin(), models.end(), extension) != models.end()) return DroppedAs::model;
-    if (extension == ".hdr" || std::filesystem::is_directory(file)) return DroppedAs::environment;
+    if (extension == ".hdr" || is_folder(file)) return DroppedAs::environment;
     using Words = std::array<std::string_view, 3>;
     const std::string stem = lower(file.stem().string());
     if (says(stem, Words{"normal", "nrm", "norm_"}, "_n")) return DroppedAs::normal_map;

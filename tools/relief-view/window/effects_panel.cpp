@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Every effect, on or off and why, with a switch that forces it.
 // Tests: tests/tools/window/window_test.cpp.
+#include <fmt/format.h>
 #include <imgui.h>
 
 #include <algorithm>
+#include <vector>
 
 #include "relief/shade/shader_listing.h"
 #include "window/panels.h"
@@ -49,9 +51,16 @@ void draw_reasons(ViewerState& state, const std::vector<EffectReason>& reasons) 
 }
 
 void draw_shaders(const FramePlan& plan) {
-    for (const ShaderListing& listing : shader_listings(plan)) {
-        if (!ImGui::TreeNode(&listing, "shader: %s", describe(listing.features).c_str())) continue;
-        std::string text = listing.fragment;
+    std::vector<ShaderListing> listings;
+    try {
+        listings = shader_listings(plan);
+    } catch (const std::exception& error) {  // A file of RELIEF_SHADER_DIR that is being edited.
+        return ImGui::TextWrapped("%s", error.what());
+    }
+    for (std::size_t i = 0; i < listings.size(); ++i) {
+        const std::string name = "shader: " + describe(listings[i].features);
+        if (!ImGui::TreeNode(fmt::format("{}##{}", name, i).c_str())) continue;
+        std::string text = listings[i].fragment;
         ImGui::InputTextMultiline("##fragment", text.data(), text.size() + 1, {-1.0F, 300.0F},
                                   ImGuiInputTextFlags_ReadOnly);
         ImGui::TreePop();

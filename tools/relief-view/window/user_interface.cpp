@@ -19,6 +19,7 @@
 namespace relief::tools {
 namespace {
 
+constexpr ImU32 backdrop = IM_COL32(24, 26, 30, 255);
 constexpr double double_click_seconds = 0.35;
 constexpr float double_click_reach = 6.0F;  // In the window's units.
 constexpr float drag_zoom = 0.02F;          // Steps of the wheel for each pixel of a right drag.
@@ -61,7 +62,8 @@ void install_callbacks(GLFWwindow* window) {
             interface_of(where).on_drop(names[i]);
     });
     glfwSetKeyCallback(window, [](GLFWwindow* where, int key, int, int action, int modifiers) {
-        if (action != GLFW_RELEASE) interface_of(where).on_key(key, modifiers);
+        if (action != GLFW_RELEASE)
+            interface_of(where).on_key(key, modifiers, action == GLFW_REPEAT);
     });
     glfwSetMouseButtonCallback(window, [](GLFWwindow* where, int button, int action, int mods) {
         interface_of(where).on_button(button, action == GLFW_PRESS, mods);
@@ -81,6 +83,23 @@ bool is_windows_own(Action action) {
         case Action::panels:
         case Action::help:
         case Action::quit:
+            return true;
+        default:
+            return false;
+    }
+}
+
+/// Whether a key that is held down does it on and on.
+bool is_repeating(Action action) {
+    switch (action) {
+        case Action::narrower:
+        case Action::wider:
+        case Action::nearer:
+        case Action::farther:
+        case Action::orbit_left:
+        case Action::orbit_right:
+        case Action::orbit_up:
+        case Action::orbit_down:
             return true;
         default:
             return false;
@@ -117,10 +136,11 @@ UserInterface::~UserInterface() {
     ImGui::DestroyContext();
 }
 
-void UserInterface::on_key(int key, int modifiers) {
+void UserInterface::on_key(int key, int modifiers, bool is_held) {
     if (ImGui::GetIO().WantTextInput) return;
     for (const Binding& binding : bindings()) {
-        if (is_named(binding.key, key, modifiers)) pressed_.push_back(binding.action);
+        if (is_named(binding.key, key, modifiers) && (!is_held || is_repeating(binding.action)))
+            pressed_.push_back(binding.action);
     }
 }
 
@@ -205,6 +225,8 @@ UserInterface::Events UserInterface::draw(const PanelInput& input, const Handove
     const glm::vec2 size(io.DisplaySize.x - left_, io.DisplaySize.y - bottom_);
     const glm::vec2 pixels = size * vec(io.DisplayFramebufferScale);
     input.state.set_view(glm::ivec2(glm::max(pixels, glm::vec2(1.0F))));
+    // Under the picture, which may be transparent, and instead of it; nothing else clears.
+    ImGui::GetBackgroundDrawList()->AddRectFilled({0.0F, 0.0F}, io.DisplaySize, backdrop);
     if (picture.texture != 0) {
         // Row 0 of the texture is at the bottom.
         ImGui::GetBackgroundDrawList()->AddImage(

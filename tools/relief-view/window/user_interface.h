@@ -35,7 +35,7 @@ class UserInterface {
     void show_panels() { has_panels_ = !has_panels_; }
 
     // From GLFW, as it happens: two events between frames are still two.
-    void on_key(int key, int modifiers);
+    void on_key(int key, int modifiers, bool is_held);
     void on_button(int button, bool is_down, int modifiers);
     void on_move(const glm::vec2& place);
     void on_wheel(float steps);

@@ -31,9 +31,10 @@ class WindowLoop {
           loader_(WindowSystem::wake),
           interface_(system_),
           state_(options),
+          reading_(options),
           dump_(options.dump_state) {
         if (dump_) keep_places();
-        if (!options.model.empty()) loader_.start(options);
+        if (!options.model.empty()) loader_.start(reading_);
     }
 
     void run() {
@@ -55,7 +56,7 @@ class WindowLoop {
         }
         if (state_.is_turning()) {
             WindowSystem::wait(turning_step);
-        } else if (is_resting_later_) {
+        } else if (is_resting_later_ && system_.is_visible()) {
             WindowSystem::wait(0.5 * Resolution::resting_seconds);
         } else {
             WindowSystem::wait(loader_.is_loading() ? loading_step : 0.0);
@@ -117,11 +118,15 @@ class WindowLoop {
 
     /// What contradicts the options is said like what cannot be read.
     void drop(const std::vector<std::filesystem::path>& files) {
-        ViewOptions options = with_dropped(state_.options(), files);
         try {
+            // On top of what is still being read.
+            ViewOptions options =
+                with_dropped(loader_.is_loading() ? reading_ : state_.options(), files);
+            options.debug = {};  // Chosen in the window, where nothing is a useless choice.
             settle(options);
+            reading_ = options;
             loader_.start(options);
-        } catch (const UsageError& error) {
+        } catch (const std::exception& error) {
             Loaded refused;
             refused.error = error.what();
             state_.take(std::move(refused));
@@ -139,7 +144,7 @@ class WindowLoop {
                             .transparent = capture_settings_.transparent,
                             .turntable = turntable,
                             .middle = state_.ball().center,
-                            .file = free_file(state_.options().model, turntable > 0)};
+                            .file = free_file(state_.options().model, turntable)};
         if (capture_settings_.own_size) {
             capture.settings.width = capture_settings_.width;
             capture.settings.height = capture_settings_.height;
@@ -192,6 +197,7 @@ class WindowLoop {
     Loader loader_;
     UserInterface interface_;
     ViewerState state_;
+    ViewOptions reading_;  ///< What was last begun to be read.
     std::optional<std::filesystem::path> dump_;
     std::string dumped_;
     CaptureSettings capture_settings_;
