@@ -51,8 +51,11 @@ bool is_named(std::string_view name, int key, int modifiers) {
     return has_control == needs_control && key == key_code(name);
 }
 
+/// Whom an event is for.
 UserInterface& interface_of(GLFWwindow* window) {
-    return *static_cast<UserInterface*>(glfwGetWindowUserPointer(window));
+    auto& interface = *static_cast<UserInterface*>(glfwGetWindowUserPointer(window));
+    interface.on_input();
+    return interface;
 }
 
 /// Dear ImGui's own callbacks come after these, and call them.
@@ -216,6 +219,7 @@ UserInterface::Events UserInterface::draw(const PanelInput& input, const Handove
     forget_places();
     Events events;
     events.dropped = std::exchange(dropped_, {});
+    events.has_input = std::exchange(has_input_, false);
     left_ = has_panels_ ? draw_panels(input, events.panels) : 0.0F;
     bottom_ = ImGui::GetFrameHeightWithSpacing();
     draw_status(input, events.panels);

@@ -25,6 +25,7 @@ class UserInterface {
         std::vector<Action> actions;  ///< Those that are the window's own.
         std::vector<std::filesystem::path> dropped;
         PanelWishes panels;
+        bool has_input = false;  ///< A key, the mouse or a drop: Dear ImGui needs frames to react.
     };
 
     /// One frame: panels, picture, hands. The view's size goes into the state.
@@ -40,6 +41,7 @@ class UserInterface {
     void on_move(const glm::vec2& place);
     void on_wheel(float steps);
     void on_drop(const std::filesystem::path& file) { dropped_.push_back(file); }
+    void on_input() { has_input_ = true; }
 
   private:
     enum class Drag { none, orbit, pan, zoom, lights, aim };
@@ -59,6 +61,7 @@ class UserInterface {
 
     const WindowSystem& system_;
     std::vector<std::filesystem::path> dropped_;
+    bool has_input_ = false;
     std::vector<Action> pressed_;
     std::vector<Move> moves_;
     Drag drag_ = Drag::none;

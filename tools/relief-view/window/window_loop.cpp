@@ -85,6 +85,8 @@ class WindowLoop {
                                &capture_settings_,
                                text_of(captured_->state())};
         const UserInterface::Events events = interface_.draw(input, drawer_.shown());
+        // Whenever it came: while the panels settle after something else, too.
+        if (events.has_input) settling_ = frames_to_settle;
         if (events.panels.cancel_loading) loader_.cancel();
         for (const Action action : events.actions)
             act(action);
