@@ -90,8 +90,7 @@ Opened open(Backend backend, Failures& failures) {
 struct Context::Implementation {
     explicit Implementation(Opened made)
         : opened(std::move(made)),
-          renderer_name(
-              fmt::format("{}, {}", opened.api->renderer(), opened.api->version())) {}
+          renderer_name(fmt::format("{}, {}", opened.api->renderer(), opened.api->version())) {}
 
     Opened opened;
     std::string renderer_name;
