@@ -3,8 +3,8 @@
 
 #include <unistd.h>
 
-#include <atomic>
 #include <cstdlib>
+#include <stdexcept>
 #include <string>
 
 namespace relief::test {
@@ -18,11 +18,11 @@ std::filesystem::path shared_directory() {
     return source_directory().parent_path() / "shared";
 }
 
+// A name of its own, whatever a test that was killed has left.
 TemporaryDirectory::TemporaryDirectory() {
-    static std::atomic<int> counter = 0;
-    path_ = std::filesystem::temp_directory_path() /
-            ("relief-test-" + std::to_string(::getpid()) + "-" + std::to_string(counter++));
-    std::filesystem::create_directories(path_);
+    std::string name = (std::filesystem::temp_directory_path() / "relief-test-XXXXXX").string();
+    if (::mkdtemp(name.data()) == nullptr) throw std::runtime_error(name + ": cannot be made");
+    path_ = name;
 }
 
 TemporaryDirectory::~TemporaryDirectory() {
