@@ -9,11 +9,13 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 
 #include "parallel.h"
 #include "relief/mesh/destaircase.h"
 #include "relief/mesh/direction_error.h"
 #include "relief/mesh/error.h"
+#include "relief/mesh/frontier.h"
 
 namespace relief {
 namespace {
@@ -123,15 +125,13 @@ void take_reference(const BumpReference& reference, Trial& trial) {
 }
 
 void mark_efficient(std::vector<BumpMeasurement>& all) {
-    for (BumpMeasurement& one : all) {
-        one.is_efficient =
-            one.seconds.count > 0 && std::none_of(all.begin(), all.end(), [&](const auto& other) {
-                return other.error.rms <= one.error.rms &&
-                       other.seconds.median <= one.seconds.median &&
-                       (other.error.rms < one.error.rms ||
-                        other.seconds.median < one.seconds.median);
-            });
-    }
+    constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+    std::vector<Price> prices;
+    for (const BumpMeasurement& one : all)
+        prices.push_back({one.error.rms, one.seconds.count > 0 ? one.seconds.median : unknown});
+    const std::vector<bool> marks = efficient(prices);
+    for (std::size_t i = 0; i < all.size(); ++i)
+        all[i].is_efficient = marks[i];
 }
 
 /// Runs all methods on a trial that has its truth.

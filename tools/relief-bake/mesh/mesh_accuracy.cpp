@@ -12,6 +12,7 @@
 #include "mesh/mesh_sets.h"
 #include "mesh/mesh_verify.h"
 #include "relief/mesh/error.h"
+#include "relief/mesh/frontier.h"
 
 namespace relief::tools {
 namespace {
@@ -133,12 +134,12 @@ void compare(const BakeTrials& trials, const NormalMapFormat& format, MeshAccura
     });
     for (std::size_t i = 0; i < seconds.size(); ++i)
         found.measured[i].seconds = spread_of(seconds[i]).median;
-    for (MeasuredBake& one : found.measured) {
-        one.is_efficient = std::none_of(
-            found.measured.begin(), found.measured.end(), [&](const MeasuredBake& other) {
-                return other.error.rms < one.error.rms && other.seconds < one.seconds;
-            });
-    }
+    std::vector<Price> prices;
+    for (const MeasuredBake& one : found.measured)
+        prices.push_back({one.error.rms, one.seconds});
+    const std::vector<bool> marks = efficient(prices);
+    for (std::size_t i = 0; i < marks.size(); ++i)
+        found.measured[i].is_efficient = marks[i];
 }
 
 }  // namespace

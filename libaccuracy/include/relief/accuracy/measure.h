@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// Time and memory of several ways to do a thing, measured in turns. The one home of clocks for
+/// experiments; none of it depends on what is measured. Tests: tests/accuracy/measure_test.cpp.
+#pragma once
+
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "relief/accuracy/experiment.h"
+
+namespace relief {
+
+/// What measure_costs() looks at.
+struct CostChoice {
+    bool one_thread = true;
+    bool all_threads = true;
+    bool memory = true;
+};
+
+/// Runs each work in turn, A B C A B C, on one thread, then on all, and once more for its memory.
+///
+/// \param works    each does its whole job once and lets its result go; results must not depend on
+///                 how often it was run
+/// \param repeats  of those that count; a work of less than a millisecond is repeated within a
+/// round
+///                 until it takes that, and the time is divided
+/// \return in the order of the works; nothing measured where options.is_timed is false
+///
+/// The thread limit is "as many as the machine has" afterwards. Memory is what the process held
+/// resident at the most, as Linux counts it, beyond what it held before: pages, not bytes.
+std::vector<Cost> measure_costs(std::span<const std::function<void()>> works,
+                                const RunOptions& options, const CostChoice& choice = {});
+
+/// The wall-clock time that something takes.
+double seconds_of(const std::function<void()>& work);
+
+/// The most memory that `work` held at a time beyond what there was before, in bytes; nothing where
+/// the system does not tell.
+std::optional<std::uint64_t> peak_bytes_of(const std::function<void()>& work);
+
+}  // namespace relief

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+// Clocks and resident memory around work that is run in turns. Tests:
+// tests/accuracy/measure_test.cpp.
+#include "relief/accuracy/measure.h"
+
+#include <malloc.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <fstream>
+#include <string>
+
+#include "relief/mesh/threads.h"
+
+namespace relief {
+namespace {
+
+/// Rounds of less than this are mostly the clock and chance.
+constexpr double shortest_round = 1e-3;
+
+/// How many times in a row a work is to be done so that a round is long enough.
+std::size_t times_in_a_round(const std::function<void()>& work) {
+    const double seconds = seconds_of(work);
+    return seconds >= shortest_round
+               ? 1
+               : static_cast<std::size_t>(std::ceil(shortest_round / std::max(seconds, 1e-7)));
+}
+
+std::vector<Timing> timings(std::span<const std::function<void()>> works, const Repeats& repeats) {
+    std::vector<std::size_t> times;
+    for (const std::function<void()>& work : works) {
+        work();  // The first time of all fills caches, and takes longer.
+        times.push_back(times_in_a_round(work));
+    }
+    std::vector<Timing> result(works.size());
+    interleave(works.size(), repeats, [&](std::size_t i, bool counted) {
+        const double seconds = seconds_of([&] {
+            for (std::size_t repeat = 0; repeat < times[i]; ++repeat)
+                works[i]();
+        });
+        if (counted) result[i].rounds.push_back(seconds / static_cast<double>(times[i]));
+    });
+    return result;
+}
+
+/// A line "VmHWM:   12345 kB" of what Linux tells of this process, in bytes.
+std::optional<std::uint64_t> status_bytes(const std::string& name) {
+    std::ifstream status("/proc/self/status");
+    for (std::string word; status >> word;) {
+        std::uint64_t kilobytes = 0;
+        if (word == name + ":" && status >> kilobytes) return kilobytes * 1024;
+    }
+    return std::nullopt;
+}
+
+}  // namespace
+
+double seconds_of(const std::function<void()>& work) {
+    const auto begin = std::chrono::steady_clock::now();
+    work();
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+}
+
+std::optional<std::uint64_t> peak_bytes_of(const std::function<void()>& work) {
+    ::malloc_trim(0);  // Or work would be done in memory that was held before.
+    std::ofstream reset("/proc/self/clear_refs");
+    reset << 5 << std::flush;  // Sets VmHWM to what is resident now.
+    const std::optional<std::uint64_t> before = status_bytes("VmRSS");
+    if (!reset || !before) return std::nullopt;
+    work();
+    const std::optional<std::uint64_t> peak = status_bytes("VmHWM");
+    if (!peak) return std::nullopt;
+    return *peak - std::min(*peak, *before);
+}
+
+std::vector<Cost> measure_costs(std::span<const std::function<void()>> works,
+                                const RunOptions& options, const CostChoice& choice) {
+    std::vector<Cost> costs(works.size());
+    if (!options.is_timed) return costs;
+    if (choice.one_thread) {
+        set_thread_limit(1);
+        const std::vector<Timing> found = timings(works, options.repeats);
+        for (std::size_t i = 0; i < works.size(); ++i)
+            costs[i].one_thread = found[i];
+    }
+    set_thread_limit(0);
+    if (choice.all_threads) {
+        const std::vector<Timing> found = timings(works, options.repeats);
+        for (std::size_t i = 0; i < works.size(); ++i)
+            costs[i].all_threads = found[i];
+    }
+    if (choice.memory) {
+        for (std::size_t i = 0; i < works.size(); ++i)
+            costs[i].peak_bytes = peak_bytes_of(works[i]);
+    }
+    return costs;
+}
+
+}  // namespace relief
