@@ -88,6 +88,21 @@ TEST(SceneOptions, DefaultLightsShineFromTheViewersSideWhereverTheCameraIs) {
     }
 }
 
+TEST(SceneOptions, ACameraWithItsPlaceMovesNoLight) {
+    const Workplace workplace;
+    workplace.write_square("square.obj");
+    ViewOptions options = of(workplace / "square.obj");
+    const ComposedScene usual = composed(options);
+    options.camera = CameraOption{.azimuth = 2.0F, .elevation = -0.3F};
+    options.camera->place = CameraPlace{{0.5F, 0.25F, 0.0F}, 3.0F};
+    const ComposedScene placed = composed(options);
+    ASSERT_EQ(placed.scene().directional_lights.size(), 2U);
+    EXPECT_EQ(placed.scene().directional_lights[0].direction_world,
+              usual.scene().directional_lights[0].direction_world);
+    const glm::vec3 eye = glm::vec3(0.5F, 0.25F, 0.0F) + 3.0F * towards(2.0F, -0.3F);
+    EXPECT_NEAR(glm::distance(glm::vec3(placed.camera.world_from_view[3]), eye), 0.0F, 1e-5F);
+}
+
 TEST(SceneOptions, LightsOnTheCommandLineReplaceAllOthers) {
     const Workplace workplace;
     workplace.write_square("square.obj");

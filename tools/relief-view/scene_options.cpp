@@ -13,6 +13,7 @@
 #include "relief/shade/default_view.h"
 #include "relief/shade/framing.h"
 #include "relief/shade/scene_file.h"
+#include "window/orbit_camera.h"
 
 namespace relief::tools {
 namespace {
@@ -57,14 +58,22 @@ void set_environment(Scene& scene, const ViewOptions& options) {
     }
 }
 
-Camera camera_for(const Scene& scene, const ViewOptions& options) {
-    if (scene.camera && !options.camera) {
+bool has_place(const ViewOptions& options) {
+    return options.camera && options.camera->place;
+}
+
+/// The view for which lamps are set up: what an option says of its place moves no lamp, so that a
+/// view that was copied from the window shows the same light.
+Camera usual_camera(const Scene& scene, const ViewOptions& options) {
+    const bool is_told = options.camera && !has_place(options);
+    if (scene.camera && !is_told) {
         Camera camera = *scene.camera;
         camera.vertical_fov = options.vertical_fov.value_or(camera.vertical_fov);
         return camera;
     }
-    const CameraOption view = options.camera.value_or(
-        CameraOption{.azimuth = default_azimuth, .elevation = default_elevation});
+    const CameraOption view =
+        is_told ? *options.camera
+                : CameraOption{.azimuth = default_azimuth, .elevation = default_elevation};
     const float aspect = static_cast<float>(options.size.x) / static_cast<float>(options.size.y);
     return framed(scene, view.azimuth, view.elevation,
                   options.vertical_fov.value_or(default_vertical_fov), aspect,
@@ -155,13 +164,18 @@ ComposedScene compose_scene(ViewOptions& options, Stages& stages, Report& report
     scene.exposure = options.exposure.value_or(scene.exposure);
     scene.tone_mapping = options.tone_mapping.value_or(scene.tone_mapping);
     composed.camera_follows_scene = scene.camera && !options.camera;
-    composed.camera = camera_for(scene, options);
+    composed.camera = usual_camera(scene, options);
     set_lights(composed, options);
     const Bounds bounds = world_bounds(scene);
     if (!bounds.empty()) composed.middle = 0.5F * (bounds.min + bounds.max);
     for (const Instance& instance : scene.instances)
         composed.at_rest.push_back(instance.world_from_object);
     if (options.light_markers) mark_lights(composed, *options.light_markers);
+    if (has_place(options)) {
+        const OrbitCamera orbit =
+            orbit_of(*options.camera, *options.camera->place, composed.camera.vertical_fov);
+        composed.camera = camera_of(orbit, ball_around(world_bounds(scene)));
+    }
     return composed;
 }
 

@@ -18,6 +18,11 @@
 namespace relief::tools {
 namespace {
 
+/// In double, so that what degrees_text() says (orbit_camera.h) comes back bit for bit.
+float radians_from(double degrees) {
+    return static_cast<float>(glm::radians(degrees));
+}
+
 void add_output_options(CLI::App& app, ViewOptions& options) {
     const std::string group = "Output";
     add_path(app, "--output", options.output,
@@ -96,10 +101,11 @@ void add_light_options(CLI::App& app, ViewOptions& options) {
     add_number(app, "--light-markers", "R", options.light_markers, {1e-6, 1, ""},
                "Show point and spot lights as small spheres, of R times the scene's size.")
         .group(group);
-    add_value(app, "--camera", "AZIMUTH,ELEVATION[,FACTOR]",
+    add_value(app, "--camera", "AZIMUTH,ELEVATION[,FACTOR|@X,Y,Z,DISTANCE]",
               "From where the camera looks, in degrees from +z towards +x and above the horizon, "
-              "and how far away it is as a factor of the distance that shows all. Default: the "
-              "model's camera, else 30,20,1.",
+              "and how far away it is as a factor of the distance that shows all; or, as the "
+              "window copies it, what it looks at and how far away that is, which moves no light. "
+              "Default: the model's camera, else 30,20,1.",
               [&](const std::string& subject, const std::string& text) {
                   options.camera = parse_camera(subject, text);
               })
@@ -107,9 +113,7 @@ void add_light_options(CLI::App& app, ViewOptions& options) {
     add_value(app, "--fov", "DEGREES",
               "Vertical field of view. Default: the model's camera's, else 35.",
               [&](const std::string& subject, const std::string& text) {
-                  const Range range{1, 170, "degrees"};
-                  options.vertical_fov =
-                      glm::radians(static_cast<float>(parse_number(subject, text, range)));
+                  options.vertical_fov = parse_fov(subject, text);
               })
         .group(group);
 }
@@ -156,16 +160,36 @@ void refuse(bool useless, const std::string& option, const std::string& because,
 }
 
 CameraOption parse_camera(const std::string& subject, const std::string& text) {
-    const std::vector<std::string> fields = split(text, ',');
-    if (fields.size() < 2 || fields.size() > 3)
-        throw UsageError(subject + ": not azimuth,elevation or azimuth,elevation,factor");
+    const std::size_t at = text.find('@');
+    const bool has_place = at != std::string::npos;
+    std::vector<std::string> fields = split(text.substr(0, at), ',');
+    if (fields.size() < 2 || fields.size() > (has_place ? 2 : 3)) {
+        throw UsageError(subject +
+                         ": not azimuth,elevation or azimuth,elevation,factor or "
+                         "azimuth,elevation@x,y,z,distance");
+    }
     const auto number = [&](std::size_t i, const Range& range) {
         const std::string field = subject + ": '" + fields[i] + "'";
-        return static_cast<float>(parse_number(field, fields[i], range));
+        return parse_number(field, fields[i], range);
     };
-    return {.azimuth = glm::radians(number(0, {-360, 360, "degrees"})),
-            .elevation = glm::radians(number(1, {-90, 90, "degrees"})),
-            .distance_factor = fields.size() == 3 ? number(2, {0.01, 1000, ""}) : 1.0F};
+    CameraOption camera{.azimuth = radians_from(number(0, {-360, 360, "degrees"})),
+                        .elevation = radians_from(number(1, {-90, 90, "degrees"}))};
+    if (fields.size() == 3)
+        camera.distance_factor = static_cast<float>(number(2, {0.01, 1000, ""}));
+    if (!has_place) return camera;
+    fields = split(text.substr(at + 1), ',');
+    if (fields.size() != 4)
+        throw UsageError(subject + ": what follows the @ is not x,y,z,distance");
+    const auto coordinate = [&](std::size_t i) {
+        return static_cast<float>(number(i, {-1e30, 1e30, ""}));
+    };
+    camera.place = {{coordinate(0), coordinate(1), coordinate(2)},
+                    static_cast<float>(number(3, {1e-30, 1e30, ""}))};
+    return camera;
+}
+
+float parse_fov(const std::string& subject, const std::string& text) {
+    return radians_from(parse_number(subject, text, {1, 170, "degrees"}));
 }
 
 void add_view_options(CLI::App& app, ViewOptions& options) {

@@ -22,11 +22,18 @@
 
 namespace relief::tools {
 
+/// What the camera looks at, in world space, and from how far away.
+struct CameraPlace {
+    glm::vec3 target{0.0F};
+    float distance = 1.0F;
+};
+
 /// From where the camera looks at the model.
 struct CameraOption {
     float azimuth = 0;          ///< Radians from +z towards +x.
     float elevation = 0;        ///< Radians above the horizon.
     float distance_factor = 1;  ///< Of the distance from which all of the model is seen.
+    std::optional<CameraPlace> place = std::nullopt;  ///< Else the model is framed.
 };
 
 /// What a height map becomes.
@@ -122,8 +129,12 @@ struct ViewOptions {
     GeneralOptions general;
 };
 
-/// "azimuth,elevation[,factor]", in degrees. \throws UsageError
+/// "azimuth,elevation[,factor]" or "azimuth,elevation@x,y,z,distance", in degrees.
+/// \throws UsageError
 CameraOption parse_camera(const std::string& subject, const std::string& text);
+
+/// Degrees, 1 to 170, as radians. \throws UsageError
+float parse_fov(const std::string& subject, const std::string& text);
 
 void add_view_options(CLI::App& app, ViewOptions& options);
 

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <random>
+
 #include <cmath>
 #include <numbers>
 
@@ -132,6 +134,27 @@ TEST(OrbitCamera, SaysItselfAsText) {
     orbit.target = {0.0F, 0.5F, 0.0F};
     orbit.distance = 3.25F;
     EXPECT_EQ(to_text(orbit), "30,0@0,0.5,0,3.25");
+}
+
+TEST(OrbitCamera, ComesBackFromItsTextBitForBit) {
+    std::mt19937 random(7);
+    std::uniform_real_distribution<float> angle(-3.14159F, 3.14159F);
+    std::uniform_real_distribution<float> length(-10.0F, 10.0F);
+    for (int i = 0; i < 2000; ++i) {
+        OrbitCamera orbit;
+        orbit.target = {length(random), 1e-4F * length(random), 1e4F * length(random)};
+        orbit.azimuth = angle(random);
+        orbit.elevation = 0.5F * angle(random);
+        orbit.distance = std::exp(length(random));
+        orbit.vertical_fov = std::abs(angle(random)) * 0.9F + 0.02F;
+        const CameraOption read = parse_camera("", to_text(orbit));
+        ASSERT_TRUE(read.place);
+        const float fov = parse_fov("", degrees_text(orbit.vertical_fov));
+        const Camera again = camera_of(orbit_of(read, *read.place, fov), unit_ball);
+        const Camera camera = camera_of(orbit, unit_ball);
+        ASSERT_EQ(again.world_from_view, camera.world_from_view) << to_text(orbit);
+        ASSERT_EQ(again.vertical_fov, camera.vertical_fov);
+    }
 }
 
 }  // namespace

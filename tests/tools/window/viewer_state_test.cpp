@@ -164,6 +164,28 @@ TEST_F(State, ShowsDebugViewsByKeyAndKeepsThemForAnotherModel) {
     EXPECT_EQ(state().wish()->settings, (FrameSettings{.width = 400, .height = 300}));
 }
 
+TEST_F(State, ItsCommandLineBringsTheSameViewBack) {
+    show("square.obj");
+    state().act(Action::nearer);
+    state().act(Action::orbit_left);
+    state().act(Action::wider);
+    pan_by(state().camera(), {12.0F, 7.0F}, 300);
+    const std::string text = state().command_line();
+    const Camera before = state().wish()->camera;
+    state().act(Action::top);
+    state().act(Action::fit);
+    state().look_as(text);
+    EXPECT_EQ(state().wish()->camera.world_from_view, before.world_from_view);
+    EXPECT_EQ(state().wish()->camera.vertical_fov, before.vertical_fov);
+    state().look_as("nonsense and more");
+    EXPECT_THAT(state().error(), testing::HasSubstr("says nothing of a camera"));
+    EXPECT_EQ(state().wish()->camera.world_from_view, before.world_from_view);
+    state().look_as("0,0");  // The same place from the front.
+    EXPECT_EQ(state().error(), "");
+    EXPECT_EQ(state().camera().azimuth, 0.0F);
+    EXPECT_GT(glm::length(state().camera().target), 0.0F);
+}
+
 TEST_F(State, SaysItselfAsJson) {
     show("square.obj");
     state().camera().azimuth = glm::radians(40.0F);

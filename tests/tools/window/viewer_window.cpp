@@ -75,6 +75,19 @@ void ViewerWindow::click_on(const std::string& name) const {
     click(place[0].get<int>(), place[1].get<int>());
 }
 
+Image view_on(const Image& screen, const nlohmann::json& view) {
+    const int width = view[0].get<int>();
+    const int height = view[1].get<int>();
+    Image part = make_image(width, height, 3, 8, ColorSpace::srgb);
+    const std::span<const std::uint8_t> from = screen.as<std::uint8_t>();
+    auto& to = std::get<std::vector<std::uint8_t>>(part.samples);
+    for (int row = 0; row < height; ++row) {
+        const auto begin = from.begin() + 3 * (row * screen.width + screen.width - width);
+        std::copy_n(begin, 3 * width, to.begin() + 3 * row * width);
+    }
+    return part;
+}
+
 double changed_share(const Image& before, const Image& after, int x, int y, int width, int height,
                      int codes) {
     const std::span<const std::uint8_t> a = before.as<std::uint8_t>();

@@ -46,6 +46,10 @@ class ViewerWindow {
     std::unique_ptr<ChildProcess> process_;
 };
 
+/// The view on a screen, which ends at its right and begins at its top. \param view  "view" of the
+/// state
+Image view_on(const Image& screen, const nlohmann::json& view);
+
 /// The parts of two pictures of one size that differ by more than so many codes, from 0 to 1,
 /// within a rectangle.
 double changed_share(const Image& before, const Image& after, int x, int y, int width, int height,

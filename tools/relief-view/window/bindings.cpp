@@ -32,6 +32,7 @@ const std::vector<Binding>& bindings() {
         {Action::vertex_frames, "N", "Draw tangents, bitangents and normals, or not"},
         {Action::health_markers, "M", "Mark where the mesh has trouble, or not"},
         {Action::copy_camera, "Ctrl+C", "Copy the camera as the option that repeats it"},
+        {Action::paste_camera, "Ctrl+V", "Look from where copied options say"},
         {Action::save_picture, "S", "Save a picture beside the model"},
         {Action::panels, "Tab", "Hide the panels, or show them"},
         {Action::help, "H", "Show these bindings"},

@@ -34,6 +34,7 @@ enum class Action {
     vertex_frames,
     health_markers,
     copy_camera,
+    paste_camera,
     save_picture,
     panels,
     help,

@@ -66,6 +66,8 @@ void drop_one(ViewOptions& options, const std::filesystem::path& file) {
     switch (dropped_as(file)) {
         case DroppedAs::model:
             options.model = file;
+            // Where the camera stood was another model's place.
+            if (options.camera && options.camera->place) options.camera.reset();
             break;
         case DroppedAs::height_map:
             options.height_map = file;

@@ -62,6 +62,10 @@ Camera camera_of(const OrbitCamera& orbit, const Ball& ball) {
     return camera;
 }
 
+OrbitCamera orbit_of(const CameraOption& option, const CameraPlace& place, float vertical_fov) {
+    return {place.target, option.azimuth, option.elevation, place.distance, vertical_fov};
+}
+
 OrbitCamera orbit_of(const Camera& camera, const Ball& ball) {
     const glm::vec3 eye(camera.world_from_view[3]);
     const glm::vec3 back = glm::normalize(glm::vec3(camera.world_from_view[2]));
@@ -106,13 +110,21 @@ void fit(OrbitCamera& orbit, const Ball& ball, float aspect) {
     orbit.distance = room * ball.radius / std::sin(std::min(half_height, half_width));
 }
 
+std::string degrees_text(float radians) {
+    constexpr int usual_digits = 6;
+    constexpr int digits_of_double = 17;
+    const double degrees = glm::degrees(static_cast<double>(radians));
+    for (int digits = usual_digits;; ++digits) {
+        const std::string text = fmt::format("{:.{}g}", degrees, digits);
+        const auto again = static_cast<float>(glm::radians(std::stod(text)));
+        if (again == radians || digits == digits_of_double) return text;
+    }
+}
+
 std::string to_text(const OrbitCamera& orbit) {
-    // In float, the conversion itself would show in the last digit.
-    const auto degrees = [](float radians) {
-        return static_cast<float>(glm::degrees(static_cast<double>(radians)));
-    };
-    return fmt::format("{},{}@{},{},{},{}", degrees(orbit.azimuth), degrees(orbit.elevation),
-                       orbit.target.x, orbit.target.y, orbit.target.z, orbit.distance);
+    return fmt::format("{},{}@{},{},{},{}", degrees_text(orbit.azimuth),
+                       degrees_text(orbit.elevation), orbit.target.x, orbit.target.y,
+                       orbit.target.z, orbit.distance);
 }
 
 }  // namespace relief::tools

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "relief/shade/scene.h"
+#include "view_options.h"
 
 namespace relief::tools {
 
@@ -31,6 +32,9 @@ Ball ball_around(const Bounds& bounds);
 /// far one, so that depth has a precision.
 Camera camera_of(const OrbitCamera& orbit, const Ball& ball);
 
+/// As --camera AZIMUTH,ELEVATION@X,Y,Z,DISTANCE says it.
+OrbitCamera orbit_of(const CameraOption& option, const CameraPlace& place, float vertical_fov);
+
 /// The orbit on which another camera looks, at the point nearest to the ball's centre.
 OrbitCamera orbit_of(const Camera& camera, const Ball& ball);
 
@@ -51,7 +55,10 @@ void zoom_by(OrbitCamera& orbit, float steps, const glm::vec2& pointer, const Ba
 void fit(OrbitCamera& orbit, const Ball& ball, float aspect);
 
 /// "30,20@0,0.5,0,3.2": azimuth and elevation in degrees, target, distance; what --camera takes.
-/// Reading it back gives the same camera to the last bit but for the angles' last.
+/// Reading it back gives the same camera, bit for bit.
 std::string to_text(const OrbitCamera& orbit);
+
+/// An angle with as many digits as --camera and --fov need to read it back, bit for bit.
+std::string degrees_text(float radians);
 
 }  // namespace relief::tools

@@ -82,6 +82,7 @@ void install_callbacks(GLFWwindow* window) {
 bool is_windows_own(Action action) {
     switch (action) {
         case Action::copy_camera:
+        case Action::paste_camera:
         case Action::save_picture:
         case Action::panels:
         case Action::help:

@@ -10,6 +10,7 @@
 
 #include "debug_options.h"
 #include "window/draw_thread.h"
+#include "window/pasted_view.h"
 #include "window/picking.h"
 
 namespace relief::tools {
@@ -44,7 +45,10 @@ void ViewerState::take(Loaded loaded) {
     ball_ = ball_around(world_bounds(*scene_));
     mark_health();
     ++revision_;
-    if (is_new) camera_ = orbit_of(camera, ball_);
+    if (!is_new) return;
+    const std::optional<CameraOption>& view = options_.camera;
+    camera_ = view && view->place ? orbit_of(*view, *view->place, camera.vertical_fov)
+                                  : orbit_of(camera, ball_);
 }
 
 void ViewerState::orbit_lights(const glm::vec2& pixels) {
@@ -73,6 +77,20 @@ void ViewerState::aim(const glm::vec2& pointer) {
     if (!scene_) return;
     const Ray ray = ray_through(camera_of(camera_, ball_), pointer);
     if (const std::optional<glm::vec3> point = surface_on(*scene_, ray)) aim_at(camera_, *point);
+}
+
+void ViewerState::look_as(const std::string& text) {
+    error_.clear();
+    try {
+        const PastedView view = pasted_view(text);
+        const float fov = view.vertical_fov.value_or(camera_.vertical_fov);
+        // Without a place, it is the same one from another side.
+        const CameraPlace place =
+            view.camera.place.value_or(CameraPlace{camera_.target, camera_.distance});
+        camera_ = orbit_of(view.camera, place, fov);
+    } catch (const UsageError& error) {
+        error_ = error.what();
+    }
 }
 
 void ViewerState::set_effects(EffectWishes effects) {
@@ -194,8 +212,8 @@ std::optional<DrawWish> ViewerState::wish() const {
 }
 
 std::string ViewerState::command_line() const {
-    return fmt::format("--camera {} --fov {:.6g} --size {}x{}", to_text(camera_),
-                       glm::degrees(camera_.vertical_fov), view_.x, view_.y) +
+    return fmt::format("--camera {} --fov {} --size {}x{}", to_text(camera_),
+                       degrees_text(camera_.vertical_fov), view_.x, view_.y) +
            command_line_of(options_.debug);
 }
 
@@ -210,6 +228,7 @@ nlohmann::ordered_json ViewerState::json(const DrawnPicture& drawn) const {
                                       {"distance", camera_.distance},
                                       {"target", numbers(camera_.target)},
                                       {"fov", glm::degrees(camera_.vertical_fov)}}},
+                                    {"command_line", command_line()},
                                     {"show", debug_view_info(options_.debug.view).name},
                                     {"overlays", overlays_json(options_.debug, markers_)},
                                     {"turntable", is_turning_},

@@ -54,6 +54,9 @@ class ViewerState {
     /// \param pointer  from the centre of the view, in halves of its height, y up
     void aim(const glm::vec2& pointer);
 
+    /// Takes over a view that was copied as text; what is no such text is an error.
+    void look_as(const std::string& text);
+
     void set_effects(EffectWishes effects);
     [[nodiscard]] const EffectWishes& effects() const { return effects_; }
 

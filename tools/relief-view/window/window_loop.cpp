@@ -104,6 +104,12 @@ class WindowLoop {
         if (action == Action::save_picture) save(0);
         if (action == Action::copy_camera)
             glfwSetClipboardString(system_.window(), state_.command_line().c_str());
+        if (action == Action::paste_camera) paste();
+    }
+
+    void paste() {
+        const char* text = glfwGetClipboardString(system_.window());
+        state_.look_as(text == nullptr ? "" : text);
     }
 
     /// Whether two wishes show the same, in whatever resolution.
