@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: Apache-2.0
+// Fitted normals against surfaces in closed form, by hand, and where there is no surface to fit.
+#include "relief/mesh/fitted_normals.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "relief/mesh/analytic_surfaces.h"
+#include "relief/mesh/direction_error.h"
+#include "relief/mesh/error.h"
+#include "relief/mesh/threads.h"
+
+namespace relief {
+namespace {
+
+std::uint32_t vertex_at(const Mesh& mesh, std::uint32_t corner) {
+    return mesh.triangles[corner / 3][static_cast<int>(corner % 3)];
+}
+
+/// RMS error of the fits at inner vertices, in degrees.
+double error_of(const FittedNormals& fitted, const AnalyticMesh& truth) {
+    double squares = 0.0;
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < fitted.corners.size(); ++i) {
+        const std::uint32_t vertex = vertex_at(truth.mesh, fitted.corners[i]);
+        if (truth.inner[vertex] == 0) continue;
+        const double degrees = degrees_between(fitted.normals[i], truth.normals[vertex]);
+        squares += degrees * degrees;
+        ++count;
+    }
+    return std::sqrt(squares / static_cast<double>(count));
+}
+
+double averaged_error(const AnalyticMesh& truth) {
+    Report report;
+    const std::vector<glm::vec3> normals =
+        vertex_normals(truth.mesh.positions, truth.mesh.triangles, NormalWeight::max, report);
+    return direction_error(normals, truth.normals, truth.inner).rms;
+}
+
+struct Situation {
+    AnalyticSurface surface;
+    Triangulation triangulation;
+    int cells = 48;
+};
+class FittedNormalsOnSurfaces : public testing::TestWithParam<Situation> {};
+
+TEST_P(FittedNormalsOnSurfaces, AreFarTruerThanAveragedOnesAndKnowHowMuch) {
+    const AnalyticMesh truth =
+        analytic_mesh(GetParam().surface, GetParam().triangulation, GetParam().cells, 1);
+    const FittedNormals fitted = fitted_normals(truth.mesh, {});
+    const double error = error_of(fitted, truth);
+    EXPECT_LE(error, 0.1 * averaged_error(truth));
+    EXPECT_LE(error, fitted.own_degrees);
+    EXPECT_GE(fitted.corners.size(), fitted.places * 9 / 10);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    All, FittedNormalsOnSurfaces,
+    testing::Values(Situation{AnalyticSurface::torus, Triangulation::jittered},
+                    Situation{AnalyticSurface::ellipsoid, Triangulation::jittered},
+                    Situation{AnalyticSurface::saddle, Triangulation::jittered},
+                    Situation{AnalyticSurface::cubic, Triangulation::jittered},
+                    Situation{AnalyticSurface::ellipsoid, Triangulation::anisotropic, 192},
+                    Situation{AnalyticSurface::cubic, Triangulation::anisotropic, 64}));
+
+TEST(FittedNormals, OwnErrorIsNoLessThanTheErrorWhereAveragedOnesAreExact) {
+    // Max's weights are exact on spheres, and on regular grids of a torus by symmetry.
+    for (const auto& [surface, triangulation] :
+         {std::pair(AnalyticSurface::sphere, Triangulation::jittered),
+          std::pair(AnalyticSurface::torus, Triangulation::regular)}) {
+        const AnalyticMesh truth = analytic_mesh(surface, triangulation, 48, 1);
+        const FittedNormals fitted = fitted_normals(truth.mesh, {});
+        EXPECT_LE(averaged_error(truth), 1e-4);
+        EXPECT_LE(error_of(fitted, truth), 0.02);
+        EXPECT_LE(error_of(fitted, truth), fitted.own_degrees);
+    }
+}
+
+TEST(FittedNormals, GetTruerWithTheFourthPowerOfTheCells) {
+    const auto error_with = [](int cells) {
+        const AnalyticMesh truth =
+            analytic_mesh(AnalyticSurface::cubic, Triangulation::jittered, cells, 3);
+        return error_of(fitted_normals(truth.mesh, {}), truth);
+    };
+    const double order = std::log2(error_with(16) / error_with(32));
+    EXPECT_GE(order, 3.0);
+    EXPECT_LE(order, 5.5);
+}
+
+/// A grid over [-1,1]^2 of heights.
+template <typename Height>
+Mesh graph_of(const Height& height, int cells) {
+    Mesh mesh;
+    for (int row = 0; row <= cells; ++row) {
+        for (int column = 0; column <= cells; ++column) {
+            const double x = 2.0 * column / cells - 1.0;
+            const double y = 2.0 * row / cells - 1.0;
+            mesh.positions.emplace_back(x, y, height(x, y));
+        }
+    }
+    const auto at = [&](int column, int row) {
+        return static_cast<std::uint32_t>(row * (cells + 1) + column);
+    };
+    for (int row = 0; row < cells; ++row) {
+        for (int column = 0; column < cells; ++column) {
+            mesh.triangles.emplace_back(at(column, row), at(column + 1, row),
+                                        at(column + 1, row + 1));
+            mesh.triangles.emplace_back(at(column, row), at(column + 1, row + 1),
+                                        at(column, row + 1));
+        }
+    }
+    return mesh;
+}
+
+TEST(FittedNormals, AreExactWhereTheSurfaceIsSuchAPolynomial) {
+    // Level in the middle, so that the tangent plane's axes are those of the polynomial.
+    const Mesh mesh = graph_of(
+        [](double x, double y) {
+            return 0.3 * x * x - 0.2 * x * y + 0.25 * y * y * y + 0.2 * x * x * y * y;
+        },
+        16);
+    const std::uint32_t middle = 8 * 17 + 8;
+    const FittedNormals fitted = fitted_normals(mesh, {});
+    bool is_found = false;
+    for (std::size_t i = 0; i < fitted.corners.size(); ++i) {
+        if (vertex_at(mesh, fitted.corners[i]) != middle) continue;
+        is_found = true;
+        EXPECT_LE(degrees_between(fitted.normals[i], {0.0, 0.0, 1.0}), 2e-5);  // Of floats.
+    }
+    EXPECT_TRUE(is_found);
+}
+
+TEST(FittedNormals, EndAtHardEdges) {
+    const Mesh roof = graph_of([](double x, double) { return 0.5 - 0.5 * std::abs(x); }, 16);
+    FitOptions options;
+    const auto worst_of = [&](const FittedNormals& fitted) {
+        double worst = 0.0;
+        for (std::size_t i = 0; i < fitted.corners.size(); ++i) {
+            const glm::uvec3& triangle = roof.triangles[fitted.corners[i] / 3];
+            const double middle = roof.positions[triangle.x].x + roof.positions[triangle.y].x +
+                                  roof.positions[triangle.z].x;
+            const glm::dvec3 side(middle > 0.0 ? 0.5 : -0.5, 0.0, 1.0);
+            worst = std::max(worst, degrees_between(fitted.normals[i], side));
+        }
+        return worst;
+    };
+    options.hard_edges.crease_angle = 0.5;
+    const FittedNormals parted = fitted_normals(roof, options);
+    EXPECT_EQ(parted.fans, 17U * 18U);  // The ridge's vertices count twice.
+    EXPECT_LE(worst_of(parted), 1e-4);
+    options.hard_edges.crease_angle.reset();
+    const FittedNormals smooth = fitted_normals(roof, options);
+    EXPECT_EQ(smooth.fans, 17U * 17U);
+    EXPECT_LT(smooth.corners.size(), parted.corners.size() * 9 / 10);  // Doubt along the ridge.
+}
+
+TEST(FittedNormals, SayNothingWhereThereIsNoSurface) {
+    Mesh tetrahedron;
+    tetrahedron.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    tetrahedron.triangles = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
+    const FittedNormals few = fitted_normals(tetrahedron, {});
+    EXPECT_EQ(few.places, 4U);
+    EXPECT_TRUE(few.corners.empty());
+    Mesh broken = graph_of([](double, double) { return 0.0; }, 8);
+    broken.positions[40].x = std::numeric_limits<float>::quiet_NaN();
+    for (const glm::dvec3& normal : fitted_normals(broken, {}).normals)
+        EXPECT_LE(degrees_between(normal, {0.0, 0.0, 1.0}), 1e-6);
+    EXPECT_TRUE(fitted_normals(Mesh{}, {}).corners.empty());
+}
+
+TEST(FittedNormals, OfLargeMeshesAreASampleTheSameForAnyThreads) {
+    const AnalyticMesh truth =
+        analytic_mesh(AnalyticSurface::torus, Triangulation::jittered, 32, 1);
+    FitOptions options;
+    options.most_places = 100;
+    set_thread_limit(1);
+    const FittedNormals one = fitted_normals(truth.mesh, options);
+    set_thread_limit(0);
+    const FittedNormals all = fitted_normals(truth.mesh, options);
+    EXPECT_EQ(one.places, 100U);
+    EXPECT_EQ(one.fans, 1024U);
+    EXPECT_EQ(one.corners, all.corners);
+    EXPECT_EQ(one.normals, all.normals);
+}
+
+}  // namespace
+}  // namespace relief
