@@ -84,7 +84,7 @@ std::vector<Cost> measure_costs(std::span<const std::function<void()>> works,
         for (std::size_t i = 0; i < works.size(); ++i)
             costs[i].one_thread = found[i];
     }
-    set_thread_limit(0);
+    set_thread_limit(options.threads);
     if (choice.all_threads) {
         const std::vector<Timing> found = timings(works, options.repeats);
         for (std::size_t i = 0; i < works.size(); ++i)

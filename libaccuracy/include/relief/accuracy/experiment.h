@@ -118,7 +118,7 @@ struct Experiment {
     std::string error_unit;  ///< "degrees", "FLIP"
     std::string item;        ///< What work is counted in: "triangle", "texel", "pixel"
     double items = 0.0;
-    /// What repeats it: "relief-accuracy run normals".
+    /// What repeats it: "relief-accuracy run normals"; filled in by the tool.
     std::string command;
     std::vector<Measurement> measurements;
     std::vector<Chart> charts;
@@ -134,6 +134,8 @@ struct RunOptions {
     bool is_quick = false;
     Repeats repeats{9, 2};
     bool is_timed = true;  ///< False: errors alone, which are the same on every machine.
+    /// How many threads "all threads" are; 0: as many as the machine has.
+    unsigned threads = 0;
     /// Before each experiment: its title, and how many are done of how many. May throw Cancelled.
     std::function<void(const std::string& title, std::size_t done, std::size_t total)> tell;
 };

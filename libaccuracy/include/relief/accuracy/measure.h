@@ -28,7 +28,7 @@ struct CostChoice {
 ///                 until it takes that, and the time is divided
 /// \return in the order of the works; nothing measured where options.is_timed is false
 ///
-/// The thread limit is "as many as the machine has" afterwards. Memory is what the process held
+/// The thread limit is options.threads afterwards. Memory is what the process held
 /// resident at the most, as Linux counts it, beyond what it held before: pages, not bytes.
 std::vector<Cost> measure_costs(std::span<const std::function<void()>> works,
                                 const RunOptions& options, const CostChoice& choice = {});

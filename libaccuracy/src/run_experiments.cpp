@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+// The table of subjects: a subject is there once it has a line here. Tests:
+// tests/accuracy/experiment_test.cpp.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+#include "relief/accuracy/subjects.h"
+#include "relief/mesh/error.h"
+#include "storage/storage_experiments.h"
+
+namespace relief {
+namespace {
+
+struct SubjectEntry {
+    Subject subject;
+    std::vector<Experiment> (*run)(const RunOptions&);
+};
+
+/// In the order of reports.
+constexpr std::array entries = {
+    SubjectEntry{Subject::storage, storage_experiments},
+};
+
+struct SubjectWord {
+    Subject subject;
+    std::string_view word;
+};
+
+constexpr std::array words = {
+    SubjectWord{Subject::normals, "normals"},     SubjectWord{Subject::tangents, "tangents"},
+    SubjectWord{Subject::bump, "bump"},           SubjectWord{Subject::storage, "storage"},
+    SubjectWord{Subject::bake, "bake"},           SubjectWord{Subject::shading, "shading"},
+    SubjectWord{Subject::stability, "stability"},
+};
+
+}  // namespace
+
+std::vector<Subject> subjects_with_experiments() {
+    std::vector<Subject> subjects;
+    for (const SubjectEntry& entry : entries)
+        subjects.push_back(entry.subject);
+    return subjects;
+}
+
+std::string_view word_of(Subject subject) {
+    const auto* const found = std::find_if(
+        words.begin(), words.end(), [&](const SubjectWord& one) { return one.subject == subject; });
+    return found->word;
+}
+
+Subject subject_from(std::string_view word) {
+    std::vector<std::string_view> known;
+    for (const SubjectWord& one : words) {
+        if (one.word == word) return one.subject;
+        known.push_back(one.word);
+    }
+    throw InvalidInput(fmt::format("subject '{}' is not one of {}", word, fmt::join(known, ", ")));
+}
+
+std::vector<Experiment> run_experiments(Subject subject, const RunOptions& options) {
+    for (const SubjectEntry& entry : entries) {
+        if (entry.subject == subject) return entry.run(options);
+    }
+    throw InvalidInput(fmt::format("there are no experiments on {} yet", word_of(subject)));
+}
+
+}  // namespace relief

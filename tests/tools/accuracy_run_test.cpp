@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+// relief-accuracy run as users run it: tables, files, and what it refuses.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "tools/refusal.h"
+#include "tools/workplace.h"
+
+namespace relief::tools {
+namespace {
+
+using nlohmann::json;
+using test::expect_refusal;
+using test::ProgramResult;
+using test::Refused;
+using test::Workplace;
+using testing::HasSubstr;
+using testing::Not;
+
+TEST(AccuracyRun, PrintsATableAndWritesTheReport) {
+    const Workplace workplace;
+    const ProgramResult result =
+        workplace.run("relief-accuracy run storage --quick --repeats 3 --output out/report");
+    ASSERT_EQ(result.exit_code, 0) << result.error;
+    EXPECT_EQ(result.error, "");
+    EXPECT_THAT(result.out, HasSubstr("storage/frames: Tangent frames in few bits\n"));
+    EXPECT_THAT(result.out, HasSubstr("out/report/accuracy.json: "));
+    const json report = json::parse(workplace.read("out/report/accuracy.json"));
+    EXPECT_EQ(report["command"], "relief-accuracy run storage --quick --repeats 3");
+    EXPECT_EQ(report["settings"]["repeats"], 3);
+    const json& first = report["experiments"][0]["measurements"][0];
+    EXPECT_EQ(first["cost"]["one_thread"]["rounds"].size(), 3U);
+    EXPECT_GT(first["cost"]["one_thread"]["median"].get<double>(), 0.0);
+    EXPECT_THAT(workplace.read("out/report/accuracy.csv"),
+                HasSubstr("\nstorage/frames,storage,float32,encoding=float32,degrees,"));
+}
+
+TEST(AccuracyRun, ErrorsAloneAreTheSameEachTimeAndForAnyThreads) {
+    const Workplace workplace;
+    const std::string line = "relief-accuracy run storage --quick --no-times --json";
+    const ProgramResult first = workplace.run(line);
+    ASSERT_EQ(first.exit_code, 0) << first.error;
+    EXPECT_EQ(workplace.run(line).out, first.out);
+    EXPECT_THAT(first.out, Not(HasSubstr("one_thread")));
+    const json one = json::parse(workplace.run(line + " --threads 1").out);
+    EXPECT_EQ(one["experiments"][0]["measurements"],
+              json::parse(first.out)["experiments"][0]["measurements"]);
+    EXPECT_EQ(workplace.outputs(), "") << "nothing is written unless asked for";
+}
+
+class AccuracyRefusal : public testing::TestWithParam<Refused> {};
+
+TEST_P(AccuracyRefusal, IsOneLine) {
+    const Workplace workplace;
+    workplace.write("taken", "a file");
+    expect_refusal(workplace, "relief-accuracy", GetParam(), "old");
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    All, AccuracyRefusal,
+    testing::Values(Refused{"relief-accuracy run", 2, "SUBJECT is missing"},
+                    Refused{"relief-accuracy run colour", 2, "colour: not one of all, "},
+                    Refused{"relief-accuracy run storage all", 2,
+                            "all: the other subjects are in it"},
+                    Refused{"relief-accuracy run storage storage", 2, "storage: given twice"},
+                    Refused{"relief-accuracy run storage --repeats 2", 2,
+                            "--repeats 2: not between 3 and 1000"},
+                    Refused{"relief-accuracy run storage --repeats 5 --no-times", 2,
+                            "--no-times and --repeats contradict each other"},
+                    Refused{"relief-accuracy run storage --json --quiet", 2,
+                            "--json and --quiet contradict each other"},
+                    Refused{"relief-accuracy run storage --quiet", 2,
+                            "--quiet without --output would leave nothing of the results"},
+                    Refused{"relief-accuracy run storage --output taken", 1,
+                            "taken: exists, but is no folder"}));
+
+}  // namespace
+}  // namespace relief::tools

@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// The commands of relief-accuracy. Each adds its options to the tool and says what to run.
+#pragma once
+
+#include "common/command.h"
+
+namespace relief::tools {
+
+Command add_run_command(CLI::App& tool);
+
+}  // namespace relief::tools

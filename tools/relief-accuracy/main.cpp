@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: Apache-2.0
+// relief-accuracy: what accuracy costs in time. Each command stands in its own file.
+// Tests: tests/tools/accuracy_run_test.cpp.
+#include "commands.h"
+
+int main(int argc, char** argv) {
+    using namespace relief::tools;
+    return run_tool({"relief-accuracy",
+                     "Says what accuracy costs: each method's error beside the time that it takes.",
+                     {add_run_command}},
+                    argc, argv);
+}

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: Apache-2.0
+// Rows and cells of CSV. Tests: tests/tools/accuracy_report_test.cpp.
+#include "report_csv.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <vector>
+
+#include "relief/accuracy/subjects.h"
+
+namespace relief::tools {
+namespace {
+
+using Row = std::vector<std::string>;
+
+std::string quoted(const std::string& text) {
+    if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+    std::string cell = "\"";
+    for (const char letter : text)
+        cell += letter == '"' ? std::string("\"\"") : std::string(1, letter);
+    return cell + "\"";
+}
+
+std::string line_of(const Row& row) {
+    std::string line;
+    for (std::size_t i = 0; i < row.size(); ++i) {
+        if (i > 0) line += ',';
+        line += quoted(row[i]);
+    }
+    return line + "\n";
+}
+
+/// The shortest text that reads back as the same number.
+std::string number(double value) {
+    return std::isfinite(value) ? fmt::format("{}", value) : "";
+}
+
+std::string choices_of(const Measurement& one) {
+    std::string text;
+    for (const auto& [choice, value] : one.choices)
+        text += fmt::format("{}{}={}", text.empty() ? "" : "; ", choice, value);
+    return text;
+}
+
+void add_times(Row& row, const std::optional<Timing>& timing) {
+    if (!timing) {
+        row.insert(row.end(), 4, "");
+        return;
+    }
+    const Spread spread = timing->spread();
+    for (const double seconds : {spread.median, spread.p10, spread.p90})
+        row.push_back(number(seconds));
+    row.push_back(fmt::to_string(spread.count));
+}
+
+Row row_of(const Experiment& experiment, const Measurement& one) {
+    const ErrorFigures& error = one.error;
+    Row row = {experiment.id,
+               std::string(word_of(experiment.subject)),
+               one.method,
+               choices_of(one),
+               experiment.error_unit,
+               fmt::to_string(error.count),
+               fmt::to_string(error.undefined),
+               number(error.rms),
+               number(error.mean),
+               number(error.p99),
+               number(error.max),
+               error.psnr ? number(*error.psnr) : "",
+               experiment.item,
+               number(experiment.items)};
+    add_times(row, one.cost.one_thread);
+    add_times(row, one.cost.all_threads);
+    row.push_back(one.cost.peak_bytes ? fmt::to_string(*one.cost.peak_bytes) : "");
+    row.push_back(one.cost.stored_bytes > 0.0 ? number(one.cost.stored_bytes) : "");
+    row.emplace_back(one.is_efficient ? "1" : "0");
+    return row;
+}
+
+}  // namespace
+
+std::string measurements_csv(const AccuracyReport& report) {
+    std::string text = line_of({"experiment",
+                                "subject",
+                                "method",
+                                "choices",
+                                "error_unit",
+                                "count",
+                                "undefined",
+                                "rms",
+                                "mean",
+                                "p99",
+                                "max",
+                                "psnr",
+                                "item",
+                                "items",
+                                "one_thread_seconds",
+                                "one_thread_p10",
+                                "one_thread_p90",
+                                "one_thread_rounds",
+                                "all_threads_seconds",
+                                "all_threads_p10",
+                                "all_threads_p90",
+                                "all_threads_rounds",
+                                "peak_bytes",
+                                "stored_bytes",
+                                "efficient"});
+    for (const Experiment& experiment : report.experiments) {
+        for (const Measurement& one : experiment.measurements)
+            text += line_of(row_of(experiment, one));
+    }
+    return text;
+}
+
+std::string curves_csv(const AccuracyReport& report) {
+    std::string text =
+        line_of({"experiment", "chart", "method", "x_label", "x", "error_unit", "error"});
+    for (const Experiment& experiment : report.experiments) {
+        for (const Chart& chart : experiment.charts) {
+            for (const Curve& curve : chart.curves) {
+                for (const CurvePoint& point : curve.points)
+                    text += line_of({experiment.id, chart.id, curve.method, chart.x_label,
+                                     number(point.x), experiment.error_unit, number(point.error)});
+            }
+        }
+    }
+    return text;
+}
+
+}  // namespace relief::tools

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// A report as files in a folder: accuracy.json, accuracy.csv, accuracy-curves.csv and pictures/.
+/// Each is written beside and renamed, the JSON last. Tests: tests/tools/accuracy_run_test.cpp.
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "accuracy_report.h"
+
+namespace relief::tools {
+
+/// \return the files that a reader opens first
+std::vector<std::filesystem::path> write_report(const std::filesystem::path& folder,
+                                                const AccuracyReport& report);
+
+}  // namespace relief::tools

@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: Apache-2.0
+// Columns of text. Tests: tests/tools/accuracy_report_test.cpp.
+#include "report_table.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "common/text.h"
+
+namespace relief::tools {
+namespace {
+
+/// A heading and a cell for each row; numbers stand at the right.
+struct Column {
+    std::string heading;
+    std::vector<std::string> cells;
+    bool is_text = false;
+
+    [[nodiscard]] bool empty() const {
+        return std::all_of(cells.begin(), cells.end(),
+                           [](const std::string& cell) { return cell.empty(); });
+    }
+    /// In letters, as a terminal counts them: bytes but for those that continue one.
+    [[nodiscard]] std::size_t width() const {
+        std::size_t most = letters_of(heading);
+        for (const std::string& cell : cells)
+            most = std::max(most, letters_of(cell));
+        return most;
+    }
+    static std::size_t letters_of(const std::string& text) {
+        return static_cast<std::size_t>(std::count_if(
+            text.begin(), text.end(), [](char byte) { return (byte & 0xC0) != 0x80; }));
+    }
+};
+
+std::string padded(const std::string& text, std::size_t width, bool is_text) {
+    const std::string space(width - Column::letters_of(text), ' ');
+    return is_text ? text + space : space + text;
+}
+
+std::string line_of(const std::vector<Column>& columns, const std::string& begin,
+                    const std::vector<std::size_t>& widths, std::size_t row, bool is_heading) {
+    std::string line = begin;
+    for (std::size_t i = 0; i < columns.size(); ++i) {
+        const Column& column = columns[i];
+        const std::string& text = is_heading ? column.heading : column.cells[row];
+        if (i > 0) line += "  ";
+        line += padded(text, widths[i], column.is_text);
+    }
+    line.erase(line.find_last_not_of(' ') + 1);
+    return line + "\n";
+}
+
+std::string number(double value) {
+    return std::isfinite(value) ? fmt::format("{:.3g}", value) : "-";
+}
+
+/// "± 3 %": half of what lies between the 10th and the 90th of 100, of the median.
+std::string spread_of(const std::optional<Timing>& timing) {
+    if (!timing) return "";
+    const Spread spread = timing->spread();
+    if (!(spread.median > 0.0)) return "";
+    return fmt::format("±{:.0f} %", 50.0 * (spread.p90 - spread.p10) / spread.median);
+}
+
+std::string median_of(const std::optional<Timing>& timing) {
+    return timing ? seconds_in_words(timing->spread().median) : "";
+}
+
+std::vector<Column> columns_of(const Experiment& experiment) {
+    std::vector<Column> columns = {
+        {"", {}, true},    {"RMS", {}},    {"mean", {}},     {"99 %", {}}, {"max", {}},
+        {"undefined", {}}, {"PSNR", {}},   {"1 thread", {}}, {"", {}},     {"all", {}},
+        {"", {}},          {"memory", {}}, {"stored", {}}};
+    for (const Measurement& one : experiment.measurements) {
+        const ErrorFigures& error = one.error;
+        const std::vector<std::string> cells = {
+            one.method,
+            number(error.rms),
+            number(error.mean),
+            number(error.p99),
+            number(error.max),
+            error.undefined > 0 ? fmt::to_string(error.undefined) : "",
+            error.psnr ? fmt::format("{:.1f} dB", *error.psnr) : "",
+            median_of(one.cost.one_thread),
+            spread_of(one.cost.one_thread),
+            median_of(one.cost.all_threads),
+            spread_of(one.cost.all_threads),
+            one.cost.peak_bytes ? byte_size(*one.cost.peak_bytes) : "",
+            one.cost.stored_bytes > 0.0 ? fmt::format("{:.3g} B", one.cost.stored_bytes) : ""};
+        for (std::size_t i = 0; i < columns.size(); ++i)
+            columns[i].cells.push_back(cells[i]);
+    }
+    std::erase_if(columns, [](const Column& column) { return column.empty(); });
+    return columns;
+}
+
+std::string rows_of(const Experiment& experiment) {
+    if (experiment.measurements.empty()) return "";
+    const std::vector<Column> columns = columns_of(experiment);
+    std::vector<std::size_t> widths;
+    widths.reserve(columns.size());
+    for (const Column& column : columns)
+        widths.push_back(column.width());
+    std::string text = line_of(columns, "    ", widths, 0, true);
+    for (std::size_t row = 0; row < experiment.measurements.size(); ++row) {
+        const Measurement& one = experiment.measurements[row];
+        text += line_of(columns, one.is_efficient ? "  * " : "    ", widths, row, false);
+        if (!one.note.empty()) text += fmt::format("      {}\n", one.note);
+    }
+    return text;
+}
+
+/// "sobel3: order 1.99 of 2, breaks at 1e-12"
+std::string line_of(const Curve& curve) {
+    std::string text = curve.method + ":";
+    if (curve.points.size() > 1) {
+        text += fmt::format(" {} at {:.4g}, {} at {:.4g}", number(curve.points.front().error),
+                            curve.points.front().x, number(curve.points.back().error),
+                            curve.points.back().x);
+    }
+    if (curve.order) text += fmt::format(", order {:.2f}", *curve.order);
+    if (curve.expected_order) text += fmt::format(" (expected {:.3g})", *curve.expected_order);
+    if (curve.breaks_at) text += fmt::format(", breaks at {:.3g}", *curve.breaks_at);
+    return text;
+}
+
+}  // namespace
+
+std::string seconds_in_words(double seconds) {
+    struct Unit {
+        double seconds;
+        const char* name;
+    };
+    static constexpr std::array units = {Unit{1e-9, "ns"}, Unit{1e-6, "µs"}, Unit{1e-3, "ms"},
+                                         Unit{1.0, "s"}};
+    // What would be rounded to 1000 is told in the next unit.
+    std::size_t unit = 0;
+    while (unit + 1 < units.size() && seconds >= 999.5 * units.at(unit).seconds)
+        ++unit;
+    const double value = seconds / units.at(unit).seconds;
+    const int digits = value < 9.995 ? 2 : value < 99.95 ? 1 : 0;
+    return fmt::format("{:.{}f} {}", value, digits, units.at(unit).name);
+}
+
+std::string table_of(const Experiment& experiment) {
+    std::string text =
+        fmt::format("{}: {}\n  {}\n", experiment.id, experiment.title, experiment.question);
+    text += fmt::format("  input  {}\n  truth  {}\n  error  {}\n", experiment.input,
+                        experiment.truth, experiment.error_unit);
+    text += rows_of(experiment);
+    for (const Chart& chart : experiment.charts) {
+        text += fmt::format("  {} (by {})\n", chart.title, chart.x_label);
+        for (const Curve& curve : chart.curves)
+            text += fmt::format("    {}\n", line_of(curve));
+    }
+    if (!experiment.finding.empty()) text += fmt::format("  {}\n", experiment.finding);
+    return text;
+}
+
+}  // namespace relief::tools
