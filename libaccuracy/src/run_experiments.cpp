@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 
+#include "normals/normals_experiments.h"
 #include "relief/accuracy/subjects.h"
 #include "relief/mesh/error.h"
 #include "storage/storage_experiments.h"
@@ -20,6 +21,7 @@ struct SubjectEntry {
 
 /// In the order of reports.
 constexpr std::array entries = {
+    SubjectEntry{Subject::normals, normals_experiments},
     SubjectEntry{Subject::storage, storage_experiments},
 };
 

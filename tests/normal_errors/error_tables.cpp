@@ -4,76 +4,40 @@
 #include <fmt/format.h>
 
 #include <array>
-#include <cmath>
-#include <functional>
 #include <vector>
 
-#include "relief/mesh/analytic_surfaces.h"
-#include "relief/mesh/direction_error.h"
-#include "relief/mesh/normals.h"
+#include "analytic_words.h"
+#include "normals/normal_methods.h"
 #include "support/error_page.h"
 
 namespace relief::test {
 namespace {
 
-struct Method {
-    const char* name;
-    std::function<std::vector<glm::vec3>(const Mesh&)> normals;
-};
-
-Method by(const char* name, NormalWeight weight) {
-    return {name, [weight](const Mesh& mesh) {
-                Report report;
-                return vertex_normals(mesh.positions, mesh.triangles, weight, report);
-            }};
-}
-
-const std::vector<Method>& methods() {
-    static const std::vector<Method> all = {
-        by("uniform", NormalWeight::uniform),
-        by("area", NormalWeight::area),
-        by("angle", NormalWeight::angle),
-        by("sine", NormalWeight::sine),
-        by("max", NormalWeight::max),
-        by("angle-edges", NormalWeight::angle_edges),
-        by("area-angle", NormalWeight::area_angle),
-        {"auto", [](const Mesh& mesh) {
-             Report report;
-             return chosen_normals(mesh.positions, mesh.triangles, {}, report).normals;
-         }}};
+const std::vector<NormalMethod>& methods() {
+    static const std::vector<NormalMethod> all = normal_methods(std::array{Arithmetic::float64});
     return all;
 }
 
-struct Named {
-    const char* name;
-    AnalyticSurface surface;
-};
-constexpr std::array surfaces = {
-    Named{"sphere", AnalyticSurface::sphere}, Named{"torus", AnalyticSurface::torus},
-    Named{"ellipsoid", AnalyticSurface::ellipsoid}, Named{"saddle", AnalyticSurface::saddle},
-    Named{"cubic", AnalyticSurface::cubic}};
-
 std::string header() {
     std::vector<std::string> names;
-    for (const Method& method : methods())
-        names.emplace_back(method.name);
+    for (const NormalMethod& method : methods())
+        names.push_back(method.weighting);
     return table_header(names);
 }
 
 std::string surface_table(const char* title, Triangulation triangulation) {
     constexpr int cells = 64;
     std::string text = fmt::format("\n{}\n\n{}", title, header());
-    for (const Named& named : surfaces) {
-        const AnalyticMesh truth = analytic_mesh(named.surface, triangulation, cells, 1);
+    for (const AnalyticSurface surface : all_surfaces) {
+        const AnalyticMesh truth = analytic_mesh(surface, triangulation, cells, 1);
         std::vector<double> ranks;
         std::vector<std::string> entries;
-        for (const Method& method : methods()) {
-            const DirectionError error =
-                direction_error(method.normals(truth.mesh), truth.normals, truth.inner);
+        for (const NormalMethod& method : methods()) {
+            const AngleDistribution error = normal_errors(method.normals(truth.mesh), truth);
             ranks.push_back(error.rms);
             entries.push_back(in_digits(error.rms) + " / " + in_digits(error.max));
         }
-        text += table_row(named.name, ranks, entries);
+        text += table_row(word_of(surface), ranks, entries);
     }
     return text;
 }
@@ -85,19 +49,10 @@ std::string fan_table() {
         "neighbours\n\n" +
         header();
     for (const int valence : {3, 4, 5, 6, 7, 8, 9}) {
-        std::vector<double> squares(methods().size(), 0.0);
-        for (std::uint32_t seed = 0; seed < fans; ++seed) {
-            const Mesh fan = cubic_fan(valence, seed);
-            for (std::size_t m = 0; m < squares.size(); ++m) {
-                const double degrees = degrees_between(
-                    glm::dvec3(methods()[m].normals(fan).front()), glm::dvec3(0.0, 0.0, 1.0));
-                squares[m] += degrees * degrees;
-            }
-        }
         std::vector<double> ranks;
         std::vector<std::string> entries;
-        for (const double sum : squares) {
-            ranks.push_back(std::sqrt(sum / fans));
+        for (const NormalMethod& method : methods()) {
+            ranks.push_back(fan_errors(method, valence, fans).rms);
             entries.push_back(in_digits(ranks.back()));
         }
         text += table_row(fmt::format("{} neighbours", valence), ranks, entries);

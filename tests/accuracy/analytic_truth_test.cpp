@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: Apache-2.0
+// The ground truth of normals and tangents a second time: positions by formulas of this file's own,
+// in long double, differentiated numerically.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "analytic_words.h"
+#include "relief/mesh/analytic_surfaces.h"
+#include "relief/mesh/direction_error.h"
+
+namespace relief {
+namespace {
+
+using Real = long double;
+using Point = glm::vec<3, Real>;
+using Formula = std::function<Point(Real s, Real t)>;
+
+constexpr Real pi = std::numbers::pi_v<Real>;
+
+Formula ellipsoid(Real a, Real b, Real c) {
+    return [=](Real s, Real t) {
+        const Real polar = (0.15L + 0.7L * t) * pi;  // From one open pole to the other.
+        return Point(a * std::sin(polar) * std::cos(2 * pi * s),
+                     b * std::sin(polar) * std::sin(2 * pi * s), c * std::cos(polar));
+    };
+}
+
+Point on_torus(Real s, Real t) {
+    const Real around = 1.0L + 0.4L * std::cos(2 * pi * t);
+    return {around * std::cos(2 * pi * s), around * std::sin(2 * pi * s),
+            0.4L * std::sin(2 * pi * t)};
+}
+
+Point on_saddle(Real s, Real t) {
+    const Real x = 2 * s - 1;
+    const Real y = 2 * t - 1;
+    return {x, y, (x * x - y * y) / 2};
+}
+
+constexpr std::size_t terms = 10;
+std::array<Real, terms> powers(Real x, Real y) {
+    return {1, x, y, x * x, x * y, y * y, x * x * x, x * x * y, x * y * y, y * y * y};
+}
+
+/// The cubic's coefficients are drawn at random: found again from the mesh, by least squares.
+Formula cubic_through(const TexturedMesh& truth) {
+    std::array<std::array<Real, terms + 1>, terms> rows{};
+    for (const glm::vec3& p : truth.mesh.positions) {
+        const auto row = powers(static_cast<Real>(p.x), static_cast<Real>(p.y));
+        for (std::size_t i = 0; i < terms; ++i) {
+            for (std::size_t j = 0; j < terms; ++j)
+                rows[i][j] += row[i] * row[j];
+            rows[i][terms] += row[i] * static_cast<Real>(p.z);
+        }
+    }
+    for (std::size_t pivot = 0; pivot < terms; ++pivot) {  // Gauss and Jordan.
+        const auto largest = std::max_element(
+            rows.begin() + static_cast<std::ptrdiff_t>(pivot), rows.end(),
+            [&](const auto& a, const auto& b) { return std::abs(a[pivot]) < std::abs(b[pivot]); });
+        std::swap(rows[pivot], *largest);
+        for (std::size_t i = 0; i < terms; ++i) {
+            const Real factor = i == pivot ? 0 : rows[i][pivot] / rows[pivot][pivot];
+            for (std::size_t j = 0; j <= terms; ++j)
+                rows[i][j] -= factor * rows[pivot][j];
+        }
+    }
+    std::array<Real, terms> coefficients{};
+    for (std::size_t i = 0; i < terms; ++i)
+        coefficients[i] = rows[i][terms] / rows[i][i];
+    return [coefficients](Real s, Real t) {
+        const auto row = powers(2 * s - 1, 2 * t - 1);
+        Real z = 0;
+        for (std::size_t i = 0; i < terms; ++i)
+            z += coefficients[i] * row[i];
+        return Point(2 * s - 1, 2 * t - 1, z);
+    };
+}
+
+Formula formula_of(AnalyticSurface surface, const TexturedMesh& truth) {
+    switch (surface) {
+        case AnalyticSurface::sphere:
+            return ellipsoid(1.0L, 1.0L, 1.0L);
+        case AnalyticSurface::torus:
+            return on_torus;
+        case AnalyticSurface::ellipsoid:
+            return ellipsoid(1.0L, 0.7L, 0.4L);
+        case AnalyticSurface::saddle:
+            return on_saddle;
+        default:
+            return cubic_through(truth);
+    }
+}
+
+/// The derivative along (ds, dt): central differences of three widths, extrapolated twice
+/// [Richardson 1911]; errors of h^6.
+Point derivative(const Formula& formula, Real s, Real t, Real ds, Real dt) {
+    const auto central = [&](Real h) {
+        return (formula(s + h * ds, t + h * dt) - formula(s - h * ds, t - h * dt)) / (2 * h);
+    };
+    const Real h = 1e-2L;
+    const Point wide = central(h);
+    const Point middle = central(h / 2);
+    const Point narrow = central(h / 4);
+    const Point once = (Real(4) * middle - wide) / Real(3);
+    const Point again = (Real(4) * narrow - middle) / Real(3);
+    return (Real(16) * again - once) / Real(15);
+}
+
+/// Numbers that the cubic's coefficients come back with are as good as the float positions.
+double tolerance_for(AnalyticSurface surface) {
+    return surface == AnalyticSurface::cubic ? 1e-5 : 1e-9;
+}
+
+TEST(AnalyticTruth, MeshesLieOnTheSurfacesOfTheseFormulas) {
+    for (const AnalyticSurface surface : all_surfaces) {
+        const TexturedMesh truth =
+            textured_mesh(surface, Triangulation::jittered, TextureLayout::upright, 16, 1);
+        const Formula formula = formula_of(surface, truth);
+        for (std::size_t v = 0; v < truth.parameters.size(); ++v) {
+            const glm::dvec2 at = truth.parameters[v];
+            const Point expected = formula(static_cast<Real>(at.x), static_cast<Real>(at.y));
+            EXPECT_LE(glm::length(glm::dvec3(truth.mesh.positions[v]) - glm::dvec3(expected)), 2e-7)
+                << word_of(surface);
+        }
+    }
+}
+
+TEST(AnalyticTruth, FramesAreThoseOfNumericDerivatives) {
+    for (const AnalyticSurface surface : all_surfaces) {
+        for (const TextureLayout layout : {TextureLayout::upright, TextureLayout::sheared}) {
+            const TexturedMesh truth =
+                textured_mesh(surface, Triangulation::jittered, layout, 16, 1);
+            const Formula formula = formula_of(surface, truth);
+            // v stays the same along u where t makes up for what s does to it.
+            const Real slant = layout == TextureLayout::sheared ? 0.5L : 0.0L;
+            for (const glm::dvec2& at : truth.parameters) {
+                const Real s = static_cast<Real>(at.x);
+                const Real t = static_cast<Real>(at.y);
+                const Point along_s = derivative(formula, s, t, 1, 0);
+                const Point along_t = derivative(formula, s, t, 0, 1);
+                const Point along_u = derivative(formula, s, t, 1, slant);
+                const SurfaceFrame frame = truth.frame_at(at);
+                const Point cross = glm::cross(along_s, along_t);
+                // Outwards, or up, as the mesh's triangles are.
+                const Point normal =
+                    glm::dot(glm::dvec3(cross), frame.normal) < 0.0 ? -cross : cross;
+                EXPECT_LE(degrees_between(glm::dvec3(normal), frame.normal),
+                          tolerance_for(surface));
+                EXPECT_LE(degrees_between(glm::dvec3(along_u), frame.tangent),
+                          tolerance_for(surface));
+            }
+        }
+    }
+}
+
+TEST(AnalyticTruth, VertexNormalsAreThoseOfTheFrames) {
+    for (const AnalyticSurface surface : all_surfaces) {
+        const AnalyticMesh bare = analytic_mesh(surface, Triangulation::regular, 16, 1);
+        const TexturedMesh textured =
+            textured_mesh(surface, Triangulation::regular, TextureLayout::upright, 16, 1);
+        // Seams double vertices of the textured mesh: they are found by position.
+        for (std::size_t v = 0; v < bare.normals.size(); ++v) {
+            std::size_t found = 0;
+            for (std::size_t w = 0; w < textured.parameters.size(); ++w) {
+                if (textured.mesh.positions[w] != bare.mesh.positions[v]) continue;
+                const SurfaceFrame frame = textured.frame_at(textured.parameters[w]);
+                EXPECT_LE(degrees_between(bare.normals[v], frame.normal), 1e-12);
+                ++found;
+            }
+            EXPECT_GE(found, 1U) << word_of(surface) << " " << v;
+        }
+    }
+}
+
+}  // namespace
+}  // namespace relief

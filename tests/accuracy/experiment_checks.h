@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// What every experiment has to have, and finding one's way in a list of them.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <set>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "relief/accuracy/experiment.h"
+
+namespace relief::test {
+
+inline RunOptions quick_untimed() {
+    RunOptions options;
+    options.is_quick = true;
+    options.is_timed = false;
+    return options;
+}
+
+inline const Experiment& experiment_of(const std::vector<Experiment>& all, const std::string& id) {
+    for (const Experiment& one : all) {
+        if (one.id == id) return one;
+    }
+    throw std::runtime_error("no experiment " + id);
+}
+
+inline const Measurement& measurement_of(const Experiment& experiment, const std::string& method) {
+    for (const Measurement& one : experiment.measurements) {
+        if (one.method == method) return one;
+    }
+    throw std::runtime_error(experiment.id + " has no method " + method);
+}
+
+inline const Curve& curve_of(const Chart& chart, const std::string& method) {
+    for (const Curve& one : chart.curves) {
+        if (one.method == method) return one;
+    }
+    throw std::runtime_error(chart.id + " has no curve " + method);
+}
+
+inline void expect_sound(const ErrorFigures& error) {
+    EXPECT_GT(error.count, 0U);
+    EXPECT_EQ(error.undefined, 0U);
+    EXPECT_TRUE(std::isfinite(error.rms));
+    EXPECT_LE(error.mean, error.rms * (1.0 + 1e-6));
+    EXPECT_LE(error.rms, error.max * (1.0 + 1e-6));
+    EXPECT_LE(error.p99, error.max);
+}
+
+/// Everything that reports rely on: words, unique names, numbers that can be.
+inline void expect_whole(const std::vector<Experiment>& all, Subject subject) {
+    std::set<std::string> ids;
+    for (const Experiment& one : all) {
+        SCOPED_TRACE(one.id);
+        EXPECT_TRUE(ids.insert(one.id).second);
+        EXPECT_EQ(one.subject, subject);
+        for (const std::string& text :
+             {one.title, one.question, one.truth, one.input, one.error_unit, one.item, one.finding})
+            EXPECT_FALSE(text.empty());
+        EXPECT_EQ(one.question.back(), '?');
+        EXPECT_GT(one.items, 0.0);
+        EXPECT_FALSE(one.measurements.empty());
+        std::set<std::string> methods;
+        for (const Measurement& measurement : one.measurements) {
+            SCOPED_TRACE(measurement.method);
+            EXPECT_TRUE(methods.insert(measurement.method).second);
+            EXPECT_FALSE(measurement.choices.empty());
+            expect_sound(measurement.error);
+            EXPECT_FALSE(measurement.cost.one_thread || measurement.cost.all_threads);
+        }
+        for (const Chart& chart : one.charts) {
+            for (const Curve& curve : chart.curves) {
+                EXPECT_GE(curve.points.size(), 2U);
+                for (std::size_t i = 1; i < curve.points.size(); ++i)
+                    EXPECT_GT(curve.points[i].x, curve.points[i - 1].x);
+            }
+        }
+    }
+}
+
+}  // namespace relief::test
