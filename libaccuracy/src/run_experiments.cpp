@@ -10,6 +10,7 @@
 #include "relief/accuracy/subjects.h"
 #include "relief/mesh/error.h"
 #include "storage/storage_experiments.h"
+#include "tangents/tangents_experiments.h"
 
 namespace relief {
 namespace {
@@ -22,6 +23,7 @@ struct SubjectEntry {
 /// In the order of reports.
 constexpr std::array entries = {
     SubjectEntry{Subject::normals, normals_experiments},
+    SubjectEntry{Subject::tangents, tangents_experiments},
     SubjectEntry{Subject::storage, storage_experiments},
 };
 

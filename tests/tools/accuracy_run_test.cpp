@@ -34,7 +34,8 @@ TEST(AccuracyRun, PrintsATableAndWritesTheReport) {
     EXPECT_EQ(first["cost"]["one_thread"]["rounds"].size(), 3U);
     EXPECT_GT(first["cost"]["one_thread"]["median"].get<double>(), 0.0);
     EXPECT_THAT(workplace.read("out/report/accuracy.csv"),
-                HasSubstr("\nstorage/frames,storage,float32,encoding=float32,degrees,"));
+                HasSubstr("\nstorage/frames,storage,\"float32, nearest\","
+                          "encoding=float32; rounding=nearest,degrees,"));
 }
 
 TEST(AccuracyRun, ErrorsAloneAreTheSameEachTimeAndForAnyThreads) {

@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "storage/storage_experiments.h"
 
+#include "planned_experiment.h"
+
 namespace relief {
 
 std::vector<Experiment> storage_experiments(const RunOptions& options) {
-    if (options.tell) options.tell("tangent frames in few bits", 0, 1);
-    return {frame_codes_experiment(options)};
+    const std::vector<PlannedExperiment> plan = {
+        {"Tangent frames in few bits", [&] { return frame_reading_experiment(options); }},
+        {"Tangent frames in few bits, written", [&] { return frame_writing_experiment(options); }}};
+    return run_planned(plan, options);
 }
 
 }  // namespace relief

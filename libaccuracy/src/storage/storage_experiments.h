@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Experiments on storing directions in few bits. Tests: tests/accuracy/storage_test.cpp.
+/// Experiments on storing directions in few bits. Tests: tests/accuracy/frame_codes_test.cpp.
 #pragma once
 
 #include <vector>
@@ -11,7 +11,10 @@ namespace relief {
 
 std::vector<Experiment> storage_experiments(const RunOptions& options);
 
-/// Whole tangent frames, as vertex buffers hold them: what decoding costs and errs.
-Experiment frame_codes_experiment(const RunOptions& options);
+/// Whole tangent frames, as vertex buffers hold them: what they err, and what reading them takes.
+Experiment frame_reading_experiment(const RunOptions& options);
+
+/// The same, and what writing them takes.
+Experiment frame_writing_experiment(const RunOptions& options);
 
 }  // namespace relief

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Bases at points of triangles: by hand, and against each other where they have to agree.
-#include "tangent_errors/bases.h"
+#include "tangents/bases.h"
 
 #include <gtest/gtest.h>
 
@@ -10,8 +10,10 @@
 #include "support/angle.h"
 #include "support/shapes.h"
 
-namespace relief::test {
+namespace relief {
 namespace {
+
+using test::grid;
 
 TEST(Bases, OnAPlaneAllAreTheImagesOwn) {
     const Mesh mesh = grid(2);
@@ -100,4 +102,4 @@ TEST(Bases, TrueTangentsAreThoseOfEachSideOfAMirroredImage) {
 }
 
 }  // namespace
-}  // namespace relief::test
+}  // namespace relief

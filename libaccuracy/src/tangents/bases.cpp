@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tangent_errors/bases.h"
+// Tests: tests/accuracy/bases_test.cpp.
+#include "tangents/bases.h"
 
 #include <cmath>
 
-namespace relief::test {
+namespace relief {
 namespace {
 
 template <typename Values>
@@ -94,4 +95,4 @@ CornerTangents true_tangents(const TexturedMesh& truth) {
     return tangents;
 }
 
-}  // namespace relief::test
+}  // namespace relief

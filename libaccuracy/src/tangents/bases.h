@@ -1,19 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// The bases in which a fragment shader reads a normal map, by every way of getting them, at points
-/// of triangles; in double.
+/// of triangles; in double. Tests: tests/accuracy/bases_test.cpp.
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <glm/glm.hpp>
-#include <string>
 #include <vector>
 
 #include "relief/mesh/analytic_surfaces.h"
 #include "relief/mesh/mesh.h"
 
-namespace relief::test {
+namespace relief {
 
 /// Three tangents a triangle; none: the shader derives its frame.
 using CornerTangents = std::vector<glm::vec4>;
@@ -23,13 +21,6 @@ enum class ShaderBasis {
     as_interpolated,  ///< As it should be: shaders/frame/stored.glsl.
     made_unit,        ///< Normal and tangent made unit first, as many shaders do.
     derived,          ///< From derivatives: shaders/frame/derivatives.glsl.
-};
-
-/// One way of getting frames.
-struct TangentMethod {
-    std::string name;
-    std::function<CornerTangents(const Mesh&)> tangents;  ///< Or nothing.
-    ShaderBasis basis = ShaderBasis::as_interpolated;
 };
 
 /// A point of a triangle.
@@ -51,4 +42,4 @@ glm::dmat3 true_basis_at(const TexturedMesh& truth, const Sample& sample);
 /// The surface's own tangents, rounded to float: what a method could do at best.
 CornerTangents true_tangents(const TexturedMesh& truth);
 
-}  // namespace relief::test
+}  // namespace relief

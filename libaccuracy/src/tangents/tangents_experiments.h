@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// What ways of getting tangent frames err and cost, on textured surfaces in closed form.
+/// Tests: tests/accuracy/tangents_experiments_test.cpp.
+#pragma once
+
+#include <vector>
+
+#include "relief/accuracy/experiment.h"
+
+namespace relief {
+
+/// Bases on surfaces cut and textured in several ways; on a large mesh, for times and memory; maps
+/// baked in one basis and read in another; and frames stored in few bytes on a mesh.
+std::vector<Experiment> tangents_experiments(const RunOptions& options);
+
+}  // namespace relief

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+// The experiments on tangents: their numbers are those of docs/tangents.md, their orders those of
+// theory.
+#include "tangents/tangents_experiments.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "experiment_checks.h"
+
+namespace relief::test {
+namespace {
+
+using testing::HasSubstr;
+
+const std::vector<Experiment>& quick_experiments() {
+    static const std::vector<Experiment> all = tangents_experiments(quick_untimed());
+    return all;
+}
+
+TEST(TangentsExperiments, AreWhole) {
+    expect_whole(quick_experiments(), Subject::tangents);
+}
+
+TEST(TangentsExperiments, HaveTheErrorsOfThePage) {
+    const Experiment& torus = experiment_of(quick_experiments(), "tangents/torus-jittered");
+    EXPECT_NEAR(measurement_of(torus, "surface's own").error.rms, 0.045, 5e-4);
+    EXPECT_NEAR(measurement_of(torus, "mikktspace").error.rms, 0.100, 5e-4);
+    EXPECT_NEAR(measurement_of(torus, "area-weighted").error.max, 1.066, 5e-4);
+    EXPECT_NEAR(measurement_of(torus, "screen-space").error.rms, 0.561, 5e-4);
+    EXPECT_EQ(measurement_of(torus, "screen-space").cost.stored_bytes, 12.0);
+    EXPECT_THAT(torus.finding, HasSubstr("Of stored frames mikktspace is closest, 0.1 degrees"));
+    const Experiment& plate = experiment_of(quick_experiments(), "tangents/plate");
+    EXPECT_NEAR(measurement_of(plate, "mikktspace").error.rms, 5.353, 5e-4);
+    EXPECT_NEAR(measurement_of(plate, "area-weighted").error.rms, 0.114, 5e-4);
+    EXPECT_THAT(plate.finding, HasSubstr("area-weighted is closest"));
+}
+
+/// The slope between two neighbouring points on log axes.
+double slope_at(const Curve& curve, std::size_t i) {
+    return fitted_order({curve.points[i], curve.points[i + 1]}).value();
+}
+
+TEST(TangentsExperiments, ErrorsFallAtTheOrderOfTheory) {
+    const Chart& regular = experiment_of(quick_experiments(), "tangents/torus-regular").charts[0];
+    for (const Curve& curve : regular.curves)
+        EXPECT_NEAR(curve.order.value(), curve.expected_order.value(), 0.15) << curve.method;
+    EXPECT_EQ(curve_of(regular, "mikktspace").expected_order, -2.0);
+    EXPECT_EQ(curve_of(regular, "screen-space").expected_order, -1.0);
+
+    const Chart& jittered = experiment_of(quick_experiments(), "tangents/torus-jittered").charts[0];
+    for (const Curve& curve : jittered.curves) {
+        SCOPED_TRACE(curve.method);
+        EXPECT_EQ(curve.expected_order, -1.0);
+        EXPECT_LE(curve.order.value(), -0.9);
+        // Interpolation's second order fades out.
+        EXPECT_GT(slope_at(curve, 1), slope_at(curve, 0) - 0.05);
+        EXPECT_NEAR(slope_at(curve, 1), -1.0, 0.4);
+    }
+}
+
+TEST(TangentsExperiments, WiderBevelsLeaveAreaWeightsMoreToErr) {
+    const Chart& chart = experiment_of(quick_experiments(), "tangents/plate").charts.front();
+    const Curve& by_area = curve_of(chart, "area-weighted");
+    EXPECT_LT(by_area.points.front().error, 0.1);
+    EXPECT_GT(by_area.points.back().error, 1.0);
+    // Angles take no notice of how wide a bevel is.
+    const Curve& by_angle = curve_of(chart, "mikktspace");
+    EXPECT_NEAR(by_angle.points[0].error, by_angle.points[1].error, 0.1);
+}
+
+TEST(TangentsExperiments, MapsComeBackFromTheirOwnBasisAlone) {
+    const Experiment& mismatch = experiment_of(quick_experiments(), "tangents/mismatch");
+    ASSERT_EQ(mismatch.measurements.size(), 25U);
+    for (const Measurement& one : mismatch.measurements) {
+        if (one.choices[0].second == one.choices[1].second)
+            EXPECT_LE(one.error.max, 1e-5) << one.method;
+        else
+            EXPECT_GE(one.error.rms, 1e-2) << one.method;
+    }
+}
+
+}  // namespace
+}  // namespace relief::test
