@@ -126,6 +126,20 @@ glm::vec3 OverlayDrawing::coded(const glm::vec3& srgb) const {
     return {linear_from_srgb(srgb.r), linear_from_srgb(srgb.g), linear_from_srgb(srgb.b)};
 }
 
+void OverlayDrawing::draw_triangles(const glm::dmat4& clip_from_world,
+                                    const OverlaySurface& surface) const {
+    const gl::Api& gl = *api_;
+    lines_program_->set("clip_from_object",
+                        glm::mat4(clip_from_world * glm::dmat4(surface.world_from_object)));
+    if (surface.both_sides) {
+        gl->Disable(GL_CULL_FACE);
+    } else {
+        gl->Enable(GL_CULL_FACE);
+    }
+    gl->FrontFace(surface.mirrored ? GL_CW : GL_CCW);
+    surface.mesh->draw(gl, surface.range);
+}
+
 void OverlayDrawing::draw_depth(const glm::dmat4& clip_from_world,
                                 std::span<const OverlaySurface> surfaces) const {
     const gl::Api& gl = *api_;
@@ -133,16 +147,7 @@ void OverlayDrawing::draw_depth(const glm::dmat4& clip_from_world,
     gl->Enable(GL_POLYGON_OFFSET_FILL);
     gl->PolygonOffset(1.0F, 1.0F);
     for (const OverlaySurface& surface : surfaces) {
-        if (!surface.hides) continue;
-        lines_program_->set("clip_from_object",
-                            glm::mat4(clip_from_world * glm::dmat4(surface.world_from_object)));
-        if (surface.both_sides) {
-            gl->Disable(GL_CULL_FACE);
-        } else {
-            gl->Enable(GL_CULL_FACE);
-        }
-        gl->FrontFace(surface.mirrored ? GL_CW : GL_CCW);
-        surface.mesh->draw(gl, surface.range);
+        if (surface.hides) draw_triangles(clip_from_world, surface);
     }
     gl->Disable(GL_POLYGON_OFFSET_FILL);
     gl->ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
@@ -153,17 +158,8 @@ void OverlayDrawing::draw_wires(const glm::dmat4& clip_from_world,
     const gl::Api& gl = *api_;
     lines_program_->set("all_color", coded(wireframe_color));
     gl->PolygonMode(GL_FRONT_AND_BACK, GL_LINE);
-    for (const OverlaySurface& surface : surfaces) {
-        lines_program_->set("clip_from_object",
-                            glm::mat4(clip_from_world * glm::dmat4(surface.world_from_object)));
-        if (surface.both_sides) {
-            gl->Disable(GL_CULL_FACE);
-        } else {
-            gl->Enable(GL_CULL_FACE);
-        }
-        gl->FrontFace(surface.mirrored ? GL_CW : GL_CCW);
-        surface.mesh->draw(gl, surface.range);
-    }
+    for (const OverlaySurface& surface : surfaces)
+        draw_triangles(clip_from_world, surface);
     gl->PolygonMode(GL_FRONT_AND_BACK, GL_FILL);
 }
 

@@ -54,6 +54,8 @@ class OverlayDrawing {
     void make_frames(const Scene& scene);
     void make_markers(const Scene& scene);
     [[nodiscard]] glm::vec3 coded(const glm::vec3& srgb) const;
+    /// With the lines' program, as the polygon mode says, facing as the surface was drawn.
+    void draw_triangles(const glm::dmat4& clip_from_world, const OverlaySurface& surface) const;
     void draw_depth(const glm::dmat4& clip_from_world,
                     std::span<const OverlaySurface> surfaces) const;
     void draw_wires(const glm::dmat4& clip_from_world,
