@@ -2,18 +2,13 @@
 // Tests: tests/shade/render/render_cache_test.cpp.
 #include "scene/image_identity.h"
 
-#include <system_error>
 #include <utility>
 
 namespace relief {
 
-/// A file that cannot be looked at is as one of size 0; reading it says what is wrong.
-ImageIdentity::File::File(std::filesystem::path name) : path(std::move(name)) {
-    std::error_code error;
-    changed = std::filesystem::last_write_time(path, error);
-    size = std::filesystem::file_size(path, error);
-    if (error) size = 0;
-}
+/// A file that cannot be looked at is as one that is not there; reading it says what is wrong.
+ImageIdentity::File::File(std::filesystem::path name)
+    : path(std::move(name)), stamp(stamp_of(path)) {}
 
 decltype(ImageIdentity::identity_) ImageIdentity::identity_of(const ImageSource& source) {
     if (const auto* file = std::get_if<std::filesystem::path>(&source.source)) return File(*file);

@@ -4,10 +4,10 @@
 /// tests/shade/render/render_cache_test.cpp.
 #pragma once
 
-#include <cstdint>
 #include <filesystem>
 #include <variant>
 
+#include "relief/mesh/progress.h"
 #include "relief/shade/scene.h"
 
 namespace relief {
@@ -16,15 +16,13 @@ class ImageIdentity {
   public:
     explicit ImageIdentity(const ImageSource& source);
 
-    /// The same value in memory; or a file of the same name whose size and time of change are what
-    /// they were.
+    /// The same value in memory; or a file of the same name whose stamp is what it was.
     [[nodiscard]] bool is(const ImageSource& source) const;
 
   private:
     struct File {
         std::filesystem::path path;
-        std::filesystem::file_time_type changed;
-        std::uintmax_t size = 0;
+        FileStamp stamp;
 
         explicit File(std::filesystem::path name);
         bool operator==(const File&) const = default;
