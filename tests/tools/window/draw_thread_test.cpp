@@ -113,6 +113,23 @@ TEST_F(Drawing, WhatCannotBeDrawnLeavesThePictureAndSaysWhy) {
     EXPECT_EQ(drawn.revision, 3U);
 }
 
+TEST_F(Drawing, WhatCannotBeDrawnIsTriedOnceAndTheOldSceneCanBeLookedAt) {
+    DrawThread thread(context());
+    thread.wish(wish_of(1));
+    rest(thread);
+    DrawWish impossible = wish_of(2);
+    impossible.effects.forced.push_back({"no such effect", true});
+    thread.wish(impossible);
+    const std::uint64_t frames = rest(thread).frames;
+    impossible.camera.world_from_view[3].z = 5.0F;
+    thread.wish(impossible);
+    const DrawnPicture drawn = rest(thread);
+    EXPECT_EQ(drawn.frames, frames + 1);
+    EXPECT_EQ(drawn.revision, 1U);
+    EXPECT_EQ(drawn.camera.world_from_view[3].z, 5.0F);
+    EXPECT_THAT(drawn.error, HasSubstr("no such effect"));
+}
+
 TEST_F(Drawing, AContextOfNoUseIsSaidAtOnce) {
     DrawContext none = context();
     none.loader = [](const char*) -> void (*)() { return nullptr; };

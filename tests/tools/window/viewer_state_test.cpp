@@ -60,6 +60,19 @@ TEST_F(State, AnotherModelIsShownWholeTheSameKeepsTheView) {
     EXPECT_NEAR(state().camera().target.x, 90.5F, 0.2F);
 }
 
+TEST_F(State, EditsStayWhenTheFileIsReadAgainAndAgain) {
+    show("square.obj");
+    state().edit([](Scene& scene) { scene.exposure = 4.0F; });
+    for (int i = 0; i < 2; ++i) {
+        show("square.obj");
+        EXPECT_EQ(state().scene().exposure, 4.0F);
+        EXPECT_EQ(state().json(DrawnPicture{})["edits"]["kept"], 1);
+    }
+    state().edit([](Scene& scene) { scene.exposure = 1.0F; });
+    show("square.obj");
+    EXPECT_EQ(state().json(DrawnPicture{})["edits"]["kept"], 0) << "as the file says";
+}
+
 TEST_F(State, AnErrorLeavesTheSceneAndGoesWithTheNext) {
     show("square.obj");
     const std::shared_ptr<const Scene> scene = state().wish()->scene;
@@ -147,6 +160,11 @@ TEST_F(State, ShowsDebugViewsByKeyAndKeepsThemForAnotherModel) {
     state().act(Action::next_view);
     state().act(Action::wireframe);
     state().act(Action::health_markers);
+    EXPECT_FALSE(state().wish()->settings.overlays.markers) << "they are looked for elsewhere";
+    const HealthWish sought = state().take_health_wish().value();
+    EXPECT_EQ(sought.choice, HealthChoice::trouble);
+    EXPECT_FALSE(state().take_health_wish()) << "only once";
+    state().take(FoundHealth{health_markers(*sought.scene), ""});
     const DrawWish wish = *state().wish();
     EXPECT_NE(wish.revision, revision);
     EXPECT_EQ(wish.settings.view, DebugView::geometric_normal);
@@ -155,6 +173,7 @@ TEST_F(State, ShowsDebugViewsByKeyAndKeepsThemForAnotherModel) {
     EXPECT_THAT(state().command_line(), testing::HasSubstr(" --show geometric-normal --wireframe "
                                                            "--health-markers trouble"));
     show("far.obj");
+    EXPECT_TRUE(state().take_health_wish()->choice) << "of the new model too";
     EXPECT_EQ(state().json(DrawnPicture{})["show"], "geometric-normal");
     EXPECT_EQ(state().json(DrawnPicture{})["overlays"]["wireframe"], true);
     state().act(Action::previous_view);

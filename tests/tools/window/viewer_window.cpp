@@ -3,8 +3,10 @@
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <cstdlib>
+#include <sstream>
 #include <utility>
 
 namespace relief::test {
@@ -103,6 +105,21 @@ double changed_share(const Image& before, const Image& after, int x, int y, int 
         }
     }
     return static_cast<double>(changed) / (width * height);
+}
+
+double changed_picture(const Image& before, const Image& after) {
+    return changed_share(before, after, 600, 200, 400, 400);
+}
+
+double processor_seconds(pid_t pid) {
+    std::istringstream stat(contents_of("/proc/" + std::to_string(pid) + "/stat"));
+    std::string field;
+    std::getline(stat, field, ')');  // "pid (name"
+    for (int i = 3; i < 14; ++i)
+        stat >> field;
+    double user = 0.0, system = 0.0;
+    stat >> user >> system;
+    return (user + system) / static_cast<double>(::sysconf(_SC_CLK_TCK));
 }
 
 }  // namespace relief::test

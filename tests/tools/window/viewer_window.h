@@ -55,4 +55,10 @@ Image view_on(const Image& screen, const nlohmann::json& view);
 double changed_share(const Image& before, const Image& after, int x, int y, int width, int height,
                      int codes = 8);
 
+/// The same of the part of the screen that is surely picture, in the middle of the view.
+double changed_picture(const Image& before, const Image& after);
+
+/// Seconds of processor time that a process has used.
+double processor_seconds(pid_t pid);
+
 }  // namespace relief::test

@@ -3,10 +3,8 @@
 // judged by the pixels of the screen and by what it says of itself.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cmath>
-#include <sstream>
 #include <thread>
 
 #include "relief/mesh/image_file.h"
@@ -18,29 +16,13 @@ namespace {
 
 using nlohmann::json;
 using relief::Image;
-using test::changed_share;
+using test::changed_picture;
 using test::eventually;
+using test::processor_seconds;
 using test::ViewerWindow;
 using test::Workplace;
 using testing::HasSubstr;
 using testing::Not;
-
-/// The part of the screen that is surely picture, in the middle of the view.
-double changed_picture(const Image& before, const Image& after) {
-    return changed_share(before, after, 600, 200, 400, 400);
-}
-
-/// Seconds of processor time that a process has used.
-double processor_seconds(pid_t pid) {
-    std::istringstream stat(test::contents_of("/proc/" + std::to_string(pid) + "/stat"));
-    std::string field;
-    std::getline(stat, field, ')');  // "pid (name"
-    for (int i = 3; i < 14; ++i)
-        stat >> field;
-    double user = 0.0, system = 0.0;
-    stat >> user >> system;
-    return (user + system) / static_cast<double>(::sysconf(_SC_CLK_TCK));
-}
 
 TEST(Window, ADragTurnsTheCameraAndThePicture) {
     RELIEF_NEEDS_DISPLAY(display);
@@ -158,6 +140,7 @@ TEST(Window, AtRestItDrawsNothingAndTakesNoTime) {
     window.key("1");
     window.wait_for("the front", [](const json& now) { return now["camera"]["azimuth"] == 0.0; });
     const json before = window.wait_for_rest();
+    EXPECT_GT(before["files"], 0) << "which are watched meanwhile";
     // The last frames of the panels are drawn after the state was written.
     double used = 0.0;
     const auto has_settled = [&] {

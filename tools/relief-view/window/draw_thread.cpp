@@ -17,24 +17,57 @@ class DrawThread::Drawer {
 
     void relink() {
         cache_.drop_programs();
-        is_stale_ = true;
+        has_tried_ = false;
     }
 
     bool run(const DrawTask& task) { return task(context_, cache_); }
 
-    /// Draws, or throws; what was drawn before stays.
-    void draw(const DrawWish& wish, DrawnPicture& drawn) {
-        const bool is_same =
-            renderer_ && !is_stale_ && revision_ == wish.revision && settings_ == wish.settings;
-        if (!is_same) prepare(wish, drawn);
+    /// Draws, or throws; what was drawn before stays. What cannot be prepared is tried once, and
+    /// what was there before can still be looked at from elsewhere.
+    void draw(const DrawWish& wish, DrawnPicture& drawn, const Progress& progress) {
+        const bool is_tried =
+            has_tried_ && tried_revision_ == wish.revision && tried_settings_ == wish.settings;
+        if (!is_tried) try_to_prepare(wish, drawn, progress);
+        drawn.error = failure_;
+        if (!renderer_) return;
+        if (!failure_.empty() && is_same_view(drawn.camera, wish.camera)) return;
         drawn.times = renderer_->draw_only(wish.camera).times;
         handover_.put(*renderer_);
         drawn.camera = wish.camera;
-        drawn.settings = wish.settings;
+        drawn.settings = settings_;
         ++drawn.frames;
     }
 
   private:
+    /// Also of what could not be prepared: a file may be mended.
+    struct NotedFiles {
+        const Progress& progress;
+        DrawnPicture& drawn;
+        ~NotedFiles() {
+            drawn.files = std::make_shared<const std::map<std::filesystem::path, FileStamp>>(
+                progress.files());
+        }
+    };
+
+    static bool is_same_view(const Camera& a, const Camera& b) {
+        return a.world_from_view == b.world_from_view && a.vertical_fov == b.vertical_fov;
+    }
+
+    void try_to_prepare(const DrawWish& wish, DrawnPicture& drawn, const Progress& progress) {
+        const NotedFiles noted{progress, drawn};
+        tried_revision_ = wish.revision;
+        tried_settings_ = wish.settings;
+        has_tried_ = true;
+        failure_.clear();
+        try {
+            prepare(wish, drawn);
+        } catch (const Cancelled&) {
+            throw;
+        } catch (const std::exception& error) {
+            failure_ = error.what();
+        }
+    }
+
     void prepare(const DrawWish& wish, DrawnPicture& drawn) {
         Report findings;
         const FramePlan planned = plan_effects(*wish.scene, wish.settings);
@@ -43,9 +76,7 @@ class DrawThread::Drawer {
                                                wish.settings, findings);
         renderer_ = std::move(made);
         cache_.drop_unused();
-        revision_ = wish.revision;
         settings_ = wish.settings;
-        is_stale_ = false;
         drawn.revision = wish.revision;
         drawn.plan = std::make_shared<const FramePlan>(renderer_->plan());
         drawn.findings = std::move(findings);
@@ -56,9 +87,11 @@ class DrawThread::Drawer {
     RenderCache cache_;
     Handover handover_;
     std::unique_ptr<Renderer> renderer_;
-    std::uint64_t revision_ = 0;
-    FrameSettings settings_;
-    bool is_stale_ = false;
+    FrameSettings settings_;  ///< Of the renderer.
+    bool has_tried_ = false;  ///< The last wish was prepared, and shaders have not changed since.
+    std::uint64_t tried_revision_ = 0;
+    FrameSettings tried_settings_;
+    std::string failure_;  ///< Of that; empty: none.
 };
 
 DrawThread::DrawThread(DrawContext context) : context_(std::move(context)) {
@@ -75,6 +108,7 @@ DrawThread::~DrawThread() {
     {
         const std::lock_guard lock(mutex_);
         is_ending_ = true;
+        progress_->cancel();
     }
     changed_.notify_all();
     thread_.join();
@@ -115,11 +149,21 @@ bool DrawThread::is_busy() {
     return is_drawing_ || wish_.has_value();
 }
 
+Progress::State DrawThread::progress() {
+    const std::lock_guard lock(mutex_);
+    return is_drawing_ ? progress_->state() : Progress::State{};
+}
+
 /// One step of the first task, while others may wish.
 void DrawThread::do_step(Drawer& drawer, std::unique_lock<std::mutex>& lock) {
     const DrawTask task = tasks_.front();
+    const std::shared_ptr<Progress> progress = progress_ = std::make_shared<Progress>();
     lock.unlock();
-    const bool has_more = drawer.run(task);
+    bool has_more = false;
+    {
+        const ProgressScope scope(*progress);
+        has_more = drawer.run(task);
+    }
     context_.wake();
     lock.lock();
     if (!has_more) tasks_.pop_front();
@@ -138,8 +182,14 @@ std::optional<DrawWish> DrawThread::next(Drawer& drawer) {
         do_step(drawer, lock);
     }
     is_drawing_ = true;
+    progress_ = std::make_shared<Progress>();
     if (std::exchange(is_relinking_, false)) drawer.relink();
     return std::exchange(wish_, std::nullopt);
+}
+
+std::shared_ptr<Progress> DrawThread::progress_of_now() {
+    const std::lock_guard lock(mutex_);
+    return progress_;
 }
 
 void DrawThread::run() {
@@ -155,9 +205,10 @@ void DrawThread::run() {
         changed_.notify_all();
         DrawnPicture picture;
         while (const std::optional<DrawWish> wish = next(drawer)) {
-            picture.error.clear();
             try {
-                drawer.draw(*wish, picture);
+                const std::shared_ptr<Progress> progress = progress_of_now();
+                const ProgressScope scope(*progress);
+                drawer.draw(*wish, picture, *progress);
             } catch (const std::exception& error) {
                 picture.error = error.what();
             }

@@ -8,13 +8,16 @@
 #include <condition_variable>
 #include <cstdint>
 #include <deque>
+#include <filesystem>
 #include <functional>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
 #include <thread>
 
+#include "relief/mesh/progress.h"
 #include "relief/mesh/report.h"
 #include "relief/shade/effect_forcing.h"
 #include "relief/shade/handover.h"
@@ -43,6 +46,8 @@ struct DrawnPicture {
     std::string error;  ///< Empty: none.
     FrameSettings settings;
     Camera camera;
+    /// What the last renderer read, or would have: images and shaders. Another value each time.
+    std::shared_ptr<const std::map<std::filesystem::path, FileStamp>> files;
 };
 
 /// A context for the thread: made current there, and given back.
@@ -57,13 +62,14 @@ class DrawThread {
   public:
     /// Waits until the thread's context is ready. \throws GpuError if it is of no use
     explicit DrawThread(DrawContext context);
+    /// What is being prepared or done ends.
     ~DrawThread();
     DrawThread(const DrawThread&) = delete;
     DrawThread& operator=(const DrawThread&) = delete;
 
     void wish(DrawWish wish);
 
-    /// Shader files were edited: programs are linked anew for the next picture.
+    /// Shader files were edited: programs are linked anew for the picture that is wished next.
     void relink();
 
     /// Done a step at a time, where no picture is wished; what is left at the end is not done.
@@ -73,6 +79,8 @@ class DrawThread {
     [[nodiscard]] Handover::Shown shown();
     /// Whether a wish is waiting or being drawn.
     [[nodiscard]] bool is_busy();
+    /// How far a renderer is prepared; no stage: none is.
+    [[nodiscard]] Progress::State progress();
     [[nodiscard]] const std::string& renderer_name() const { return renderer_name_; }
 
   private:
@@ -81,6 +89,7 @@ class DrawThread {
     void run();
     void do_step(Drawer& drawer, std::unique_lock<std::mutex>& lock);
     std::optional<DrawWish> next(Drawer& drawer);
+    std::shared_ptr<Progress> progress_of_now();
 
     DrawContext context_;
     std::string renderer_name_;
@@ -92,6 +101,7 @@ class DrawThread {
     bool is_relinking_ = false;
     bool is_ending_ = false;
     bool is_ready_ = false;
+    std::shared_ptr<Progress> progress_ = std::make_shared<Progress>();  ///< Of what goes on.
     std::exception_ptr failure_;
     DrawnPicture drawn_;
     Handover* handover_ = nullptr;

@@ -4,16 +4,14 @@
 /// Tests: tests/tools/window/loader_test.cpp.
 #pragma once
 
-#include <chrono>
+#include <filesystem>
 #include <functional>
-#include <memory>
-#include <mutex>
+#include <map>
 #include <optional>
 #include <string>
-#include <thread>
-#include <vector>
 
 #include "scene_options.h"
+#include "window/newest_job.h"
 
 namespace relief::tools {
 
@@ -23,49 +21,31 @@ struct Loaded {
     std::optional<ComposedScene> composed;
     Report findings;
     std::string error;
+    std::map<std::filesystem::path, FileStamp> files;  ///< That were read, or not found.
     double seconds = 0.0;
 };
 
 class Loader {
   public:
     /// \param wake  called, from another thread, when there is something to take
-    explicit Loader(std::function<void()> wake) : wake_(std::move(wake)) {}
+    explicit Loader(std::function<void()> wake) : job_(std::move(wake)) {}
 
-    /// Waits for what is being read.
-    ~Loader();
-    Loader(const Loader&) = delete;
-    Loader& operator=(const Loader&) = delete;
-
-    /// Begins to read what the options name; what was begun before is of no interest any more.
+    /// Begins to read what the options name; what was begun before ends.
     void start(const ViewOptions& options);
 
     /// The same without another beginning.
-    void cancel();
+    void cancel() { job_.cancel(); }
 
     /// What was begun last, once it is there; only once.
-    std::optional<Loaded> take();
+    std::optional<Loaded> take() { return job_.take(); }
 
     /// From start() until the result is taken, or cancel().
-    [[nodiscard]] bool is_loading() const;
-    [[nodiscard]] double seconds_so_far() const;
+    [[nodiscard]] bool is_loading() const { return job_.is_going_on(); }
+    [[nodiscard]] double seconds_so_far() const { return job_.seconds_so_far(); }
+    [[nodiscard]] Progress::State progress() const { return job_.progress(); }
 
   private:
-    void load(ViewOptions options, unsigned number);
-    void join_ended();
-
-    struct Job {
-        unsigned number;
-        std::thread thread;
-    };
-
-    std::function<void()> wake_;
-    mutable std::mutex mutex_;
-    std::vector<Job> jobs_;
-    std::vector<unsigned> ended_;
-    unsigned newest_ = 0;  ///< Beginnings are counted.
-    bool is_wanted_ = false;
-    std::chrono::steady_clock::time_point begun_;
-    std::optional<Loaded> result_;
+    NewestJob<Loaded> job_;  ///< Ends with this.
 };
 
 }  // namespace relief::tools

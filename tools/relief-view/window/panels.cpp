@@ -7,6 +7,7 @@
 
 #include "common/text.h"
 #include "window/places.h"
+#include "window/progress_line.h"
 
 namespace relief::tools {
 namespace {
@@ -70,10 +71,14 @@ void draw_status(const PanelInput& input, PanelWishes& wishes) {
     const std::string& error =
         input.state.error().empty() ? input.drawn.error : input.state.error();
     if (input.loading_seconds > 0.0) {
-        ImGui::Text("Reading %s, %.1f s", input.state.options().model.filename().c_str(),
-                    input.loading_seconds);
+        draw_progress("Reading " + input.loading, input.progress);
+        ImGui::SameLine();
+        ImGui::Text("%.1f s", input.loading_seconds);
         ImGui::SameLine();
         if (ImGui::SmallButton("Cancel")) wishes.cancel_loading = true;
+        mark_place("Cancel");
+    } else if (!input.progress.stage.empty()) {
+        draw_progress("Preparing", input.progress);
     } else if (!error.empty()) {
         ImGui::TextColored({1.0F, 0.5F, 0.4F, 1.0F}, "%s", error.c_str());
     } else {

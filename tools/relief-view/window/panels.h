@@ -16,6 +16,8 @@ struct PanelInput {
     const DrawnPicture& drawn;
     const std::string& renderer;
     double loading_seconds = 0.0;  ///< 0: nothing is being read.
+    std::string loading;           ///< The file's name.
+    Progress::State progress;      ///< Of reading, else of preparing what is drawn next.
     bool is_drawing = false;       ///< Else the picture is the newest, and nothing goes on.
     CaptureSettings* capture = nullptr;
     std::string captured;  ///< What was saved, in words.

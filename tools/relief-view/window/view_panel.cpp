@@ -25,6 +25,7 @@ bool choose_view(DebugView& view) {
 }
 
 void draw_legend(const HealthMarkers& markers) {
+    if (!markers.markers) return ImGui::TextUnformatted("Looking for trouble");
     if (markers.conditions.empty()) ImGui::TextUnformatted("No trouble found");
     for (const MarkedCondition& marked : markers.conditions) {
         const glm::vec3& color = marked.color_srgb;

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 #include <numbers>
+#include <utility>
 
 #include "debug_options.h"
 #include "window/draw_thread.h"
@@ -41,7 +42,13 @@ void ViewerState::take(Loaded loaded) {
     notes_ = std::move(loaded.composed->notes);
     findings_ = std::move(loaded.findings);
     const Camera camera = loaded.composed->camera;
-    scene_ = std::make_shared<const Scene>(std::move(loaded.composed->scene()));
+    auto scene = std::make_shared<Scene>(std::move(loaded.composed->scene()));
+    auto read = std::make_shared<const Scene>(*scene);
+    kept_ = scene_ ? keep_edits(*read_, *scene_, *scene) : KeptEdits{};
+    notes_.insert(notes_.end(), kept_.lost.begin(), kept_.lost.end());
+    scene_ = std::move(scene);
+    read_ = std::move(read);
+    ++scenes_;
     ball_ = ball_around(world_bounds(*scene_));
     mark_health();
     ++revision_;
@@ -99,7 +106,19 @@ void ViewerState::set_effects(EffectWishes effects) {
 }
 
 void ViewerState::mark_health() {
-    markers_ = scene_ ? chosen_markers(options_.debug, *scene_) : HealthMarkers{};
+    markers_ = {};
+    wishes_health_ = scene_ != nullptr;
+}
+
+std::optional<HealthWish> ViewerState::take_health_wish() {
+    if (!std::exchange(wishes_health_, false)) return std::nullopt;
+    return HealthWish{scene_, options_.debug.health_markers};
+}
+
+void ViewerState::take(FoundHealth found) {
+    if (!found.error.empty()) error_ = found.error;
+    markers_ = std::move(found.markers);
+    ++revision_;
 }
 
 void ViewerState::set_debug(const DebugChoices& choices) {
@@ -232,6 +251,8 @@ nlohmann::ordered_json ViewerState::json(const DrawnPicture& drawn) const {
                                     {"show", debug_view_info(options_.debug.view).name},
                                     {"overlays", overlays_json(options_.debug, markers_)},
                                     {"turntable", is_turning_},
+                                    {"scenes", scenes_},
+                                    {"edits", {{"kept", kept_.kept}, {"lost", kept_.lost}}},
                                     {"revision", revision_},
                                     {"drawn",
                                      {{"revision", drawn.revision},

@@ -14,6 +14,8 @@
 #include "relief/shade/health_markers.h"
 #include "scene_options.h"
 #include "window/bindings.h"
+#include "window/health_search.h"
+#include "window/kept_edits.h"
 #include "window/loader.h"
 #include "window/orbit_camera.h"
 
@@ -33,9 +35,13 @@ class ViewerState {
     [[nodiscard]] const Report& findings() const { return findings_; }
     [[nodiscard]] const std::string& error() const { return error_; }
 
-    /// Takes over what was read. The first scene, and one of another model, is shown whole; the
-    /// same model read again keeps the view. An error leaves the scene as it was.
+    /// Takes over what was read, and puts the edits of the scene before it on that (kept_edits.h).
+    /// The first scene, and one of another model, is shown whole; the same model read again keeps
+    /// the view. An error leaves the scene as it was.
     void take(Loaded loaded);
+
+    /// Images that the scene names have changed: it is to be drawn anew.
+    void refresh() { ++revision_; }
 
     /// Changes lights, materials and whatever else a scene has; copies share its meshes.
     template <typename Edit>
@@ -62,6 +68,9 @@ class ViewerState {
 
     /// Debug view and overlays.
     void set_debug(const DebugChoices& choices);
+    /// Where markers are to be looked for, or not any more: what for. Only once.
+    std::optional<HealthWish> take_health_wish();
+    void take(FoundHealth found);
     [[nodiscard]] const DebugChoices& debug() const { return options_.debug; }
     [[nodiscard]] const HealthMarkers& markers() const { return markers_; }
 
@@ -93,9 +102,13 @@ class ViewerState {
 
     ViewOptions options_;
     std::shared_ptr<const Scene> scene_;
+    std::shared_ptr<const Scene> read_;  ///< The same without any edit.
+    KeptEdits kept_;                     ///< Of the last scene that was read.
+    std::uint64_t scenes_ = 0;           ///< Read so far.
     std::filesystem::path shown_model_;
     std::uint64_t revision_ = 0;
-    HealthMarkers markers_;  ///< Of the scene, where they are asked for.
+    HealthMarkers markers_;  ///< Of the scene, where they are asked for and found.
+    bool wishes_health_ = false;
     EffectWishes effects_;
     OrbitCamera camera_;
     Ball ball_;

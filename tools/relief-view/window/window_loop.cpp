@@ -9,6 +9,7 @@
 
 #include "file_replacement.h"
 #include "window/dropped_files.h"
+#include "window/followed_files.h"
 #include "window/places.h"
 #include "window/resolution.h"
 #include "window/user_interface.h"
@@ -19,7 +20,13 @@ namespace {
 constexpr glm::ivec2 usual_size{1280, 800};
 constexpr int frames_to_settle = 3;  // Dear ImGui reacts to what it drew a frame ago.
 constexpr double turning_step = 1.0 / 60.0;
-constexpr double loading_step = 0.1;  // Seconds between looks at the clock while reading.
+constexpr double loading_step = 0.1;  // Seconds between looks at how far reading is.
+
+/// {"stage", "part": 0 to 1, or null where nobody knows}
+nlohmann::ordered_json json_of(const Progress::State& progress) {
+    return {{"stage", progress.stage},
+            {"part", progress.part ? nlohmann::ordered_json(*progress.part) : nullptr}};
+}
 
 class WindowLoop {
   public:
@@ -29,6 +36,8 @@ class WindowLoop {
                    [this] { system_.release_worker_context(); }, WindowSystem::loader(),
                    WindowSystem::wake}),
           loader_(WindowSystem::wake),
+          health_(WindowSystem::wake),
+          files_(WindowSystem::wake),
           interface_(system_),
           state_(options),
           reading_(options),
@@ -40,13 +49,41 @@ class WindowLoop {
     void run() {
         while (!system_.is_closing()) {
             wait();
-            if (std::optional<Loaded> loaded = loader_.take()) state_.take(std::move(*loaded));
+            take_results();
             state_.pass(seconds_since_last());
             if (system_.is_visible()) draw();
         }
     }
 
   private:
+    /// What other threads have found since.
+    void take_results() {
+        if (std::optional<Loaded> loaded = loader_.take()) {
+            files_.follow(*loaded);
+            state_.take(std::move(*loaded));
+            settling_ = frames_to_settle;
+        }
+        if (std::optional<HealthWish> wish = state_.take_health_wish())
+            health_.start(std::move(*wish));
+        if (std::optional<FoundHealth> found = health_.take()) state_.take(std::move(*found));
+        take_changes(files_.take());
+    }
+
+    /// What files that changed make stale is made anew; the camera and edits stay.
+    void take_changes(const FollowedFiles::Changed& changed) {
+        if (changed.scene || changed.attempt) {
+            // What was wanted last, if that is still to come.
+            if (!loader_.is_loading() && !changed.attempt) reading_ = state_.options();
+            loader_.start(reading_);
+        }
+        if (changed.picture) state_.refresh();
+        if (changed.shaders) {
+            drawer_.relink();
+            wished_.reset();
+            ++relinked_;
+        }
+    }
+
     /// Sleeps unless something is going on.
     void wait() {
         if (settling_ > 0) {
@@ -59,10 +96,13 @@ class WindowLoop {
         } else if (is_resting_later_ && system_.is_visible()) {
             WindowSystem::wait(0.5 * Resolution::resting_seconds);
         } else {
-            WindowSystem::wait(loader_.is_loading() ? loading_step : 0.0);
-            settling_ = frames_to_settle - 1;
+            WindowSystem::wait(is_working() ? loading_step : 0.0);
+            if (!is_working()) settling_ = frames_to_settle - 1;
         }
     }
+
+    /// While something is read or drawn, a frame each step shows how far it is.
+    bool is_working() { return loader_.is_loading() || drawer_.is_busy(); }
 
     double seconds_since_last() {
         const auto now = std::chrono::steady_clock::now();
@@ -75,12 +115,15 @@ class WindowLoop {
         // Asked first: not busy now means that what comes next is the newest.
         const bool was_busy = drawer_.is_busy();
         const DrawnPicture drawn = drawer_.drawn();
+        files_.follow(drawn);
         if (drawn.frames > 0 && !is_reduced(drawn.settings))
             resolution_.whole_took(drawn.times.draw);
         const PanelInput input{state_,
                                drawn,
                                drawer_.renderer_name(),
-                               loader_.is_loading() ? loader_.seconds_so_far() : 0.0,
+                               loader_.seconds_so_far(),
+                               reading_.model.filename().string(),
+                               loader_.is_loading() ? loader_.progress() : drawer_.progress(),
                                was_busy || is_resting_later_,
                                &capture_settings_,
                                text_of(captured_->state())};
@@ -93,7 +136,7 @@ class WindowLoop {
         if (events.panels.save_picture) save(0);
         if (events.panels.save_turn) save(capture_settings_.pictures);
         if (!events.dropped.empty()) drop(events.dropped);
-        const bool is_busy = request() || was_busy || is_resting_later_;
+        const bool is_busy = request() || was_busy || is_resting_later_ || health_.is_going_on();
         dump(drawn, is_busy);
     }
 
@@ -186,7 +229,10 @@ class WindowLoop {
         if (!dump_) return;
         nlohmann::ordered_json json = state_.json(drawn);
         json["loading"] = loader_.is_loading();
+        json["progress"] = loader_.is_loading() ? json_of(loader_.progress()) : nullptr;
         json["busy"] = is_busy;
+        json["files"] = files_.count();
+        json["relinked"] = relinked_;
         json["drawn"]["size"] = {drawn.settings.width, drawn.settings.height};
         json["drawn"]["samples"] = drawn.settings.samples;
         json["drawn"]["whole"] = !is_reduced(drawn.settings);
@@ -203,6 +249,8 @@ class WindowLoop {
     WindowSystem system_;
     DrawThread drawer_;
     Loader loader_;
+    HealthSearch health_;
+    FollowedFiles files_;
     UserInterface interface_;
     ViewerState state_;
     ViewOptions reading_;  ///< What was last begun to be read.
@@ -214,6 +262,7 @@ class WindowLoop {
     Resolution resolution_;
     FrameSettings asked_;            ///< Of the last wish, whole or not.
     std::uint64_t reduced_ = 0;      ///< Wishes that were not.
+    std::uint64_t relinked_ = 0;     ///< How often shaders have changed.
     bool is_resting_later_ = false;  ///< The whole picture is still to come.
     int settling_ = frames_to_settle;
     std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();

@@ -1,0 +1,229 @@
+// SPDX-License-Identifier: Apache-2.0
+// The real window while files change under it, and while a big one is read: driven by hands that
+// xdotool moves, judged by the screen and by what it says of itself.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <thread>
+
+#include "relief/mesh/image_file.h"
+#include "tools/window/drag_and_drop.h"
+#include "tools/window/viewer_window.h"
+
+namespace relief::tools {
+namespace {
+
+using nlohmann::json;
+using relief::Image;
+using test::changed_picture;
+using test::eventually;
+using test::processor_seconds;
+using test::ViewerWindow;
+using test::Workplace;
+using testing::HasSubstr;
+
+/// Puts a file in the place of another one, as editors do.
+void replace(const Workplace& workplace, const std::string& name, const std::string& text) {
+    workplace.write("new-" + name, text);
+    std::filesystem::rename(workplace / ("new-" + name), workplace / name);
+}
+
+/// A flat grid of so many by so many squares.
+void write_grid(const std::filesystem::path& file, int size) {
+    std::ofstream out(file);
+    for (int i = 0; i <= size * (size + 2); ++i)
+        out << "v " << i % (size + 1) << ' ' << i / (size + 1) << " 0\n";
+    for (int i = 0; i < size * size; ++i) {
+        const int a = 1 + i % size + (size + 1) * (i / size);
+        out << "f " << a << ' ' << a + 1 << ' ' << a + size + 2 << ' ' << a + size + 1 << '\n';
+    }
+}
+
+void write_color(const std::filesystem::path& file, std::uint8_t red, std::uint8_t green) {
+    std::vector<std::uint8_t> codes;
+    for (int i = 0; i < 16; ++i)
+        codes.insert(codes.end(), {red, green, 0});
+    const Image image{4, 4, 3, ColorSpace::srgb, codes};
+    write_image(file, image);
+}
+
+TEST(ReloadWindow, AModelThatChangesIsShownWithTheSameViewAndEdits) {
+    RELIEF_NEEDS_DISPLAY(display);
+    const Workplace workplace;
+    const std::string vase = workplace.read("data/vase.obj");
+    workplace.write("vase.obj", vase);
+    ViewerWindow window(*display, workplace, "vase.obj");
+    window.wait_for_rest();
+    window.drag(700, 300, 100, 40);
+    window.click_on("Lights");
+    window.click_on("Add directional");
+    const json before = window.wait_for(
+        "a light more", [](const json& now) { return now["directional_lights"].size() == 3; });
+    const Image picture = display->picture();
+
+    replace(workplace, "vase.obj", vase + "v 9 0 0\nv 9 1 0\nv 9 0 1\nf -3 -2 -1\n");
+    const json after = window.wait_for("a triangle more", [&](const json& now) {
+        return now["triangles"] == before["triangles"].get<int>() + 1 &&
+               now["drawn"]["revision"] == now["revision"];
+    });
+    EXPECT_EQ(after["scenes"], 2);
+    EXPECT_EQ(after["camera"], before["camera"]);
+    EXPECT_EQ(after["directional_lights"].size(), 3U) << "an edit stays";
+    EXPECT_GT(after["edits"]["kept"], 0);
+    EXPECT_EQ(after["error"], "");
+
+    replace(workplace, "vase.obj", vase.substr(0, vase.size() / 2) + "\nf 1 2 999999\n");
+    const json broken =
+        window.wait_for("an error", [](const json& now) { return now["error"] != ""; });
+    EXPECT_THAT(broken["error"].get<std::string>(), HasSubstr("vase.obj"));
+    EXPECT_EQ(broken["triangles"], after["triangles"]) << "the old one stays";
+
+    replace(workplace, "vase.obj", vase);
+    const json mended = window.wait_for("the old model", [&](const json& now) {
+        return now["error"] == "" && now["triangles"] == before["triangles"] &&
+               now["drawn"]["revision"] == now["revision"];
+    });
+    EXPECT_EQ(mended["camera"], before["camera"]);
+    EXPECT_EQ(mended["directional_lights"].size(), 3U);
+    EXPECT_TRUE(eventually([&] { return changed_picture(picture, display->picture()) == 0.0; }))
+        << "the same picture again";
+}
+
+TEST(ReloadWindow, ATextureThatChangesIsDrawnAndABrokenOneIsSaid) {
+    RELIEF_NEEDS_DISPLAY(display);
+    const Workplace workplace;
+    workplace.write_square("square.obj");
+    write_color(workplace / "paint.png", 200, 20);
+    ViewerWindow window(*display, workplace, "square.obj --diffuse-map paint.png");
+    window.wait_for_rest();
+    const Image red = display->picture();
+    write_color(workplace / "paint.png", 20, 200);
+    EXPECT_TRUE(eventually([&] { return changed_picture(red, display->picture()) > 0.5; }));
+    const json green = window.wait_for_rest();
+    const Image picture = display->picture();
+
+    workplace.write("paint.png", "no image");
+    const json broken =
+        window.wait_for("an error", [](const json& now) { return now["error"] != ""; });
+    EXPECT_THAT(broken["error"].get<std::string>(), HasSubstr("paint.png"));
+    EXPECT_EQ(changed_picture(picture, display->picture()), 0.0) << "the old one stays";
+    EXPECT_EQ(broken["camera"], green["camera"]);
+
+    write_color(workplace / "paint.png", 200, 20);
+    window.wait_for("no error", [](const json& now) { return now["error"] == ""; });
+    EXPECT_TRUE(eventually([&] { return changed_picture(red, display->picture()) == 0.0; }));
+}
+
+TEST(ReloadWindow, AShaderThatChangesIsLinkedAndABrokenOneIsSaid) {
+    RELIEF_NEEDS_DISPLAY(display);
+    const Workplace workplace;
+    workplace.write_square("square.obj");
+    std::filesystem::create_directories(workplace / "shaders/scatter");
+    ViewerWindow window(*display, workplace, "square.obj", "RELIEF_SHADER_DIR=shaders");
+    const json before = window.wait_for_rest();
+    const Image plain = display->picture();
+    const std::string head = "#include \"common/diffuse_color.glsl\"\n";
+    const std::string shader = "shaders/scatter/lambert.glsl";
+    workplace.write(shader, head +
+                                "vec3 diffuse_scattering(float n_dot_l) {\n"
+                                "    return diffuse_color * n_dot_l * vec3(1.0, 0.0, 0.0);\n}\n");
+    EXPECT_TRUE(eventually([&] { return changed_picture(plain, display->picture()) > 0.5; }));
+    const json red = window.wait_for_rest();
+    EXPECT_EQ(red["relinked"], 1);
+    EXPECT_EQ(red["camera"], before["camera"]);
+    const Image picture = display->picture();
+
+    workplace.write(shader, head + "vec3 diffuse_scattering(float n) { return broken; }\n");
+    const json broken =
+        window.wait_for("an error", [](const json& now) { return now["error"] != ""; });
+    EXPECT_THAT(broken["error"].get<std::string>(), HasSubstr("scatter/lambert.glsl:2"));
+    EXPECT_EQ(changed_picture(picture, display->picture()), 0.0) << "the old one stays";
+    window.key("7");  // And can still be looked at, from above.
+    EXPECT_TRUE(eventually([&] { return changed_picture(picture, display->picture()) > 0.05; }));
+
+    std::filesystem::remove(workplace / shader);
+    const json mended =
+        window.wait_for("no error", [](const json& now) { return now["error"] == ""; });
+    EXPECT_EQ(mended["relinked"], 3);
+    EXPECT_EQ(mended["scenes"], 1) << "no file of the model has changed";
+}
+
+TEST(ReloadWindow, WhatCouldNotBeReadIsShownWhenItIsMended) {
+    RELIEF_NEEDS_DISPLAY(display);
+    const Workplace workplace;
+    workplace.write("model.obj", "f 1 2 3\n");
+    ViewerWindow window(*display, workplace, "model.obj");
+    window.wait_for("an error", [](const json& now) { return now["error"] != ""; });
+    workplace.write_square("model.obj");
+    window.wait_for("the model", [](const json& now) {
+        return now["error"] == "" && now.value("triangles", 0) == 2;
+    });
+    // Another one that is dropped broken does not keep the first from being followed.
+    workplace.write("broken.glb", "this is no model");
+    ASSERT_TRUE(test::drop_files(display->name(), {workplace / "broken.glb"}, 700, 400));
+    window.wait_for("an error", [](const json& now) { return now["error"] != ""; });
+    replace(workplace, "model.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    const json now = window.wait_for("the other model", [](const json& state) {
+        return state["error"] == "" && state["triangles"] == 1;
+    });
+    EXPECT_EQ(now["scenes"], 2);
+}
+
+TEST(ReloadWindow, AnEditStaysWhenAMapIsDropped) {
+    RELIEF_NEEDS_DISPLAY(display);
+    const Workplace workplace;
+    workplace.write_square("square.obj");
+    ViewerWindow window(*display, workplace, "square.obj");
+    window.wait_for_rest();
+    window.click_on("Lights");
+    window.click_on("Add directional");
+    window.wait_for("a light more",
+                    [](const json& now) { return now["directional_lights"].size() == 3; });
+    ASSERT_TRUE(
+        test::drop_files(display->name(), {workplace / "data/bricks-height.png"}, 700, 400));
+    const json mapped =
+        window.wait_for("the map", [](const json& now) { return now["scenes"] == 2; });
+    EXPECT_EQ(mapped["directional_lights"].size(), 3U);
+    EXPECT_THAT(mapped["edits"]["lost"], testing::IsEmpty());
+}
+
+TEST(ReloadWindow, ReadingABigModelAnswersAndIsCancelled) {
+    RELIEF_NEEDS_DISPLAY(display);
+    const Workplace workplace;
+    workplace.write_square("square.obj");
+    write_grid(workplace / "big.obj", 1500);
+    ViewerWindow window(*display, workplace, "square.obj");
+    window.wait_for_rest();
+    ASSERT_TRUE(test::drop_files(display->name(), {workplace / "big.obj"}, 700, 400));
+    json reading;
+    ASSERT_TRUE(eventually([&] {
+        reading = window.state();
+        return reading["loading"] == true && reading["progress"]["stage"] != "";
+    }));
+    window.key("h");  // It answers meanwhile.
+    EXPECT_TRUE(eventually([&] { return window.state()["help"] == true; }));
+    window.key("h");
+    EXPECT_TRUE(eventually([&] { return window.state()["help"] == false; }));
+    EXPECT_EQ(window.state()["loading"], true) << "a machine too quick for this test";
+    window.click_on("Cancel");
+    const json cancelled = window.wait_for("rest", [](const json&) { return true; });
+    EXPECT_EQ(cancelled["triangles"], 2);
+    EXPECT_EQ(cancelled["error"], "");
+    // Nothing goes on behind it.
+    double used = 0.0;
+    EXPECT_TRUE(eventually([&] {
+        const double last = std::exchange(used, processor_seconds(window.process().pid()));
+        std::this_thread::sleep_for(std::chrono::milliseconds(500));
+        return used - last < 0.02;
+    }));
+    EXPECT_EQ(window.state()["triangles"], 2);
+
+    ASSERT_TRUE(test::drop_files(display->name(), {workplace / "big.obj"}, 700, 400));
+    ASSERT_TRUE(eventually([&] { return window.state()["loading"] == true; }));
+    window.key("ctrl+q");
+    EXPECT_EQ(window.process().wait_for_end(100.0), 0) << window.said();
+}
+
+}  // namespace
+}  // namespace relief::tools

@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: Apache-2.0
+// Tests: tests/tools/window/kept_edits_test.cpp.
+#include "window/kept_edits.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+#include <type_traits>
+
+#include "relief/shade/labels.h"
+#include "window/scene_fields.h"
+
+namespace relief::tools {
+namespace {
+
+template <typename T>
+inline constexpr bool is_optional = false;
+template <typename T>
+inline constexpr bool is_optional<std::optional<T>> = true;
+
+template <typename T>
+inline constexpr bool has_fields = std::tuple_size_v<std::decay_t<decltype(fields_of<T>)>> != 0;
+
+/// By name and place: what is in the file may have changed.
+bool is_same_image(const ImageSource& a, const ImageSource& b) {
+    if (a.name != b.name || a.source.index() != b.source.index()) return false;
+    const auto* file = std::get_if<std::filesystem::path>(&a.source);
+    return file == nullptr || *file == std::get<std::filesystem::path>(b.source);
+}
+
+/// Whether two values are, each as its scene means it.
+template <typename T>
+bool is_same(const T& a, const Scene& of_a, const T& b, const Scene& of_b) {
+    if constexpr (is_optional<T>) {
+        return a.has_value() == b.has_value() && (!a || is_same(*a, of_a, *b, of_b));
+    } else if constexpr (has_fields<T>) {
+        const bool are_same = std::apply(
+            [&](auto... members) { return (is_same(a.*members, of_a, b.*members, of_b) && ...); },
+            fields_of<T>);
+        if constexpr (std::is_same_v<T, Texture>)
+            return are_same && is_same_image(of_a.images[a.image], of_b.images[b.image]);
+        return are_same;
+    } else {
+        return a == b;
+    }
+}
+
+template <typename T>
+bool are_same(const std::vector<T>& a, const Scene& of_a, const std::vector<T>& b,
+              const Scene& of_b) {
+    return std::equal(a.begin(), a.end(), b.begin(), b.end(), [&](const T& one, const T& other) {
+        return is_same(one, of_a, other, of_b);
+    });
+}
+
+class Keeper {
+  public:
+    Keeper(const Scene& read, const Scene& edited, Scene& fresh)
+        : read_(read), edited_(edited), fresh_(fresh) {}
+
+    void keep_materials();
+    template <typename Light>
+    void keep_lights(const char* kind, std::vector<Light> Scene::*lights);
+    void keep_scene() {
+        keep(read_, edited_, fresh_);
+        say_lost("the scene");
+    }
+    KeptEdits take() { return std::move(result_); }
+
+  private:
+    /// Puts what was edited of a value onto the fresh one.
+    template <typename T>
+    void keep(const T& read, const T& edited, T& fresh);
+
+    /// Images of the edited scene become those of the fresh one.
+    template <typename T>
+    void adopt(T& value);
+    std::size_t adopted(std::size_t image);
+
+    [[nodiscard]] std::optional<std::size_t> fresh_material(std::size_t material) const;
+
+    /// If anything of it could not be kept since the last call.
+    void say_lost(const std::string& subject) {
+        if (std::exchange(has_lost_, false))
+            result_.lost.push_back("not all edits of " + subject + " have a place any more");
+    }
+
+    const Scene& read_;
+    const Scene& edited_;
+    Scene& fresh_;
+    bool has_lost_ = false;
+    KeptEdits result_;
+};
+
+std::size_t Keeper::adopted(std::size_t image) {
+    const ImageSource& source = edited_.images[image];
+    const auto known =
+        std::find_if(fresh_.images.begin(), fresh_.images.end(),
+                     [&](const ImageSource& one) { return is_same_image(one, source); });
+    const auto place = static_cast<std::size_t>(known - fresh_.images.begin());
+    if (known == fresh_.images.end()) fresh_.images.push_back(source);
+    return place;
+}
+
+template <typename T>
+void Keeper::adopt(T& value) {
+    if constexpr (is_optional<T>) {
+        if (value) adopt(*value);
+    } else if constexpr (std::is_same_v<T, Texture>) {
+        value.image = adopted(value.image);
+    } else if constexpr (has_fields<T>) {
+        std::apply([&](auto... members) { (adopt(value.*members), ...); }, fields_of<T>);
+    }
+}
+
+template <typename T>
+void Keeper::keep(const T& read, const T& edited, T& fresh) {
+    if (is_same(read, read_, edited, edited_)) return;
+    if constexpr (is_optional<T>) {
+        if (read && edited && fresh) return keep(*read, *edited, *fresh);
+        // Put in, taken out, or a part of what the file has no more.
+        const bool is_put = read.has_value() != edited.has_value();
+        if (is_put && is_same(read, read_, fresh, fresh_)) {
+            fresh = edited;
+            adopt(fresh);
+            ++result_.kept;
+        } else if (!is_put) {
+            has_lost_ = true;
+        }
+    } else if constexpr (has_fields<T>) {
+        std::apply(
+            [&](auto... members) { (keep(read.*members, edited.*members, fresh.*members), ...); },
+            fields_of<T>);
+        if constexpr (std::is_same_v<T, Texture>) {
+            if (is_same_image(read_.images[read.image], edited_.images[edited.image])) return;
+            fresh.image = adopted(edited.image);
+            ++result_.kept;
+        }
+    } else {
+        fresh = edited;
+        ++result_.kept;
+    }
+}
+
+std::optional<std::size_t> Keeper::fresh_material(std::size_t material) const {
+    const std::vector<Material>& all = fresh_.materials;
+    const std::string& name = read_.materials[material].name;
+    if (all.size() == read_.materials.size() && all[material].name == name) return material;
+    if (name.empty()) return std::nullopt;
+    const auto found =
+        std::find_if(all.begin(), all.end(), [&](const Material& one) { return one.name == name; });
+    if (found == all.end()) return std::nullopt;
+    return static_cast<std::size_t>(found - all.begin());
+}
+
+void Keeper::keep_materials() {
+    const std::size_t count = std::min(read_.materials.size(), edited_.materials.size());
+    for (std::size_t i = 0; i < count; ++i) {
+        const Material& read = read_.materials[i];
+        const Material& edited = edited_.materials[i];
+        if (is_same(read, read_, edited, edited_)) continue;
+        if (const std::optional<std::size_t> place = fresh_material(i)) {
+            keep(read, edited, fresh_.materials[*place]);
+        } else {
+            has_lost_ = true;
+        }
+        say_lost(material_label(read_, i));
+    }
+}
+
+template <typename Light>
+void Keeper::keep_lights(const char* kind, std::vector<Light> Scene::*lights) {
+    const std::vector<Light>& read = read_.*lights;
+    const std::vector<Light>& edited = edited_.*lights;
+    std::vector<Light>& fresh = fresh_.*lights;
+    if (are_same(read, read_, edited, edited_)) return;
+    if (are_same(read, read_, fresh, fresh_)) {
+        fresh = edited;
+        ++result_.kept;
+        return;
+    }
+    const bool has_places = fresh.size() == read.size();
+    for (std::size_t i = 0; i < read.size(); ++i) {
+        if (i < edited.size() && is_same(read[i], read_, edited[i], edited_)) continue;
+        if (has_places && edited.size() >= read.size()) {
+            keep(read[i], edited[i], fresh[i]);
+        } else {
+            has_lost_ = true;
+        }
+    }
+    for (std::size_t i = read.size(); i < edited.size(); ++i) {
+        fresh.push_back(edited[i]);
+        ++result_.kept;
+    }
+    say_lost(fmt::format("{} lights", kind));
+}
+
+}  // namespace
+
+KeptEdits keep_edits(const Scene& read, const Scene& edited, Scene& fresh) {
+    Keeper keeper(read, edited, fresh);
+    keeper.keep_materials();
+    keeper.keep_lights("directional", &Scene::directional_lights);
+    keeper.keep_lights("point", &Scene::point_lights);
+    keeper.keep_lights("spot", &Scene::spot_lights);
+    keeper.keep_scene();
+    return keeper.take();
+}
+
+}  // namespace relief::tools
