@@ -6,6 +6,7 @@
 
 #include "common/text.h"
 #include "file_replacement.h"
+#include "report/report_html.h"
 #include "report_csv.h"
 #include "report_json.h"
 #include "report_pictures.h"
@@ -24,8 +25,11 @@ std::vector<std::filesystem::path> write_report(const std::filesystem::path& fol
     write_pictures(folder, report);
     write_text(folder / "accuracy.csv", measurements_csv(report));
     write_text(folder / "accuracy-curves.csv", curves_csv(report));
-    write_json(folder / "accuracy.json", json_of(report, true));
-    return {folder / "accuracy.json", folder / "accuracy.csv", folder / "accuracy-curves.csv"};
+    const nlohmann::ordered_json json = json_of(report, true);
+    write_text(folder / "report.html", report_html(json, folder));
+    write_json(folder / "accuracy.json", json);
+    return {folder / "report.html", folder / "accuracy.json", folder / "accuracy.csv",
+            folder / "accuracy-curves.csv"};
 }
 
 }  // namespace relief::tools

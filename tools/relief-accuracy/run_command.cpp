@@ -164,9 +164,9 @@ Command add_run_command(CLI::App& tool) {
         ->required();
     add_value(
         app, "--output", "DIR",
-        "Folder to write to: accuracy.json, accuracy.csv (a row for each measurement), "
-        "accuracy-curves.csv (a row for each point of a curve) and pictures/. It is made where "
-        "it does not exist. Default: nothing is written.",
+        "Folder to write to: report.html (plots to look into, in one file), accuracy.json, "
+        "accuracy.csv (a row for each measurement), accuracy-curves.csv (a row for each point of a "
+        "curve) and pictures/. It is made where it does not exist. Default: nothing is written.",
         [options](const std::string&, const std::string& text) { options->output = text; });
     add_switch(app, "--json", options->json,
                "Print the report as JSON instead of tables; docs/accuracy-schema.md describes it.");

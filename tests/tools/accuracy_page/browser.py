@@ -1,0 +1,129 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A browser without a window, driven as by hands: WebDriver [W3C 2018] spoken to chromedriver, by the
+standard library alone. Used by report_page_test.py.
+"""
+import base64
+import json
+import re
+import shutil
+import subprocess
+import tempfile
+import urllib.request
+
+FLAGS = [
+    "--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run",
+    "--disable-background-networking", "--disable-component-update", "--disable-sync",
+    "--disable-dev-shm-usage", "--hide-scrollbars", "--force-device-scale-factor=1",
+]
+ELEMENT = "element-6066-11e4-a52e-4f735466cecf"  # How WebDriver marks an element in JSON.
+
+
+def programs():
+    """The browser and its driver, or nothing where one is missing."""
+    found = shutil.which("chromium"), shutil.which("chromedriver")
+    return found if all(found) else None
+
+
+class Browser:
+    """One page at a time. Sizes are in CSS pixels."""
+
+    def __init__(self):
+        browser, driver = programs()
+        self._folder = tempfile.TemporaryDirectory(prefix="relief-browser-")
+        self._driver = subprocess.Popen([driver, "--port=0"], stdout=subprocess.PIPE,
+                                        stderr=subprocess.DEVNULL, text=True)
+        self._base = f"http://127.0.0.1:{self._port()}"
+        options = {"binary": browser, "args": FLAGS + [f"--user-data-dir={self._folder.name}"]}
+        session = self._call("POST", "/session", {"capabilities": {"alwaysMatch": {
+            "browserName": "chrome", "goog:chromeOptions": options,
+            "goog:loggingPrefs": {"browser": "ALL", "performance": "ALL"}}}})
+        self._base += f"/session/{session['sessionId']}"
+
+    def _port(self):
+        for line in self._driver.stdout:
+            started = re.search(r"started successfully on port (\d+)", line)
+            if started:
+                return int(started.group(1))
+        raise RuntimeError("chromedriver did not start")
+
+    def close(self):
+        try:
+            self._call("DELETE", "")
+        finally:
+            self._driver.terminate()
+            self._driver.wait(10)
+            self._driver.stdout.close()
+            self._folder.cleanup()
+
+    def _call(self, method, path, body=None):
+        data = json.dumps(body or {}).encode() if method == "POST" else None
+        request = urllib.request.Request(self._base + path, data, method=method,
+                                         headers={"Content-Type": "application/json"})
+        # No proxy: the driver is on this machine.
+        opener = urllib.request.build_opener(urllib.request.ProxyHandler({}))
+        try:
+            with opener.open(request, timeout=60) as answer:
+                return json.load(answer)["value"]
+        except urllib.error.HTTPError as error:
+            raise RuntimeError(json.load(error)["value"]["message"]) from None
+
+    def open(self, file):
+        self._call("POST", "/url", {"url": file.resolve().as_uri()})
+
+    def run(self, script, *arguments):
+        """What a JavaScript function body returns; `arguments` are its own."""
+        return self._call("POST", "/execute/sync", {"script": script, "args": list(arguments)})
+
+    def devtools(self, command, **parameters):
+        return self._call("POST", "/goog/cdp/execute", {"cmd": command, "params": parameters})
+
+    def resize(self, width, height, is_phone=False):
+        self.devtools("Emulation.setDeviceMetricsOverride", width=width, height=height,
+                      deviceScaleFactor=1, mobile=is_phone)
+
+    def prefer(self, **features):
+        """Media features: prefer(color_scheme="dark")."""
+        self.devtools("Emulation.setEmulatedMedia", features=[
+            {"name": "prefers-" + name.replace("_", "-"), "value": value}
+            for name, value in features.items()])
+
+    def drag(self, *places):
+        """The mouse to the first place, down, along the others, up; with one place, only there."""
+        steps = [{"type": "pointerMove", "duration": 0, "x": round(x), "y": round(y)}
+                 for x, y in places]
+        if len(steps) > 1:
+            steps.insert(1, {"type": "pointerDown", "button": 0})
+            steps.append({"type": "pointerUp", "button": 0})
+        self._call("POST", "/actions", {"actions": [
+            {"type": "pointer", "id": "mouse", "actions": steps}]})
+
+    def move(self, x, y):
+        self.drag((x, y))
+
+    def press(self, key):
+        """A key, into whatever has the focus; WebDriver's codes for those without a letter."""
+        code = {"Tab": "\ue004", "Escape": "\ue00c", "ArrowLeft": "\ue012", "ArrowUp": "\ue013",
+                "ArrowRight": "\ue014", "ArrowDown": "\ue015", "Home": "\ue011", "End": "\ue010",
+                "Space": "\ue00d", "Enter": "\ue007"}.get(key, key)
+        self._call("POST", "/actions", {"actions": [{"type": "key", "id": "keys", "actions": [
+            {"type": "keyDown", "value": code}, {"type": "keyUp", "value": code}]}]})
+
+    def log(self, kind):
+        """What was written since the last call: kind is "browser" (the console) or "performance"."""
+        return self._call("POST", "/se/log", {"type": kind})
+
+    def requests(self):
+        """The addresses that were asked for since the last look at this log."""
+        messages = [json.loads(entry["message"])["message"] for entry in self.log("performance")]
+        return [message["params"]["request"]["url"] for message in messages
+                if message["method"] == "Network.requestWillBeSent"]
+
+    def screenshot(self, file, whole=False):
+        if whole:
+            size = self.devtools("Page.getLayoutMetrics")["cssContentSize"]
+            clip = {"x": 0, "y": 0, "width": size["width"], "height": size["height"], "scale": 1}
+            shot = self.devtools("Page.captureScreenshot", captureBeyondViewport=True, clip=clip)
+            data = shot["data"]
+        else:
+            data = self._call("GET", "/screenshot")
+        file.write_bytes(base64.b64decode(data))

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0
+// The page as text: what it holds without a script, and that it needs nothing else.
+#include "report/report_html.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <regex>
+
+#include "relief/mesh/error.h"
+#include "support/message_of.h"
+#include "tools/accuracy_page/sample_report.h"
+
+namespace relief::tools {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+class ReportHtml : public testing::Test {
+  protected:
+    test::TemporaryDirectory folder_;
+    nlohmann::ordered_json report_ = sample_report(folder_.path());
+    std::string page_ = report_html(report_, folder_.path());
+
+    [[nodiscard]] std::size_t count(const std::string& text) const {
+        std::size_t found = 0;
+        for (std::size_t at = page_.find(text); at != std::string::npos;
+             at = page_.find(text, at + 1))
+            ++found;
+        return found;
+    }
+};
+
+TEST_F(ReportHtml, NeedsNothingButItself) {
+    const std::regex loads(R"re((src|href)="([^"]*)")re");
+    std::size_t pictures = 0;
+    for (std::sregex_iterator match(page_.begin(), page_.end(), loads), end; match != end;
+         ++match) {
+        const std::string target = (*match)[2];
+        pictures += target.starts_with("data:image/png;base64,") ? 1U : 0U;
+        EXPECT_TRUE(target.starts_with("data:") || target.starts_with("#") ||
+                    target == "accuracy.csv")
+            << target.substr(0, 80);
+    }
+    EXPECT_EQ(pictures, 3U);
+    EXPECT_THAT(page_, Not(HasSubstr("url(")));
+    EXPECT_THAT(page_, Not(HasSubstr("@import")));
+    EXPECT_THAT(page_, HasSubstr("default-src 'none'"));
+    EXPECT_THAT(page_, Not(HasSubstr("{{"))) << "a place of the template was not filled";
+}
+
+TEST_F(ReportHtml, CarriesTheReportWhole) {
+    const std::string begin = R"(<script type="application/json" id="report">)";
+    const std::size_t at = page_.find(begin) + begin.size();
+    const std::string data = page_.substr(at, page_.find("</script>", at) - at);
+    EXPECT_EQ(nlohmann::ordered_json::parse(data), report_);
+}
+
+TEST_F(ReportHtml, NamesThatLookLikeMarkupStayText) {
+    EXPECT_EQ(count("</script"), 2U) << "the data's and the script's end, and no name's";
+    EXPECT_EQ(count("<!--"), 1U) << "the template's own comment";
+    EXPECT_THAT(page_, Not(HasSubstr("<b>")));
+    EXPECT_THAT(page_, HasSubstr("<h3>&lt;/script&gt;&lt;!-- &lt;b&gt;Codes&lt;/b&gt;</h3>"));
+    EXPECT_THAT(page_, HasSubstr("<dd>A &lt;b&gt;processor&lt;/b&gt;</dd>"));
+}
+
+TEST_F(ReportHtml, TablesCanBeReadWithoutAScript) {
+    EXPECT_THAT(page_, HasSubstr("<td>0.123</td><td>0.0900</td><td>0.300</td><td>5</td><td>0</td>"
+                                 "<td>2.00 ms <small>1.90–2.20 ms</small></td>"
+                                 "<td>1.20 ms <small>1.10–1.30 ms</small></td><td>2.0 MB</td>"));
+    EXPECT_THAT(page_, HasSubstr("<td>–</td><td>–</td><td>–</td><td>–</td><td>100</td>"
+                                 "<td>500 µs <small>500–600 µs</small></td>"))
+        << "what has no error still has its time";
+    EXPECT_EQ(count(R"(<span class="efficient")"), 2U);
+    EXPECT_THAT(page_, HasSubstr(R"(<small class="note">the fastest of those below a degree)"));
+}
+
+TEST_F(ReportHtml, ColumnsThatSayNothingAreLeftOut) {
+    const std::size_t storage = page_.find("id=\"storage/sample\"");
+    const std::string article = page_.substr(storage, page_.find("</article>", storage) - storage);
+    EXPECT_THAT(article, HasSubstr(">stored</th>"));
+    EXPECT_THAT(article, HasSubstr("<td>1.25 B</td>"));
+    EXPECT_THAT(article, Not(HasSubstr("one thread")));
+    EXPECT_THAT(article, Not(HasSubstr("PSNR")));
+    EXPECT_THAT(article, Not(HasSubstr("no result")));
+    EXPECT_EQ(count(">PSNR, dB</th>"), 1U);
+}
+
+TEST_F(ReportHtml, ChartsHaveTheirNumbersAsTables) {
+    EXPECT_THAT(page_, HasSubstr(R"(<th scope="row">slope, fitted</th><td>-2</td><td>-1</td>)"));
+    EXPECT_THAT(page_, HasSubstr(R"(<th scope="row">breaks at</th><td>1.00e-15</td><td>–</td>)"));
+    EXPECT_THAT(page_, HasSubstr(R"(<th scope="row">1.00e-20</th><td>no result</td><td>0</td>)"));
+}
+
+TEST_F(ReportHtml, LinksLeadToExperiments) {
+    EXPECT_THAT(page_, HasSubstr(R"(<a href="#normals/sample">A torus</a>)"));
+    EXPECT_THAT(page_, HasSubstr(R"(<article class="experiment" id="normals/sample")"));
+}
+
+TEST_F(ReportHtml, AMissingPictureIsNamed) {
+    std::filesystem::remove(folder_ / "pictures/after.png");
+    EXPECT_THAT(test::message_of<FileError>([&] { report_html(report_, folder_.path()); }),
+                HasSubstr("pictures/after.png"));
+}
+
+TEST_F(ReportHtml, AReportWithoutExperimentsIsAPage) {
+    report_["experiments"] = nlohmann::ordered_json::array();
+    EXPECT_THAT(report_html(report_, folder_.path()), HasSubstr("<h1>What accuracy costs</h1>"));
+}
+
+}  // namespace
+}  // namespace relief::tools

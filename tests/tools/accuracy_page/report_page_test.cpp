@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+// The page in a real browser: report_page_test.py looks at the sample report as a reader would.
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "report/report_html.h"
+#include "tools/accuracy_page/sample_report.h"
+#include "tools/run_program.h"
+
+namespace relief::tools {
+namespace {
+
+TEST(ReportPage, WorksInABrowser) {
+    const test::TemporaryDirectory folder;
+    std::ofstream(folder / "report.html")
+        << report_html(sample_report(folder.path()), folder.path());
+    const std::filesystem::path script =
+        test::source_directory() / "tests/tools/accuracy_page/report_page_test.py";
+    const test::ProgramResult result =
+        test::run_line("python3 -B '" + script.string() + "' report.html", folder.path());
+    constexpr int no_browser = 77;
+    if (result.exit_code == no_browser) GTEST_SKIP() << result.error;
+    EXPECT_EQ(result.exit_code, 0) << result.out << result.error;
+}
+
+}  // namespace
+}  // namespace relief::tools
