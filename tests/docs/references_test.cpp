@@ -34,7 +34,7 @@ void collect(const std::string& text, const std::string& place,
 
 std::map<std::string, std::string> cited_by_the_code() {
     std::map<std::string, std::string> citations;
-    for (const char* part : {"libmesh", "libshade", "shaders", "tools", "data"}) {
+    for (const char* part : {"libmesh", "libshade", "libaccuracy", "shaders", "tools", "data"}) {
         for (const auto& entry : fs::recursive_directory_iterator(source_directory() / part)) {
             const std::string kind = entry.path().extension().string();
             if (kind != ".h" && kind != ".cpp" && kind != ".glsl") continue;

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tools/refusal.h"
+#include "tools/schema_page.h"
 #include "tools/workplace.h"
 
 namespace relief::tools {
@@ -33,6 +34,8 @@ TEST(AccuracyRun, PrintsATableAndWritesTheReport) {
     const json& first = report["experiments"][0]["measurements"][0];
     EXPECT_EQ(first["cost"]["one_thread"]["rounds"].size(), 3U);
     EXPECT_GT(first["cost"]["one_thread"]["median"].get<double>(), 0.0);
+    EXPECT_THAT(test::schema_faults(report, test::schema_rows("## accuracy.json"), false),
+                testing::IsEmpty());
     EXPECT_THAT(workplace.read("out/report/accuracy.csv"),
                 HasSubstr("\nstorage/frames,storage,\"float32, nearest\","
                           "encoding=float32; rounding=nearest,degrees,"));

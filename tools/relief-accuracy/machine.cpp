@@ -96,4 +96,12 @@ std::string difference_of(const Machine& old_one, const Machine& new_one) {
     return fmt::format("{}", fmt::join(words, "; "));
 }
 
+bool may_compare_times(const Machine& old_one, const Machine& new_one) {
+    const bool same_opengl =
+        !old_one.opengl || !new_one.opengl || *old_one.opengl == *new_one.opengl;
+    return old_one.processor == new_one.processor && old_one.cores == new_one.cores &&
+           old_one.memory_bytes == new_one.memory_bytes && old_one.system == new_one.system &&
+           same_opengl;
+}
+
 }  // namespace relief::tools

@@ -30,4 +30,8 @@ Machine this_machine(bool draws);
 /// What differs between two, in words that name both: "processor: A, then B"; empty if nothing.
 std::string difference_of(const Machine& old_one, const Machine& new_one);
 
+/// Whether times on one say something about times on the other as they are: all but the compiler
+/// and the build is the same, for those belong to what is compared.
+bool may_compare_times(const Machine& old_one, const Machine& new_one);
+
 }  // namespace relief::tools

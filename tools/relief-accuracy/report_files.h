@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// A report as files in a folder: report.html, accuracy.json, accuracy.csv, accuracy-curves.csv and
-/// pictures/. Each is written beside and renamed, the JSON last. Tests: tests/tools/accuracy_run_test.cpp.
+/// pictures/. Each is written beside and renamed, the JSON last. Tests:
+/// tests/tools/accuracy_run_test.cpp.
 #pragma once
 
 #include <filesystem>

@@ -1,0 +1,212 @@
+// SPDX-License-Identifier: Apache-2.0
+// relief-accuracy compare as users run it, on reports made up here: no time is measured.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include <nlohmann/json.hpp>
+
+#include "report_json.h"
+#include "tools/refusal.h"
+#include "tools/report_sample.h"
+#include "tools/schema_page.h"
+#include "tools/workplace.h"
+
+namespace relief::tools {
+namespace {
+
+using nlohmann::json;
+using test::expect_refusal;
+using test::ProgramResult;
+using test::Refused;
+using test::sample_report;
+using test::Workplace;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+
+/// A report of 12 methods, each with 9 rounds around its time.
+AccuracyReport steady_report() {
+    AccuracyReport report = sample_report();
+    Experiment& one = report.experiments[0];
+    const Measurement sample = one.measurements[1];
+    one.measurements.clear();
+    for (int i = 0; i < 12; ++i) {
+        Measurement measurement = sample;
+        measurement.method = "method " + std::to_string(i);
+        measurement.cost.all_threads.reset();
+        measurement.cost.one_thread->rounds.clear();
+        for (const double part : {1.0, 1.01, 0.99, 1.005, 0.995, 1.002, 0.998, 1.001, 0.999})
+            measurement.cost.one_thread->rounds.push_back(part * 1e-3 * (i + 1));
+        one.measurements.push_back(measurement);
+    }
+    return report;
+}
+
+void slow_down(AccuracyReport& report, std::size_t method, double factor) {
+    for (double& seconds : report.experiments[0].measurements[method].cost.one_thread->rounds)
+        seconds *= factor;
+}
+
+ProgramResult compared(const Workplace& workplace, const AccuracyReport& before,
+                       const AccuracyReport& after, const std::string& options = "") {
+    workplace.write("old.json", json_of(before, true).dump());
+    workplace.write("new.json", json_of(after, true).dump());
+    return workplace.run("relief-accuracy compare old.json new.json " + options);
+}
+
+TEST(AccuracyCompare, OfTheSameFindsNothing) {
+    const Workplace workplace;
+    const ProgramResult result = compared(workplace, steady_report(), steady_report(),
+                                          "--max-slower 0 --max-error-growth 0");
+    EXPECT_EQ(result.exit_code, 0) << result.error;
+    EXPECT_EQ(result.error, "");
+    EXPECT_THAT(result.out, HasSubstr("methods   12 in both\n"));
+    EXPECT_THAT(result.out, HasSubstr("times     1.00 times as long on one thread (1.00 to 1.00; "
+                                      "the middle of 12 methods)"));
+    EXPECT_THAT(result.out, HasSubstr("errors    all the same\n"));
+    for (const char* word : {"slower ", "faster ", "unsure", "gone", "added", "machine"})
+        EXPECT_THAT(result.out, Not(HasSubstr(word)));
+}
+
+TEST(AccuracyCompare, ASlowerMethodIsToldAndHeldAgainstItsBound) {
+    const Workplace workplace;
+    AccuracyReport after = steady_report();
+    slow_down(after, 3, 1.2);
+    slow_down(after, 4, 0.5);
+    const ProgramResult within = compared(workplace, steady_report(), after, "--max-slower 25");
+    EXPECT_EQ(within.exit_code, 0) << within.error;
+    EXPECT_THAT(within.out, HasSubstr("slower    storage/sample: method 3: 1.20 times ("));
+    EXPECT_THAT(within.out, HasSubstr("), 4.00 ms then 4.80 ms on one thread\n"));
+    EXPECT_THAT(within.out, HasSubstr("faster    storage/sample: method 4: 0.50 times ("));
+    const ProgramResult beyond =
+        compared(workplace, steady_report(), after, "--max-slower 10 --quiet");
+    EXPECT_EQ(beyond.exit_code, 1);
+    EXPECT_EQ(beyond.out, "");
+    EXPECT_EQ(beyond.error,
+              "relief-accuracy: error: new.json: storage/sample: method 3: 20.0 % slower on one "
+              "thread (at most 10 %)\n");
+}
+
+TEST(AccuracyCompare, AMachineThatIsSlowerAllInAllIsToldAsSuch) {
+    const Workplace workplace;
+    AccuracyReport after = steady_report();
+    for (std::size_t i = 0; i < 12; ++i)
+        slow_down(after, i, 1.5);
+    const ProgramResult same = compared(workplace, steady_report(), after, "--max-slower 20");
+    EXPECT_EQ(same.exit_code, 1);
+    EXPECT_EQ(same.error,
+              "relief-accuracy: error: new.json: all methods together: 50.0 % slower on one thread "
+              "(at most 20 %)\n");
+    EXPECT_THAT(same.out, Not(HasSubstr("slower    ")));
+    after.machine.processor = "Another processor";
+    slow_down(after, 3, 1.3);
+    const ProgramResult other = compared(workplace, steady_report(), after, "--max-slower 20");
+    EXPECT_EQ(other.exit_code, 1);
+    EXPECT_THAT(other.error, HasSubstr("storage/sample: method 3: 30.0 % slower on one thread"));
+    EXPECT_THAT(other.out,
+                HasSubstr("machine   processor: A processor, then Another processor\n"
+                          "          times are judged relative to the middle of all alone\n"));
+}
+
+TEST(AccuracyCompare, ErrorsThatGrewAreHeldAgainstTheirBound) {
+    const Workplace workplace;
+    AccuracyReport after = steady_report();
+    after.experiments[0].measurements[0].error.rms *= 1.02;
+    after.experiments[0].measurements[1].error.max *= 0.5;
+    const ProgramResult within =
+        compared(workplace, steady_report(), after, "--max-error-growth 3");
+    EXPECT_EQ(within.exit_code, 0) << within.error;
+    EXPECT_THAT(within.out, HasSubstr("worse     storage/sample: method 0: rms 0.25 then 0.255\n"));
+    EXPECT_THAT(within.out, HasSubstr("better    storage/sample: method 1: max 0.75 then 0.375\n"));
+    after.experiments[0].charts[0].curves[0].points[2].error =
+        std::numeric_limits<double>::quiet_NaN();
+    const ProgramResult beyond =
+        compared(workplace, steady_report(), after, "--max-error-growth 1");
+    EXPECT_EQ(beyond.exit_code, 1);
+    EXPECT_EQ(beyond.error,
+              "relief-accuracy: error: new.json: storage/sample, chart scale: near: at 1 0.25 then "
+              "no result (at most 1 % more), and 1 more beyond bounds\n");
+}
+
+TEST(AccuracyCompare, WhatHasNoPartnerIsListed) {
+    const Workplace workplace;
+    AccuracyReport before = steady_report();
+    before.experiments[0].measurements.pop_back();
+    AccuracyReport after = steady_report();
+    after.experiments[0].measurements.erase(after.experiments[0].measurements.begin());
+    const ProgramResult result = compared(workplace, before, after);
+    EXPECT_EQ(result.exit_code, 0);
+    EXPECT_THAT(result.out, HasSubstr("methods   10 in both\n"
+                                      "gone      storage/sample: method 0\n"
+                                      "added     storage/sample: method 11\n"));
+}
+
+TEST(AccuracyCompare, ItsJsonIsWhatThePageDescribes) {
+    const Workplace workplace;
+    AccuracyReport before = steady_report();
+    AccuracyReport after = steady_report();
+    slow_down(after, 3, 1.2);
+    after.experiments[0].measurements[0].error.rms = 1.0;
+    after.experiments[0].measurements[5].method = "new";
+    Experiment other = before.experiments[0];
+    other.id = "storage/other";
+    before.experiments.push_back(other);
+    other.input = "something";
+    after.experiments.push_back(other);
+    const ProgramResult result =
+        compared(workplace, before, after, "--json --max-slower 10 --max-error-growth 10");
+    EXPECT_EQ(result.exit_code, 1);
+    const json found = json::parse(result.out);
+    const std::vector<test::SchemaRow> rows = test::schema_rows("## compare --json");
+    std::vector<std::string> faults = test::schema_faults(found, rows, true);
+    std::erase_if(faults, [](const std::string& fault) {
+        return fault.starts_with("all_threads.") && fault.ends_with("never occurs");
+    });
+    EXPECT_THAT(faults, IsEmpty());
+    EXPECT_EQ(found["beyond"].size(), 2U);
+    EXPECT_EQ(found["times"][3]["verdict"], "slower");
+    EXPECT_NEAR(found["times"][3]["counted"].get<double>(), 1.2, 1e-6);
+    EXPECT_EQ(found["times"][2]["verdict"], "unchanged");
+    EXPECT_EQ(found["errors"][0]["figures"][0]["growth"], 3.0);
+    EXPECT_TRUE(found["all_threads"].is_null());
+}
+
+class AccuracyCompareRefusal : public testing::TestWithParam<Refused> {};
+
+TEST_P(AccuracyCompareRefusal, IsOneLine) {
+    const Workplace workplace;
+    workplace.write("report.json", json_of(steady_report(), true).dump());
+    AccuracyReport other = steady_report();
+    other.experiments[0].input = "something else";
+    workplace.write("other.json", json_of(other, true).dump());
+    AccuracyReport untimed = steady_report();
+    for (Measurement& one : untimed.experiments[0].measurements)
+        one.cost = {};
+    workplace.write("untimed.json", json_of(untimed, true).dump());
+    workplace.write("text.json", "hello");
+    expect_refusal(workplace, "relief-accuracy", GetParam(), "old");
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    All, AccuracyCompareRefusal,
+    testing::Values(
+        Refused{"relief-accuracy compare report.json", 2, "NEW is missing"},
+        Refused{"relief-accuracy compare report.json none.json", 1, "none.json: "},
+        Refused{"relief-accuracy compare report.json text.json", 1,
+                "text.json: is not JSON (relief-accuracy run SUBJECT --output DIR writes "
+                "DIR/accuracy.json)"},
+        Refused{"relief-accuracy compare report.json other.json", 1,
+                "other.json: has no method on the same input as report.json (run the same "
+                "subjects, both with --quick or both without)"},
+        Refused{"relief-accuracy compare untimed.json report.json --max-slower 5", 1,
+                "report.json: has no times in common with untimed.json, so that --max-slower says "
+                "nothing (run both without --no-times)"},
+        Refused{"relief-accuracy compare report.json report.json --max-slower -1", 2,
+                "--max-slower -1: "},
+        Refused{"relief-accuracy compare report.json report.json --json --quiet", 2,
+                "--json and --quiet contradict each other"}));
+
+}  // namespace
+}  // namespace relief::tools

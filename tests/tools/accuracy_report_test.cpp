@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: Apache-2.0
+// The forms of a report: JSON there and back, as its page describes it, CSV, tables, pictures.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "relief/mesh/error.h"
+#include "relief/mesh/image_file.h"
+#include "report_csv.h"
+#include "report_files.h"
+#include "report_json.h"
+#include "report_table.h"
+#include "tools/report_sample.h"
+#include "tools/schema_page.h"
+#include "tools/workplace.h"
+
+namespace relief::tools {
+namespace {
+
+using nlohmann::json;
+using test::sample_report;
+using test::Workplace;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+using testing::SizeIs;
+
+TEST(AccuracyJson, IsWhatItsPageDescribes) {
+    const std::vector<test::SchemaRow> rows = test::schema_rows("## accuracy.json");
+    ASSERT_GT(rows.size(), 50U);
+    EXPECT_THAT(test::schema_faults(json_of(sample_report(), true), rows, true), IsEmpty());
+    // The walk finds what is missing, new, or of another kind.
+    json broken = json_of(sample_report(), true);
+    broken["machine"]["host"] = "somewhere";
+    broken["settings"]["quick"] = 1;
+    broken["experiments"][0].erase("truth");
+    EXPECT_THAT(test::schema_faults(broken, rows, false),
+                testing::UnorderedElementsAre("machine.host: is not documented",
+                                              "settings.quick: is a number, not boolean",
+                                              "experiments[].truth: is missing"));
+}
+
+TEST(AccuracyJson, ReadsBackAsTheSame) {
+    const Workplace workplace;
+    const AccuracyReport report = sample_report();
+    write_report(workplace / "out", report);
+    const AccuracyReport again = read_report(workplace / "out/accuracy.json");
+    // The pictures' samples stay in their files.
+    EXPECT_EQ(json_of(again, true).dump(), json_of(report, true).dump());
+    EXPECT_EQ(again.machine, report.machine);
+    const Experiment& was = report.experiments[0];
+    const Experiment& is = again.experiments[0];
+    for (std::size_t i = 0; i < 2; ++i) {
+        EXPECT_EQ(is.measurements[i].error, was.measurements[i].error);
+        EXPECT_EQ(is.measurements[i].cost, was.measurements[i].cost);
+    }
+    EXPECT_TRUE(std::isnan(is.charts[0].curves[0].points[0].error));
+    EXPECT_EQ(is.charts[0].curves[0].points[1].x, 0.001);
+}
+
+TEST(AccuracyJson, HasNoFileNamesWhereThereAreNoFiles) {
+    const json report = json_of(sample_report(), false);
+    EXPECT_TRUE(report["experiments"][0]["heat_maps"][0]["file"].is_null());
+    EXPECT_TRUE(report["experiments"][0]["pictures"][0]["before"].is_null());
+}
+
+/// How a report is broken, and what reading it says.
+struct Broken {
+    const char* pointer;
+    json value;  ///< Discarded: erased.
+    const char* error;
+};
+
+class BrokenReport : public testing::TestWithParam<Broken> {};
+
+TEST_P(BrokenReport, IsRefusedWithThePlace) {
+    const Workplace workplace;
+    json report = json_of(sample_report(), true);
+    const json::json_pointer place(GetParam().pointer);
+    if (GetParam().value.is_discarded())
+        report.at(place.parent_pointer()).erase(place.back());
+    else
+        report[place] = GetParam().value;
+    workplace.write("report.json", report.dump());
+    try {
+        read_report(workplace / "report.json");
+        FAIL() << "was read";
+    } catch (const FileError& error) {
+        EXPECT_EQ(error.what(), (workplace / "report.json").string() + ": " + GetParam().error);
+    }
+}
+
+const json gone = json(json::value_t::discarded);
+
+INSTANTIATE_TEST_SUITE_P(
+    All, BrokenReport,
+    testing::Values(
+        Broken{"/format", "glTF", "/format: is 'glTF', not 'relief-accuracy'"},
+        Broken{"/format", gone, "/format: is missing"},
+        Broken{"/version", 2,
+               "/version: is 2, but only 1 can be read (make the report anew with this "
+               "relief-accuracy, or compare with the one that made it)"},
+        Broken{"/version", "1", "/version: is not a whole number of 0 or more"},
+        Broken{"/experiments", 5, "/experiments: is of type number, not array"},
+        Broken{"/experiments/0/id", gone, "/experiments/0/id: is missing"},
+        Broken{"/experiments/0/subject", "colour",
+               "subject 'colour' is not one of normals, tangents, bump, storage, bake, shading, "
+               "stability"},
+        Broken{"/experiments/0/measurements/1/method", "exact, slow",
+               "/experiments/0/measurements/1: is the second of method 'exact, slow'"},
+        Broken{"/experiments/0/measurements/1/error/rms", "much",
+               "/experiments/0/measurements/1/error/rms: is of type string, not number"},
+        Broken{"/experiments/0/measurements/1/error/count", -1,
+               "/experiments/0/measurements/1/error/count: is not a whole number of 0 or more"},
+        Broken{"/experiments/0/measurements/1/cost/one_thread/rounds/2", -1e-3,
+               "/experiments/0/measurements/1/cost/one_thread/rounds/2: is less than 0 seconds"},
+        Broken{"/experiments/0/charts/0/curves/0/points/1", json::array({1}),
+               "/experiments/0/charts/0/curves/0/points/1: has 1 numbers, not 2"},
+        Broken{"/machine", nullptr, "/machine: is of type null, not object"}));
+
+TEST(AccuracyJson, TextThatIsNoneIsRefused) {
+    const Workplace workplace;
+    workplace.write("report.json", "{\"format\": ");
+    EXPECT_THROW(read_report(workplace / "report.json"), FileError);
+    EXPECT_THROW(read_report(workplace / "none.json"), FileError);
+}
+
+TEST(AccuracyCsv, HasARowForEachMeasurementAndQuotesCommas) {
+    EXPECT_EQ(measurements_csv(sample_report()),
+              "experiment,subject,method,choices,error_unit,count,undefined,rms,mean,p99,max,psnr,"
+              "item,items,one_thread_seconds,one_thread_p10,one_thread_p90,one_thread_rounds,"
+              "all_threads_seconds,all_threads_p10,all_threads_p90,all_threads_rounds,peak_bytes,"
+              "stored_bytes,efficient\n"
+              "storage/sample,storage,\"exact, slow\",\"code=exact, slow\",degrees,10,0,0,0,0,0,,"
+              "frame,10,0.001,0.00092,0.00108,3,0.0005,0.0005,0.0005,3,4096,2.5,1\n"
+              "storage/sample,storage,near,code=near,degrees,10,2,0.25,0.125,0.5,0.75,40,"
+              "frame,10,0.0005,0.00046,0.00054,3,0.00025,0.00025,0.00025,3,4096,2.5,0\n");
+    EXPECT_EQ(curves_csv(sample_report()),
+              "experiment,chart,method,x_label,x,error_unit,error\n"
+              "storage/sample,scale,near,scale,1e-06,degrees,\n"
+              "storage/sample,scale,near,scale,0.001,degrees,0.5\n"
+              "storage/sample,scale,near,scale,1,degrees,0.25\n");
+}
+
+TEST(AccuracyTable, MarksTheFrontierAndAlignsItsColumns) {
+    const std::string table = table_of(sample_report().experiments[0]);
+    EXPECT_THAT(
+        table,
+        HasSubstr(
+            "                  RMS   mean  99 %   max  undefined     PSNR  1 thread           all"
+            "        memory  stored\n"
+            "  * exact, slow     0      0     0     0                       1.00 ms  ±8 %  500 µs"
+            "  ±0 %  4.1 kB   2.5 B\n"
+            "    near         0.25  0.125   0.5  0.75          2  40.0 dB    500 µs  ±8 %  250 µs"
+            "  ±0 %  4.1 kB   2.5 B\n"
+            "      It is not far.\n"));
+    EXPECT_THAT(table,
+                HasSubstr("    near: - at 1e-06, 0.25 at 1, order -0.10 (expected 0), breaks "
+                          "at 1e-06\n"));
+    Experiment untimed = sample_report().experiments[0];
+    for (Measurement& one : untimed.measurements)
+        one.cost = {};
+    EXPECT_THAT(table_of(untimed), Not(HasSubstr("thread")));
+}
+
+TEST(AccuracyTable, SaysTimesInTheUnitThatSuitsThem) {
+    EXPECT_EQ(seconds_in_words(8.4e-8), "84.0 ns");
+    EXPECT_EQ(seconds_in_words(4.126e-6), "4.13 µs");
+    EXPECT_EQ(seconds_in_words(9.996e-4), "1.00 ms");
+    EXPECT_EQ(seconds_in_words(0.0123), "12.3 ms");
+    EXPECT_EQ(seconds_in_words(123.4), "123 s");
+    EXPECT_EQ(seconds_in_words(0.0), "0.00 ns");
+}
+
+TEST(AccuracyFiles, PicturesStandWhereTheJsonSays) {
+    const Workplace workplace;
+    write_report(workplace / "out", sample_report());
+    EXPECT_EQ(workplace.outputs(),
+              "accuracy-curves.csv accuracy.csv accuracy.json pictures report.html");
+    const json one = json::parse(workplace.read("out/accuracy.json"))["experiments"][0];
+    EXPECT_EQ(one["heat_maps"][0]["file"], "pictures/storage-sample-heat-1.png");
+    for (const json& file :
+         {one["heat_maps"][0]["file"], one["pictures"][0]["before"], one["pictures"][0]["after"]}) {
+        const Image image =
+            read_image(workplace / "out" / file.get<std::string>(), ImageUse::color);
+        EXPECT_EQ(image.width, 2);
+        EXPECT_EQ(image.height, 1);
+    }
+    // Nothing is black and the brightest error is bright.
+    const Image heat =
+        read_image(workplace / "out/pictures/storage-sample-heat-1.png", ImageUse::color);
+    EXPECT_EQ(heat.as<std::uint8_t>()[0], 0);
+    EXPECT_GT(heat.as<std::uint8_t>()[3], 200);
+}
+
+TEST(ThisMachine, IsKnown) {
+    const Machine machine = this_machine(false);
+    EXPECT_GE(machine.cores, 1U);
+    EXPECT_GT(machine.memory_bytes, std::uint64_t{1} << 28);
+    EXPECT_THAT(machine.system, HasSubstr("Linux"));
+    EXPECT_THAT(machine.compiler, testing::MatchesRegex("(GCC|Clang) [0-9].*"));
+    EXPECT_FALSE(machine.opengl);
+    EXPECT_EQ(difference_of(machine, machine), "");
+    Machine other = machine;
+    other.build = "Debug";
+    EXPECT_TRUE(may_compare_times(machine, other)) << "the build is what is compared";
+    EXPECT_EQ(difference_of(machine, other), "build: " + machine.build + ", then Debug");
+    other.cores += 1;
+    EXPECT_FALSE(may_compare_times(machine, other));
+}
+
+}  // namespace
+}  // namespace relief::tools

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// A small report with everything that a report can have.
+#pragma once
+
+#include "accuracy_report.h"
+
+namespace relief::test {
+
+/// One experiment of two methods, "storage/sample": "exact, slow" (1 ms) and "near" (0.5 ms, RMS
+/// 0.25), with a chart, a heat map and a pair of pictures. All of it is made up.
+tools::AccuracyReport sample_report();
+
+}  // namespace relief::test

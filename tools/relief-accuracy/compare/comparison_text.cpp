@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: Apache-2.0
+// Words for changes. Tests: tests/tools/accuracy_compare_test.cpp.
+#include "compare/comparison_text.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/text.h"
+#include "report_table.h"
+
+namespace relief::tools {
+namespace {
+
+/// So many lines of a kind are printed, the greatest changes first; the rest is counted.
+constexpr std::size_t most_lines = 20;
+
+std::string threads_of(bool on_all_threads) {
+    return on_all_threads ? "all threads" : "one thread";
+}
+
+std::string name_of(const TimeChange& change) {
+    return fmt::format("{}: {}", change.experiment, change.method);
+}
+
+std::string name_of(const ErrorChange& change) {
+    if (change.chart.empty()) return fmt::format("{}: {}", change.experiment, change.method);
+    return fmt::format("{}, chart {}: {}", change.experiment, change.chart, change.method);
+}
+
+std::string number(double value) {
+    return std::isnan(value) ? "no result" : fmt::format("{:.4g}", value);
+}
+
+/// "storage/frames: angle16: 1.21 times (1.15 to 1.27), 550 µs then 666 µs on one thread"
+std::string line_of(const TimeChange& change) {
+    std::string text = fmt::format(
+        "{}: {:.2f} times ({:.2f} to {:.2f}), {} then {} on {}", name_of(change),
+        change.ratio.value, change.ratio.low, change.ratio.high, seconds_in_words(change.before),
+        seconds_in_words(change.after), threads_of(change.on_all_threads));
+    if (std::abs(std::log(change.relative / change.ratio.value)) > 0.01)
+        text += fmt::format("; {:.2f} times relative to all", change.relative);
+    return text;
+}
+
+/// "bump/waves: sobel3: rms 0.1 then 0.2, max 0.3 then 0.4"
+std::string line_of(const ErrorChange& change) {
+    std::vector<std::string> figures;
+    for (const FigureChange& one : change.figures)
+        figures.push_back(
+            fmt::format("{} {} then {}", one.figure, number(one.before), number(one.after)));
+    return fmt::format("{}: {}", name_of(change), fmt::join(figures, ", "));
+}
+
+/// At most most_lines, and how many more there are.
+void print_some(const std::string& label, std::vector<std::string> lines) {
+    const std::size_t more = lines.size() - std::min(lines.size(), most_lines);
+    lines.resize(lines.size() - more);
+    if (more > 0) lines.push_back(fmt::format("and {} more (--json lists all)", more));
+    print_entry(label, lines);
+}
+
+std::vector<TimeChange> times_that_are(const ReportComparison& found, TimeVerdict verdict) {
+    std::vector<TimeChange> chosen;
+    for (const TimeChange& change : found.times) {
+        if (change.verdict == verdict) chosen.push_back(change);
+    }
+    std::stable_sort(chosen.begin(), chosen.end(), [](const TimeChange& a, const TimeChange& b) {
+        return std::abs(std::log(a.counted)) > std::abs(std::log(b.counted));
+    });
+    return chosen;
+}
+
+/// Those that became worse in some figure, or those that did in none; the worst first.
+std::vector<ErrorChange> errors_that(const ReportComparison& found, bool grew) {
+    std::vector<ErrorChange> chosen;
+    for (const ErrorChange& change : found.errors) {
+        if ((change.worst().growth() > 0.0) == grew) chosen.push_back(change);
+    }
+    std::stable_sort(chosen.begin(), chosen.end(), [](const ErrorChange& a, const ErrorChange& b) {
+        return a.worst().growth() > b.worst().growth();
+    });
+    return chosen;
+}
+
+template <typename Change>
+std::vector<std::string> lines_of(const std::vector<Change>& changes) {
+    std::vector<std::string> lines;
+    for (const Change& change : changes)
+        lines.push_back(line_of(change));
+    return lines;
+}
+
+/// "all in all 1.02 times as long on one thread (1.00 to 1.04; the middle of 40 methods)", and from
+/// where on a change counts.
+std::string line_of(const CommonChange& common, bool on_all_threads) {
+    std::string text =
+        fmt::format("{:.2f} times as long on {} ({:.2f} to {:.2f}; the middle of {})",
+                    common.ratio.value, threads_of(on_all_threads), common.ratio.low,
+                    common.ratio.high, counted(common.methods, "method"));
+    if (common.is_judged) {
+        text += fmt::format(
+            "; single ones scatter by {:.1f} %, so that changes of less than {:.0f} % do not count",
+            100.0 * (std::exp(common.scatter) - 1.0), 100.0 * (common.smallest - 1.0));
+    } else {
+        text += "; too few methods to tell the machine from the code";
+    }
+    return text;
+}
+
+std::string described(const AccuracyReport& report) {
+    return fmt::format("relief {}, {}{}{}", report.relief, report.command,
+                       report.machine.processor.empty() ? "" : "; " + report.machine.processor,
+                       report.settings.timed ? "" : "; no times");
+}
+
+void print_times(const ReportComparison& found) {
+    std::vector<std::string> common;
+    if (found.one_thread.methods > 0) common.push_back(line_of(found.one_thread, false));
+    if (found.all_threads.methods > 0) common.push_back(line_of(found.all_threads, true));
+    if (common.empty()) common.emplace_back("none in common");
+    print_entry("times", common);
+    const auto slower = times_that_are(found, TimeVerdict::slower);
+    const auto faster = times_that_are(found, TimeVerdict::faster);
+    const auto unknown = times_that_are(found, TimeVerdict::cannot_tell);
+    print_some("slower", lines_of(slower));
+    print_some("faster", lines_of(faster));
+    print_some("unsure", lines_of(unknown));
+    if (!unknown.empty())
+        print_entry("", "too few rounds to tell these from chance (run both with more --repeats)");
+}
+
+double percent(double ratio) {
+    return 100.0 * (ratio - 1.0);
+}
+
+/// Where all became slower together: on one machine that counts too.
+void add_common(std::vector<std::string>& lines, const ComparedReports& compared,
+                const CommonChange& common, bool on_all_threads, double bound) {
+    if (!compared.same_machine || !common.is_judged || common.ratio.low <= 1.0) return;
+    if (percent(common.ratio.value) <= bound) return;
+    lines.push_back(fmt::format("all methods together: {:.1f} % slower on {} (at most {} %)",
+                                percent(common.ratio.value), threads_of(on_all_threads), bound));
+}
+
+}  // namespace
+
+void print_text(const ComparedReports& compared) {
+    const ReportComparison& found = compared.found;
+    print_entry("old", described(compared.before));
+    print_entry("new", described(compared.after));
+    const std::string difference = difference_of(compared.before.machine, compared.after.machine);
+    if (!difference.empty()) {
+        print_entry("machine", difference);
+        if (!compared.same_machine)
+            print_entry("", "times are judged relative to the middle of all alone");
+    }
+    print_entry("methods", fmt::format("{} in both", found.methods));
+    print_some("gone", found.gone);
+    print_some("added", found.added);
+    print_some("not on", found.other_input);
+    if (!found.other_input.empty()) print_entry("", "the same input, and not compared");
+    print_times(found);
+    const auto worse = errors_that(found, true);
+    const auto better = errors_that(found, false);
+    if (worse.empty() && better.empty()) print_entry("errors", "all the same");
+    print_some("worse", lines_of(worse));
+    print_some("better", lines_of(better));
+}
+
+std::vector<std::string> beyond(const ComparedReports& compared, const ComparisonBounds& bounds) {
+    std::vector<std::string> lines;
+    if (bounds.max_slower) {
+        add_common(lines, compared, compared.found.one_thread, false, *bounds.max_slower);
+        add_common(lines, compared, compared.found.all_threads, true, *bounds.max_slower);
+        for (const TimeChange& change : times_that_are(compared.found, TimeVerdict::slower)) {
+            if (percent(change.counted) <= *bounds.max_slower) continue;
+            lines.push_back(fmt::format("{}: {:.1f} % slower on {} (at most {} %)", name_of(change),
+                                        percent(change.counted), threads_of(change.on_all_threads),
+                                        *bounds.max_slower));
+        }
+    }
+    if (bounds.max_error_growth) {
+        for (const ErrorChange& change : errors_that(compared.found, true)) {
+            const FigureChange& worst = change.worst();
+            if (100.0 * worst.growth() <= *bounds.max_error_growth) continue;
+            lines.push_back(fmt::format("{}: {} {} then {} (at most {} % more)", name_of(change),
+                                        worst.figure, number(worst.before), number(worst.after),
+                                        *bounds.max_error_growth));
+        }
+    }
+    return lines;
+}
+
+}  // namespace relief::tools
