@@ -25,6 +25,43 @@ if(RELIEF_SANITIZE)
     target_link_options(relief_flags INTERFACE -fsanitize=address,undefined)
 endif()
 
+# A second of every file's compiling is headers that never change. Caches of compiled files (ccache)
+# cannot tell that two checkouts' precompiled headers are the same: with one, there are none.
+if(CMAKE_CXX_COMPILER_LAUNCHER)
+    set(precompile OFF)
+else()
+    set(precompile ON)
+endif()
+option(RELIEF_PCH "Precompile the headers that nearly every file includes" ${precompile})
+set(RELIEF_PCH_HEADER ${CMAKE_CURRENT_LIST_DIR}/precompiled.h)
+
+# relief_precompile(TARGET [LIKE OTHER]): with OTHER's, where both are compiled alike.
+function(relief_precompile target)
+    if(NOT RELIEF_PCH)
+        return()
+    endif()
+    cmake_parse_arguments(ARG "" "LIKE" "" ${ARGN})
+    if(ARG_LIKE)
+        target_precompile_headers(${target} REUSE_FROM ${ARG_LIKE})
+    else()
+        target_precompile_headers(${target} PRIVATE $<$<COMPILE_LANGUAGE:CXX>:${RELIEF_PCH_HEADER}>)
+    endif()
+endfunction()
+
+# relief_vectorise(TARGET SOURCES...): loops over square roots and selections become vector instructions
+# only where neither errno nor floating-point traps are to be kept, which nobody in these files looks
+# at. No result changes. (Precompiled headers are for files with their target's own options.)
+function(relief_vectorise target)
+    set_source_files_properties(
+        ${ARGN} TARGET_DIRECTORY ${target}
+        PROPERTIES COMPILE_OPTIONS "-fno-math-errno;-fno-trapping-math" SKIP_PRECOMPILE_HEADERS ON)
+endfunction()
+
+# Empty, but for the headers that it lends to targets compiled alike.
+add_library(relief_precompiled OBJECT ${CMAKE_CURRENT_LIST_DIR}/precompiled.cpp)
+target_link_libraries(relief_precompiled PRIVATE relief_flags glm::glm fmt::fmt)
+relief_precompile(relief_precompiled)
+
 # What every test runs under, for set_tests_properties too. Mesa's cache of compiled shaders would
 # carry results from one run to the next; and its own leaks are not ours. With OpenImageIO's 261
 # libraries in the process, LeakSanitizer's own tracer can crash ("Tracer caught signal 11") in the
@@ -43,6 +80,7 @@ function(relief_add_tests name)
     set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${RELIEF_TEST_DIRECTORY})
     target_link_libraries(${name} PRIVATE relief_flags relief_test_support ${ARG_LIBRARIES}
                                           GTest::gmock GTest::gtest_main)
+    relief_precompile(${name} LIKE relief_test_precompiled)
     gtest_discover_tests(
         ${name}
         TEST_PREFIX ${name}/
