@@ -17,8 +17,3 @@
 #include <span>
 #include <string>
 #include <vector>
-
-#ifdef RELIEF_PRECOMPILE_TESTS
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-#endif

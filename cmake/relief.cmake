@@ -35,16 +35,17 @@ endif()
 option(RELIEF_PCH "Precompile the headers that nearly every file includes" ${precompile})
 set(RELIEF_PCH_HEADER ${CMAKE_CURRENT_LIST_DIR}/precompiled.h)
 
-# relief_precompile(TARGET [LIKE OTHER]): with OTHER's, where both are compiled alike.
+# relief_precompile(TARGET [LIKE OTHER] [AND HEADERS...]): with OTHER's, where both are compiled alike; or
+# with more headers than all have.
 function(relief_precompile target)
     if(NOT RELIEF_PCH)
         return()
     endif()
-    cmake_parse_arguments(ARG "" "LIKE" "" ${ARGN})
+    cmake_parse_arguments(ARG "" "LIKE" "AND" ${ARGN})
     if(ARG_LIKE)
         target_precompile_headers(${target} REUSE_FROM ${ARG_LIKE})
     else()
-        target_precompile_headers(${target} PRIVATE $<$<COMPILE_LANGUAGE:CXX>:${RELIEF_PCH_HEADER}>)
+        target_precompile_headers(${target} PRIVATE ${RELIEF_PCH_HEADER} ${ARG_AND})
     endif()
 endfunction()
 
