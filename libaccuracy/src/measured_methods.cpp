@@ -3,6 +3,7 @@
 #include "measured_methods.h"
 
 #include <limits>
+#include <stdexcept>
 
 namespace relief {
 
@@ -34,6 +35,13 @@ const Measurement* truest(const Experiment& experiment) {
         if (least == nullptr || one.error.rms < least->error.rms) least = &one;
     }
     return least;
+}
+
+const Measurement& method_in(const Experiment& experiment, const std::string& name) {
+    for (const Measurement& one : experiment.measurements) {
+        if (one.method == name) return one;
+    }
+    throw std::out_of_range(experiment.id + " has no method " + name);
 }
 
 double median_seconds(const Measurement& measurement) {

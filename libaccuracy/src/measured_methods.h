@@ -33,6 +33,9 @@ void measure_methods(std::span<const MeasuredMethod> methods, const RunOptions& 
 /// The measurement of least RMS error among those with defined results; nullptr if there is none.
 const Measurement* truest(const Experiment& experiment);
 
+/// A method's measurement. \throws std::out_of_range without one of that name
+const Measurement& method_in(const Experiment& experiment, const std::string& name);
+
 /// The median seconds on one thread, on all where that is all there is; NaN where none was timed.
 double median_seconds(const Measurement& measurement);
 

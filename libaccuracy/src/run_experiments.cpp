@@ -9,6 +9,7 @@
 #include "normals/normals_experiments.h"
 #include "relief/accuracy/subjects.h"
 #include "relief/mesh/error.h"
+#include "shading/shading_experiments.h"
 #include "storage/storage_experiments.h"
 #include "tangents/tangents_experiments.h"
 
@@ -25,6 +26,7 @@ constexpr std::array entries = {
     SubjectEntry{Subject::normals, normals_experiments},
     SubjectEntry{Subject::tangents, tangents_experiments},
     SubjectEntry{Subject::storage, storage_experiments},
+    SubjectEntry{Subject::shading, shading_experiments},
 };
 
 struct SubjectWord {

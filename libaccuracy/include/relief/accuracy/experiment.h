@@ -30,7 +30,7 @@ struct ErrorFigures {
     double mean = 0.0;
     double p99 = 0.0;  ///< 99 of 100 are no larger.
     double max = 0.0;
-    std::optional<double> psnr;  ///< Of pictures, in decibels: 20 log10(peak / rms).
+    std::optional<double> psnr{};  ///< Of pictures, in decibels: 20 log10(peak / rms).
 
     friend bool operator==(const ErrorFigures&, const ErrorFigures&) = default;
 };
@@ -40,7 +40,7 @@ ErrorFigures figures_of(const AngleDistribution& angles);
 /// Seconds of each counted repeat, in the order in which they were taken; in turns with the other
 /// methods of the experiment, so that round i of all was taken at one time.
 struct Timing {
-    std::vector<double> rounds;
+    std::vector<double> rounds{};
 
     [[nodiscard]] Spread spread() const { return spread_of(rounds); }
     friend bool operator==(const Timing&, const Timing&) = default;
@@ -48,10 +48,10 @@ struct Timing {
 
 /// What a method takes; absent: not measured, or the method has no such thing.
 struct Cost {
-    std::optional<Timing> one_thread;
-    std::optional<Timing> all_threads;
+    std::optional<Timing> one_thread{};
+    std::optional<Timing> all_threads{};
     /// The most memory that it held at a time, beyond what there was before.
-    std::optional<std::uint64_t> peak_bytes;
+    std::optional<std::uint64_t> peak_bytes{};
     /// Of what it makes: a vertex's frame, a texel. 0: of no interest.
     double stored_bytes = 0.0;
 
@@ -60,13 +60,13 @@ struct Cost {
 
 /// One method on the experiment's input.
 struct Measurement {
-    std::string method;  ///< Unique in its experiment, the same in every run: "max, float64".
+    std::string method{};  ///< Unique in its experiment, the same in every run: "max, float64".
     /// What can be chosen, and what is: {"weighting", "max"}, {"arithmetic", "float64"}.
-    std::vector<std::pair<std::string, std::string>> choices;
-    ErrorFigures error;
-    Cost cost;
+    std::vector<std::pair<std::string, std::string>> choices{};
+    ErrorFigures error{};
+    Cost cost{};
     bool is_efficient = false;  ///< On the frontier of RMS error against time (mark_efficient()).
-    std::string note;           ///< What a reader ought to know of it; mostly empty.
+    std::string note{};         ///< What a reader ought to know of it; mostly empty.
 };
 
 /// Error along something that varies: cells of a mesh, texels of a wave, the scale of a mesh.
@@ -75,57 +75,57 @@ struct CurvePoint {
     double error = 0.0;  ///< RMS, in the unit of the experiment; NaN: no usable result.
 };
 struct Curve {
-    std::string method;
-    std::vector<CurvePoint> points;        ///< By growing x.
-    std::optional<double> order;           ///< The slope fitted on log axes (fitted_order()).
-    std::optional<double> expected_order;  ///< By theory.
-    std::optional<double> breaks_at;       ///< The first x with an error beyond the chart's bound.
+    std::string method{};
+    std::vector<CurvePoint> points{};        ///< By growing x.
+    std::optional<double> order{};           ///< The slope fitted on log axes (fitted_order()).
+    std::optional<double> expected_order{};  ///< By theory.
+    std::optional<double> breaks_at{};  ///< The first x with an error beyond the chart's bound.
 };
 struct Chart {
-    std::string id;  ///< Unique in its experiment.
-    std::string title;
-    std::string x_label;  ///< With its unit.
-    std::string y_label;
+    std::string id{};  ///< Unique in its experiment.
+    std::string title{};
+    std::string x_label{};  ///< With its unit.
+    std::string y_label{};
     bool is_x_log = true;
-    std::optional<double> bound;  ///< An error beyond it is a failure.
-    std::vector<Curve> curves;
+    std::optional<double> bound{};  ///< An error beyond it is a failure.
+    std::vector<Curve> curves{};
 };
 
 /// Errors over a map or picture: one float channel, in the unit of the experiment.
 struct HeatMap {
-    std::string title;
-    std::string method;
-    Image errors;
+    std::string title{};
+    std::string method{};
+    Image errors{};
     double brightest = 1.0;
 };
 
 /// Two pictures to lay a line between.
 struct PicturePair {
-    std::string title;
-    std::string before_label;
-    std::string after_label;
-    Image before;  ///< 8-bit sRGB, 3 or 4 channels.
-    Image after;   ///< Of the same size.
+    std::string title{};
+    std::string before_label{};
+    std::string after_label{};
+    Image before{};  ///< 8-bit sRGB, 3 or 4 channels.
+    Image after{};   ///< Of the same size.
 };
 
 struct Experiment {
-    std::string id;  ///< The same in every run: "normals/torus-jittered".
+    std::string id{};  ///< The same in every run: "normals/torus-jittered".
     Subject subject = Subject::normals;
-    std::string title;
-    std::string question;    ///< One sentence that ends with a question mark.
-    std::string truth;       ///< What errors are counted from, and how that is known.
-    std::string input;       ///< "torus, jittered, 64 x 64 cells: 8192 triangles"
-    std::string error_unit;  ///< "degrees", "FLIP"
-    std::string item;        ///< What work is counted in: "triangle", "texel", "pixel"
+    std::string title{};
+    std::string question{};    ///< One sentence that ends with a question mark.
+    std::string truth{};       ///< What errors are counted from, and how that is known.
+    std::string input{};       ///< "torus, jittered, 64 x 64 cells: 8192 triangles"
+    std::string error_unit{};  ///< "degrees", "FLIP"
+    std::string item{};        ///< What work is counted in: "triangle", "texel", "pixel"
     double items = 0.0;
     /// What repeats it: "relief-accuracy run normals"; filled in by the tool.
-    std::string command;
-    std::vector<Measurement> measurements;
-    std::vector<Chart> charts;
-    std::vector<HeatMap> heat_maps;
-    std::vector<PicturePair> pictures;
+    std::string command{};
+    std::vector<Measurement> measurements{};
+    std::vector<Chart> charts{};
+    std::vector<HeatMap> heat_maps{};
+    std::vector<PicturePair> pictures{};
     /// What follows, in a sentence or two that name numbers; made from the measurements.
-    std::string finding;
+    std::string finding{};
 };
 
 /// How thoroughly experiments are run.
@@ -137,7 +137,7 @@ struct RunOptions {
     /// How many threads "all threads" are; 0: as many as the machine has.
     unsigned threads = 0;
     /// Before each experiment: its title, and how many are done of how many. May throw Cancelled.
-    std::function<void(const std::string& title, std::size_t done, std::size_t total)> tell;
+    std::function<void(const std::string& title, std::size_t done, std::size_t total)> tell{};
 };
 
 /// Marks the measurements that are efficient by RMS error and time on one thread; on all threads

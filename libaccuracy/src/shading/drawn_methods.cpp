@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0
+// Renderers live side by side, so that they can draw in turns. Tests:
+// tests/accuracy/drawn_methods_test.cpp.
+#include "shading/drawn_methods.h"
+
+#include <fmt/format.h>
+
+#include "relief/shade/error.h"
+#include "relief/shade/frame_timing.h"
+#include "relief/shade/renderer.h"
+#include "shading/picture_error.h"
+
+namespace relief {
+namespace {
+
+FrameSettings settings_of(const DrawnMethod& method, const Image& truth) {
+    return {truth.width * method.pixels_a_side, truth.height * method.pixels_a_side, method.samples,
+            OutputCoding::srgb};
+}
+
+Image drawn(Renderer& renderer, const DrawnMethod& method) {
+    const Image picture = without_alpha(renderer.draw(*method.scene.camera).image);
+    if (method.pixels_a_side == 1) return picture;
+    return to_srgb(averaged(to_linear(picture), method.pixels_a_side), 8);
+}
+
+Timing in_seconds(std::vector<double> milliseconds) {
+    for (double& time : milliseconds)
+        time *= 1e-3;
+    return {std::move(milliseconds)};
+}
+
+/// All methods' frames in turns.
+std::vector<Timing> timings(std::span<const std::unique_ptr<Renderer>> renderers,
+                            const Camera& camera, const Repeats& repeats) {
+    std::vector<Renderer*> pointers;
+    for (const std::unique_ptr<Renderer>& renderer : renderers)
+        pointers.push_back(renderer.get());
+    std::vector<Timing> result;
+    for (FrameSeries& series : time_frames(pointers, camera, repeats))
+        result.push_back(in_seconds(std::move(series.draw)));
+    return result;
+}
+
+std::string note_of(const DrawnMethod& method, const Drawing& drawing) {
+    const std::string where = fmt::format("Drawn by {}; not counted: reading the picture back.",
+                                          drawing.context().renderer_name());
+    return method.note.empty() ? where : method.note + " " + where;
+}
+
+}  // namespace
+
+Drawing::Drawing(Backend backend) {
+    try {
+        context_ = std::make_unique<Context>(backend);
+    } catch (const GpuError& error) {
+        absence_ = error.what();
+    }
+}
+
+bool Drawing::is_possible_for(Experiment& experiment) const {
+    if (!context_)
+        experiment.finding = "Not measured: this needs OpenGL, and there is none: " + absence_;
+    return context_ != nullptr;
+}
+
+std::vector<DrawnPicture> measure_drawn(const Drawing& drawing,
+                                        std::span<const DrawnMethod> methods, const Image& truth,
+                                        const RunOptions& options, Experiment& experiment) {
+    std::vector<std::unique_ptr<Renderer>> renderers;
+    for (const DrawnMethod& method : methods) {
+        Report report;
+        renderers.push_back(std::make_unique<Renderer>(drawing.context(), method.scene,
+                                                       settings_of(method, truth), report));
+    }
+    std::vector<DrawnPicture> pictures;
+    for (std::size_t i = 0; i < methods.size(); ++i) {
+        Image picture = drawn(*renderers[i], methods[i]);
+        PictureError error = picture_error(truth, picture);
+        experiment.measurements.push_back({.method = methods[i].name,
+                                           .choices = methods[i].choices,
+                                           .error = error.figures,
+                                           .cost = {.stored_bytes = methods[i].stored_bytes},
+                                           .note = note_of(methods[i], drawing)});
+        pictures.push_back({std::move(picture), std::move(error.map)});
+    }
+    if (!options.is_timed) return pictures;
+    const std::vector<Timing> times =
+        timings(renderers, *methods.front().scene.camera, options.repeats);
+    const std::size_t first = experiment.measurements.size() - methods.size();
+    for (std::size_t i = 0; i < methods.size(); ++i)
+        experiment.measurements[first + i].cost.all_threads = times[i];
+    return pictures;
+}
+
+double drawn_error(const Drawing& drawing, const DrawnMethod& method, const Image& truth) {
+    Report report;
+    Renderer renderer(drawing.context(), method.scene, settings_of(method, truth), report);
+    return picture_error(truth, drawn(renderer, method)).figures.rms;
+}
+
+PicturePair pair_of(const std::string& title, const std::string& method, const Image& picture,
+                    const Image& truth) {
+    return {title, method, "as it should be", picture, to_srgb(truth, 8)};
+}
+
+std::string frame_words(const Measurement& measurement) {
+    if (!measurement.cost.all_threads) return "not timed";
+    return fmt::format("{:.2g} ms", 1e3 * measurement.cost.all_threads->spread().median);
+}
+
+}  // namespace relief
