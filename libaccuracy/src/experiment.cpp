@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "relief/mesh/bake_check.h"
 #include "relief/mesh/frontier.h"
 
 namespace relief {
@@ -23,6 +24,16 @@ double time_of(const Measurement& measurement) {
 ErrorFigures figures_of(const AngleDistribution& angles) {
     return {.count = angles.count,
             .undefined = angles.undefined,
+            .rms = angles.rms,
+            .mean = angles.mean,
+            .p99 = angles.p99,
+            .max = angles.max,
+            .psnr = {}};
+}
+
+ErrorFigures figures_of(const AngleSummary& angles) {
+    return {.count = angles.count,
+            .undefined = 0,
             .rms = angles.rms,
             .mean = angles.mean,
             .p99 = angles.p99,

@@ -11,6 +11,7 @@
 #include <fstream>
 #include <string>
 
+#include "progress_stage.h"
 #include "relief/mesh/threads.h"
 
 namespace relief {
@@ -27,14 +28,30 @@ std::size_t times_in_a_round(const std::function<void()>& work) {
                : static_cast<std::size_t>(std::ceil(shortest_round / std::max(seconds, 1e-7)));
 }
 
+/// The limit of all threads on the way out, by an exception too.
+class ThreadLimit {
+  public:
+    ThreadLimit(unsigned now, unsigned afterwards) : afterwards_(afterwards) {
+        set_thread_limit(now);
+    }
+    ~ThreadLimit() { set_thread_limit(afterwards_); }
+    ThreadLimit(const ThreadLimit&) = delete;
+    ThreadLimit& operator=(const ThreadLimit&) = delete;
+
+  private:
+    unsigned afterwards_;
+};
+
 std::vector<Timing> timings(std::span<const std::function<void()>> works, const Repeats& repeats) {
     std::vector<std::size_t> times;
     for (const std::function<void()>& work : works) {
+        check_cancelled();
         work();  // The first time of all fills caches, and takes longer.
         times.push_back(times_in_a_round(work));
     }
     std::vector<Timing> result(works.size());
     interleave(works.size(), repeats, [&](std::size_t i, bool counted) {
+        check_cancelled();
         const double seconds = seconds_of([&] {
             for (std::size_t repeat = 0; repeat < times[i]; ++repeat)
                 works[i]();
@@ -79,7 +96,7 @@ std::vector<Cost> measure_costs(std::span<const std::function<void()>> works,
     std::vector<Cost> costs(works.size());
     if (!options.is_timed) return costs;
     if (choice.one_thread) {
-        set_thread_limit(1);
+        const ThreadLimit one(1, options.threads);
         const std::vector<Timing> found = timings(works, options.repeats);
         for (std::size_t i = 0; i < works.size(); ++i)
             costs[i].one_thread = found[i];

@@ -5,13 +5,12 @@
 
 #include "analytic_words.h"
 #include "relief/mesh/direction_error.h"
-#include "relief/mesh/normals.h"
 
 namespace relief {
 namespace {
 
 NormalMethod weighted(std::string weighting, NormalWeight weight, Arithmetic arithmetic) {
-    return {std::move(weighting), arithmetic, [weight, arithmetic](const Mesh& mesh) {
+    return {std::move(weighting), arithmetic, weight, [weight, arithmetic](const Mesh& mesh) {
                 Report report;
                 NormalOptions options;
                 options.weight = weight;
@@ -21,7 +20,7 @@ NormalMethod weighted(std::string weighting, NormalWeight weight, Arithmetic ari
 }
 
 NormalMethod chosen(Arithmetic arithmetic) {
-    return {"auto", arithmetic, [arithmetic](const Mesh& mesh) {
+    return {"auto", arithmetic, std::nullopt, [arithmetic](const Mesh& mesh) {
                 Report report;
                 NormalOptions options;
                 options.arithmetic = arithmetic;

@@ -7,6 +7,7 @@
 
 #include <functional>
 #include <glm/glm.hpp>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -16,6 +17,7 @@
 #include "relief/mesh/angle_distribution.h"
 #include "relief/mesh/arithmetic.h"
 #include "relief/mesh/mesh.h"
+#include "relief/mesh/normals.h"
 
 namespace relief {
 
@@ -23,6 +25,7 @@ namespace relief {
 struct NormalMethod {
     std::string weighting;  ///< "uniform", ..., "auto": the words of relief-mesh.
     Arithmetic arithmetic = Arithmetic::float64;
+    std::optional<NormalWeight> weight{};  ///< Absent: chosen by vertex.
     /// One for each position.
     std::function<std::vector<glm::vec3>(const Mesh&)> normals;
 

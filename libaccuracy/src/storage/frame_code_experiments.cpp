@@ -5,42 +5,11 @@
 #include <fmt/format.h>
 
 #include "measured_methods.h"
-#include "storage/frame_codes.h"
+#include "storage/frame_code_methods.h"
 #include "storage/storage_experiments.h"
 
 namespace relief {
 namespace {
-
-/// One encoding, rounded one way.
-struct FrameCode {
-    FrameEncoding encoding = FrameEncoding::float32;
-    FrameRounding rounding = FrameRounding::nearest;
-
-    [[nodiscard]] std::string rounding_word() const {
-        return rounding == FrameRounding::nearest ? "nearest" : "best";
-    }
-    [[nodiscard]] MeasuredMethod measured(const SampleFrames& frames) const {
-        MeasuredMethod method;
-        method.name = fmt::format("{}, {}", word_of(encoding), rounding_word());
-        method.choices = {{"encoding", std::string(word_of(encoding))},
-                          {"rounding", rounding_word()}};
-        const FrameCodeErrors errors = frame_code_errors(frames, encoding, rounding);
-        method.error = figures_of(errors.both);
-        method.stored_bytes = 4.0 * static_cast<double>(words_per_frame(encoding));
-        if (errors.lost_hands > 0)
-            method.note = fmt::format("{} frames changed hands", errors.lost_hands);
-        return method;
-    }
-};
-
-std::vector<FrameCode> all_codes() {
-    std::vector<FrameCode> codes;
-    for (const FrameEncoding encoding : all_frame_encodings) {
-        codes.push_back({encoding, FrameRounding::nearest});
-        if (encoding != FrameEncoding::float32) codes.push_back({encoding, FrameRounding::best});
-    }
-    return codes;
-}
 
 /// "in 4 bytes angle10, best is nearest: 0.08 degrees RMS, 0.21 at most; ..."
 std::string finding_of(const Experiment& experiment) {
@@ -100,7 +69,7 @@ Experiment frame_reading_experiment(const RunOptions& options) {
     experiment.id = "storage/frames";
     experiment.question = "How many bytes does a tangent frame need, and what does reading take?";
     std::vector<MeasuredMethod> measured;
-    for (const FrameCode& code : all_codes()) {
+    for (const FrameCode& code : all_frame_codes()) {
         Report report;
         MeasuredMethod method = code.measured(frames);
         method.work = [encoding = code.encoding,
@@ -124,7 +93,7 @@ Experiment frame_writing_experiment(const RunOptions& options) {
         "What does writing tangent frames take, and is looking for the best "
         "codes worth it?";
     std::vector<MeasuredMethod> measured;
-    for (const FrameCode& code : all_codes()) {
+    for (const FrameCode& code : all_frame_codes()) {
         MeasuredMethod method = code.measured(frames);
         method.work = [&frames, code] {
             Report found;

@@ -96,6 +96,14 @@ void check(std::span<const Image> parts) {
 
 }  // namespace
 
+int best_gaussian_radius(const KernelChoice& choice) {
+    // The best come first.
+    for (const KernelPrediction& tried : choice.predictions) {
+        if (tried.kernel == Kernel::gaussian) return tried.gaussian_radius;
+    }
+    return choice.gaussian_radius;
+}
+
 std::vector<ImagePart> parts_to_look_at(int width, int height) {
     constexpr int largest_side = 128;
     constexpr int most_each_way = 3;

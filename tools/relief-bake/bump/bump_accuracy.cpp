@@ -168,15 +168,7 @@ AccuracyFound settle_accuracy(const AccuracyRequest& request, const ImageInfo& m
         bump.gaussian_radius = found.choice->gaussian_radius;
     }
     if (!needs_experiment(request)) return found;
-    // Where the kernel is none with a radius, its Gaussian is that which `auto` thinks best.
-    int radius = bump.gaussian_radius;
-    if (found.choice && bump.kernel != Kernel::gaussian) {
-        for (const KernelPrediction& tried : found.choice->predictions) {
-            if (tried.kernel != Kernel::gaussian) continue;
-            radius = tried.gaussian_radius;
-            break;
-        }
-    }
+    const int radius = found.choice ? best_gaussian_radius(*found.choice) : bump.gaussian_radius;
     BumpExperimentOptions options;
     options.bump = bump;
     options.format = format;

@@ -19,6 +19,8 @@
 
 namespace relief {
 
+struct AngleSummary;  // bake_check.h
+
 /// What experiments are about; the words of `relief-accuracy run`.
 enum class Subject { normals, tangents, bump, storage, bake, shading, stability };
 
@@ -35,7 +37,9 @@ struct ErrorFigures {
     friend bool operator==(const ErrorFigures&, const ErrorFigures&) = default;
 };
 
+/// The one way from any summary of angles to figures.
 ErrorFigures figures_of(const AngleDistribution& angles);
+ErrorFigures figures_of(const AngleSummary& angles);
 
 /// Seconds of each counted repeat, in the order in which they were taken; in turns with the other
 /// methods of the experiment, so that round i of all was taken at one time.

@@ -35,6 +35,9 @@ struct KernelChoice {
     std::vector<KernelPrediction> predictions;  ///< All that were tried, best first.
 };
 
+/// The radius that its Gaussian should have, whether that is the choice or not.
+int best_gaussian_radius(const KernelChoice& choice);
+
 /// The parts of a map that choose_kernel() looks at: at most 9 squares of 128 texels, in even
 /// distances; smaller ones of a small map. From top to bottom, so that a file can be read in turn.
 std::vector<ImagePart> parts_to_look_at(int width, int height);

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// What own experiments have in common: how they begin, and how they end with a recommendation.
+/// Tests: tests/accuracy/own_mesh_test.cpp.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "measured_methods.h"
+#include "relief/accuracy/own.h"
+
+namespace relief {
+
+/// A method and what does it.
+struct OwnMethod {
+    MeasuredMethod measured;
+    std::string command{};
+    std::optional<Timing> known_time{};  ///< On all threads, taken elsewhere.
+};
+
+/// An experiment about the file: id "own/TOPIC", title "TITLE of FILE", unit degrees.
+OwnExperiment own_experiment(Subject subject, const std::string& topic, const std::string& title,
+                             const OwnOptions& options);
+
+/// Times the methods, and recommends one of those that have a command; that becomes the finding.
+/// \param own_error  what the truth is not known better than, in degrees
+void finish(OwnExperiment& own, std::vector<OwnMethod> methods, CostKind cost, double own_error,
+            const OwnOptions& options);
+
+/// Eight runs of triangles, evenly spread, that have `most` together; the mesh itself if it has no
+/// more.
+Mesh part_to_measure(const Mesh& mesh, std::size_t most);
+
+}  // namespace relief

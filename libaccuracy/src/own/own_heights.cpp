@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+// measure_bump() for the errors, one thread and all for the times. Tests:
+// tests/accuracy/own_maps_test.cpp.
+#include <fmt/format.h>
+
+#include <array>
+
+#include "analytic_words.h"
+#include "bump/bump_words.h"
+#include "own/own_experiment.h"
+#include "relief/accuracy/own.h"
+#include "relief/mesh/destaircase.h"
+
+namespace relief {
+namespace {
+
+constexpr std::array depths = {8, 16, 32};
+constexpr std::array both_arithmetics = {Arithmetic::float32, Arithmetic::float64};
+
+/// The conversion as it is done, on all parts.
+std::function<void()> work_of(const BumpMethod& method, const BumpSample& sample,
+                              BumpOptions bump) {
+    bump.kernel = method.kernel;
+    bump.gaussian_radius = method.gaussian_radius;
+    bump.arithmetic = method.arithmetic;
+    NormalMapFormat format;
+    format.bits = method.bits;
+    return [=, &sample, map = Image()]() mutable {
+        Report ignored;
+        for (const Image& part : sample.measured) {
+            if (method.destaircased) {
+                normal_map_from_height(destaircase(part, {.wrap = bump.wrap}).heights, bump, format,
+                                       map, ignored);
+            } else {
+                normal_map_from_height(part, bump, format, map, ignored);
+            }
+        }
+    };
+}
+
+std::string command_of(const BumpMethod& method, const BumpOptions& bump,
+                       const OwnOptions& options) {
+    std::string command =
+        fmt::format("relief-bake bump {} OUT.{} --strength {:g} --kernel {}", options.arguments,
+                    method.bits == 32 ? "exr" : "png", bump.strength, word_of(method.kernel));
+    if (method.kernel == Kernel::gaussian)
+        command += fmt::format(" --kernel-radius {}", method.gaussian_radius);
+    command += " --precision " + word_of(method.arithmetic);
+    if (method.bits != 32) command += fmt::format(" --bits {}", method.bits);
+    if (method.destaircased) command += " --destaircase";
+    return command + " --wrap " + words_of(bump.wrap);
+}
+
+}  // namespace
+
+OwnExperiment measure_own_heights(const Image& height, const BumpOptions& bump,
+                                  const OwnOptions& options, std::int64_t most_texels) {
+    OwnExperiment own = own_experiment(Subject::bump, "bump", "Normals from heights", options);
+    const BumpSample sample = sample_of(height, most_texels);
+    const KernelChoice choice = choose_kernel(sample.looked_at, bump);
+    const std::array ways = {false, true};
+    const bool has_steps = choice.depth.bits > 0 && choice.depth.bits <= 12;
+    const std::vector<BumpMethod> methods =
+        bump_methods(best_gaussian_radius(choice), depths, both_arithmetics,
+                     std::span(ways).first(has_steps ? 2 : 1));
+    BumpExperimentOptions how;
+    how.bump = bump;
+    how.repeats = {0, 0};
+    const BumpExperiment found = measure_bump(sample, methods, how);
+    Experiment& experiment = own.experiment;
+    experiment.question = "Which kernel is truest on this map, and what does it cost?";
+    experiment.truth =
+        fmt::format("The map's own best: {}. {}.", found.reference.words, choice.reason);
+    experiment.input = found.is_whole ? fmt::format("{} x {} texels", height.width, height.height)
+                                      : fmt::format("{} texels in nine parts of {} x {}",
+                                                    found.texels, height.width, height.height);
+    experiment.item = "texel";
+    experiment.items = static_cast<double>(found.texels);
+    std::vector<OwnMethod> measured;
+    for (const BumpMeasurement& one : found.measurements) {
+        measured.push_back({measured_method(one.method, figures_of(one.error)),
+                            command_of(one.method, bump, options)});
+        measured.back().measured.work = work_of(one.method, sample, bump);
+    }
+    finish(own, std::move(measured), CostKind::time, found.reference.own_degrees, options);
+    return own;
+}
+
+}  // namespace relief

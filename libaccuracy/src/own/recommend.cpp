@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: Apache-2.0
+// Least cost, least error, or the knee of the frontier. Tests: tests/accuracy/recommend_test.cpp.
+#include "relief/accuracy/recommend.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "measured_methods.h"
+#include "relief/mesh/frontier.h"
+
+namespace relief {
+namespace {
+
+/// Those that may be taken, with what the rule looks at.
+struct Candidate {
+    std::size_t index = 0;
+    double error = 0.0;    ///< RMS.
+    double bounded = 0.0;  ///< What a bound is for.
+    double cost = 0.0;     ///< Seconds or bytes; all 0 where nobody knows.
+};
+
+double cost_of(const Measurement& measurement, CostKind kind) {
+    return kind == CostKind::bytes ? measurement.cost.stored_bytes : median_seconds(measurement);
+}
+
+std::vector<Candidate> candidates_of(const Experiment& experiment, const RecommendationRule& rule) {
+    std::vector<Candidate> all;
+    bool is_measured = false;
+    for (std::size_t i = 0; i < experiment.measurements.size(); ++i) {
+        const Measurement& one = experiment.measurements[i];
+        if (!rule.choosable.empty() && rule.choosable[i] == 0) continue;
+        if (one.error.undefined > 0 || one.error.count == 0 || !std::isfinite(one.error.rms))
+            continue;
+        all.push_back({i, one.error.rms, one.error.*(rule.wish.figure), cost_of(one, rule.cost)});
+        is_measured = is_measured || std::isfinite(all.back().cost);
+    }
+    if (is_measured) {
+        std::erase_if(all, [](const Candidate& one) { return !std::isfinite(one.cost); });
+    } else {
+        for (Candidate& one : all)
+            one.cost = 0.0;
+    }
+    return all;
+}
+
+/// The first of those that `less` puts before all others; nullptr of none.
+template <typename Less>
+const Candidate* first_of(const std::vector<Candidate>& all, const Less& less) {
+    const Candidate* best = nullptr;
+    for (const Candidate& one : all) {
+        if (best == nullptr || less(one, *best)) best = &one;
+    }
+    return best;
+}
+
+template <typename Less>
+const Candidate* first_of(const std::vector<Candidate>&& all, const Less& less) = delete;
+
+bool is_truer(const Candidate& a, const Candidate& b) {
+    return a.error != b.error ? a.error < b.error : a.cost < b.cost;
+}
+bool is_cheaper(const Candidate& a, const Candidate& b) {
+    return a.cost != b.cost ? a.cost < b.cost : a.error < b.error;
+}
+
+const Candidate* knee_of(const std::vector<Candidate>& all, double own_error) {
+    // Untimed, costs are all 0 and so is each product: then what decides is the error.
+    return first_of(all, [&](const Candidate& a, const Candidate& b) {
+        const double worth_a = std::pow(std::hypot(a.error, own_error), 3.0) * a.cost;
+        const double worth_b = std::pow(std::hypot(b.error, own_error), 3.0) * b.cost;
+        return worth_a != worth_b ? worth_a < worth_b : is_truer(a, b);
+    });
+}
+
+std::vector<Candidate> kept_of(std::vector<Candidate> all, const Wish& wish, CostKind kind) {
+    std::erase_if(all, [&](const Candidate& one) {
+        return (wish.max_error && !(one.bounded <= *wish.max_error)) ||
+               (kind == CostKind::time && wish.max_seconds && !(one.cost <= *wish.max_seconds));
+    });
+    return all;
+}
+
+const Candidate* taken_of(const std::vector<Candidate>& kept, const RecommendationRule& rule) {
+    if (rule.wish.max_error) return first_of(kept, is_cheaper);
+    if (rule.wish.max_seconds && rule.cost == CostKind::time) return first_of(kept, is_truer);
+    return knee_of(kept, rule.own_error);
+}
+
+/// The least error among the efficient ones that err less.
+const Candidate* next_truer(const std::vector<Candidate>& all, const Candidate& taken) {
+    std::vector<Price> prices;
+    for (const Candidate& one : all)
+        prices.push_back({one.error, one.cost});
+    const std::vector<bool> marks = efficient(prices);
+    const Candidate* next = nullptr;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        if (!marks[i] || !(all[i].error < taken.error)) continue;
+        if (next == nullptr || all[i].error > next->error) next = &all[i];
+    }
+    return next;
+}
+
+std::string cost_words(double cost, CostKind kind) {
+    return kind == CostKind::bytes ? fmt::format("{:g} bytes", cost) : duration_words(cost);
+}
+
+std::string words_of(const Experiment& experiment, const RecommendationRule& rule,
+                     const Candidate& taken, const Candidate* next) {
+    const auto& all = experiment.measurements;
+    const std::string& unit = experiment.error_unit;
+    std::string words =
+        fmt::format("{}: {:.3g} {} RMS", all[taken.index].method, taken.error, unit);
+    if (taken.cost > 0.0) words += " at " + cost_words(taken.cost, rule.cost);
+    if (next == nullptr) return words + "; none is truer";
+    const double less = taken.error - next->error;
+    const std::string gain = fmt::format("{:.2g} {} less", less, unit);
+    const std::string& name = all[next->index].method;
+    if (!(taken.cost > 0.0)) return words + fmt::format("; the next better ({}): {}", name, gain);
+    const double times = next->cost / taken.cost;
+    const std::string price =
+        rule.cost == CostKind::bytes
+            ? fmt::format("takes {}", cost_words(next->cost, rule.cost))
+            : (times < 1.05 ? fmt::format("takes {} more",
+                                          duration_words(std::max(0.0, next->cost - taken.cost)))
+                            : fmt::format("takes {:.2g} times as long", times));
+    return words + fmt::format("; the next better ({}) {} for {}", name, price, gain);
+}
+
+std::string refusal_words(const Experiment& experiment, const RecommendationRule& rule,
+                          const std::vector<Candidate>& all) {
+    if (all.empty()) return "nothing could be measured";
+    const Wish& wish = rule.wish;
+    const auto name = [&](const Candidate& one) {
+        return experiment.measurements[one.index].method;
+    };
+    if (wish.max_error) {
+        const Candidate* least = first_of(
+            all, [](const Candidate& a, const Candidate& b) { return a.bounded < b.bounded; });
+        if (!(least->bounded <= *wish.max_error)) {
+            return fmt::format("none keeps within {:g} {}: the least is {:.3g}, with {}",
+                               *wish.max_error, experiment.error_unit, least->bounded,
+                               name(*least));
+        }
+        Wish error_alone = wish;
+        error_alone.max_seconds.reset();
+        const std::vector<Candidate> true_enough = kept_of(all, error_alone, rule.cost);
+        const Candidate* cheapest = first_of(true_enough, is_cheaper);
+        return fmt::format("none keeps within {:g} {} and {}: that error takes {}, with {}",
+                           *wish.max_error, experiment.error_unit,
+                           duration_words(*wish.max_seconds), duration_words(cheapest->cost),
+                           name(*cheapest));
+    }
+    const Candidate* cheapest = first_of(all, is_cheaper);
+    return fmt::format("none keeps within {}: the fastest takes {}, with {}",
+                       duration_words(*wish.max_seconds), duration_words(cheapest->cost),
+                       name(*cheapest));
+}
+
+}  // namespace
+
+std::string duration_words(double seconds) {
+    if (seconds < 1e-3) return fmt::format("{:.3g} us", 1e6 * seconds);
+    if (seconds < 1.0) return fmt::format("{:.3g} ms", 1e3 * seconds);
+    return fmt::format("{:.3g} s", seconds);
+}
+
+Recommendation recommended(const Experiment& experiment, const RecommendationRule& rule) {
+    const std::vector<Candidate> all = candidates_of(experiment, rule);
+    const std::vector<Candidate> kept = kept_of(all, rule.wish, rule.cost);
+    Recommendation result;
+    const Candidate* taken = taken_of(kept, rule);
+    if (taken == nullptr) {
+        result.words = refusal_words(experiment, rule, all);
+        return result;
+    }
+    const Candidate* next = next_truer(all, *taken);
+    result.method = taken->index;
+    if (next != nullptr) result.next = next->index;
+    result.words = words_of(experiment, rule, *taken, next);
+    return result;
+}
+
+}  // namespace relief

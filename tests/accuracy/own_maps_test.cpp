@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: Apache-2.0
+// Own experiments on height maps and normal maps.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "bump/bump_words.h"
+#include "relief/accuracy/own.h"
+#include "relief/mesh/bump_fields.h"
+#include "relief/mesh/error.h"
+
+namespace relief {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+using testing::SizeIs;
+
+OwnOptions untimed() {
+    OwnOptions options;
+    options.run.is_timed = false;
+    options.file = "map.png";
+    options.arguments = "map.png";
+    return options;
+}
+
+const Measurement& found(const OwnExperiment& own, const std::string& method) {
+    for (const Measurement& one : own.experiment.measurements) {
+        if (one.method == method) return one;
+    }
+    throw InvalidInput("no method " + method);
+}
+
+BumpField waves(FieldCoding coding) {
+    FieldRecipe recipe;
+    recipe.shape = FieldShape::waves;
+    recipe.shortest = 16.0;
+    recipe.coding = coding;
+    return make_bump_field(recipe, 96, 96);
+}
+
+TEST(OwnHeights, AreThoseOfTheBumpExperiment) {
+    const BumpField field = waves(FieldCoding::float32);
+    const OwnExperiment own = measure_own_heights(field.heights, field.options, untimed());
+    EXPECT_THAT(own.experiment.measurements, SizeIs(60));  // Kernels x arithmetics x depths.
+    BumpExperimentOptions how;
+    how.bump = field.options;
+    how.repeats = {0, 0};
+    const BumpMethod method{Kernel::sobel3, 2, Arithmetic::float32, 8, false};
+    const BumpExperiment same = measure_bump(sample_of(field.heights), std::span(&method, 1), how);
+    EXPECT_EQ(found(own, "sobel3, float32, 8 bit").error, figures_of(same.measurements[0].error));
+    // Smooth float waves: the highest order, in double, is the map's own best.
+    EXPECT_THAT(own.recommendation.words, HasSubstr("central7, float64, 32 bit: "));
+    EXPECT_THAT(own.command(), HasSubstr("relief-bake bump map.png OUT.exr --strength "));
+    EXPECT_THAT(own.command(), HasSubstr(" --kernel central7 --precision float64 --wrap repeat"));
+    EXPECT_THAT(own.experiment.truth, HasSubstr("nothing can know exactly"));
+}
+
+TEST(OwnHeights, OfFewBitsAreAlsoSmoothed) {
+    const BumpField field = waves(FieldCoding::bits8);
+    const OwnExperiment own = measure_own_heights(field.heights, field.options, untimed());
+    EXPECT_THAT(own.experiment.measurements, SizeIs(120));
+    EXPECT_GE(found(own, "scharr3, float64, 16 bit, steps smoothed").error.count, 96U * 96U);
+}
+
+TEST(OwnHeights, OfLargeMapsAreMeasuredOnParts) {
+    const BumpField field = waves(FieldCoding::float32);
+    const OwnExperiment own = measure_own_heights(field.heights, field.options, untimed(), 48 * 48);
+    EXPECT_EQ(own.experiment.input, "2304 texels in nine parts of 96 x 96");
+}
+
+TEST(OwnHeights, AreTimedWhereThatIsWished) {
+    const BumpField field = waves(FieldCoding::bits8);
+    OwnOptions options = untimed();
+    options.run.is_timed = true;
+    options.run.repeats = {1, 0};
+    options.costs = {.one_thread = false, .all_threads = true, .memory = false};
+    const OwnExperiment own = measure_own_heights(field.heights, field.options, options);
+    for (const Measurement& one : own.experiment.measurements)
+        EXPECT_GT(one.cost.all_threads.value().spread().median, 0.0) << one.method;
+    EXPECT_TRUE(own.recommendation.method.has_value());
+}
+
+Image normals_of(const BumpField& field) {
+    Report report;
+    return normals_from_height(field.heights, field.options, report);
+}
+
+TEST(OwnNormalMaps, AreComparedWithWhatTheFileHolds) {
+    Report report;
+    NormalMapFormat format;
+    format.bits = 8;
+    const Image map = encode_normal_map(normals_of(waves(FieldCoding::float32)), format, report);
+    const Image normals = decode_normal_map(map, Green::up, FlatCode::middle, report);
+    const OwnExperiment own = measure_own_normals(normals, 8, untimed());
+    EXPECT_LE(found(own, "xyz, 32 bit").error.max, 1e-4);
+    // Vectors are made unit before they become codes again: most codes stay, not all.
+    EXPECT_GT(found(own, "xyz, 8 bit").error.rms, 0.0);
+    EXPECT_LT(found(own, "xyz, 8 bit").error.rms, 0.1);
+    EXPECT_GT(found(own, "xy, 8 bit").error.rms, found(own, "xyz, 8 bit").error.rms);
+    EXPECT_EQ(own.command(), "relief-bake convert map.png OUT.png --bits 16");
+    EXPECT_THAT(own.experiment.truth, HasSubstr("in 8 bits"));
+}
+
+TEST(OwnNormalMaps, AreOffByWhatTheirBitsHold) {
+    const OwnExperiment own =
+        measure_own_normals(normals_of(waves(FieldCoding::float32)), 32, untimed());
+    // A code of 8 bits is 1 / 127: half of one along each axis at the most, and of 16 bits 256
+    // times less.
+    const double eight = found(own, "xyz, 8 bit").error.rms;
+    EXPECT_NEAR(found(own, "xyz, 16 bit").error.rms, eight * 127.0 / 32767.0, 0.05 * eight / 256.0);
+    EXPECT_LT(eight, 0.4);
+    EXPECT_GT(eight, 0.1);
+    EXPECT_GT(found(own, "xyz, 8 bit, dithered").error.rms, eight);
+    EXPECT_EQ(found(own, "xy, 16 bit").cost.stored_bytes, 4.0);
+}
+
+TEST(BumpWords, AreThoseOfTheTools) {
+    EXPECT_EQ(word_of(Kernel::forward), "forward");
+    EXPECT_EQ(word_of(Kernel::gaussian), "gaussian");
+    EXPECT_EQ(words_of(Wraps(Wrap::mirror)), "mirror");
+    EXPECT_EQ(words_of(Wraps(Wrap::repeat, Wrap::clamp)), "repeat,clamp");
+}
+
+}  // namespace
+}  // namespace relief

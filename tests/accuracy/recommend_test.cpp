@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: Apache-2.0
+// Recommendations by hand: knees, bounds, and what cannot be taken.
+#include "relief/accuracy/recommend.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace relief {
+namespace {
+
+using testing::HasSubstr;
+
+Measurement measured(const std::string& name, double error, double seconds) {
+    Measurement one;
+    one.method = name;
+    one.error = {.count = 100,
+                 .undefined = 0,
+                 .rms = error,
+                 .mean = error,
+                 .p99 = 2.0 * error,
+                 .max = 3.0 * error,
+                 .psnr = {}};
+    one.cost.one_thread = Timing{{seconds, seconds, seconds}};
+    return one;
+}
+
+Experiment experiment_of(std::vector<Measurement> measurements) {
+    Experiment experiment;
+    experiment.error_unit = "degrees";
+    experiment.measurements = std::move(measurements);
+    return experiment;
+}
+
+/// From 1 degree in 10 ms to 0.04 in 123.
+Experiment usual() {
+    return experiment_of({measured("rough", 1.0, 0.010), measured("poor", 1.2, 0.020),
+                          measured("good", 0.05, 0.041), measured("best", 0.04, 0.123)});
+}
+
+TEST(Recommended, IsTheKnee) {
+    // error^3 x cost: 1e-2, 3.5e-2, 5.1e-6, 7.9e-6.
+    const Recommendation found = recommended(usual(), {});
+    EXPECT_EQ(found.method, 2U);
+    EXPECT_EQ(found.next, 3U);
+    EXPECT_EQ(found.words,
+              "good: 0.05 degrees RMS at 41 ms; the next better (best) takes 3 times as long for "
+              "0.01 degrees less");
+}
+
+TEST(Recommended, TakesTheTruerAsLongAsTheCubeOfTheGainPaysForIt) {
+    // Half the error is worth eight times the time, and no more.
+    const auto second_for = [](double seconds) {
+        return recommended(experiment_of({measured("a", 1.0, 0.01), measured("b", 0.5, seconds)}),
+                           {});
+    };
+    EXPECT_EQ(second_for(0.079).method, 1U);
+    EXPECT_EQ(second_for(0.081).method, 0U);
+    EXPECT_EQ(second_for(0.079).next, std::nullopt);
+    EXPECT_THAT(second_for(0.079).words, HasSubstr("none is truer"));
+}
+
+TEST(Recommended, WhatTheTruthIsNotKnownBetterThanIsNotPaidFor) {
+    RecommendationRule rule;
+    rule.own_error = 2.0;  // 2.24 and 2.0004: 1.4 times the cost at most, and "good" takes 4.1.
+    EXPECT_EQ(recommended(usual(), rule).method, 0U);
+}
+
+TEST(Recommended, KeepsWithinAnError) {
+    RecommendationRule rule;
+    rule.wish.max_error = 0.045;
+    EXPECT_EQ(recommended(usual(), rule).method, 3U);
+    rule.wish.max_error = 2.0;
+    EXPECT_EQ(recommended(usual(), rule).method, 0U);
+    rule.wish.figure = &ErrorFigures::max;  // 3, 3.6, 0.15, 0.12
+    EXPECT_EQ(recommended(usual(), rule).method, 2U);
+    rule.wish.max_error = 0.01;
+    const Recommendation none = recommended(usual(), rule);
+    EXPECT_EQ(none.method, std::nullopt);
+    EXPECT_EQ(none.words, "none keeps within 0.01 degrees: the least is 0.12, with best");
+}
+
+TEST(Recommended, KeepsWithinATime) {
+    RecommendationRule rule;
+    rule.wish.max_seconds = 0.1;
+    EXPECT_EQ(recommended(usual(), rule).method, 2U);
+    rule.wish.max_seconds = 0.03;
+    EXPECT_EQ(recommended(usual(), rule).method, 0U);
+    rule.wish.max_seconds = 0.001;
+    EXPECT_EQ(recommended(usual(), rule).words,
+              "none keeps within 1 ms: the fastest takes 10 ms, with rough");
+    rule.wish.max_seconds = 0.1;
+    rule.wish.max_error = 0.045;
+    EXPECT_EQ(recommended(usual(), rule).words,
+              "none keeps within 0.045 degrees and 100 ms: that error takes 123 ms, with best");
+}
+
+TEST(Recommended, LeavesOutWhatCannotBeTaken) {
+    Experiment experiment = usual();
+    const std::vector<unsigned char> choosable = {1, 1, 0, 1};
+    RecommendationRule rule;
+    rule.choosable = choosable;
+    EXPECT_EQ(recommended(experiment, rule).method, 3U);
+    experiment.measurements[3].error.undefined = 1;
+    EXPECT_EQ(recommended(experiment, rule).method, 0U);
+    EXPECT_EQ(recommended(experiment_of({}), {}).method, std::nullopt);
+    EXPECT_EQ(recommended(experiment_of({}), {}).words, "nothing could be measured");
+}
+
+TEST(Recommended, GoesByBytesWhereThoseAreDear) {
+    Experiment experiment = usual();
+    experiment.measurements[0].cost.stored_bytes = 4;
+    experiment.measurements[1].cost.stored_bytes = 4;
+    experiment.measurements[2].cost.stored_bytes = 8;
+    experiment.measurements[3].cost.stored_bytes = 28;
+    RecommendationRule rule;
+    rule.cost = CostKind::bytes;
+    rule.wish.max_seconds = 1e-9;  // Of no effect.
+    const Recommendation found = recommended(experiment, rule);
+    EXPECT_EQ(found.words,
+              "good: 0.05 degrees RMS at 8 bytes; the next better (best) takes 28 bytes for 0.01 "
+              "degrees less");
+}
+
+TEST(Recommended, WithoutTimesIsTheTruest) {
+    Experiment experiment = usual();
+    for (Measurement& one : experiment.measurements)
+        one.cost = {};
+    EXPECT_EQ(recommended(experiment, {}).method, 3U);
+    EXPECT_EQ(recommended(experiment, {}).words, "best: 0.04 degrees RMS; none is truer");
+}
+
+TEST(DurationWords, HaveThreeDigits) {
+    EXPECT_EQ(duration_words(8.12e-4), "812 us");
+    EXPECT_EQ(duration_words(0.041), "41 ms");
+    EXPECT_EQ(duration_words(1.234), "1.23 s");
+}
+
+}  // namespace
+}  // namespace relief
