@@ -28,12 +28,14 @@ void add_output_options(CLI::App& app, ViewOptions& options) {
     add_path(app, "--output", options.output,
              "Picture to write: .png (8 bit, sRGB), .exr (linear float) or .apng (animated).")
         .group(group);
-    add_value(app, "--size", "WxH",
-              "Width and height in pixels. Default: as the scene says, else 1024x1024.",
-              [&](const std::string& subject, const std::string& text) {
-                  options.size = parse_size(subject, text);
-                  options.size_given = true;
-              })
+    add_value(
+        app, "--size", "WxH",
+        "Width and height in pixels; of the view, where a window opens. Default: as the scene "
+        "says, else 1024x1024.",
+        [&](const std::string& subject, const std::string& text) {
+            options.size = parse_size(subject, text);
+            options.size_given = true;
+        })
         .group(group);
     add_choice(app, "--samples", options.samples, Choices<int>{{"1", 1}, {"4", 4}},
                "Samples per pixel; 4 smooth the edges of triangles. Default: 4.")
@@ -121,6 +123,9 @@ void add_light_options(CLI::App& app, ViewOptions& options) {
 void check_output(const ViewOptions& options) {
     refuse(options.dump_state && !options.wants_window(), "--dump-state",
            "is what a window shows, and none is opened", "leave --output and the like out");
+    refuse(options.wants_window() && options.backend != Backend::automatic, "--backend",
+           "is for pictures without a window, which brings its own OpenGL",
+           "name a picture with --output, or leave it out");
     refuse(options.wants_window() && options.json, "--json", "is a summary, and a window has none",
            "name a picture with --output");
     refuse(is_linear_output(options) && (options.exposure || options.tone_mapping),
@@ -211,7 +216,8 @@ void add_view_options(CLI::App& app, ViewOptions& options) {
     const Choices<Backend> backends = {
         {"auto", Backend::automatic}, {"osmesa", Backend::osmesa}, {"egl", Backend::egl}};
     add_choice(app, "--backend", options.backend, backends,
-               "What gives the OpenGL context; neither needs a display. Default: auto, which takes "
+               "What gives the OpenGL context of pictures; neither needs a display. Default: auto, "
+               "which takes "
                "a GPU through EGL where there is one, else OSMesa, else EGL in software.");
     add_general_options(app, options.general);
 }

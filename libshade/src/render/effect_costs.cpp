@@ -22,21 +22,15 @@ FramePlan without(const MeasuredFrame& frame, const FramePlan& plan,
     return force_effects(frame.scene, frame.settings, plan, wishes);
 }
 
-/// Two plans drawn in turns: what frames took, and a picture of each.
-struct Pair {
-    std::vector<FrameSeries> series;
-    std::array<Image, 2> images;
-};
-
-Pair draw_pair(const MeasuredFrame& frame, const FramePlan& first, const FramePlan& second) {
+/// Findings of these drawings were told already.
+std::unique_ptr<Renderer> renderer_of(const MeasuredFrame& frame, const FramePlan& plan) {
     Report told_already;
-    Renderer a(frame.context, frame.scene, first, frame.settings, told_already);
-    Renderer b(frame.context, frame.scene, second, frame.settings, told_already);
-    const std::array<Renderer*, 2> both{&a, &b};
-    Pair pair;
-    pair.series = time_frames(both, frame.camera, frame.repeats);
-    pair.images = {a.draw(frame.camera).image, b.draw(frame.camera).image};
-    return pair;
+    if (frame.cache != nullptr) {
+        return std::make_unique<Renderer>(*frame.cache, frame.context, frame.scene, plan,
+                                          frame.settings, told_already);
+    }
+    return std::make_unique<Renderer>(frame.context, frame.scene, plan, frame.settings,
+                                      told_already);
 }
 
 double seen_per_millisecond(const EffectCost& cost) {
@@ -52,18 +46,83 @@ PictureChange picture_change(const Image& with, const Image& without) {
     return {difference.max, difference.mean, flip.mean, flip.max};
 }
 
-EffectCosts measure_effects(const MeasuredFrame& frame, const FramePlan& plan) {
-    EffectCosts costs;
-    std::vector<double> frames;
-    for (const std::string& effect : effects_in(plan)) {
-        const Pair pair = draw_pair(frame, plan, without(frame, plan, {effect}));
-        const std::vector<double>& with = pair.series[0].frame;
-        frames.insert(frames.end(), with.begin(), with.end());
-        costs.effects.push_back({effect, median_difference(with, pair.series[1].frame),
-                                 picture_change(pair.images[0], pair.images[1])});
+struct EffectPricing::Implementation {
+    Implementation(const MeasuredFrame& measured, FramePlan whole_plan)
+        : frame(measured), plan(std::move(whole_plan)), names(effects_in(plan)) {}
+
+    MeasuredFrame frame;
+    FramePlan plan;
+    std::vector<std::string> names;
+    std::vector<EffectCost> done;
+    std::vector<double> frames;  ///< With all effects.
+    std::unique_ptr<Renderer> whole;
+    Image picture;  ///< With all effects.
+
+    // Of the effect that is measured now.
+    std::unique_ptr<Renderer> less;
+    std::size_t round = 0;
+    std::vector<double> with, without;
+
+    void prepare() {
+        if (!whole) {
+            whole = renderer_of(frame, plan);
+            picture = whole->draw(frame.camera).image;
+        }
+        less = renderer_of(frame, relief::without(frame, plan, {names[done.size()]}));
     }
-    costs.frame = spread_of(std::move(frames));
-    return costs;
+
+    void draw_both() {
+        const std::array<Renderer*, 2> both{whole.get(), less.get()};
+        const std::vector<FrameSeries> series =
+            time_frames(both, frame.camera, {.counted = 1, .warm_up = 0});
+        if (++round <= frame.repeats.warm_up) return;
+        with.push_back(series[0].frame[0]);
+        without.push_back(series[1].frame[0]);
+    }
+
+    void finish() {
+        done.push_back({names[done.size()], median_difference(with, without),
+                        picture_change(picture, less->draw(frame.camera).image)});
+        frames.insert(frames.end(), with.begin(), with.end());
+        less.reset();
+        with.clear();
+        without.clear();
+        round = 0;
+    }
+};
+
+EffectPricing::EffectPricing(const MeasuredFrame& frame, FramePlan plan)
+    : implementation_(std::make_unique<Implementation>(frame, std::move(plan))) {}
+
+EffectPricing::~EffectPricing() = default;
+
+bool EffectPricing::step() {
+    Implementation& now = *implementation_;
+    if (now.done.size() == now.names.size()) return false;
+    const Repeats& repeats = now.frame.repeats;
+    if (!now.less) {
+        now.prepare();
+    } else if (now.round < repeats.warm_up + repeats.counted) {
+        now.draw_both();
+    } else {
+        now.finish();
+    }
+    return now.done.size() < now.names.size();
+}
+
+std::size_t EffectPricing::count() const {
+    return implementation_->names.size();
+}
+
+EffectCosts EffectPricing::costs() const {
+    return {spread_of(implementation_->frames), implementation_->done};
+}
+
+EffectCosts measure_effects(const MeasuredFrame& frame, const FramePlan& plan) {
+    EffectPricing pricing(frame, plan);
+    while (pricing.step()) {
+    }
+    return pricing.costs();
 }
 
 std::vector<std::string> drop_order(std::span<const EffectCost> costs, double least_saving) {
@@ -96,12 +155,10 @@ BudgetChoice fit_to_budget(
 
 BudgetedPlan plan_within_budget(const MeasuredFrame& frame, const FramePlan& plan, double budget) {
     BudgetedPlan result;
-    Report told_already;
-    Renderer whole(frame.context, frame.scene, plan, frame.settings, told_already);
+    const std::unique_ptr<Renderer> whole = renderer_of(frame, plan);
     const auto frame_time = [&](const std::vector<std::string>& dropped) {
-        Renderer less(frame.context, frame.scene, without(frame, plan, dropped), frame.settings,
-                      told_already);
-        const std::array<Renderer*, 1> alone{&less};
+        const std::unique_ptr<Renderer> less = renderer_of(frame, without(frame, plan, dropped));
+        const std::array<Renderer*, 1> alone{less.get()};
         return spread_of(time_frames(alone, frame.camera, frame.repeats)[0].frame).median;
     };
     result.milliseconds_before = frame_time({});
@@ -117,8 +174,8 @@ BudgetedPlan plan_within_budget(const MeasuredFrame& frame, const FramePlan& pla
         drop_order(costs.effects, told_from_noise * costs.frame.median);
     result.choice = fit_to_budget(budget, order, frame_time);
     result.plan = without(frame, plan, result.choice.dropped);
-    Renderer less(frame.context, frame.scene, result.plan, frame.settings, told_already);
-    result.change = picture_change(whole.draw(frame.camera).image, less.draw(frame.camera).image);
+    const std::unique_ptr<Renderer> less = renderer_of(frame, result.plan);
+    result.change = picture_change(whole->draw(frame.camera).image, less->draw(frame.camera).image);
     return result;
 }
 

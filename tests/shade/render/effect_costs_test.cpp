@@ -97,6 +97,34 @@ TEST_F(EffectCostsOf, EachEffectThatIsOnAreMeasuredWithWhatThePictureLoses) {
     EXPECT_GT(costs.effects[2].change.flip_mean, 0.0);
 }
 
+TEST_F(EffectCostsOf, StepsLeaveRoomForOtherDrawings) {
+    const FramePlan plan = plan_effects(scene_, settings_);
+    RenderCache cache(context());
+    MeasuredFrame cached = frame();
+    cached.cache = &cache;
+    EffectPricing pricing(cached, plan);
+    EXPECT_EQ(pricing.count(), 3U);
+    EXPECT_THAT(pricing.costs().effects, IsEmpty());
+    Report report;
+    Scene other = scene_;
+    other.directional_lights.clear();
+    Renderer beside(context(), other, settings_, report);
+    std::size_t steps = 1;
+    for (; pricing.step(); ++steps)
+        beside.draw(*scene_.camera);
+    // To prepare, two frames 3 + 1 times, and to compare.
+    EXPECT_EQ(steps, 3U * 6U);
+    const EffectCosts at_once = measure_effects(frame(), plan);
+    const EffectCosts costs = pricing.costs();
+    ASSERT_EQ(costs.effects.size(), at_once.effects.size());
+    for (std::size_t i = 0; i < costs.effects.size(); ++i) {
+        EXPECT_EQ(costs.effects[i].effect, at_once.effects[i].effect);
+        EXPECT_EQ(costs.effects[i].change.mean, at_once.effects[i].change.mean);
+    }
+    EXPECT_EQ(costs.frame.count, 9U);
+    EXPECT_FALSE(pricing.step());
+}
+
 TEST_F(EffectCostsOf, AForcedEffectThatIsNeutralIsNoChangeOfThePicture) {
     FramePlan plan = force_effects(scene_, settings_, plan_effects(scene_, settings_),
                                    {EffectBase::planned, {{"emission", true}}});

@@ -107,6 +107,15 @@ TEST(NoWindow, AWindowAsksForOneAndSaysThatItIsNotThere) {
     EXPECT_THAT(result.error, HasSubstr("--output FILE.png"));
 }
 
+TEST(NoWindow, ABackendIsOfNoUseInAWindow) {
+    const Workplace workplace;
+    const ProgramResult result = workplace.run("relief-view data/vase.obj --backend osmesa");
+    EXPECT_EQ(result.exit_code, 2);
+    EXPECT_EQ(result.first_error_line(),
+              "relief-view: error: --backend: is for pictures without a window, which brings its "
+              "own OpenGL (name a picture with --output, or leave it out)");
+}
+
 TEST(NoWindow, WithoutADisplayTheHeadlessWayIsNamed) {
     const Workplace workplace;
     const ProgramResult result =

@@ -289,6 +289,15 @@ TEST(Window, SavesThePictureThatItShows) {
     EXPECT_EQ(differing, 0) << "codes";
 }
 
+TEST(Window, TheViewOpensInTheSizeThatIsAskedFor) {
+    RELIEF_NEEDS_DISPLAY(display);
+    const Workplace workplace;
+    ViewerWindow window(*display, workplace, "data/vase.obj --size 500x400");
+    window.wait_for("the view", [](const json& now) {
+        return now["view"] == json({500, 400}) && now["drawn"]["size"] == now["view"];
+    });
+}
+
 TEST(Window, ADriverThatIsTooOldIsSaid) {
     RELIEF_NEEDS_DISPLAY(display);
     const Workplace workplace;

@@ -5,9 +5,10 @@
 #include <imgui.h>
 
 #include <algorithm>
+#include <optional>
 #include <vector>
 
-#include "relief/shade/shader_listing.h"
+#include "common/text.h"
 #include "window/panels.h"
 #include "window/places.h"
 
@@ -37,49 +38,64 @@ void draw_switch(ViewerState& state, const std::string& name) {
     ImGui::PopID();
 }
 
-void draw_reasons(ViewerState& state, const std::vector<EffectReason>& reasons) {
+void draw_reasons(const PanelInput& input, const std::vector<EffectReason>& reasons) {
     for (const EffectReason& reason : reasons) {
         ImGui::TableNextRow();
         ImGui::TableNextColumn();
-        draw_switch(state, reason.effect);
+        draw_switch(input.state, reason.effect);
         ImGui::TableNextColumn();
         const ImVec4 color =
             ImGui::GetStyleColorVec4(reason.on ? ImGuiCol_Text : ImGuiCol_TextDisabled);
         ImGui::TextColored(color, "%s", reason.effect.c_str());
         if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", reason.reason.c_str());
+        ImGui::TableNextColumn();
+        if (const std::optional<double> price = input.prices.price(reason.effect))
+            ImGui::Text("%.2f ms", *price);
     }
 }
 
-void draw_shaders(const FramePlan& plan) {
-    std::vector<ShaderListing> listings;
-    try {
-        listings = shader_listings(plan);
-    } catch (const std::exception& error) {  // A file of RELIEF_SHADER_DIR that is being edited.
-        return ImGui::TextWrapped("%s", error.what());
+/// What they cost, how it was measured, and a button that does it.
+void draw_prices(const PanelInput& input, PanelWishes& wishes) {
+    const EffectPrices::State prices = input.prices.state();
+    if (prices.is_going_on) {
+        const std::size_t done = prices.costs.effects.size();
+        const std::string text = fmt::format("effect {} of {}", done + 1, prices.count);
+        ImGui::ProgressBar(
+            prices.count == 0 ? 0.0F : static_cast<float>(done) / static_cast<float>(prices.count),
+            {0.5F * ImGui::GetContentRegionAvail().x, 0.0F}, text.c_str());
+        ImGui::SameLine();
+        if (ImGui::Button("Stop")) wishes.stop_measuring = true;
+        mark_place("Stop");
+        return;
     }
-    for (std::size_t i = 0; i < listings.size(); ++i) {
-        const std::string name = "shader: " + describe(listings[i].features);
-        if (!ImGui::TreeNode(fmt::format("{}##{}", name, i).c_str())) continue;
-        std::string text = listings[i].fragment;
-        ImGui::InputTextMultiline("##fragment", text.data(), text.size() + 1, {-1.0F, 300.0F},
-                                  ImGuiInputTextFlags_ReadOnly);
-        ImGui::TreePop();
-    }
+    if (ImGui::Button("Measure what they cost")) wishes.measure_effects = true;
+    mark_place("Measure what they cost");
+    if (!prices.error.empty()) return ImGui::TextWrapped("%s", prices.error.c_str());
+    if (prices.costs.effects.empty())
+        return ImGui::TextWrapped("Each by itself: a frame with it less one without it.");
+    const Spread& frame = prices.costs.frame;
+    ImGui::TextWrapped("A frame: %.2f ms (%.2f to %.2f), %d x %d pixels, %s", frame.median,
+                       frame.p10, frame.p90, prices.width, prices.height,
+                       counted(static_cast<std::size_t>(prices.samples), "sample").c_str());
 }
 
 }  // namespace
 
-void draw_effects_panel(const PanelInput& input) {
+void draw_effects_panel(const PanelInput& input, PanelWishes& wishes) {
     if (!input.drawn.plan) return;
     const FramePlan& plan = *input.drawn.plan;
-    if (ImGui::BeginTable("effects", 2, ImGuiTableFlags_SizingFixedFit)) {
-        draw_reasons(input.state, plan.reasons);
-        if (!plan.draws.empty()) draw_reasons(input.state, plan.draws.front().reasons);
-        ImGui::EndTable();
-    }
-    if (ImGui::TreeNode("Shaders")) {
-        draw_shaders(plan);
+    // Debug views have no effects of their own.
+    if (input.state.debug().view == DebugView::picture) draw_prices(input, wishes);
+    const bool is_open = ImGui::TreeNode("Shaders");
+    mark_place("Shaders");
+    if (is_open) {
+        input.shaders.draw(input.drawn.plan);
         ImGui::TreePop();
+    }
+    if (ImGui::BeginTable("effects", 3, ImGuiTableFlags_SizingFixedFit)) {
+        draw_reasons(input, plan.reasons);
+        if (!plan.draws.empty()) draw_reasons(input, plan.draws.front().reasons);
+        ImGui::EndTable();
     }
 }
 

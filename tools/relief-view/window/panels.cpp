@@ -55,7 +55,7 @@ float draw_panels(const PanelInput& input, PanelWishes& wishes) {
     if (begins("Picture")) draw_picture_panel(input);
     if (begins("View")) draw_view_panel(input);
     if (begins("Save")) draw_capture_panel(input, wishes);
-    if (begins("Effects", ImGuiTreeNodeFlags_DefaultOpen)) draw_effects_panel(input);
+    if (begins("Effects", ImGuiTreeNodeFlags_DefaultOpen)) draw_effects_panel(input, wishes);
     ImGui::PopItemWidth();
     ImGui::End();
     return width;

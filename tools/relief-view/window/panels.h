@@ -6,6 +6,8 @@
 
 #include "window/capture.h"
 #include "window/draw_thread.h"
+#include "window/effect_prices.h"
+#include "window/shader_panel.h"
 #include "window/viewer_state.h"
 
 namespace relief::tools {
@@ -21,6 +23,8 @@ struct PanelInput {
     bool is_drawing = false;       ///< Else the picture is the newest, and nothing goes on.
     CaptureSettings* capture = nullptr;
     std::string captured;  ///< What was saved, in words.
+    EffectPrices& prices;
+    ShaderPanel& shaders;
 };
 
 /// What a panel asks the window to do.
@@ -28,6 +32,8 @@ struct PanelWishes {
     bool cancel_loading = false;
     bool save_picture = false;
     bool save_turn = false;
+    bool measure_effects = false;
+    bool stop_measuring = false;
 };
 
 void draw_scene_panel(const PanelInput& input);
@@ -35,7 +41,7 @@ void draw_light_panel(const PanelInput& input);
 void draw_material_panel(const PanelInput& input);
 void draw_picture_panel(const PanelInput& input);
 void draw_capture_panel(const PanelInput& input, PanelWishes& wishes);
-void draw_effects_panel(const PanelInput& input);
+void draw_effects_panel(const PanelInput& input, PanelWishes& wishes);
 void draw_view_panel(const PanelInput& input);
 
 /// All of them in one column. \return its width in pixels

@@ -43,6 +43,7 @@ class WindowLoop {
           reading_(options),
           dump_(options.dump_state) {
         if (dump_) keep_places();
+        if (options.size_given) asked_view_ = options.size;
         if (!options.model.empty()) loader_.start(reading_);
     }
 
@@ -102,7 +103,9 @@ class WindowLoop {
     }
 
     /// While something is read or drawn, a frame each step shows how far it is.
-    bool is_working() { return loader_.is_loading() || drawer_.is_busy(); }
+    bool is_working() {
+        return loader_.is_loading() || drawer_.is_busy() || prices_.state().is_going_on;
+    }
 
     double seconds_since_last() {
         const auto now = std::chrono::steady_clock::now();
@@ -126,13 +129,18 @@ class WindowLoop {
                                loader_.is_loading() ? loader_.progress() : drawer_.progress(),
                                was_busy || is_resting_later_,
                                &capture_settings_,
-                               text_of(captured_->state())};
+                               text_of(captured_->state()),
+                               prices_,
+                               shaders_};
         const UserInterface::Events events = interface_.draw(input, drawer_.shown());
         // Whenever it came: while the panels settle after something else, too.
         if (events.has_input) settling_ = frames_to_settle;
         if (events.panels.cancel_loading) loader_.cancel();
         for (const Action action : events.actions)
             act(action);
+        if (const auto view = std::exchange(asked_view_, std::nullopt))
+            system_.grow(*view - state_.view());
+        measure(drawn, events.panels);
         if (events.panels.save_picture) save(0);
         if (events.panels.save_turn) save(capture_settings_.pictures);
         if (!events.dropped.empty()) drop(events.dropped);
@@ -182,6 +190,14 @@ class WindowLoop {
             refused.error = error.what();
             state_.take(std::move(refused));
         }
+    }
+
+    /// What effects cost, as long as they are those of the picture.
+    void measure(const DrawnPicture& drawn, const PanelWishes& wishes) {
+        const std::optional<DrawWish> wish = state_.wish();
+        if (!wish || wishes.stop_measuring) return prices_.cancel();
+        if (wishes.measure_effects) drawer_.add(prices_.start(*wish));
+        if (drawn.plan && drawn.revision == wish->revision) prices_.keep_for(*drawn.plan, *wish);
     }
 
     /// One at a time; the panel and the status line say how far it is.
@@ -237,6 +253,7 @@ class WindowLoop {
         json["drawn"]["samples"] = drawn.settings.samples;
         json["drawn"]["whole"] = !is_reduced(drawn.settings);
         json["reduced"] = reduced_;
+        json["costs"] = json_of(prices_.state());
         json["saved"] = json_of(captured_->state());
         json["help"] = interface_.is_help_open();
         json["places"] = places_json();
@@ -253,11 +270,14 @@ class WindowLoop {
     FollowedFiles files_;
     UserInterface interface_;
     ViewerState state_;
-    ViewOptions reading_;  ///< What was last begun to be read.
+    ViewOptions reading_;                   ///< What was last begun to be read.
+    std::optional<glm::ivec2> asked_view_;  ///< Until the first frame shows how large it is.
     std::optional<std::filesystem::path> dump_;
     std::string dumped_;
     CaptureSettings capture_settings_;
     std::shared_ptr<CaptureProgress> captured_ = std::make_shared<CaptureProgress>();
+    EffectPrices prices_;
+    ShaderPanel shaders_;
     std::optional<DrawWish> wished_;
     Resolution resolution_;
     FrameSettings asked_;            ///< Of the last wish, whole or not.

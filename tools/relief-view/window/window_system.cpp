@@ -6,6 +6,9 @@
 #include <GLFW/glfw3.h>
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <glm/glm.hpp>
+
 #include "common/command.h"
 
 namespace relief::tools {
@@ -97,6 +100,14 @@ bool WindowSystem::is_visible() const {
 
 void WindowSystem::close() const {
     glfwSetWindowShouldClose(window_, GLFW_TRUE);
+}
+
+void WindowSystem::grow(const glm::ivec2& pixels) const {
+    glm::ivec2 size(0);
+    glfwGetWindowSize(window_, &size.x, &size.y);
+    const glm::dvec2 unit = glm::dvec2(size) / glm::dvec2(glm::max(framebuffer_size(), 1));
+    const glm::ivec2 larger = size + glm::ivec2(glm::round(glm::dvec2(pixels) * unit));
+    glfwSetWindowSize(window_, std::max(larger.x, 1), std::max(larger.y, 1));
 }
 
 void WindowSystem::swap() const {

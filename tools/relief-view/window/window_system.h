@@ -52,6 +52,9 @@ class WindowSystem {
     [[nodiscard]] bool is_closing() const;
     [[nodiscard]] bool is_visible() const;  ///< Not minimised.
     void close() const;
+    /// Makes the window larger by so many pixels, or smaller; as far as the screen's manager lets
+    /// it.
+    void grow(const glm::ivec2& pixels) const;
     void swap() const;
     void set_title(const std::string& title) const;
 

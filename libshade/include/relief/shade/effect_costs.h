@@ -6,7 +6,9 @@
 /// Tests: tests/shade/render/effect_costs_test.cpp.
 #pragma once
 
+#include <cstddef>
 #include <functional>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -23,6 +25,7 @@ struct MeasuredFrame {
     const FrameSettings& settings;
     const Camera& camera;
     Repeats repeats = {};
+    RenderCache* cache = nullptr;  ///< Where given, what renderers made is shared.
 };
 
 /// How far the picture without something is from the picture with it.
@@ -50,6 +53,29 @@ struct EffectCosts {
 /// Takes each effect out of the plan by itself, and what cannot show without it with it; draws with
 /// and without it in turns. \throws what Renderer does
 EffectCosts measure_effects(const MeasuredFrame& frame, const FramePlan& plan);
+
+/// The same in small steps, between which other things may be drawn in the same context.
+class EffectPricing {
+  public:
+    EffectPricing(const MeasuredFrame& frame, FramePlan plan);
+    ~EffectPricing();
+    EffectPricing(const EffectPricing&) = delete;
+    EffectPricing& operator=(const EffectPricing&) = delete;
+
+    /// Prepares to draw without the next effect, or draws one frame with and one without it.
+    /// \return whether there is more to do \throws what Renderer does
+    bool step();
+
+    /// How many effects there are to price.
+    [[nodiscard]] std::size_t count() const;
+
+    /// Of those that are done.
+    [[nodiscard]] EffectCosts costs() const;
+
+  private:
+    struct Implementation;
+    std::unique_ptr<Implementation> implementation_;
+};
 
 /// Effects in the order in which they are worth dropping: those whose absence an eye sees least for
 /// the time that it saves, first. Those that save less than `least_saving` are left out; ties go by
