@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 
+#include "bump/bump_experiments.h"
 #include "normals/normals_experiments.h"
 #include "relief/accuracy/subjects.h"
 #include "relief/mesh/error.h"
@@ -25,6 +26,7 @@ struct SubjectEntry {
 constexpr std::array entries = {
     SubjectEntry{Subject::normals, normals_experiments},
     SubjectEntry{Subject::tangents, tangents_experiments},
+    SubjectEntry{Subject::bump, bump_experiments},
     SubjectEntry{Subject::storage, storage_experiments},
     SubjectEntry{Subject::shading, shading_experiments},
 };

@@ -7,11 +7,12 @@
 
 #include <cmath>
 #include <set>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
-#include "relief/accuracy/experiment.h"
+#include "planned_experiment.h"
 
 namespace relief::test {
 
@@ -22,11 +23,12 @@ inline RunOptions quick_untimed() {
     return options;
 }
 
-inline const Experiment& experiment_of(const std::vector<Experiment>& all, const std::string& id) {
-    for (const Experiment& one : all) {
-        if (one.id == id) return one;
+/// Runs one experiment of a plan.
+inline Experiment run_titled(const std::vector<PlannedExperiment>& plan, const std::string& title) {
+    for (const PlannedExperiment& one : plan) {
+        if (one.title == title) return run_planned(std::span(&one, 1), {}).front();
     }
-    throw std::runtime_error("no experiment " + id);
+    throw std::runtime_error("no experiment " + title);
 }
 
 inline const Measurement& measurement_of(const Experiment& experiment, const std::string& method) {

@@ -15,31 +15,31 @@ namespace {
 
 using testing::HasSubstr;
 
-const std::vector<Experiment>& quick_experiments() {
-    static const std::vector<Experiment> all = normals_experiments(quick_untimed());
-    return all;
+Experiment quick(const std::string& title) {
+    const RunOptions options = quick_untimed();
+    return run_titled(normals_plan(options), title);
 }
 
 TEST(NormalsExperiments, AreWhole) {
-    expect_whole(quick_experiments(), Subject::normals);
-    EXPECT_EQ(quick_experiments().size(), 7U);
+    expect_whole(normals_experiments(quick_untimed()), Subject::normals);
 }
 
 TEST(NormalsExperiments, HaveTheErrorsOfThePage) {
-    const Experiment& torus = experiment_of(quick_experiments(), "normals/torus-jittered");
+    const Experiment torus = quick("Normals: torus, jittered");
+    EXPECT_EQ(torus.id, "normals/torus-jittered");
     EXPECT_EQ(torus.measurements.size(), 16U);
     EXPECT_NEAR(measurement_of(torus, "max, float64").error.rms, 0.453, 5e-4);
     EXPECT_NEAR(measurement_of(torus, "max, float64").error.max, 2.027, 5e-4);
     EXPECT_NEAR(measurement_of(torus, "area, float64").error.rms, 1.279, 5e-4);
     EXPECT_EQ(torus.items, 2.0 * 64 * 64);
     EXPECT_THAT(torus.finding, HasSubstr("max is closest, 0.453 degrees RMS; area is farthest"));
-    const Experiment& folded = experiment_of(quick_experiments(), "normals/cubic-folded");
+    const Experiment folded = quick("Normals: cubic, folded");
     EXPECT_NEAR(measurement_of(folded, "auto, float64").error.rms, 0.654, 5e-4);
     EXPECT_NEAR(measurement_of(folded, "max, float64").error.max, 180.0, 5e-2);
 }
 
 TEST(NormalsExperiments, FloatVotesMoveNothingThatMatters) {
-    for (const Experiment& experiment : quick_experiments()) {
+    for (const Experiment& experiment : normals_experiments(quick_untimed())) {
         if (experiment.id == "normals/fans") continue;
         for (const char* weighting : {"uniform", "area", "max"}) {
             const double in_double =
@@ -53,7 +53,7 @@ TEST(NormalsExperiments, FloatVotesMoveNothingThatMatters) {
 
 TEST(NormalsExperiments, ErrorsFallAtTheOrderOfTheory) {
     std::size_t checked = 0;
-    for (const Experiment& experiment : quick_experiments()) {
+    for (const Experiment& experiment : normals_experiments(quick_untimed())) {
         for (const Chart& chart : experiment.charts) {
             for (const Curve& curve : chart.curves) {
                 if (!curve.expected_order) continue;

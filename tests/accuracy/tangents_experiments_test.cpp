@@ -13,24 +13,24 @@ namespace {
 
 using testing::HasSubstr;
 
-const std::vector<Experiment>& quick_experiments() {
-    static const std::vector<Experiment> all = tangents_experiments(quick_untimed());
-    return all;
+Experiment quick(const std::string& title) {
+    const RunOptions options = quick_untimed();
+    return run_titled(tangents_plan(options), title);
 }
 
 TEST(TangentsExperiments, AreWhole) {
-    expect_whole(quick_experiments(), Subject::tangents);
+    expect_whole(tangents_experiments(quick_untimed()), Subject::tangents);
 }
 
 TEST(TangentsExperiments, HaveTheErrorsOfThePage) {
-    const Experiment& torus = experiment_of(quick_experiments(), "tangents/torus-jittered");
+    const Experiment torus = quick("Tangents: torus, jittered");
     EXPECT_NEAR(measurement_of(torus, "surface's own").error.rms, 0.045, 5e-4);
     EXPECT_NEAR(measurement_of(torus, "mikktspace").error.rms, 0.100, 5e-4);
     EXPECT_NEAR(measurement_of(torus, "area-weighted").error.max, 1.066, 5e-4);
     EXPECT_NEAR(measurement_of(torus, "screen-space").error.rms, 0.561, 5e-4);
     EXPECT_EQ(measurement_of(torus, "screen-space").cost.stored_bytes, 12.0);
     EXPECT_THAT(torus.finding, HasSubstr("Of stored frames mikktspace is closest, 0.1 degrees"));
-    const Experiment& plate = experiment_of(quick_experiments(), "tangents/plate");
+    const Experiment plate = quick("Tangents: plate with thin bevels, image sheared on those");
     EXPECT_NEAR(measurement_of(plate, "mikktspace").error.rms, 5.353, 5e-4);
     EXPECT_NEAR(measurement_of(plate, "area-weighted").error.rms, 0.114, 5e-4);
     EXPECT_THAT(plate.finding, HasSubstr("area-weighted is closest"));
@@ -42,13 +42,13 @@ double slope_at(const Curve& curve, std::size_t i) {
 }
 
 TEST(TangentsExperiments, ErrorsFallAtTheOrderOfTheory) {
-    const Chart& regular = experiment_of(quick_experiments(), "tangents/torus-regular").charts[0];
+    const Chart regular = quick("Tangents: torus, regular").charts[0];
     for (const Curve& curve : regular.curves)
         EXPECT_NEAR(curve.order.value(), curve.expected_order.value(), 0.15) << curve.method;
     EXPECT_EQ(curve_of(regular, "mikktspace").expected_order, -2.0);
     EXPECT_EQ(curve_of(regular, "screen-space").expected_order, -1.0);
 
-    const Chart& jittered = experiment_of(quick_experiments(), "tangents/torus-jittered").charts[0];
+    const Chart jittered = quick("Tangents: torus, jittered").charts[0];
     for (const Curve& curve : jittered.curves) {
         SCOPED_TRACE(curve.method);
         EXPECT_EQ(curve.expected_order, -1.0);
@@ -60,7 +60,8 @@ TEST(TangentsExperiments, ErrorsFallAtTheOrderOfTheory) {
 }
 
 TEST(TangentsExperiments, WiderBevelsLeaveAreaWeightsMoreToErr) {
-    const Chart& chart = experiment_of(quick_experiments(), "tangents/plate").charts.front();
+    const Chart chart =
+        quick("Tangents: plate with thin bevels, image sheared on those").charts.front();
     const Curve& by_area = curve_of(chart, "area-weighted");
     EXPECT_LT(by_area.points.front().error, 0.1);
     EXPECT_GT(by_area.points.back().error, 1.0);
@@ -70,7 +71,7 @@ TEST(TangentsExperiments, WiderBevelsLeaveAreaWeightsMoreToErr) {
 }
 
 TEST(TangentsExperiments, MapsComeBackFromTheirOwnBasisAlone) {
-    const Experiment& mismatch = experiment_of(quick_experiments(), "tangents/mismatch");
+    const Experiment mismatch = quick("Tangents: bases that differ");
     ASSERT_EQ(mismatch.measurements.size(), 25U);
     for (const Measurement& one : mismatch.measurements) {
         if (one.choices[0].second == one.choices[1].second)

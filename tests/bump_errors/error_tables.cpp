@@ -9,6 +9,7 @@
 #include <numbers>
 #include <vector>
 
+#include "bump/bump_methods.h"
 #include "relief/mesh/bump_experiment.h"
 #include "relief/mesh/destaircase.h"
 #include "support/error_page.h"
@@ -18,30 +19,10 @@ namespace {
 
 constexpr int side = 256;
 
-struct NamedKernel {
-    const char* name;
-    Kernel kernel;
-    int radius;
-};
-constexpr std::array kernels = {NamedKernel{"`forward`", Kernel::forward, 2},
-                                NamedKernel{"`central3`", Kernel::central3, 2},
-                                NamedKernel{"`prewitt3`", Kernel::prewitt3, 2},
-                                NamedKernel{"`sobel3`", Kernel::sobel3, 2},
-                                NamedKernel{"`scharr3`", Kernel::scharr3, 2},
-                                NamedKernel{"`sobel5`", Kernel::sobel5, 2},
-                                NamedKernel{"`scharr5`", Kernel::scharr5, 2},
-                                NamedKernel{"`central5`", Kernel::central5, 2},
-                                NamedKernel{"`central7`", Kernel::central7, 2},
-                                NamedKernel{"`gaussian` 2", Kernel::gaussian, 2},
-                                NamedKernel{"`gaussian` 4", Kernel::gaussian, 4},
-                                NamedKernel{"`gaussian` 8", Kernel::gaussian, 8},
-                                NamedKernel{"`gaussian` 16", Kernel::gaussian, 16}};
-
-std::string name_of(Kernel kernel, int radius) {
-    for (const NamedKernel& named : kernels) {
-        if (named.kernel == kernel && kernel != Kernel::gaussian) return named.name;
-    }
-    return fmt::format("`gaussian` {}", radius);
+/// As the page shows it: `sobel3`, `gaussian` 4.
+std::string code_name(const std::string& name) {
+    const std::size_t end = std::min(name.find(' '), name.size());
+    return "`" + name.substr(0, end) + "`" + name.substr(end);
 }
 
 /// Two digits, whatever the size.
@@ -50,15 +31,6 @@ std::string in_two_digits(double degrees) {
     if (degrees >= 10.0) return fmt::format("{:.0f}", degrees);
     const int before = static_cast<int>(std::floor(std::log10(degrees)));
     return fmt::format("{:.{}f}", degrees, std::max(0, 1 - before));
-}
-
-double error_by(const BumpField& field, Kernel kernel, int radius) {
-    BumpOptions options = field.options;
-    options.kernel = kernel;
-    options.gaussian_radius = radius;
-    options.arithmetic = Arithmetic::float64;
-    Report report;
-    return field_error(normals_from_height(field.heights, options, report), field).rms;
 }
 
 struct Best {
@@ -70,11 +42,11 @@ struct Best {
 Best best_on(const BumpField& field) {
     Best best;
     const auto look_at = [&](Kernel kernel, int radius) {
-        const double error = error_by(field, kernel, radius);
+        const double error = rms_error(field, kernel, radius);
         if (error < best.error) best = {kernel, radius, error};
         return error;
     };
-    for (const NamedKernel& named : kernels) {
+    for (const NamedKernel& named : named_kernels()) {
         if (named.kernel != Kernel::gaussian) look_at(named.kernel, 2);
     }
     double least = std::numeric_limits<double>::infinity();
@@ -86,20 +58,13 @@ Best best_on(const BumpField& field) {
     return best;
 }
 
-const FieldRecipe& recipe_named(const std::string& name) {
-    for (const FieldRecipe& recipe : tuning_fields()) {
-        if (name == recipe.name) return recipe;
-    }
-    throw std::runtime_error("no field " + name);
-}
-
 std::string properties_table() {
     std::string text =
         "| | order | noise gain | direction off at 8 texels | at 16 |\n|---|---|---|---|---|\n";
-    for (const NamedKernel& named : kernels) {
+    for (const NamedKernel& named : named_kernels()) {
         const GradientKernel kernel = gradient_kernel(named.kernel, named.radius);
         const double degrees = 180.0 / std::numbers::pi;
-        text += fmt::format("| {} | {} | {:.3f} | {} | {} |\n", named.name, kernel.order,
+        text += fmt::format("| {} | {} | {:.3f} | {} | {} |\n", code_name(named.name), kernel.order,
                             noise_gain(kernel), in_two_digits(anisotropy(kernel, 8.0) * degrees),
                             in_two_digits(anisotropy(kernel, 16.0) * degrees));
     }
@@ -112,16 +77,16 @@ std::string error_table(const std::vector<std::string>& fields) {
     for (const std::string& name : fields) {
         const BumpField field = make_bump_field(recipe_named(name), side, side);
         std::vector<double> column;
-        for (const NamedKernel& named : kernels)
-            column.push_back(error_by(field, named.kernel, named.radius));
+        for (const NamedKernel& named : named_kernels())
+            column.push_back(rms_error(field, named.kernel, named.radius));
         columns.push_back(column);
         const KernelChoice choice = choose_kernel(field.heights, field.options);
         chosen.push_back({choice.kernel, choice.gaussian_radius,
-                          error_by(field, choice.kernel, choice.gaussian_radius)});
+                          rms_error(field, choice.kernel, choice.gaussian_radius)});
     }
     std::string text = table_header(fields);
-    for (std::size_t row = 0; row < kernels.size(); ++row) {
-        text += fmt::format("| {} |", kernels[row].name);
+    for (std::size_t row = 0; row < named_kernels().size(); ++row) {
+        text += fmt::format("| {} |", code_name(named_kernels()[row].name));
         for (const std::vector<double>& column : columns) {
             const double least = *std::min_element(column.begin(), column.end());
             const std::string cell = in_two_digits(column[row]);
@@ -132,7 +97,8 @@ std::string error_table(const std::vector<std::string>& fields) {
     }
     text += "| `auto` |";
     for (const Best& one : chosen)
-        text += fmt::format(" {}: {} |", name_of(one.kernel, one.radius), in_two_digits(one.error));
+        text += fmt::format(" {}: {} |", code_name(name_of(one.kernel, one.radius)),
+                            in_two_digits(one.error));
     return text + "\n";
 }
 
@@ -159,11 +125,11 @@ std::string choice_tables() {
         const BumpField field = make_bump_field(recipe, side, side);
         const Best best = best_on(field);
         const KernelChoice choice = choose_kernel(field.heights, field.options);
-        const double error = error_by(field, choice.kernel, choice.gaussian_radius);
+        const double error = rms_error(field, choice.kernel, choice.gaussian_radius);
         text += fmt::format("| {} | {} | {} | {} | {} | {:.0f}% |\n", recipe.name,
-                            name_of(best.kernel, best.radius), in_two_digits(best.error),
-                            name_of(choice.kernel, choice.gaussian_radius), in_two_digits(error),
-                            100.0 * std::max(0.0, error / best.error - 1.0));
+                            code_name(name_of(best.kernel, best.radius)), in_two_digits(best.error),
+                            code_name(name_of(choice.kernel, choice.gaussian_radius)),
+                            in_two_digits(error), 100.0 * std::max(0.0, error / best.error - 1.0));
     }
     return text;
 }
@@ -182,9 +148,10 @@ std::string step_tables() {
             field.heights = destaircase(field.heights, {.wrap = field.options.wrap}).heights;
             const Best after = best_on(field);
             text += fmt::format("| {} | {} | {} | {} | {} | {:.2f} |\n", recipe.name,
-                                name_of(before.kernel, before.radius), in_two_digits(before.error),
-                                name_of(after.kernel, after.radius), in_two_digits(after.error),
-                                before.error / after.error);
+                                code_name(name_of(before.kernel, before.radius)),
+                                in_two_digits(before.error),
+                                code_name(name_of(after.kernel, after.radius)),
+                                in_two_digits(after.error), before.error / after.error);
         }
     }
     return text;

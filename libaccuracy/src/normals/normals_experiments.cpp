@@ -11,7 +11,6 @@
 #include "analytic_words.h"
 #include "measured_methods.h"
 #include "normals/normal_methods.h"
-#include "planned_experiment.h"
 
 namespace relief {
 namespace {
@@ -221,14 +220,18 @@ Experiment on_fans(const RunOptions& options) {
 
 }  // namespace
 
-std::vector<Experiment> normals_experiments(const RunOptions& options) {
+std::vector<PlannedExperiment> normals_plan(const RunOptions& options) {
     std::vector<PlannedExperiment> plan;
     for (const Case& one : cases(options.is_quick))
         plan.push_back(
             {"Normals: " + words_of(one), [&options, one] { return on_case(one, options); }});
     plan.push_back({"Normals: a large mesh", [&options] { return on_large_mesh(options); }});
     plan.push_back({"Normals: single fans", [&options] { return on_fans(options); }});
-    return run_planned(plan, options);
+    return plan;
+}
+
+std::vector<Experiment> normals_experiments(const RunOptions& options) {
+    return run_planned(normals_plan(options), options);
 }
 
 }  // namespace relief

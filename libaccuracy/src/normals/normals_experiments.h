@@ -6,12 +6,15 @@
 
 #include <vector>
 
-#include "relief/accuracy/experiment.h"
+#include "planned_experiment.h"
 
 namespace relief {
 
 /// Surfaces cut into triangles in several ways, each with how the error falls with finer cells; a
 /// large mesh, for times and memory; and the fans of [Max 1999].
 std::vector<Experiment> normals_experiments(const RunOptions& options);
+
+/// The same before they are run. \param options  must outlive the plan
+std::vector<PlannedExperiment> normals_plan(const RunOptions& options);
 
 }  // namespace relief

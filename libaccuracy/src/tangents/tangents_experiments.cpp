@@ -8,7 +8,6 @@
 #include <algorithm>
 
 #include "measured_methods.h"
-#include "planned_experiment.h"
 #include "tangents/tangent_methods.h"
 #include "tangents/textured_cases.h"
 
@@ -230,7 +229,7 @@ bool is_quick_one(const TexturedCase& one) {
 
 }  // namespace
 
-std::vector<Experiment> tangents_experiments(const RunOptions& options) {
+std::vector<PlannedExperiment> tangents_plan(const RunOptions& options) {
     std::vector<PlannedExperiment> plan;
     for (const TexturedCase& one : textured_cases()) {
         if (options.is_quick && !is_quick_one(one)) continue;
@@ -239,7 +238,11 @@ std::vector<Experiment> tangents_experiments(const RunOptions& options) {
     }
     plan.push_back({"Tangents: a large mesh", [&options] { return on_large_mesh(options); }});
     plan.push_back({"Tangents: bases that differ", [&options] { return mismatches(options); }});
-    return run_planned(plan, options);
+    return plan;
+}
+
+std::vector<Experiment> tangents_experiments(const RunOptions& options) {
+    return run_planned(tangents_plan(options), options);
 }
 
 }  // namespace relief

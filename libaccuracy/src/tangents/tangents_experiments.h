@@ -6,12 +6,15 @@
 
 #include <vector>
 
-#include "relief/accuracy/experiment.h"
+#include "planned_experiment.h"
 
 namespace relief {
 
 /// Bases on surfaces cut and textured in several ways; on a large mesh, for times and memory; maps
 /// baked in one basis and read in another; and frames stored in few bytes on a mesh.
 std::vector<Experiment> tangents_experiments(const RunOptions& options);
+
+/// The same before they are run. \param options  must outlive the plan
+std::vector<PlannedExperiment> tangents_plan(const RunOptions& options);
 
 }  // namespace relief

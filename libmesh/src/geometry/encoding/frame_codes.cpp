@@ -11,8 +11,8 @@
 #include <cmath>
 
 #include "geometry/direction.h"
-#include "geometry/encoding/octahedral_code.h"
 #include "geometry/unit_tolerance.h"
+#include "octahedral_code.h"
 
 namespace relief {
 namespace {
