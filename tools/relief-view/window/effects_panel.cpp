@@ -43,14 +43,15 @@ void draw_reasons(const PanelInput& input, const std::vector<EffectReason>& reas
         ImGui::TableNextRow();
         ImGui::TableNextColumn();
         draw_switch(input.state, reason.effect);
+        // Before the names, the longest of which reach beyond the panel.
+        ImGui::TableNextColumn();
+        if (const std::optional<double> price = input.prices.price(reason.effect))
+            ImGui::Text("%.2f ms", *price);
         ImGui::TableNextColumn();
         const ImVec4 color =
             ImGui::GetStyleColorVec4(reason.on ? ImGuiCol_Text : ImGuiCol_TextDisabled);
         ImGui::TextColored(color, "%s", reason.effect.c_str());
         if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", reason.reason.c_str());
-        ImGui::TableNextColumn();
-        if (const std::optional<double> price = input.prices.price(reason.effect))
-            ImGui::Text("%.2f ms", *price);
     }
 }
 
