@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
+#include "common/text.h"
 #include "file_bytes.h"
 #include "report/html_text.h"
 #include "report/report_tables.h"
@@ -17,6 +18,9 @@ namespace relief::tools {
 namespace {
 
 using nlohmann::ordered_json;
+
+/// Of a subject at once; the others are shown when they are asked for.
+constexpr std::size_t findings_shown = 4;
 
 /// A text, escaped; empty where there is none.
 std::string text_of(const ordered_json& json, const char* key) {
@@ -146,14 +150,18 @@ std::string experiment_html(const ordered_json& experiment, std::size_t index,
         text_of(experiment, "id"), index, text_of(experiment, "title"),
         text_of(experiment, "question"));
     if (!finding.empty()) html += fmt::format("<p class=\"finding\">{}</p>\n", finding);
-    html += "<dl class=\"facts\">\n" + entry("Ground truth", text_of(experiment, "truth")) +
+    html += fmt::format(
+                "<details class=\"body\" open><summary>Plots and numbers <small>{}</small>"
+                "</summary>\n<dl class=\"facts\">\n",
+                counted(experiment.at("measurements").size(), "method")) +
+            entry("Ground truth", text_of(experiment, "truth")) +
             entry("Input", text_of(experiment, "input")) +
             entry("To repeat", command_html(experiment)) + "</dl>\n";
     if (!experiment.at("measurements").empty())
         html +=
             scrolled("Methods of " + text_of(experiment, "title"), measurements_table(experiment));
     return html + charts_html(experiment) + heat_maps_html(experiment, folder) +
-           pairs_html(experiment, folder) + "</article>\n";
+           pairs_html(experiment, folder) + "</details></article>\n";
 }
 
 }  // namespace
@@ -181,11 +189,12 @@ std::string machine_html(const ordered_json& report) {
 std::string contents_html(const ordered_json& report) {
     std::string html = "<ul>\n";
     for (const SubjectPart& subject : subjects_of(report)) {
-        html += fmt::format("<li><a href=\"#subject-{}\">{}</a>\n<ul>\n",
-                            html_escaped(subject.name), html_escaped(capitalised(subject.name)));
+        html += fmt::format(
+            "<li><details open><summary><a href=\"#subject-{}\">{}</a></summary>\n<ul>\n",
+            html_escaped(subject.name), html_escaped(capitalised(subject.name)));
         for (const std::size_t i : subject.experiments)
             html += "<li>" + link_to(report.at("experiments")[i]) + "</li>\n";
-        html += "</ul></li>\n";
+        html += "</ul></details></li>\n";
     }
     return html + "</ul>\n";
 }
@@ -195,12 +204,16 @@ std::string summary_html(const ordered_json& report) {
     for (const SubjectPart& subject : subjects_of(report)) {
         html += fmt::format("<section class=\"card\"><h3>{}</h3>\n<ul>\n",
                             html_escaped(capitalised(subject.name)));
-        for (const std::size_t i : subject.experiments) {
-            const ordered_json& experiment = report.at("experiments")[i];
+        for (std::size_t place = 0; place < subject.experiments.size(); ++place) {
+            const std::size_t left = subject.experiments.size() - place;
+            if (place == findings_shown && left > 1)
+                html += fmt::format("</ul>\n<details><summary>{} more</summary>\n<ul>\n", left);
+            const ordered_json& experiment = report.at("experiments")[subject.experiments[place]];
             html += fmt::format("<li>{} <span>{}</span></li>\n", link_to(experiment),
                                 text_of(experiment, "finding"));
         }
-        html += "</ul></section>\n";
+        html += subject.experiments.size() > findings_shown + 1 ? "</ul></details></section>\n"
+                                                                : "</ul></section>\n";
     }
     return html;
 }

@@ -57,27 +57,41 @@ function makeExperiment(article, experiment) {
     article.querySelectorAll("figure.pair").forEach(makePair);
 }
 
-// The link of the experiment that is being read stands out.
+// The link of the experiment that is being read stands out, in the list of its subject.
 function followReading() {
     const links = new Map([...document.querySelectorAll("nav a")].map((link) =>
         [decodeURIComponent(link.hash.slice(1)), link]));
     const observer = new IntersectionObserver((entries) => {
         for (const {target, isIntersecting} of entries) {
-            if (isIntersecting) links.get(target.id)?.setAttribute("aria-current", "true");
-            else links.get(target.id)?.removeAttribute("aria-current");
+            const link = links.get(target.id);
+            if (isIntersecting) link?.setAttribute("aria-current", "true");
+            else link?.removeAttribute("aria-current");
+            if (isIntersecting) openAlone(link?.closest("li li")?.closest("details"));
         }
     }, {rootMargin: "-30% 0px -60% 0px"});
     document.querySelectorAll("article.experiment").forEach((one) => observer.observe(one));
 }
 
-// On paper, nothing can be opened.
-function openForPrint() {
-    let closed = [];
-    addEventListener("beforeprint", () => {
-        closed = [...document.querySelectorAll("details:not([open])")];
-        closed.forEach((one) => { one.open = true; });
-    });
-    addEventListener("afterprint", () => closed.forEach((one) => { one.open = false; }));
+function openAlone(list) {
+    if (!list) return;
+    document.querySelectorAll("nav li details").forEach((one) => { one.open = one === list; });
+}
+
+// Of many experiments only the first of each subject is open, and what a link leads to.
+const OPEN_AT_MOST = 12;
+function closeMost(articles) {
+    if (articles.length > OPEN_AT_MOST) {
+        for (const article of articles)
+            article.querySelector(".body").open = !article.previousElementSibling.matches("article");
+    }
+    document.querySelectorAll("nav li details").forEach((one, index) => { one.open = index === 0; });
+    const openTarget = () => {
+        const target = document.getElementById(decodeURIComponent(location.hash.slice(1)));
+        const body = target?.querySelector(":scope > .body");
+        if (body) body.open = true;
+    };
+    addEventListener("hashchange", openTarget);
+    openTarget();
 }
 
 document.addEventListener("DOMContentLoaded", () => {
@@ -86,10 +100,11 @@ document.addEventListener("DOMContentLoaded", () => {
     addPageButtons(report);
     addCopyButtons();
     if (!matchMedia("(min-width: 70rem)").matches)
-        document.querySelectorAll("nav details, .machine").forEach((one) => { one.open = false; });
-    for (const article of document.querySelectorAll("article.experiment"))
+        document.querySelectorAll("nav > details, .machine").forEach((one) => { one.open = false; });
+    const articles = [...document.querySelectorAll("article.experiment")];
+    closeMost(articles);
+    for (const article of articles)
         makeExperiment(article, report.experiments[article.dataset.experiment]);
     followReading();
-    openForPrint();
     document.documentElement.dataset.ready = "true";
 });
