@@ -76,6 +76,14 @@ TEST_F(ReportHtml, TablesCanBeReadWithoutAScript) {
     EXPECT_THAT(page_, HasSubstr(R"(<small class="note">the fastest of those below a degree)"));
 }
 
+TEST_F(ReportHtml, ANoteThatAllMethodsShareIsSaidOnce) {
+    for (nlohmann::ordered_json& one : report_["experiments"][2]["measurements"])
+        one["note"] = "drawn by <llvmpipe>";
+    page_ = report_html(report_, folder_.path());
+    EXPECT_EQ(count("drawn by &lt;llvmpipe&gt;"), 1U);
+    EXPECT_THAT(page_, HasSubstr("lie. drawn by &lt;llvmpipe&gt;</caption>"));
+}
+
 TEST_F(ReportHtml, ColumnsThatSayNothingAreLeftOut) {
     const std::size_t storage = page_.find("id=\"storage/sample\"");
     const std::string article = page_.substr(storage, page_.find("</article>", storage) - storage);

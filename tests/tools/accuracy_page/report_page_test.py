@@ -8,6 +8,7 @@ report_page_test.cpp, which makes the page.
 import json
 import pathlib
 import sys
+import time
 import unittest
 
 import browser
@@ -55,8 +56,7 @@ class ReportPage(unittest.TestCase):
         self.browser.prefer(color_scheme="light", reduced_motion="reduce")
         self.browser.log("performance")
         self.browser.log("browser")
-        self.browser.open(PAGE)
-        self.assertEqual(self.run_script("return document.documentElement.dataset.ready"), "true")
+        self.open_page()
 
     def tearDown(self):
         self.assertEqual(self.browser.log("browser"), [], "the console has messages")
@@ -66,6 +66,14 @@ class ReportPage(unittest.TestCase):
 
     def count(self, selector):
         return self.run_script("return document.querySelectorAll(arguments[0]).length", selector)
+
+    def open_page(self):
+        """Until its plots are drawn."""
+        self.browser.open(PAGE)
+        deadline = time.monotonic() + 30
+        while self.run_script("return document.documentElement.dataset.ready") != "true":
+            self.assertLess(time.monotonic(), deadline, "the page is not ready")
+            time.sleep(0.02)
 
     def first_scatter(self, selector):
         return f"#normals\\/sample .scatter {selector}"
@@ -214,7 +222,7 @@ class ReportPage(unittest.TestCase):
     def test_a_phone_does_not_scroll_sideways(self):
         for width in (320, 390):
             self.browser.resize(width, 844, is_phone=True)
-            self.browser.open(PAGE)
+            self.open_page()
             widths = self.run_script("return [document.documentElement.scrollWidth, innerWidth]")
             self.assertEqual(widths, [width, width])
         self.assertEqual(self.count(self.first_scatter(".point")), len(METHODS))

@@ -78,14 +78,24 @@ std::vector<Column> columns_of(const ordered_json& measurements) {
     return columns;
 }
 
-std::string method_cell(const ordered_json& measurement) {
+/// The note that all measurements have; empty where they differ, or one stands alone.
+std::string common_note(const ordered_json& measurements) {
+    if (measurements.size() < 2) return "";
+    std::string note = measurements[0].value("note", "");
+    const bool is_common =
+        std::all_of(measurements.begin(), measurements.end(),
+                    [&](const ordered_json& one) { return one.value("note", "") == note; });
+    return is_common ? note : "";
+}
+
+std::string method_cell(const ordered_json& measurement, bool has_note) {
     std::string cell = html_escaped(measurement.value("method", ""));
     if (measurement.value("efficient", false))
         cell +=
             R"( <span class="efficient" title="on the frontier: nothing is both faster and more )"
             R"(exact"><span aria-hidden="true">◆</span><span class="unseen">efficient</span></span>)";
     const std::string note = measurement.value("note", "");
-    if (!note.empty())
+    if (has_note && !note.empty())
         cell += fmt::format(R"( <small class="note">{}</small>)", html_escaped(note));
     return cell;
 }
@@ -128,21 +138,22 @@ std::set<double> all_x(const ordered_json& chart) {
 std::string measurements_table(const ordered_json& experiment) {
     const ordered_json& measurements = experiment.at("measurements");
     const std::vector<Column> columns = columns_of(measurements);
+    const std::string common = common_note(measurements);
     std::string head = R"(<th scope="col" data-path="/method">method</th>)";
     for (const Column& one : columns)
         head += fmt::format(R"(<th scope="col" data-path="{}">{}</th>)", one.path, one.head);
     std::string rows;
     for (std::size_t i = 0; i < measurements.size(); ++i) {
         rows += fmt::format(R"(<tr data-index="{}"><th scope="row">{}</th>)", i,
-                            method_cell(measurements[i]));
+                            method_cell(measurements[i], common.empty()));
         for (const Column& one : columns)
             rows += "<td>" + one.cell(measurements[i]) + "</td>";
         rows += "</tr>\n";
     }
     return fmt::format(
         "<table class=\"measurements\"><caption>Errors in {}. Times are medians, with where the "
-        "middle 80 % lie.</caption>\n<thead><tr>{}</tr></thead>\n<tbody>\n{}</tbody></table>\n",
-        html_escaped(experiment.value("error_unit", "")), head, rows);
+        "middle 80 % lie. {}</caption>\n<thead><tr>{}</tr></thead>\n<tbody>\n{}</tbody></table>\n",
+        html_escaped(experiment.value("error_unit", "")), html_escaped(common), head, rows);
 }
 
 std::string chart_table(const ordered_json& chart) {

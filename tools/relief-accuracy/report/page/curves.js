@@ -87,6 +87,7 @@ function drawFit(svg, curve, index, x, y) {
 
 // The line breaks where there is no result; what is exactly 0 lies in its strip, not joined.
 function drawCurve(svg, chart, table, curve, index, x, y) {
+    const isDense = curve.points.length > 24;
     let path = "";
     let isDown = false;
     for (const [at, error] of curve.points) {
@@ -97,7 +98,7 @@ function drawCurve(svg, chart, table, curve, index, x, y) {
     svg.append(drawn("path", {class: `line curve hue-${index % COLOURS}`, "data-curve": index,
                               d: path}));
     return curve.points.map(([at, error]) => {
-        const node = drawn("g", {class: "point curve", "data-curve": index,
+        const node = drawn("g", {class: `point curve${isDense ? " dense" : ""}`, "data-curve": index,
                                  transform: `translate(${x.place(at)},${y.place(error)})`});
         node.append(drawn("circle", {class: "reach", r: 10}));
         if (curve.breaks_at === at) node.append(drawn("circle", {class: "breaks", r: 9}));
@@ -125,7 +126,8 @@ function roomForNames(width, curves) {
 function nameEnds(svg, curves, x, y, area) {
     if (area.right + MARGIN.right >= svg.width.baseVal.value) return;
     const ends = curves.map(({curve, index}) => ({
-        curve, index, at: curve.points.findLast(([, error]) => isNumber(error)),
+        curve, index, at: curve.points.findLast(([, error]) => isNumber(error) && error > 0) ||
+                          curve.points.findLast(([, error]) => isNumber(error)),
     })).filter(({at}) => at).map((end) => ({...end, y: y.place(end.at[1])}));
     ends.sort((a, b) => a.y - b.y);
     const step = Math.min(14, (area.bottom - area.top) / Math.max(1, ends.length));

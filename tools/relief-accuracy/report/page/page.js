@@ -106,5 +106,8 @@ document.addEventListener("DOMContentLoaded", () => {
     for (const article of articles)
         makeExperiment(article, report.experiments[article.dataset.experiment]);
     followReading();
-    document.documentElement.dataset.ready = "true";
+    // Plots are drawn when the page has been laid out: once the next frame has begun, they stand.
+    requestAnimationFrame(() => requestAnimationFrame(() => {
+        document.documentElement.dataset.ready = "true";
+    }));
 });

@@ -153,10 +153,11 @@ function whiskerOf(measurement, cost, x, px, colour) {
 
 const ERROR_HEADS = ["RMS", "mean", "99 %", "max"];
 function tipRows(table, row, {error_unit, item, items}, measurement) {
+    const note = row.querySelector(".note");
     const rows = rowWords(table, row).map(([name, text]) =>
         [name, ERROR_HEADS.includes(name) ? `${text} ${error_unit}` : text]);
     const seconds = valueAt(measurement, "/cost/one_thread/median");
     if (items > 0 && seconds !== null)
         rows.push([`per ${item}`, `${tickText(seconds / items, "seconds")}, one thread`]);
-    return measurement.note ? [...rows, ["note", measurement.note]] : rows;
+    return note ? [...rows, ["note", note.textContent]] : rows;
 }
