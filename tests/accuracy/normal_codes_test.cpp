@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: Apache-2.0
+// Stored normals: known errors are found, codes err as published, and dither keeps means.
+#include "storage/normal_codes.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "experiment_checks.h"
+#include "map_errors.h"
+#include "relief/mesh/error.h"
+#include "storage/frame_codes.h"
+#include "storage/storage_experiments.h"
+
+namespace relief::test {
+namespace {
+
+using testing::HasSubstr;
+
+NormalCode code_named(const std::string& name) {
+    for (const NormalCode& code : normal_codes()) {
+        if (code.name == name) return code;
+    }
+    throw std::runtime_error("no code " + name);
+}
+
+/// Normals that lean along x only, more and more from left to right, turned by so many degrees.
+std::vector<glm::dvec3> leaning(double degrees) {
+    std::vector<glm::dvec3> normals;
+    for (int i = 0; i < 16 * 16; ++i) {
+        const double angle = (i % 16 + degrees) * std::numbers::pi / 180.0;
+        normals.emplace_back(std::sin(angle), 0.0, std::cos(angle));
+    }
+    return normals;
+}
+
+TEST(PatchErrors, OfTurnedNormalsAreTheTurnWhateverThePatch) {
+    const Image truth = image_of_normals(leaning(0.0), 16);
+    const Image turned = image_of_normals(leaning(1.0), 16);
+    for (const int block : {1, 2, 4, 8, 16}) {
+        const AngleDistribution errors = patch_errors(turned, truth, block);
+        EXPECT_EQ(errors.count, static_cast<std::size_t>(256 / (block * block)));
+        EXPECT_NEAR(errors.rms, 1.0, 1e-5);  // Normals are rounded to float.
+        EXPECT_NEAR(errors.max, 1.0, 1e-5);
+        EXPECT_EQ(patch_errors(truth, truth, block).max, 0.0);
+    }
+    EXPECT_THROW(image_of_normals(leaning(0.0), 15), InvalidInput);
+}
+
+TEST(NormalCodes, FlatComesBackFlatUnlessZeroHasNoCode) {
+    const std::vector<glm::dvec3> flat(16, glm::dvec3(0.0, 0.0, 1.0));
+    const Image normals = image_of_normals(flat, 4);
+    for (const NormalCode& code : normal_codes()) {
+        const double error = map_errors(code.stored(normals), flat).max;
+        if (code.name == "xyz 8 bit, nearest, zero at 127.5")
+            EXPECT_NEAR(error, 0.318, 1e-3);  // (128, 128, 255), as published.
+        else
+            EXPECT_EQ(error, 0.0) << code.name;
+    }
+}
+
+struct Published {
+    const char* code;
+    double mean;
+    double max;
+};
+
+TEST(NormalCodes, ErrAsPublished) {
+    // On many random directions, by another program: largest errors depend on which there are, and
+    // where z is rebuilt from x and y on how near the horizon they come.
+    constexpr int side = 512;
+    std::vector<glm::dvec3> directions = even_directions(2 * side * side);
+    directions.resize(directions.size() / 2);
+    const Image normals = image_of_normals(directions, side);
+    for (const Published& row : {Published{"xyz 8 bit", 0.170, 0.386},
+                                 {"xyz 16 bit", 0.0007, 0.0015},
+
+                                 {"octahedral 2 x 8 bit", 0.337, 0.949},
+                                 {"octahedral 2 x 10 bit", 0.084, 0.236},
+                                 {"octahedral 2 x 12 bit", 0.021, 0.059},
+                                 {"octahedral 2 x 16 bit", 0.0013, 0.0037},
+                                 {"xy 8 bit", 0.468, 5.89}}) {
+        const AngleDistribution errors =
+            map_errors(code_named(row.code).stored(normals), directions);
+        EXPECT_NEAR(errors.mean, row.mean, 0.04 * row.mean + 5e-5) << row.code;
+        EXPECT_NEAR(errors.max, row.max, 0.1 * row.max) << row.code;
+        EXPECT_EQ(errors.undefined, 0U);
+    }
+}
+
+TEST(NormalCodes, TheBestOfFourCodesIsNoFartherThanTheNearest) {
+    const std::vector<glm::dvec3> directions = even_directions(64 * 64);
+    const Image normals = image_of_normals(directions, 64);
+    for (const char* bits : {"8", "10", "12", "16"}) {
+        const std::string name = std::string("octahedral 2 x ") + bits + " bit";
+        const Image nearest = angles_of(code_named(name).stored(normals), directions);
+        const Image best = angles_of(code_named(name + ", best").stored(normals), directions);
+        for (std::size_t i = 0; i < nearest.sample_count(); ++i)
+            ASSERT_LE(best.as<float>()[i], nearest.as<float>()[i] + 1e-5F) << name;
+    }
+}
+
+TEST(NormalCodes, HalvesErrAsTheirElevenDigitsSay) {
+    // Numbers from 0.5 to 1 are 2^-11 apart: with x = y = 0.7, half of that in each and against
+    // each other turns a normal by 2^-12 sqrt(2), and with a third number more.
+    const double turn = std::sqrt(2.0) * 0x1p-12 * 180.0 / std::numbers::pi;
+    std::vector<glm::dvec3> directions = even_directions(256 * 256);
+    const Image normals = image_of_normals(directions, 256);
+    const AngleDistribution errors = map_errors(code_named("xyz half").stored(normals), directions);
+    EXPECT_GT(errors.max, 0.95 * turn);
+    EXPECT_LT(errors.max, 1.2 * turn);
+    EXPECT_NEAR(errors.mean, 0.0061, 1e-4);
+}
+
+TEST(NormalCodes, BytesAreThoseOfTheCodes) {
+    EXPECT_EQ(code_named("xyz 8 bit").bytes, 3.0);
+    EXPECT_EQ(code_named("xyz 10 bit").bytes, 4.0);
+    EXPECT_EQ(code_named("xyz float").bytes, 12.0);
+    EXPECT_EQ(code_named("xy 16 bit").bytes, 4.0);
+    EXPECT_EQ(code_named("octahedral 2 x 8 bit, best").bytes, 2.0);
+    EXPECT_EQ(code_named("octahedral 2 x 12 bit").bytes, 3.0);
+}
+
+TEST(NormalCodeExperiments, HaveTheErrorsOfThePage) {
+    const Experiment surface = normal_writing_experiment(quick_untimed());
+    const Chart& chart = surface.charts.front();
+    EXPECT_NEAR(curve_of(chart, "xyz 8 bit").points[0].error, 0.18471, 5e-6);
+    EXPECT_NEAR(curve_of(chart, "xyz 8 bit").points[2].error, 0.06773, 5e-6);
+    EXPECT_NEAR(curve_of(chart, "xyz 8 bit, blue-noise").points[4].error, 0.01117, 5e-6);
+    EXPECT_NEAR(curve_of(chart, "xyz 16 bit").points[0].error, 0.00071, 5e-6);
+    EXPECT_NEAR(measurement_of(surface, "xyz 8 bit").error.rms, 0.18471, 5e-6);
+    EXPECT_THAT(surface.finding,
+                HasSubstr("a texel is 0.18 degrees off and the mean of 16 x 16 still 0.028; blue "
+                          "noise makes them 0.26 and 0.011."));
+}
+
+TEST(NormalCodeExperiments, SayWhatIsNearestInSoManyBytes) {
+    const Experiment sphere = normal_reading_experiment(quick_untimed());
+    EXPECT_EQ(sphere.measurements.size(), normal_codes().size());
+    EXPECT_THAT(sphere.finding, HasSubstr("in 2 bytes octahedral 2 x 8 bit, best: 0.3"));
+    EXPECT_THAT(sphere.finding, HasSubstr("in 4 bytes octahedral 2 x 16 bit, best: 0.001"));
+}
+
+}  // namespace
+}  // namespace relief::test
