@@ -30,9 +30,11 @@ TEST(BumpExperiments, HaveTheErrorsOfThePage) {
     EXPECT_NEAR(measurement_of(detailed, "central7, float64").error.rms, 2.3, 0.05);
     EXPECT_NEAR(measurement_of(detailed, "scharr3, float64, steps smoothed away").error.rms, 1.4,
                 0.05);
+    EXPECT_THAT(detailed.finding, HasSubstr("is closest, 1.3 degrees RMS. float32 moves"));
     EXPECT_THAT(detailed.finding, HasSubstr("On this map --kernel auto takes sobel3."));
     const Experiment noisy = quick("Bump: noise 0.03, float");
     EXPECT_EQ(noisy.measurements.size(), 26U);
+    EXPECT_THAT(noisy.finding, HasSubstr(", where sobel3 is 0.99 off. "));
     EXPECT_NEAR(measurement_of(noisy, "gaussian 4, float64").error.rms, 0.32, 0.005);
     EXPECT_NEAR(measurement_of(noisy, "central3, float32").error.rms, 1.6, 0.05);
 }

@@ -5,7 +5,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "analytic_words.h"
 #include "bump/bump_methods.h"
@@ -102,15 +104,18 @@ std::string words_on_arithmetic(const Experiment& experiment) {
     return text + ".";
 }
 
+/// "gaussian 4, float64 is closest, 0.32 degrees RMS, where sobel3 is 0.99 off. ..."
 std::string finding_of(const Experiment& experiment) {
     const Measurement& best = *truest(experiment);
-    const Measurement* sobel = nullptr;
-    for (const Measurement& one : experiment.measurements) {
-        if (value_of(one, "kernel") == "sobel3" && sobel == nullptr) sobel = &one;
-    }
-    return fmt::format("{} is closest, {:.2g} degrees RMS, where sobel3 is {:.2g} off. {}",
-                       best.method, best.error.rms, sobel->error.rms,
-                       words_on_arithmetic(experiment));
+    std::string text =
+        fmt::format("{} is closest, {:.2g} degrees RMS", best.method, best.error.rms);
+    const auto& all = experiment.measurements;
+    const auto usual = std::find_if(all.begin(), all.end(), [](const Measurement& one) {
+        return value_of(one, "kernel") == "sobel3";
+    });
+    if (value_of(best, "kernel") != "sobel3")
+        text += fmt::format(", where sobel3 is {:.2g} off", usual->error.rms);
+    return text + ". " + words_on_arithmetic(experiment);
 }
 
 Experiment on_wave(int bits, const RunOptions& options) {
