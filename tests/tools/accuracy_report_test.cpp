@@ -154,7 +154,7 @@ TEST(AccuracyTable, MarksTheFrontierAndAlignsItsColumns) {
             "  ±0 %  4.1 kB   2.5 B\n"
             "    near         0.25  0.125   0.5  0.75          2  40.0 dB    500 µs  ±8 %  250 µs"
             "  ±0 %  4.1 kB   2.5 B\n"
-            "      It is not far.\n"));
+            "  near: It is not far.\n"));
     EXPECT_THAT(table,
                 HasSubstr("    near: - at 1e-06, 0.25 at 1, order -0.10 (expected 0), breaks "
                           "at 1e-06\n"));

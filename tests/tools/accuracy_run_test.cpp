@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <csignal>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "tools/refusal.h"
@@ -52,6 +54,18 @@ TEST(AccuracyRun, ErrorsAloneAreTheSameEachTimeAndForAnyThreads) {
     EXPECT_EQ(one["experiments"][0]["measurements"],
               json::parse(first.out)["experiments"][0]["measurements"]);
     EXPECT_EQ(workplace.outputs(), "") << "nothing is written unless asked for";
+}
+
+TEST(AccuracyRun, InterruptedWhileItMeasuresLeavesNoHalfReport) {
+    const Workplace workplace;
+    // Far too many rounds to be done before the signal comes; the folder is made first of all.
+    const ProgramResult result = test::run_program_until(
+        {"relief-accuracy", "run", "storage", "--repeats", "1000", "--output", "out/report",
+         "--quiet"},
+        workplace / ".", [&] { return std::filesystem::exists(workplace / "out/report"); }, SIGINT);
+    EXPECT_EQ(result.exit_code, 128 + SIGINT) << result.error;
+    EXPECT_EQ(result.error, "");
+    EXPECT_TRUE(std::filesystem::is_empty(workplace / "out/report"));
 }
 
 class AccuracyRefusal : public testing::TestWithParam<Refused> {};

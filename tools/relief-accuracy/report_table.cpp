@@ -110,7 +110,27 @@ std::string rows_of(const Experiment& experiment) {
     for (std::size_t row = 0; row < experiment.measurements.size(); ++row) {
         const Measurement& one = experiment.measurements[row];
         text += line_of(columns, one.is_efficient ? "  * " : "    ", widths, row, false);
-        if (!one.note.empty()) text += fmt::format("      {}\n", one.note);
+    }
+    return text;
+}
+
+/// Each note once, behind the methods that it is on; nothing before what is true of all.
+std::string notes_of(const Experiment& experiment) {
+    std::vector<std::pair<std::string, std::vector<std::string>>> notes;
+    for (const Measurement& one : experiment.measurements) {
+        if (one.note.empty()) continue;
+        const auto known = std::find_if(notes.begin(), notes.end(),
+                                        [&](const auto& note) { return note.first == one.note; });
+        if (known == notes.end())
+            notes.push_back({one.note, {one.method}});
+        else
+            known->second.push_back(one.method);
+    }
+    std::string text;
+    for (const auto& [note, methods] : notes) {
+        const bool is_general = methods.size() == experiment.measurements.size();
+        text += is_general ? fmt::format("  {}\n", note)
+                           : fmt::format("  {}: {}\n", fmt::join(methods, "; "), note);
     }
     return text;
 }
@@ -153,6 +173,7 @@ std::string table_of(const Experiment& experiment) {
     text += fmt::format("  input  {}\n  truth  {}\n  error  {}\n", experiment.input,
                         experiment.truth, experiment.error_unit);
     text += rows_of(experiment);
+    text += notes_of(experiment);
     for (const Chart& chart : experiment.charts) {
         text += fmt::format("  {} (by {})\n", chart.title, chart.x_label);
         for (const Curve& curve : chart.curves)

@@ -13,9 +13,9 @@ namespace relief::tools {
 /// "840 ns", "4.13 µs", "12.3 ms", "1.50 s"
 std::string seconds_in_words(double seconds);
 
-/// What the experiment asks and on what, a row for each method, a line for each curve, and the
-/// finding. The rows on the frontier begin with an asterisk; columns that nothing fills are left
-/// out.
+/// What the experiment asks and on what, a row for each method, their notes, a line for each curve,
+/// and the finding. The rows on the frontier begin with an asterisk; columns that nothing fills are
+/// left out.
 std::string table_of(const Experiment& experiment);
 
 }  // namespace relief::tools
