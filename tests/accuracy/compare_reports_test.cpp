@@ -220,6 +220,19 @@ TEST(CompareReports, CurvesAreComparedPointByPoint) {
     EXPECT_TRUE(std::isinf(result.errors[0].worst().growth()));
 }
 
+TEST(CompareReports, PointsOfACurveAreToldApartByTheirPlaceAlone) {
+    Experiment before = one_measurement({});
+    before.charts.push_back({"angle", "", "", "", false, {}, {{"fit", {}, {}, {}, {}}}});
+    before.charts[0].curves[0].points = {{-1.0, 0.5}, {0.0, 0.1}, {1e-30, 0.2}, {1.0, 0.3}};
+    EXPECT_THAT(compare_reports({before}, {before}, true).errors, IsEmpty());
+    Experiment after = before;
+    after.charts[0].curves[0].points[1].error = 0.4;
+    const ReportComparison result = compare_reports({before}, {after}, true);
+    ASSERT_THAT(result.errors, SizeIs(1));
+    ASSERT_THAT(result.errors[0].figures, SizeIs(1));
+    EXPECT_EQ(result.errors[0].figures[0].figure, "at 0");
+}
+
 TEST(CompareReports, ListsWhatHasNoPartner) {
     Experiment before = one_measurement({});
     Experiment after = before;

@@ -24,6 +24,11 @@ bool differs(double before, double after) {
     return !(std::abs(after - before) <= std::max(absolute_rounding, relative_rounding * size));
 }
 
+/// Places may be tiny, and zero.
+bool is_same_place(double a, double b) {
+    return std::abs(a - b) <= relative_rounding * std::max(std::abs(a), std::abs(b));
+}
+
 void add_if_changed(ErrorChange& change, const std::string& figure, double before, double after) {
     if (differs(before, after)) change.figures.push_back({figure, before, after});
 }
@@ -34,7 +39,7 @@ ErrorChange change_of(const Experiment& experiment, const Chart& chart, const Cu
     for (const CurvePoint& point : before.points) {
         const auto same =
             std::find_if(after.points.begin(), after.points.end(),
-                         [&](const CurvePoint& one) { return !differs(one.x / point.x, 1.0); });
+                         [&](const CurvePoint& one) { return is_same_place(one.x, point.x); });
         if (same != after.points.end())
             add_if_changed(change, fmt::format("at {:.4g}", point.x), point.error, same->error);
     }
