@@ -11,6 +11,7 @@
 #include "relief/accuracy/subjects.h"
 #include "relief/mesh/error.h"
 #include "shading/shading_experiments.h"
+#include "stability/stability_experiments.h"
 #include "storage/storage_experiments.h"
 #include "tangents/tangents_experiments.h"
 
@@ -29,6 +30,7 @@ constexpr std::array entries = {
     SubjectEntry{Subject::bump, bump_experiments},
     SubjectEntry{Subject::storage, storage_experiments},
     SubjectEntry{Subject::shading, shading_experiments},
+    SubjectEntry{Subject::stability, stability_experiments},
 };
 
 struct SubjectWord {

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+// Tests: tests/accuracy/sweep_test.cpp.
+#include "stability/sweep.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+#include <map>
+
+namespace relief {
+namespace {
+
+/// The RMS; NaN where a direction has none, which must not vanish in a mean.
+double error_of(const std::vector<float>& degrees) {
+    const AngleDistribution all = angle_distribution(degrees);
+    return all.undefined > 0 ? std::numeric_limits<double>::quiet_NaN() : all.rms;
+}
+
+/// Those that break at each value, as words.
+std::string breaks_of(const Chart& chart) {
+    std::map<double, std::vector<std::string>> broken;
+    for (const Curve& curve : chart.curves) {
+        if (curve.breaks_at) broken[*curve.breaks_at].push_back(curve.method);
+    }
+    std::string text = chart.title + ": ";
+    if (broken.empty()) return text + "all hold";
+    std::size_t count = 0;
+    for (const auto& [value, methods] : broken) {
+        count += methods.size();
+        const bool is_many = methods.size() > 4;
+        text += is_many ? fmt::format("{} methods", methods.size())
+                        : fmt::format("{}", fmt::join(methods, " and "));
+        text += fmt::format(" break{} at {:.0e}, ", methods.size() == 1 ? "s" : "", value);
+    }
+    if (count == chart.curves.size()) return text + "none holds";
+    return text + "all others hold";
+}
+
+}  // namespace
+
+Sweeps::Sweeps(std::vector<std::string> methods, double bound)
+    : methods_(std::move(methods)), bound_(bound), degrees_(methods_.size()) {}
+
+void Sweeps::add(const std::string& id, const std::string& title, const std::string& x_label,
+                 int decades, int step, const Errors& errors) {
+    Chart chart{.id = id,
+                .title = title,
+                .x_label = x_label,
+                .y_label = "RMS error, degrees",
+                .bound = bound_};
+    for (std::size_t method = 0; method < methods_.size(); ++method) {
+        Curve curve{.method = methods_[method]};
+        for (int decade = 0; decade <= decades; decade += step) {
+            const double value = std::pow(10.0, decade);
+            const std::vector<float> degrees = errors(method, value);
+            degrees_[method].insert(degrees_[method].end(), degrees.begin(), degrees.end());
+            const double error = error_of(degrees);
+            curve.points.push_back({value, error});
+            if (!curve.breaks_at && !(error <= bound_)) curve.breaks_at = value;
+        }
+        chart.curves.push_back(std::move(curve));
+    }
+    charts_.push_back(std::move(chart));
+}
+
+ErrorFigures Sweeps::figures(std::size_t method) const {
+    return figures_of(angle_distribution(degrees_[method]));
+}
+
+std::string Sweeps::breaks() const {
+    std::string text;
+    for (const Chart& chart : charts_)
+        text += (text.empty() ? "" : ". ") + breaks_of(chart);
+    return text + ".";
+}
+
+}  // namespace relief

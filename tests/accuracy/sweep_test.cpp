@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+// Where a curve breaks, and what it is said to.
+#include "stability/sweep.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace relief {
+namespace {
+
+TEST(Sweeps, FindWhereEachMethodBreaks) {
+    Sweeps sweeps({"good", "growing", "lost"}, 1.0);
+    sweeps.add("size", "Larger", "size", 6, 2, [](std::size_t method, double value) {
+        if (method == 0) return std::vector<float>{0.25F, 0.25F};
+        if (method == 1) return std::vector<float>{static_cast<float>(1e-3 * value)};
+        return std::vector<float>{0.0F, value > 50.0 ? NAN : 0.5F};
+    });
+    ASSERT_EQ(sweeps.charts().size(), 1U);
+    const std::vector<Curve>& curves = sweeps.charts().front().curves;
+    ASSERT_EQ(curves[0].points.size(), 4U);
+    EXPECT_EQ(curves[0].points[1].x, 100.0);
+    EXPECT_NEAR(curves[0].points[3].error, 0.25, 1e-7);
+    EXPECT_FALSE(curves[0].breaks_at);
+    EXPECT_EQ(curves[1].breaks_at, 1e4) << "0.1 degrees at 100";
+    EXPECT_EQ(curves[2].breaks_at, 100.0);
+    EXPECT_TRUE(std::isnan(curves[2].points[1].error)) << "half a result is none";
+    EXPECT_EQ(sweeps.breaks(),
+              "Larger: lost breaks at 1e+02, growing breaks at 1e+04, all others hold.");
+    EXPECT_EQ(sweeps.figures(0).count, 8U);
+    EXPECT_EQ(sweeps.figures(2).undefined, 3U);
+}
+
+TEST(Sweeps, SayThatAllHoldOrNone) {
+    Sweeps sweeps({"a", "b"}, 1.0);
+    sweeps.add("x", "Good", "x", 1, 1, [](std::size_t, double) { return std::vector{0.5F}; });
+    sweeps.add("y", "Bad", "y", 1, 1, [](std::size_t, double) { return std::vector{5.0F}; });
+    EXPECT_EQ(sweeps.breaks(), "Good: all hold. Bad: a and b break at 1e+00, none holds.");
+}
+
+}  // namespace
+}  // namespace relief
