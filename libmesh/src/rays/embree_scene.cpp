@@ -99,6 +99,15 @@ bool come_nearer(RTCPointQueryFunctionArguments* arguments) {
     return true;
 }
 
+/// Lanes that are not asked for become rays of no length: Embree looks at them all
+/// the same, and ends the program where an origin or a direction there is beyond 1.8e18 or NaN.
+void empty_lanes(RayPacket& packet, std::size_t count) {
+    for (auto* axis :
+         {&packet.origin_x, &packet.origin_y, &packet.origin_z, &packet.near, &packet.direction_x,
+          &packet.direction_y, &packet.direction_z, &packet.time, &packet.far})
+        std::fill(axis->begin() + static_cast<std::ptrdiff_t>(count), axis->end(), 0.0F);
+}
+
 RTCBuildQuality quality_of(SceneBuild build) {
     return build == SceneBuild::fast ? RTC_BUILD_QUALITY_LOW : RTC_BUILD_QUALITY_MEDIUM;
 }
@@ -144,6 +153,7 @@ void EmbreeScene::build() {
 void EmbreeScene::find_nearest(RayPacket& packet, std::size_t count) const {
     alignas(64) std::array<int, RayPacket::size> valid{};
     std::fill_n(valid.begin(), count, -1);
+    empty_lanes(packet, count);
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
     context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
@@ -153,6 +163,7 @@ void EmbreeScene::find_nearest(RayPacket& packet, std::size_t count) const {
 void EmbreeScene::find_any(RayPacket& packet, std::size_t count) const {
     alignas(64) std::array<int, RayPacket::size> valid{};
     std::fill_n(valid.begin(), count, -1);
+    empty_lanes(packet, count);
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
     // Embree makes `far` of those that hit minus infinity.

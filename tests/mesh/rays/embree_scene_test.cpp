@@ -61,6 +61,31 @@ TEST(EmbreeScene, FindsTheNearestTriangleOfEachRayThatItIsAskedFor) {
     EXPECT_FALSE(packet.hits(4)) << "was not asked for";
 }
 
+TEST(EmbreeScene, LooksAtNoLaneThatItIsNotAskedFor) {
+    // Of what the stack held before, which is anything, Embree does not end the program.
+    EmbreeScene scene;
+    add_triangle(scene, 7, 0.0F);
+    scene.build();
+    for (const float rubbish : {3.8e22F, std::numeric_limits<float>::quiet_NaN()}) {
+        RayPacket packet;
+        for (std::size_t lane = 0; lane < RayPacket::size; ++lane) {
+            aim(packet, lane, rubbish, rubbish, rubbish);
+            packet.direction_x[lane] = packet.near[lane] = rubbish;
+        }
+        for (const std::size_t count : {7U, 8U, 9U}) {
+            for (std::size_t lane = 0; lane < count; ++lane)
+                aim(packet, lane, 0.25F, 0.25F, 1.0F);
+            RayPacket blocked = packet;
+            scene.find_nearest(packet, count);
+            scene.find_any(blocked, count);
+            for (std::size_t lane = 0; lane < count; ++lane) {
+                EXPECT_EQ(packet.mesh[lane], 7U);
+                EXPECT_TRUE(blocked.is_blocked(lane));
+            }
+        }
+    }
+}
+
 TEST(EmbreeScene, FindsEveryTriangleOfASegmentAndAppendsThem) {
     EmbreeScene scene;
     for (const std::uint32_t name : {0U, 1U, 2U})
