@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 
+#include "bake/bake_experiments.h"
 #include "bump/bump_experiments.h"
 #include "normals/normals_experiments.h"
 #include "relief/accuracy/subjects.h"
@@ -29,6 +30,7 @@ constexpr std::array entries = {
     SubjectEntry{Subject::tangents, tangents_experiments},
     SubjectEntry{Subject::bump, bump_experiments},
     SubjectEntry{Subject::storage, storage_experiments},
+    SubjectEntry{Subject::bake, bake_experiments},
     SubjectEntry{Subject::shading, shading_experiments},
     SubjectEntry{Subject::stability, stability_experiments},
 };

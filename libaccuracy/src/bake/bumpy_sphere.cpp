@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bake_errors/bumpy_sphere.h"
+// Tests: tests/accuracy/bake_experiments_test.cpp.
+#include "bake/bumpy_sphere.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +8,7 @@
 #include <optional>
 #include <stdexcept>
 
-namespace relief::test {
+namespace relief {
 namespace {
 
 constexpr double height = 0.02;
@@ -125,4 +126,4 @@ SurfacePoint BumpySphere::on_mesh(const glm::dvec3& from, const glm::dvec3& inwa
     throw std::logic_error("a line passes the sphere by");
 }
 
-}  // namespace relief::test
+}  // namespace relief

@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// A sphere with bumps, of radius 1 + 0.02 sin(12 longitude) sin(12 polar angle): as a formula, as
-/// a high mesh by longitude and latitude, and where lines meet either. Independent of the baker.
+/// a high mesh by longitude and latitude, and where lines meet either: what baked maps are held
+/// against, by the experiments and by the tables of docs/bake.md. Independent of the baker.
+/// Tests: tests/accuracy/bake_experiments_test.cpp.
 #pragma once
 
 #include <glm/glm.hpp>
 
 #include "relief/mesh/mesh.h"
 
-namespace relief::test {
+namespace relief {
 
 /// Where a line comes upon a surface, and which way that faces there.
 struct SurfacePoint {
@@ -37,4 +39,4 @@ class BumpySphere {
     Mesh mesh_;
 };
 
-}  // namespace relief::test
+}  // namespace relief

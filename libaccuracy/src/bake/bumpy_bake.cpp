@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+// Clocks are those of BakeTrials. Tests: tests/accuracy/bake_experiments_test.cpp.
+#include "bake/bumpy_bake.h"
+
+#include <fmt/format.h>
+
+#include <glm/trigonometric.hpp>
+
+#include "relief/mesh/frames.h"
+#include "relief/mesh/shapes.h"
+#include "relief/mesh/threads.h"
+
+namespace relief {
+namespace {
+
+Mesh low_sphere(Report& report) {
+    return with_frames(make_sphere(BumpyBake::low_slices, BumpyBake::low_stacks),
+                       {.tangents = TangentMode::mikktspace}, report)
+        .mesh;
+}
+
+BakeMapOptions square_map(int side) {
+    BakeMapOptions map;
+    map.width = map.height = side;
+    return map;
+}
+
+BakeTrial trial_of(const BakeTrials& trials, const RayWay& way) {
+    std::optional<double> angle;
+    if (way.degrees) angle = glm::radians(*way.degrees);
+    return trials.measure(way.samples, angle, BumpyBake::formats());
+}
+
+/// Seconds of every way's bake, in turns.
+std::vector<Timing> timings(const BakeTrials& trials, std::span<const RayWay> ways,
+                            const Repeats& repeats) {
+    std::vector<Timing> times(ways.size());
+    interleave(ways.size(), repeats, [&](std::size_t i, bool counted) {
+        const BakeTrial trial = trial_of(trials, ways[i]);
+        if (counted) times[i].rounds.push_back(trial.cast_seconds);
+    });
+    return times;
+}
+
+}  // namespace
+
+std::string RayWay::words() const {
+    if (degrees) return fmt::format("up to {} rays beyond {:g} degrees", samples, *degrees);
+    return samples == 1 ? "1 ray" : fmt::format("{} rays", samples);
+}
+
+BumpyBake::BumpyBake(int high_stacks, int side)
+    : high_(high_stacks),
+      baker_(std::span(&high_.mesh(), 1), low_sphere(report_), BakeOptions{}, report_),
+      map_(square_map(side)),
+      trials_(baker_, map_, static_cast<std::size_t>(side) * static_cast<std::size_t>(side)) {}
+
+std::string BumpyBake::words() const {
+    return fmt::format("sphere with bumps, {} triangles, for one of {}; map of {} x {} texels",
+                       high_.mesh().triangles.size(), baker_.low().triangles.size(), map_.width,
+                       map_.height);
+}
+
+double BumpyBake::texels() const {
+    return static_cast<double>(map_.width) * map_.height;
+}
+
+const std::vector<NormalMapFormat>& BumpyBake::formats() {
+    static const std::vector<NormalMapFormat> all = {{.bits = 8}, {.bits = 16}, {.bits = 32}};
+    return all;
+}
+
+std::vector<RayWayFound> BumpyBake::measured(std::span<const RayWay> ways,
+                                             const RunOptions& options) const {
+    std::vector<RayWayFound> found;
+    for (const RayWay& way : ways)
+        found.push_back({trial_of(trials_, way)});
+    if (!options.is_timed) return found;
+    set_thread_limit(1);
+    const std::vector<Timing> one = timings(trials_, ways, options.repeats);
+    set_thread_limit(options.threads);
+    const std::vector<Timing> all = timings(trials_, ways, options.repeats);
+    for (std::size_t i = 0; i < ways.size(); ++i) {
+        found[i].one_thread = one[i];
+        found[i].all_threads = all[i];
+    }
+    return found;
+}
+
+}  // namespace relief

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// The bumpy sphere, baked for a coarse one in several ways, errors and seconds.
+/// Tests: tests/accuracy/bake_experiments_test.cpp.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "bake/bumpy_sphere.h"
+#include "relief/accuracy/experiment.h"
+#include "relief/mesh/bake_trials.h"
+
+namespace relief {
+
+/// How many rays a texel gets.
+struct RayWay {
+    int samples = 1;
+    std::optional<double> degrees{};  ///< All of them only where the first differ by more.
+
+    [[nodiscard]] std::string words() const;  ///< "16 rays", "up to 64 rays beyond 2 degrees"
+};
+
+/// What became of one way.
+struct RayWayFound {
+    BakeTrial trial;  ///< Its errors by format.
+    std::optional<Timing> one_thread{};
+    std::optional<Timing> all_threads{};
+};
+
+/// High and low mesh, ready for rays, and the truth for their map.
+class BumpyBake {
+  public:
+    static constexpr int low_slices = 46;
+    static constexpr int low_stacks = 23;
+
+    /// \param side  of the map, in texels
+    BumpyBake(int high_stacks, int side);
+
+    [[nodiscard]] const Baker& baker() const { return baker_; }
+    [[nodiscard]] const BakeMapOptions& map() const { return map_; }
+    [[nodiscard]] const BakeTrials& trials() const { return trials_; }
+    [[nodiscard]] std::string words() const;  ///< Of the input.
+    [[nodiscard]] double texels() const;
+
+    /// 8 and 16 bits and float.
+    static const std::vector<NormalMapFormat>& formats();
+
+    /// All ways in turns. Seconds are of rays and their means, not of making meshes ready nor of
+    /// codes.
+    [[nodiscard]] std::vector<RayWayFound> measured(std::span<const RayWay> ways,
+                                                    const RunOptions& options) const;
+
+  private:
+    BumpySphere high_;
+    Report report_;
+    Baker baker_;
+    BakeMapOptions map_;
+    BakeTrials trials_;
+};
+
+}  // namespace relief

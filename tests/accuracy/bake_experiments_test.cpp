@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: Apache-2.0
+// Baked maps of the bumpy sphere: the experiments' truth against the surface's formula, and what
+// they find.
+#include "bake/bake_experiments.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "bake/bumpy_bake.h"
+#include "bake_errors/bumpy_truth.h"
+#include "experiment_checks.h"
+#include "relief/mesh/direction_error.h"
+#include "relief/mesh/normal_space.h"
+#include "relief/mesh/normals.h"
+
+namespace relief {
+namespace {
+
+constexpr int stacks = 100;
+constexpr int side = 96;
+
+/// The map of so many rays a texel, as unit normals in object space.
+Image baked(const BumpyBake& bake, int samples) {
+    Image normals = make_image(side, side, 3, 32, ColorSpace::data);
+    BakeMapOptions map = bake.map();
+    map.samples = samples;
+    Report report;
+    bake.baker().bake(
+        map,
+        [&](const BakedRows& rows) {
+            std::copy(rows.normals.begin(), rows.normals.end(),
+                      normals.as<float>().begin() + std::ptrdiff_t{3} * side * rows.first_row);
+        },
+        report);
+    return object_from_tangent(normals, bake.baker().low(), {}, report).normals;
+}
+
+std::vector<test::TexelTruth> truths(const BumpyBake& bake) {
+    Report report;
+    Mesh rays = bake.baker().low();  // They run along averaged normals.
+    rays.normals = vertex_normals(rays.positions, rays.triangles, NormalWeight::angle, report);
+    return test::texel_truths(BumpySphere(stacks), rays,
+                              {BumpyBake::low_slices, BumpyBake::low_stacks}, side);
+}
+
+/// Root of the mean square, in degrees, of a map against the formula's truth; x turned round where
+/// it is to be broken.
+double rms_of(const Image& map, const std::vector<test::TexelTruth>& all,
+              glm::dvec3 test::TexelTruth::*which, double x_sign = 1.0) {
+    double squares = 0.0;
+    for (const test::TexelTruth& truth : all) {
+        const float* const n = &map.as<float>()[3 * truth.texel];
+        const double degrees =
+            degrees_between(glm::dvec3(x_sign * double{n[0]}, n[1], n[2]), truth.*which);
+        squares += degrees * degrees;
+    }
+    return std::sqrt(squares / static_cast<double>(all.size()));
+}
+
+TEST(BumpySphere, HasTheNormalsOfItsFormula) {
+    // Differences of the radius, r = 1 + 0.02 sin(12 longitude) sin(12 polar), along both angles.
+    const auto position = [](double longitude, double polar) {
+        const double radius = 1.0 + 0.02 * std::sin(12.0 * longitude) * std::sin(12.0 * polar);
+        return radius * glm::dvec3(std::sin(polar) * std::sin(longitude), std::cos(polar),
+                                   std::sin(polar) * std::cos(longitude));
+    };
+    for (const double longitude : {0.1, 1.3, -2.0}) {
+        for (const double polar : {0.4, 1.5, 2.6}) {
+            constexpr double step = 1e-5;
+            const glm::dvec3 east =
+                position(longitude + step, polar) - position(longitude - step, polar);
+            const glm::dvec3 south =
+                position(longitude, polar + step) - position(longitude, polar - step);
+            const glm::dvec3 at = position(longitude, polar);
+            const SurfacePoint found = BumpySphere::on_surface(1.2 * at, -glm::normalize(at));
+            EXPECT_LT(degrees_between(found.normal, glm::cross(south, east)), 1e-5);
+            EXPECT_LT(glm::distance(found.position, at), 1e-12);
+        }
+    }
+}
+
+/// The same of two maps, over all texels.
+double rms_between(const Image& a, const Image& b) {
+    const std::span<const float> one = a.as<float>();
+    const std::span<const float> other = b.as<float>();
+    double squares = 0.0;
+    for (std::size_t i = 0; i < one.size(); i += 3) {
+        const double degrees = degrees_between(glm::dvec3(one[i], one[i + 1], one[i + 2]),
+                                               glm::dvec3(other[i], other[i + 1], other[i + 2]));
+        squares += degrees * degrees;
+    }
+    return std::sqrt(squares * 3.0 / static_cast<double>(one.size()));
+}
+
+TEST(BakeTruth, OfManyRaysIsThatOfTheFormula) {
+    const BumpyBake bake(stacks, side);
+    const std::vector<test::TexelTruth> all = truths(bake);
+    ASSERT_GT(all.size(), 150U);
+    const Image many = baked(bake, 256);
+    const Image one = baked(bake, 1);
+    // 256 rays of the baker's and 256 lines of the formula through the same squares.
+    EXPECT_LT(rms_of(many, all, &test::TexelTruth::mesh), 0.1);
+    // One ray asks about the middle, exactly, and about the mean only roughly.
+    EXPECT_LT(rms_of(one, all, &test::TexelTruth::mesh_middle), 0.1);
+    EXPECT_GT(rms_of(one, all, &test::TexelTruth::mesh), 0.3);
+    // What the experiments count from is that bake of 256 rays, over all texels, poles as well.
+    const std::vector<RayWay> ways = {{1}};
+    const std::vector<RayWayFound> found = bake.measured(ways, test::quick_untimed());
+    const double between = rms_between(one, many);
+    EXPECT_NEAR(found[0].trial.errors[2].rms, between, 0.1 * between);
+    // A map with x turned round is not taken for right.
+    EXPECT_GT(rms_of(many, all, &test::TexelTruth::mesh, -1.0), 20.0);
+}
+
+TEST(BakeExperiments, FindFewerDegreesForMoreRays) {
+    const std::vector<Experiment> all = bake_experiments(test::quick_untimed());
+    test::expect_whole(all, Subject::bake);
+    const Experiment& samples = all.front();
+    ASSERT_EQ(samples.id, "bake/samples");
+    const auto rms = [&](const char* method) {
+        return test::measurement_of(samples, method).error.rms;
+    };
+    EXPECT_LT(rms("16 rays, float"), 0.5 * rms("4 rays, float"));
+    EXPECT_LT(rms("4 rays, float"), 0.5 * rms("1 ray, float"));
+    // A code of 8 bits is 1 / 127 wide: rounding x and y errs by that over sqrt(12) each, a little
+    // more on slopes, where z is one of three.
+    const double of_codes =
+        1.0 / 127.0 / std::sqrt(12.0) * std::sqrt(2.0) * 180.0 / std::numbers::pi;
+    EXPECT_NEAR(std::sqrt(rms("16 rays, 8 bit") * rms("16 rays, 8 bit") -
+                          rms("16 rays, float") * rms("16 rays, float")),
+                of_codes, 0.25 * of_codes);
+    EXPECT_LT(rms("16 rays, 16 bit"), 1.01 * rms("16 rays, float"));
+    EXPECT_NEAR(samples.charts.front().curves.back().order.value(), -1.0, 0.35);
+}
+
+TEST(BakeExperiments, FindThatRaysPayWhereTheFirstDiffer) {
+    const std::vector<Experiment> all = bake_experiments(test::quick_untimed());
+    const Experiment& adaptive = all.back();
+    ASSERT_EQ(adaptive.id, "bake/adaptive");
+    const std::vector<CurvePoint>& points =
+        test::curve_of(adaptive.charts.front(), "more where they differ").points;
+    for (std::size_t i = 1; i < points.size(); ++i)
+        EXPECT_LE(points[i].error, points[i - 1].error) << i;
+    const double everywhere = test::measurement_of(adaptive, "16 rays, float").error.rms;
+    EXPECT_NEAR(points.back().error, everywhere, 0.05 * everywhere);
+    const CurvePoint& all_everywhere =
+        test::curve_of(adaptive.charts.front(), "as many everywhere").points.back();
+    EXPECT_LT(points.back().x, all_everywhere.x);
+}
+
+}  // namespace
+}  // namespace relief
