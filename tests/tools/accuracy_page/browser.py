@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """A browser without a window, driven as by hands: WebDriver [W3C 2018] spoken to chromedriver, by the
-standard library alone. Used by report_page_test.py.
+standard library alone. Used by report_page_test.py and scripts/accuracy-page.
 """
 import base64
 import json
@@ -8,6 +8,8 @@ import re
 import shutil
 import subprocess
 import tempfile
+import time
+import urllib.error
 import urllib.request
 
 FLAGS = [
@@ -73,6 +75,14 @@ class Browser:
     def run(self, script, *arguments):
         """What a JavaScript function body returns; `arguments` are its own."""
         return self._call("POST", "/execute/sync", {"script": script, "args": list(arguments)})
+
+    def wait_for(self, script):
+        """Until a JavaScript function body returns something true."""
+        deadline = time.monotonic() + 30
+        while not self.run(script):
+            if time.monotonic() > deadline:
+                raise TimeoutError(script)
+            time.sleep(0.02)
 
     def devtools(self, command, **parameters):
         return self._call("POST", "/goog/cdp/execute", {"cmd": command, "params": parameters})

@@ -8,7 +8,6 @@ report_page_test.cpp, which makes the page.
 import json
 import pathlib
 import sys
-import time
 import unittest
 
 import browser
@@ -70,10 +69,7 @@ class ReportPage(unittest.TestCase):
     def open_page(self):
         """Until its plots are drawn."""
         self.browser.open(PAGE)
-        deadline = time.monotonic() + 30
-        while self.run_script("return document.documentElement.dataset.ready") != "true":
-            self.assertLess(time.monotonic(), deadline, "the page is not ready")
-            time.sleep(0.02)
+        self.browser.wait_for("return document.documentElement.dataset.ready === 'true'")
 
     def first_scatter(self, selector):
         return f"#normals\\/sample .scatter {selector}"
