@@ -164,7 +164,9 @@ void DrawThread::do_step(Drawer& drawer, std::unique_lock<std::mutex>& lock) {
         const ProgressScope scope(*progress);
         has_more = drawer.run(task);
     }
-    context_.wake();
+    // Not after each step: the window's frame would always meet what is timed first in the next
+    // one.
+    if (!has_more) context_.wake();
     lock.lock();
     if (!has_more) tasks_.pop_front();
 }

@@ -72,7 +72,8 @@ class DrawThread {
     /// Shader files were edited: programs are linked anew for the picture that is wished next.
     void relink();
 
-    /// Done a step at a time, where no picture is wished; what is left at the end is not done.
+    /// Done a step at a time, where no picture is wished; wakes after the last one. What is left at
+    /// the end is not done.
     void add(DrawTask task);
 
     [[nodiscard]] DrawnPicture drawn();

@@ -104,7 +104,8 @@ class WindowLoop {
 
     /// While something is read or drawn, a frame each step shows how far it is.
     bool is_working() {
-        return loader_.is_loading() || drawer_.is_busy() || prices_.state().is_going_on;
+        return loader_.is_loading() || drawer_.is_busy() || prices_.state().is_going_on ||
+               captured_->state().is_going_on();
     }
 
     double seconds_since_last() {
