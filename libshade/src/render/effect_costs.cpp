@@ -71,13 +71,17 @@ struct EffectPricing::Implementation {
         less = renderer_of(frame, relief::without(frame, plan, {names[done.size()]}));
     }
 
+    /// First the one, then the other, the other way round each time: what goes on between rounds
+    /// meets the first of a pair.
     void draw_both() {
-        const std::array<Renderer*, 2> both{whole.get(), less.get()};
+        std::array<Renderer*, 2> both{whole.get(), less.get()};
+        const std::size_t first = round % 2;
+        if (first == 1) std::swap(both[0], both[1]);
         const std::vector<FrameSeries> series =
             time_frames(both, frame.camera, {.counted = 1, .warm_up = 0});
         if (++round <= frame.repeats.warm_up) return;
-        with.push_back(series[0].frame[0]);
-        without.push_back(series[1].frame[0]);
+        with.push_back(series[first].frame[0]);
+        without.push_back(series[1 - first].frame[0]);
     }
 
     void finish() {
