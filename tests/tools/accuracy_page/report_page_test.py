@@ -141,6 +141,10 @@ class ReportPage(unittest.TestCase):
         self.assertIn("broken", self.run_script(TIP))  # The fastest.
         self.browser.press("ArrowRight")
         self.assertIn("area, float32", self.run_script(TIP))
+        rings = self.run_script("""return [...document.querySelectorAll('.point')].filter((point) =>
+            getComputedStyle(point.querySelector('.reach')).stroke !== 'none')
+            .map((point) => point === document.activeElement)""")
+        self.assertEqual(rings, [True], "the point with the focus has a ring, and no other")
         self.browser.press("End")
         self.assertIn("closed form", self.run_script(TIP))  # Not timed: at the right end.
         self.browser.press("Escape")

@@ -117,9 +117,10 @@ function curveRows(chart, table, curve, index, at) {
     return rows;
 }
 
-// Names stand to the right of the lines' ends where the plot is wide enough for that.
+// Names stand to the right of the lines' ends where the plot is wide enough for that, and the lines
+// few enough to be told apart.
 function roomForNames(width, curves) {
-    if (width < 620) return 0;
+    if (width < 620 || curves.length > 12) return 0;
     return Math.min(190, 20 + 6.2 * Math.max(0, ...curves.map(({curve}) => curve.method.length)));
 }
 
