@@ -134,12 +134,12 @@ Experiment by_threshold(const BumpyBake& bake, const RunOptions& options) {
             {*ways[at].degrees, found[at].trial.errors[2].rms});
     }
     experiment.charts = {std::move(rays), std::move(thresholds)};
-    const RayWayFound& chosen = found[3];
+    const RayWayFound& chosen = found[2];
     experiment.finding = fmt::format(
         "Where only texels whose first rays differ by more than {:g} degrees get all {}, a texel "
         "takes {:.1f} rays and the error is {:.4f} degrees (RMS), against {:.4f} with {} "
         "everywhere and {:.4f} with all.",
-        *ways[3].degrees, most, rays_a_texel(chosen, bake), chosen.trial.errors[2].rms,
+        *ways[2].degrees, most, rays_a_texel(chosen, bake), chosen.trial.errors[2].rms,
         found[found.size() - 2].trial.errors[2].rms, most / 4, found.back().trial.errors[2].rms);
     return experiment;
 }

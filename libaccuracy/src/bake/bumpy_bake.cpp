@@ -45,7 +45,7 @@ std::vector<Timing> timings(const BakeTrials& trials, std::span<const RayWay> wa
 }  // namespace
 
 std::string RayWay::words() const {
-    if (degrees) return fmt::format("up to {} rays beyond {:g} degrees", samples, *degrees);
+    if (degrees) return fmt::format("up to {} rays beyond {:g}°", samples, *degrees);
     return samples == 1 ? "1 ray" : fmt::format("{} rays", samples);
 }
 

@@ -20,7 +20,7 @@ struct RayWay {
     int samples = 1;
     std::optional<double> degrees{};  ///< All of them only where the first differ by more.
 
-    [[nodiscard]] std::string words() const;  ///< "16 rays", "up to 64 rays beyond 2 degrees"
+    [[nodiscard]] std::string words() const;  ///< "16 rays", "up to 64 rays beyond 2°"
 };
 
 /// What became of one way.
