@@ -43,7 +43,7 @@ TEST(Recommended, IsTheKnee) {
     EXPECT_EQ(found.method, 2U);
     EXPECT_EQ(found.next, 3U);
     EXPECT_EQ(found.words,
-              "good: 0.05 degrees RMS at 41 ms; the next better (best) takes 3 times as long for "
+              "good: 0.05 degrees RMS at 41.0 ms; the next better (best) takes 3 times as long for "
               "0.01 degrees less");
 }
 
@@ -57,6 +57,16 @@ TEST(Recommended, TakesTheTruerAsLongAsTheCubeOfTheGainPaysForIt) {
     EXPECT_EQ(second_for(0.081).method, 0U);
     EXPECT_EQ(second_for(0.079).next, std::nullopt);
     EXPECT_THAT(second_for(0.079).words, HasSubstr("none is truer"));
+}
+
+TEST(Recommended, OfAlikeOnesTheSmallestIsTaken) {
+    Experiment experiment =
+        experiment_of({measured("wide", 0.5, 0.010), measured("narrow", 0.505, 0.0105),
+                       measured("flat", 0.5, 0.012)});
+    experiment.measurements[0].cost.stored_bytes = 12;
+    experiment.measurements[1].cost.stored_bytes = 6;  // 8% dearer.
+    experiment.measurements[2].cost.stored_bytes = 3;  // 20%.
+    EXPECT_EQ(recommended(experiment, {}).method, 1U);
 }
 
 TEST(Recommended, WhatTheTruthIsNotKnownBetterThanIsNotPaidFor) {
@@ -87,7 +97,7 @@ TEST(Recommended, KeepsWithinATime) {
     EXPECT_EQ(recommended(usual(), rule).method, 0U);
     rule.wish.max_seconds = 0.001;
     EXPECT_EQ(recommended(usual(), rule).words,
-              "none keeps within 1 ms: the fastest takes 10 ms, with rough");
+              "none keeps within 1.00 ms: the fastest takes 10.0 ms, with rough");
     rule.wish.max_seconds = 0.1;
     rule.wish.max_error = 0.045;
     EXPECT_EQ(recommended(usual(), rule).words,
@@ -127,12 +137,6 @@ TEST(Recommended, WithoutTimesIsTheTruest) {
         one.cost = {};
     EXPECT_EQ(recommended(experiment, {}).method, 3U);
     EXPECT_EQ(recommended(experiment, {}).words, "best: 0.04 degrees RMS; none is truer");
-}
-
-TEST(DurationWords, HaveThreeDigits) {
-    EXPECT_EQ(duration_words(8.12e-4), "812 us");
-    EXPECT_EQ(duration_words(0.041), "41 ms");
-    EXPECT_EQ(duration_words(1.234), "1.23 s");
 }
 
 }  // namespace

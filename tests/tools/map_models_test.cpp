@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a map's model comes to: which texture coordinates, which normals, in which space; and that
 // relief-bake mesh and convert go by the same.
-#include "map_models.h"
+#include "common/map_models.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

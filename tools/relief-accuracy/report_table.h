@@ -7,11 +7,9 @@
 #include <string>
 
 #include "relief/accuracy/experiment.h"
+#include "relief/accuracy/words.h"
 
 namespace relief::tools {
-
-/// "840 ns", "4.13 µs", "12.3 ms", "1.50 s"
-std::string seconds_in_words(double seconds);
 
 /// What the experiment asks and on what, a row for each method, their notes, a line for each curve,
 /// and the finding. The rows on the frontier begin with an asterisk; columns that nothing fills are

@@ -16,13 +16,18 @@ OwnExperiment own_experiment(Subject subject, const std::string& topic, const st
     check_cancelled();
     OwnExperiment own;
     Experiment& experiment = own.experiment;
-    experiment.id = "own/" + topic;
+    experiment.id = "own/" + (options.file.empty() ? topic : options.file + "/" + topic);
     experiment.subject = subject;
     experiment.title = options.file.empty() ? title : fmt::format("{} of {}", title, options.file);
     experiment.error_unit = "degrees";
     experiment.command = options.command;
     if (options.run.tell) options.run.tell(experiment.title, 0, 1);
     return own;
+}
+
+void tell_finding(OwnExperiment& own) {
+    own.experiment.finding = own.recommendation.words + ".";
+    if (!own.command().empty()) own.experiment.finding += " To do it: " + own.command();
 }
 
 void finish(OwnExperiment& own, std::vector<OwnMethod> methods, CostKind cost, double own_error,
@@ -42,7 +47,7 @@ void finish(OwnExperiment& own, std::vector<OwnMethod> methods, CostKind cost, d
     }
     mark_efficient(own.experiment);
     own.recommendation = recommended(own.experiment, {options.wish, cost, own_error, choosable});
-    own.experiment.finding = own.recommendation.words + ".";
+    tell_finding(own);
 }
 
 Mesh part_to_measure(const Mesh& mesh, std::size_t most) {

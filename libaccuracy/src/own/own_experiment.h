@@ -20,7 +20,7 @@ struct OwnMethod {
     std::optional<Timing> known_time{};  ///< On all threads, taken elsewhere.
 };
 
-/// An experiment about the file: id "own/TOPIC", title "TITLE of FILE", unit degrees.
+/// An experiment about the file: id "own/FILE/TOPIC", title "TITLE of FILE", unit degrees.
 OwnExperiment own_experiment(Subject subject, const std::string& topic, const std::string& title,
                              const OwnOptions& options);
 
@@ -28,6 +28,9 @@ OwnExperiment own_experiment(Subject subject, const std::string& topic, const st
 /// \param own_error  what the truth is not known better than, in degrees
 void finish(OwnExperiment& own, std::vector<OwnMethod> methods, CostKind cost, double own_error,
             const OwnOptions& options);
+
+/// The finding is the recommendation, with the command that does it.
+void tell_finding(OwnExperiment& own);
 
 /// Eight runs of triangles, evenly spread, that have `most` together; the mesh itself if it has no
 /// more.

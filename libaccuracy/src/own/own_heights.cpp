@@ -53,10 +53,9 @@ std::string command_of(const BumpMethod& method, const BumpOptions& bump,
 
 }  // namespace
 
-OwnExperiment measure_own_heights(const Image& height, const BumpOptions& bump,
-                                  const OwnOptions& options, std::int64_t most_texels) {
+OwnExperiment measure_own_heights(const BumpSample& sample, glm::ivec2 size,
+                                  const BumpOptions& bump, const OwnOptions& options) {
     OwnExperiment own = own_experiment(Subject::bump, "bump", "Normals from heights", options);
-    const BumpSample sample = sample_of(height, most_texels);
     const KernelChoice choice = choose_kernel(sample.looked_at, bump);
     const std::array ways = {false, true};
     const bool has_steps = choice.depth.bits > 0 && choice.depth.bits <= 12;
@@ -71,9 +70,9 @@ OwnExperiment measure_own_heights(const Image& height, const BumpOptions& bump,
     experiment.question = "Which kernel is truest on this map, and what does it cost?";
     experiment.truth =
         fmt::format("The map's own best: {}. {}.", found.reference.words, choice.reason);
-    experiment.input = found.is_whole ? fmt::format("{} x {} texels", height.width, height.height)
+    experiment.input = found.is_whole ? fmt::format("{} x {} texels", size.x, size.y)
                                       : fmt::format("{} texels in nine parts of {} x {}",
-                                                    found.texels, height.width, height.height);
+                                                    found.texels, size.x, size.y);
     experiment.item = "texel";
     experiment.items = static_cast<double>(found.texels);
     std::vector<OwnMethod> measured;
@@ -84,6 +83,12 @@ OwnExperiment measure_own_heights(const Image& height, const BumpOptions& bump,
     }
     finish(own, std::move(measured), CostKind::time, found.reference.own_degrees, options);
     return own;
+}
+
+OwnExperiment measure_own_heights(const Image& height, const BumpOptions& bump,
+                                  const OwnOptions& options, std::int64_t most_texels) {
+    return measure_own_heights(sample_of(height, most_texels), {height.width, height.height}, bump,
+                               options);
 }
 
 }  // namespace relief

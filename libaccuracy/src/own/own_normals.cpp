@@ -146,7 +146,7 @@ OwnExperiment own_normals(const Mesh& mesh, const std::string& whole,
         own.recommendation.words =
             "no recommendation: the mesh is too coarse, or too rough, for a smooth surface to be "
             "fitted through it; its own normals can be the measure (--truth file)";
-        experiment.finding = own.recommendation.words + ".";
+        tell_finding(own);
     }
     return own;
 }

@@ -145,7 +145,7 @@ OwnExperiment from_gradients(const Mesh& mesh, const std::vector<Basis>& bases,
             "mikktspace: {:.3g} degrees RMS; bakers and renderers agree on it, and no "
             "other average is worth a seam",
             taken.error.rms);
-        experiment.finding = own.recommendation.words + ".";
+        tell_finding(own);
     }
     return own;
 }
@@ -176,6 +176,18 @@ OwnExperiment from_mikktspace(const Mesh& mesh, const std::vector<Basis>& bases,
         methods.push_back(method_of(basis, std::move(degrees)));
     }
     finish(own, std::move(methods), CostKind::time, 0.0, options);
+    const Measurement* nearest = nullptr;
+    for (const Measurement& one : experiment.measurements) {
+        if (one.method == convention.name || one.error.undefined > 0) continue;
+        if (nearest == nullptr || one.error.rms < nearest->error.rms) nearest = &one;
+    }
+    if (own.recommendation.method && nearest != nullptr) {
+        own.recommendation.words = fmt::format(
+            "mikktspace for a map that was baked so; {} shows it {:.2g} degrees off, "
+            "{:.2g} at most",
+            nearest->method, nearest->error.rms, nearest->error.max);
+        tell_finding(own);
+    }
     return own;
 }
 

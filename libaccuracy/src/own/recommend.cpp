@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "measured_methods.h"
+#include "relief/accuracy/words.h"
 #include "relief/mesh/frontier.h"
 
 namespace relief {
@@ -20,6 +21,7 @@ struct Candidate {
     double error = 0.0;    ///< RMS.
     double bounded = 0.0;  ///< What a bound is for.
     double cost = 0.0;     ///< Seconds or bytes; all 0 where nobody knows.
+    double bytes = 0.0;    ///< Stored.
 };
 
 double cost_of(const Measurement& measurement, CostKind kind) {
@@ -34,7 +36,8 @@ std::vector<Candidate> candidates_of(const Experiment& experiment, const Recomme
         if (!rule.choosable.empty() && rule.choosable[i] == 0) continue;
         if (one.error.undefined > 0 || one.error.count == 0 || !std::isfinite(one.error.rms))
             continue;
-        all.push_back({i, one.error.rms, one.error.*(rule.wish.figure), cost_of(one, rule.cost)});
+        all.push_back({i, one.error.rms, one.error.*(rule.wish.figure), cost_of(one, rule.cost),
+                       one.cost.stored_bytes});
         is_measured = is_measured || std::isfinite(all.back().cost);
     }
     if (is_measured) {
@@ -66,13 +69,24 @@ bool is_cheaper(const Candidate& a, const Candidate& b) {
     return a.cost != b.cost ? a.cost < b.cost : a.error < b.error;
 }
 
+/// Times are hardly known better than this.
+constexpr double alike = 1.1;
+
 const Candidate* knee_of(const std::vector<Candidate>& all, double own_error) {
+    const auto worth = [&](const Candidate& one) {
+        return std::pow(std::hypot(one.error, own_error), 3.0) * one.cost;
+    };
     // Untimed, costs are all 0 and so is each product: then what decides is the error.
-    return first_of(all, [&](const Candidate& a, const Candidate& b) {
-        const double worth_a = std::pow(std::hypot(a.error, own_error), 3.0) * a.cost;
-        const double worth_b = std::pow(std::hypot(b.error, own_error), 3.0) * b.cost;
-        return worth_a != worth_b ? worth_a < worth_b : is_truer(a, b);
-    });
+    const auto is_better = [&](const Candidate& a, const Candidate& b) {
+        return worth(a) != worth(b) ? worth(a) < worth(b) : is_truer(a, b);
+    };
+    const Candidate* best = first_of(all, is_better);
+    if (best == nullptr || best->cost == 0.0) return best;
+    const Candidate* taken = best;
+    for (const Candidate& one : all) {
+        if (one.bytes < taken->bytes && worth(one) <= alike * worth(*best)) taken = &one;
+    }
+    return taken;
 }
 
 std::vector<Candidate> kept_of(std::vector<Candidate> all, const Wish& wish, CostKind kind) {
@@ -104,7 +118,7 @@ const Candidate* next_truer(const std::vector<Candidate>& all, const Candidate& 
 }
 
 std::string cost_words(double cost, CostKind kind) {
-    return kind == CostKind::bytes ? fmt::format("{:g} bytes", cost) : duration_words(cost);
+    return kind == CostKind::bytes ? fmt::format("{:g} bytes", cost) : seconds_in_words(cost);
 }
 
 std::string words_of(const Experiment& experiment, const RecommendationRule& rule,
@@ -124,7 +138,7 @@ std::string words_of(const Experiment& experiment, const RecommendationRule& rul
         rule.cost == CostKind::bytes
             ? fmt::format("takes {}", cost_words(next->cost, rule.cost))
             : (times < 1.05 ? fmt::format("takes {} more",
-                                          duration_words(std::max(0.0, next->cost - taken.cost)))
+                                          seconds_in_words(std::max(0.0, next->cost - taken.cost)))
                             : fmt::format("takes {:.2g} times as long", times));
     return words + fmt::format("; the next better ({}) {} for {}", name, price, gain);
 }
@@ -150,22 +164,16 @@ std::string refusal_words(const Experiment& experiment, const RecommendationRule
         const Candidate* cheapest = first_of(true_enough, is_cheaper);
         return fmt::format("none keeps within {:g} {} and {}: that error takes {}, with {}",
                            *wish.max_error, experiment.error_unit,
-                           duration_words(*wish.max_seconds), duration_words(cheapest->cost),
+                           seconds_in_words(*wish.max_seconds), seconds_in_words(cheapest->cost),
                            name(*cheapest));
     }
     const Candidate* cheapest = first_of(all, is_cheaper);
     return fmt::format("none keeps within {}: the fastest takes {}, with {}",
-                       duration_words(*wish.max_seconds), duration_words(cheapest->cost),
+                       seconds_in_words(*wish.max_seconds), seconds_in_words(cheapest->cost),
                        name(*cheapest));
 }
 
 }  // namespace
-
-std::string duration_words(double seconds) {
-    if (seconds < 1e-3) return fmt::format("{:.3g} us", 1e6 * seconds);
-    if (seconds < 1.0) return fmt::format("{:.3g} ms", 1e3 * seconds);
-    return fmt::format("{:.3g} s", seconds);
-}
 
 Recommendation recommended(const Experiment& experiment, const RecommendationRule& rule) {
     const std::vector<Candidate> all = candidates_of(experiment, rule);

@@ -226,6 +226,29 @@ std::vector<ImagePart> parts_to_measure(int width, int height, std::int64_t most
     return parts;
 }
 
+std::vector<ImagePart> BumpSampleParts::in_order() const {
+    std::vector<ImagePart> all = looked_at;
+    for (const ImagePart& part : measured) {
+        if (std::find(all.begin(), all.end(), part) == all.end()) all.push_back(part);
+    }
+    std::stable_sort(all.begin(), all.end(),
+                     [](const ImagePart& a, const ImagePart& b) { return a.y < b.y; });
+    return all;
+}
+
+BumpSample BumpSampleParts::sample(const std::vector<Image>& images) const {
+    const std::vector<ImagePart> order = in_order();
+    const auto taken = [&](const std::vector<ImagePart>& places) {
+        std::vector<Image> found;
+        for (const ImagePart& place : places) {
+            const auto at = std::find(order.begin(), order.end(), place) - order.begin();
+            found.push_back(images.at(static_cast<std::size_t>(at)));
+        }
+        return found;
+    };
+    return {taken(looked_at), taken(measured), measured.size() <= 1};
+}
+
 BumpSample sample_of(const Image& height, std::int64_t most_texels) {
     if (height.empty()) throw InvalidInput("an empty height field cannot be measured");
     BumpSample sample;

@@ -154,6 +154,17 @@ class FanMesh {
         return sum / length;
     }
 
+    /// How far the triangle is turned from it that is furthest, in degrees.
+    [[nodiscard]] double bend_from(const glm::dvec3& normal, std::size_t fan) const {
+        double most = 0.0;
+        for (const Corner corner : corners_of(fan)) {
+            // One without an area has no say.
+            const double bend = degrees_between(glm::dvec3(normals_[triangle_of(corner)]), normal);
+            if (bend > most) most = bend;
+        }
+        return most;
+    }
+
     /// Adds the triangles of all fans that these triangles are in. Ascending.
     void grow(std::vector<std::uint32_t>& triangles) const {
         const std::vector<std::uint32_t> inner = triangles;
@@ -202,6 +213,7 @@ class FanMesh {
 struct Fit {
     glm::dvec3 normal{};
     double doubt = 0.0;  ///< Degrees between the two fits.
+    double bend = 0.0;   ///< To the triangle furthest from it, degrees.
 };
 
 std::optional<Fit> fit_at(const FanMesh& mesh, std::size_t fan) {
@@ -222,7 +234,7 @@ std::optional<Fit> fit_at(const FanMesh& mesh, std::size_t fan) {
     const auto fine =
         fitted_normal(mesh.points_of(triangles, corners.front()), *crude, fine_degree);
     if (!fine) return std::nullopt;
-    return Fit{*fine, degrees_between(*crude, *fine)};
+    return Fit{*fine, degrees_between(*crude, *fine), mesh.bend_from(*fine, fan)};
 }
 
 }  // namespace
@@ -242,7 +254,9 @@ FittedNormals fitted_normals(const Mesh& mesh, const FitOptions& options) {
     std::vector<std::pair<Corner, glm::dvec3>> found;
     double squares = 0.0;
     for (std::size_t place = 0; place < result.places; ++place) {
-        if (!fits[place] || !(fits[place]->doubt <= options.most_doubt)) continue;
+        if (!fits[place] || !(fits[place]->doubt <= options.most_doubt) ||
+            fits[place]->bend > options.most_bend)
+            continue;
         found.emplace_back(fans.corners_of(fan_of(place)).front(), fits[place]->normal);
         squares += fits[place]->doubt * fits[place]->doubt;
     }

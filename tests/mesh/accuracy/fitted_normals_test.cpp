@@ -158,6 +158,20 @@ TEST(FittedNormals, EndAtHardEdges) {
     EXPECT_LT(smooth.corners.size(), parted.corners.size() * 9 / 10);  // Doubt along the ridge.
 }
 
+TEST(FittedNormals, SayNothingWhereTrianglesBendAway) {
+    // A steep roof, symmetric: both fits agree on its ridge, and there is no normal.
+    const Mesh roof = graph_of([](double x, double) { return 2.0 - 2.0 * std::abs(x); }, 16);
+    FitOptions options;
+    options.most_doubt = 180.0;
+    options.most_bend = 180.0;
+    const std::size_t all = fitted_normals(roof, options).corners.size();
+    options.most_bend = 45.0;
+    const FittedNormals found = fitted_normals(roof, options);
+    EXPECT_EQ(found.corners.size() + 17, all);
+    for (const std::uint32_t corner : found.corners)
+        EXPECT_NE(roof.positions[vertex_at(roof, corner)].x, 0.0F);
+}
+
 TEST(FittedNormals, SayNothingWhereThereIsNoSurface) {
     Mesh tetrahedron;
     tetrahedron.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};

@@ -30,41 +30,12 @@ bool needs_experiment(const AccuracyRequest& request) {
 }
 
 /// The parts for the choice, then those to measure on.
-struct Wanted {
-    std::vector<ImagePart> looked_at;
-    std::vector<ImagePart> measured;
-};
-
-Wanted wanted_of(const AccuracyRequest& request, const ImageInfo& map) {
-    Wanted wanted;
+BumpSampleParts wanted_of(const AccuracyRequest& request, const ImageInfo& map) {
+    BumpSampleParts wanted;
     if (!request.kernel || needs_experiment(request))
         wanted.looked_at = parts_to_look_at(map.width, map.height);
     if (needs_experiment(request)) wanted.measured = parts_to_measure(map.width, map.height);
     return wanted;
-}
-
-/// All parts in the order of rows, each once.
-std::vector<ImagePart> in_order(const Wanted& wanted) {
-    std::vector<ImagePart> all = wanted.looked_at;
-    for (const ImagePart& part : wanted.measured) {
-        if (std::find(all.begin(), all.end(), part) == all.end()) all.push_back(part);
-    }
-    std::stable_sort(all.begin(), all.end(),
-                     [](const ImagePart& a, const ImagePart& b) { return a.y < b.y; });
-    return all;
-}
-
-BumpSample sample_from(const Wanted& wanted, const std::vector<Image>& parts) {
-    const std::vector<ImagePart> order = in_order(wanted);
-    const auto images = [&](const std::vector<ImagePart>& places) {
-        std::vector<Image> found;
-        for (const ImagePart& place : places) {
-            const auto at = std::find(order.begin(), order.end(), place) - order.begin();
-            found.push_back(parts.at(static_cast<std::size_t>(at)));
-        }
-        return found;
-    };
-    return {images(wanted.looked_at), images(wanted.measured), wanted.measured.size() <= 1};
 }
 
 /// What may be chosen from, or is to be compared: whatever the command line leaves open.
@@ -150,7 +121,7 @@ void check(const AccuracyRequest& request, bool slope_moments, bool half) {
 }
 
 std::vector<ImagePart> parts_wanted(const AccuracyRequest& request, const ImageInfo& map) {
-    return in_order(wanted_of(request, map));
+    return wanted_of(request, map).in_order();
 }
 
 AccuracyFound settle_accuracy(const AccuracyRequest& request, const ImageInfo& map,
@@ -159,9 +130,9 @@ AccuracyFound settle_accuracy(const AccuracyRequest& request, const ImageInfo& m
     AccuracyFound found;
     if (request.precision) bump.arithmetic = request.precision;
     if (request.kernel) bump.kernel = *request.kernel;
-    const Wanted wanted = wanted_of(request, map);
+    const BumpSampleParts wanted = wanted_of(request, map);
     if (wanted.looked_at.empty()) return found;
-    const BumpSample sample = sample_from(wanted, parts);
+    const BumpSample sample = wanted.sample(parts);
     if (!request.kernel) {
         found.choice = choose_kernel(sample.looked_at, bump, request.destaircase);
         bump.kernel = found.choice->kernel;

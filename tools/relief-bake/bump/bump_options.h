@@ -11,7 +11,7 @@
 #include "common/options.h"
 #include "map_output.h"
 #include "relief/mesh/bump_file.h"
-#include "wrap_option.h"
+#include "common/wrap_option.h"
 
 namespace relief::tools {
 

@@ -3,22 +3,9 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
+#include "common/quoted.h"
 
 namespace relief::tools {
-std::string quoted(const std::filesystem::path& file) {
-    const std::string name = file.string();
-    const bool is_plain = std::all_of(name.begin(), name.end(), [](unsigned char letter) {
-        return std::isalnum(letter) != 0 || letter > 127 ||
-               std::string_view("/._-+=,:@%").find(static_cast<char>(letter)) !=
-                   std::string_view::npos;
-    });
-    if (is_plain) return name;
-    std::string result = "'";
-    for (const char letter : name)
-        result += letter == '\'' ? std::string("'\\''") : std::string(1, letter);
-    return result + "'";
-}
 
 std::string remedy_for(MapCondition condition, MapContent content,
                        const std::filesystem::path& file) {

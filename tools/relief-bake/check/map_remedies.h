@@ -11,9 +11,6 @@
 
 namespace relief::tools {
 
-/// A file's name as it is typed in a shell.
-std::string quoted(const std::filesystem::path& file);
-
 /// Empty where there is no such command. Files to write are called "out.png".
 std::string remedy_for(MapCondition condition, MapContent content,
                        const std::filesystem::path& file);

@@ -8,7 +8,7 @@
 #include "common/map_choices.h"
 #include "common/options.h"
 #include "convert/convert_words.h"
-#include "wrap_option.h"
+#include "common/wrap_option.h"
 
 namespace relief::tools {
 namespace {

@@ -10,7 +10,7 @@
 #include "common/command.h"
 #include "convert/convert_space.h"
 #include "map_output.h"
-#include "normal_map_input.h"
+#include "common/normal_map_input.h"
 #include "relief/mesh/normal_blend.h"
 #include "relief/mesh/normal_map_operations.h"
 #include "relief/mesh/normal_resize.h"

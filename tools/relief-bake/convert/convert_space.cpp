@@ -8,7 +8,7 @@
 #include "common/frame_choices.h"
 #include "common/options.h"
 #include "convert/convert_steps.h"
-#include "map_models.h"
+#include "common/map_models.h"
 #include "relief/mesh/error.h"
 #include "relief/mesh/normal_map_operations.h"
 #include "relief/mesh/normal_space.h"

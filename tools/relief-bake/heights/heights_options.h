@@ -7,9 +7,9 @@
 #include <optional>
 
 #include "common/command.h"
-#include "normal_map_input.h"
+#include "common/normal_map_input.h"
 #include "relief/mesh/heights_from_normals.h"
-#include "wrap_option.h"
+#include "common/wrap_option.h"
 
 namespace relief::tools {
 

@@ -4,7 +4,7 @@
 
 #include <utility>
 
-#include "map_models.h"
+#include "common/map_models.h"
 #include "relief/mesh/mesh_part.h"
 
 namespace relief::tools {

@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "check/map_remedies.h"
+#include "common/quoted.h"
 
 namespace relief::tools {
 namespace {

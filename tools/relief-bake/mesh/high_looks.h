@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "common/command.h"
-#include "map_models.h"
+#include "common/map_models.h"
 #include "relief/mesh/high_detail.h"
 #include "relief/mesh/image_file.h"
 

@@ -14,7 +14,7 @@
 #include "common/findings.h"
 #include "mesh/bake_models.h"
 #include "mesh/error_bound.h"
-#include "normal_map_input.h"
+#include "common/normal_map_input.h"
 #include "relief/mesh/bake_check.h"
 
 namespace relief::tools {

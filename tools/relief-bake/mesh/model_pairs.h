@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "map_models.h"
+#include "common/map_models.h"
 
 namespace relief::tools {
 

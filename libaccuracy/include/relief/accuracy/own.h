@@ -73,8 +73,11 @@ std::vector<OwnExperiment> measure_own_mesh(const Mesh& mesh, const OwnMeshOptio
                                             const OwnOptions& options);
 
 /// Kernels, arithmetics and depths, from the truest normals known for this map (measure_bump()).
-/// \param height  one channel, as for normals_from_height()
-/// \param bump    strength, texel and wrap
+/// \param size  of the map that the sample is of
+/// \param bump  strength, texel and wrap
+OwnExperiment measure_own_heights(const BumpSample& sample, glm::ivec2 size,
+                                  const BumpOptions& bump, const OwnOptions& options);
+/// The same of a map in memory: one channel, as for normals_from_height().
 OwnExperiment measure_own_heights(const Image& height, const BumpOptions& bump,
                                   const OwnOptions& options,
                                   std::int64_t most_texels = texels_to_measure);

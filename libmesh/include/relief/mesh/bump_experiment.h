@@ -80,6 +80,17 @@ inline constexpr std::int64_t texels_to_measure = std::int64_t{1} << 20;
 std::vector<ImagePart> parts_to_measure(int width, int height,
                                         std::int64_t most_texels = texels_to_measure);
 
+/// Which parts a sample is made of.
+struct BumpSampleParts {
+    std::vector<ImagePart> looked_at;
+    std::vector<ImagePart> measured;
+
+    /// All of them from top to bottom, each once: as a file is read.
+    [[nodiscard]] std::vector<ImagePart> in_order() const;
+    /// \param images  of in_order()
+    [[nodiscard]] BumpSample sample(const std::vector<Image>& images) const;
+};
+
 /// Of a map in memory.
 BumpSample sample_of(const Image& height, std::int64_t most_texels = texels_to_measure);
 

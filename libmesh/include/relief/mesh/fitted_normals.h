@@ -26,11 +26,13 @@ struct FittedNormals {
 };
 
 struct FitOptions {
-    HardEdges hard_edges;             ///< Surfaces end there.
+    HardEdges hard_edges;            ///< Surfaces end there.
     std::size_t most_places = 8192;  ///< Of more fans, so many are looked at, evenly spread.
     /// Where the two fits are further apart there is no smooth surface to speak of (noise, an edge
     /// that is not marked as hard, cells as large as the shape), and the place is left out.
     double most_doubt = 2.0;
+    /// Nor is there where a triangle at the vertex is turned further than this from the fit.
+    double most_bend = 45.0;
 };
 
 /// Fits a polynomial of degree 4 through each vertex and those of three rings of triangles around

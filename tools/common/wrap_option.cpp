@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // One word is for both axes. Tests: tests/tools/relief_bake_test.cpp, relief_bake_heights_test.cpp,
 // convert_test.cpp.
-#include "wrap_option.h"
+#include "common/wrap_option.h"
 
 #include <utility>
 #include <vector>

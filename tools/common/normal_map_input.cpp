@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Reading a normal map with its conventions. Tests: tests/tools/convert_test.cpp.
-#include "normal_map_input.h"
+#include "common/normal_map_input.h"
 
 #include <fmt/format.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Tests: tests/tools/map_models_test.cpp.
-#include "map_models.h"
+#include "common/map_models.h"
 
 #include <fmt/format.h>
 
