@@ -164,12 +164,17 @@ TEST(FittedNormals, SayNothingWhereTrianglesBendAway) {
     FitOptions options;
     options.most_doubt = 180.0;
     options.most_bend = 180.0;
-    const std::size_t all = fitted_normals(roof, options).corners.size();
+    const auto beside_the_ridge = [&](const FittedNormals& found) {
+        return std::count_if(found.corners.begin(), found.corners.end(), [&](std::uint32_t corner) {
+            return roof.positions[vertex_at(roof, corner)].x != 0.0F;
+        });
+    };
+    const FittedNormals all = fitted_normals(roof, options);
     options.most_bend = 45.0;
     const FittedNormals found = fitted_normals(roof, options);
-    EXPECT_EQ(found.corners.size() + 17, all);
-    for (const std::uint32_t corner : found.corners)
-        EXPECT_NE(roof.positions[vertex_at(roof, corner)].x, 0.0F);
+    EXPECT_GT(static_cast<std::ptrdiff_t>(all.corners.size()), beside_the_ridge(all) + 10);
+    EXPECT_EQ(static_cast<std::ptrdiff_t>(found.corners.size()), beside_the_ridge(all));
+    EXPECT_EQ(beside_the_ridge(found), beside_the_ridge(all));
 }
 
 TEST(FittedNormals, SayNothingWhereThereIsNoSurface) {
