@@ -328,6 +328,11 @@ INSTANTIATE_TEST_SUITE_P(
         Refused{"square.obj --output out/old.png --dump-state out/state.json", 2,
                 "--dump-state: is what a window shows, and none is opened (leave --output and the "
                 "like out)"},
+        Refused{"square.obj --output out/old.png --ui-scale 2", 2,
+                "--ui-scale: is of a window, and none is opened (leave it out)"},
+        Refused{"square.obj --ui-scale 5", 2, "--ui-scale 5: not between 0.5 and 4"},
+        Refused{"square.obj --output out/old.png --no-state", 2,
+                "--no-state: is of a window, and none is opened (leave it out)"},
         Refused{"square.obj --output out/p.jpg", 2,
                 "--output out/p.jpg: no format to write a picture in (use .png, .exr or .apng)"},
         Refused{"square.obj --output out/old.png --size 5", 2,

@@ -12,7 +12,7 @@
 #include "relief/mesh/bump.h"
 #include "relief/mesh/height_map.h"
 #include "relief/mesh/image_file.h"
-#include "relief/shade/effects.h"
+#include "window/material_models.h"
 
 namespace relief::tools {
 namespace {
@@ -25,28 +25,6 @@ bool overrides_anything(const ViewOptions& o) {
            o.specular_antialiasing || o.interpolation || o.material || o.metallic_roughness ||
            o.specular || o.shininess || o.reflectivity || o.reflection_roughness || o.fresnel ||
            o.no_fresnel || o.transmission;
-}
-
-/// Every triangle gets a material: the default one, added once, where it has none.
-void name_all_materials(Scene& scene) {
-    std::optional<std::uint32_t> added;
-    const auto default_index = [&] {
-        if (!added) {
-            added = static_cast<std::uint32_t>(scene.materials.size());
-            scene.materials.push_back(default_material());
-        }
-        return *added;
-    };
-    for (Shared<Mesh>& shared : scene.meshes) {
-        Mesh& mesh = shared.edit();
-        if (mesh.material_ranges.empty() && !mesh.triangles.empty()) {
-            mesh.material_ranges.push_back(
-                {0, static_cast<std::uint32_t>(mesh.triangles.size()), std::nullopt});
-        }
-        for (MaterialRange& range : mesh.material_ranges) {
-            if (!range.material) range.material = default_index();
-        }
-    }
 }
 
 /// A map needs texture coordinates somewhere; where only some meshes have them, says so.
@@ -197,7 +175,7 @@ void set_shading(Scene& scene, const ViewOptions& options) {
 void override_materials(Scene& scene, const ViewOptions& options, Stages& stages, Report& report,
                         std::vector<std::string>& notes) {
     if (!overrides_anything(options)) return;
-    name_all_materials(scene);
+    name_default_material(scene);
     // Whatever of glTF's model is still there gives way to what only Phong's has.
     if (!reason_for_phong(options).empty()) {
         for (Material& material : scene.materials)

@@ -14,6 +14,7 @@
 #include "material_options.h"
 #include "picture_reference.h"
 #include "sequence_options.h"
+#include "window/interface_scale.h"
 
 namespace relief::tools {
 namespace {
@@ -78,6 +79,16 @@ void add_window_options(CLI::App& app, ViewOptions& options) {
     add_switch(app, "--list-bindings", options.list_bindings,
                "Print what keys and the mouse do in the window.")
         .group(group);
+    add_number(app, "--ui-scale", "S", options.ui_scale,
+               {least_interface_scale, most_interface_scale, ""},
+               "How large letters and panels are: 1 as on an ordinary screen, 2 twice as large. "
+               "Default: as chosen in the window the last time (Ctrl++, Ctrl+-), else as the "
+               "screen says.")
+        .group(group);
+    add_switch(app, "--no-state", options.no_state,
+               "Neither read nor write where the window was and which panels were open "
+               "($XDG_STATE_HOME/relief, else ~/.local/state/relief).")
+        .group(group);
     add_path(app, "--dump-state", options.dump_state,
              "Keep what the window shows in FILE, as JSON, for tests and scripts.")
         .group(group);
@@ -126,6 +137,10 @@ void check_output(const ViewOptions& options) {
     refuse(options.wants_window() && options.backend != Backend::automatic, "--backend",
            "is for pictures without a window, which brings its own OpenGL",
            "name a picture with --output, or leave it out");
+    refuse(options.ui_scale && !options.wants_window(), "--ui-scale",
+           "is of a window, and none is opened", "leave it out");
+    refuse(options.no_state && !options.wants_window(), "--no-state",
+           "is of a window, and none is opened", "leave it out");
     refuse(options.wants_window() && options.json, "--json", "is a summary, and a window has none",
            "name a picture with --output");
     refuse(is_linear_output(options) && (options.exposure || options.tone_mapping),

@@ -113,6 +113,8 @@ struct ViewOptions {
     std::optional<double> time;
 
     std::optional<std::filesystem::path> dump_state;  ///< Of the window, as JSON.
+    std::optional<float> ui_scale;                    ///< Of the window's letters and panels.
+    bool no_state = false;  ///< The window is not remembered, and comes as usual.
     bool list_bindings = false;
 
     /// Neither a picture nor words are asked for: a window it is.

@@ -205,6 +205,74 @@ TEST_F(State, ItsCommandLineBringsTheSameViewBack) {
     EXPECT_GT(glm::length(state().camera().target), 0.0F);
 }
 
+TEST_F(State, HidesInstancesFromThePictureAndNotFromTheScene) {
+    show("square.obj");
+    const std::uint64_t revision = state().wish()->revision;
+    state().show({0}, false);
+    EXPECT_FALSE(state().is_shown(0));
+    EXPECT_EQ(state().wish()->scene->instances.size(), 0U);
+    EXPECT_EQ(state().scene().instances.size(), 1U);
+    EXPECT_GT(state().wish()->revision, revision);
+    state().edit([](Scene& scene) { scene.exposure = 2.0F; });
+    EXPECT_EQ(state().wish()->scene->instances.size(), 0U) << "an edit shows nothing";
+    show("square.obj");
+    EXPECT_FALSE(state().is_shown(0)) << "the same model read again";
+    show("far.obj");
+    EXPECT_TRUE(state().is_shown(0));
+    EXPECT_EQ(state().wish()->scene->instances.size(), 1U);
+}
+
+TEST_F(State, LampsGoRoundByThemselvesUntilTheirSpeedIsTakenAway) {
+    show("square.obj");
+    EXPECT_FALSE(state().is_turning());
+    std::vector<LampRow> rows = state().lamps();
+    ASSERT_FALSE(rows.empty());
+    const glm::vec3 before = state().scene().directional_lights[0].direction_world;
+    rows[0].speed = 1.0F;
+    state().set_lamps(rows);
+    EXPECT_TRUE(state().is_turning());
+    const std::uint64_t revision = state().wish()->revision;
+    EXPECT_TRUE(state().pass(0.5));
+    EXPECT_GT(state().wish()->revision, revision);
+    const glm::vec3 after = state().scene().directional_lights[0].direction_world;
+    EXPECT_NEAR(after.y, before.y, 1e-5F);
+    EXPECT_NEAR(glm::length(after), glm::length(before), 1e-5F);
+    EXPECT_GT(glm::distance(after, before), 0.1F);
+    show("square.obj");
+    EXPECT_EQ(state().lamps()[0].speed, 1.0F) << "the same model read again";
+    rows = state().lamps();
+    rows[0].speed = 0.0F;
+    state().set_lamps(rows);
+    EXPECT_FALSE(state().is_turning());
+    EXPECT_FALSE(state().pass(0.5));
+}
+
+TEST_F(State, AnEditThatFailsChangesNothingAndSaysWhy) {
+    show("square.obj");
+    const std::shared_ptr<const Scene> scene = state().wish()->scene;
+    state().set_environment("nothing.hdr");
+    EXPECT_THAT(state().error(), testing::HasSubstr("nothing.hdr"));
+    EXPECT_EQ(state().wish()->scene, scene);
+    state().try_edit([](Scene& edited) { edited.exposure = 2.0F; });
+    EXPECT_EQ(state().error(), "");
+}
+
+TEST_F(State, EditsOfTheDefaultMaterialSurviveReadingAgain) {
+    const auto show_bare = [&] {
+        Loaded bare = read("square.obj");
+        bare.composed->scene().materials.clear();
+        bare.composed->scene().meshes[0].edit().material_ranges.clear();
+        state().take(std::move(bare));
+    };
+    show_bare();
+    state().name_default_material();
+    ASSERT_EQ(state().scene().materials.size(), 1U);
+    state().edit([](Scene& scene) { scene.materials[0].shininess = 99.0F; });
+    show_bare();
+    ASSERT_EQ(state().scene().materials.size(), 1U);
+    EXPECT_EQ(state().scene().materials[0].shininess, 99.0F);
+}
+
 TEST_F(State, SaysItselfAsJson) {
     show("square.obj");
     state().camera().azimuth = glm::radians(40.0F);

@@ -71,6 +71,13 @@ TEST(Window, KeysAndTheWheelMoveTheCameraAndQuitEndsIt) {
         const json& target = now["camera"]["target"];
         return target[2] != before["camera"]["target"][2];
     });
+    // Two fingers, or the wheel, with Shift take the model along and come no nearer.
+    const json panned = window.wait_for_rest();
+    display->act("mousemove 800 400 keydown shift click 4 click 6 keyup shift");
+    const json scrolled = window.wait_for("scrolled", [&](const json& now) {
+        return now["camera"]["target"] != panned["camera"]["target"];
+    });
+    EXPECT_EQ(scrolled["camera"]["distance"], panned["camera"]["distance"]);
     window.key("f");
     window.wait_for("fitted", [&](const json& now) {
         const json& target = now["camera"]["target"];

@@ -35,6 +35,10 @@ const std::vector<Binding>& bindings() {
         {Action::paste_camera, "Ctrl+V", "Look from where copied options say"},
         {Action::save_picture, "S", "Save a picture beside the model"},
         {Action::panels, "Tab", "Hide the panels, or show them"},
+        {Action::larger_interface, "Ctrl++", "Larger letters and panels"},
+        {Action::larger_interface, "Ctrl+=", "Larger letters and panels"},
+        {Action::smaller_interface, "Ctrl+-", "Smaller letters and panels"},
+        {Action::usual_interface, "Ctrl+0", "Letters and panels as large as the screen wants them"},
         {Action::help, "H", "Show these bindings"},
         {Action::quit, "Ctrl+Q", "Close the window"},
     };
@@ -45,6 +49,7 @@ const std::vector<Gesture>& gestures() {
     static const std::vector<Gesture> all = {
         {"Drag", "Go round the model"},
         {"Shift+drag, middle drag", "Move the view"},
+        {"Shift+wheel, Shift+two fingers", "Move the view, up and down or sideways"},
         {"Wheel, two fingers, right drag", "Come nearer or go farther, to where the pointer is"},
         {"Ctrl+drag", "Move the lights round the model"},
         {"Double click", "Go round this point of the surface"},

@@ -37,6 +37,9 @@ enum class Action {
     paste_camera,
     save_picture,
     panels,
+    larger_interface,
+    smaller_interface,
+    usual_interface,
     help,
     quit,
 };

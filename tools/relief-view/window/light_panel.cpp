@@ -1,23 +1,29 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lights: their kinds, directions, places, colours and strengths; adding and removing them.
-// Tests: tests/tools/window/window_test.cpp.
+// Lights: their kinds, directions, places, colours, strengths and cones, how fast they go round the
+// model by themselves; adding and removing them. Tests: tests/tools/window/panels_test.cpp.
+#include <fmt/format.h>
 #include <imgui.h>
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
+#include "light_option.h"
+#include "window/controls.h"
 #include "window/panels.h"
 #include "window/places.h"
 
 namespace relief::tools {
 namespace {
 
+constexpr LampKind kinds[] = {LampKind::directional, LampKind::point, LampKind::spot};
+
 /// A colour is a strength and what is left of it.
 bool edit_light_color(glm::vec3& irradiance) {
     float strength = std::max({irradiance.x, irradiance.y, irradiance.z});
     glm::vec3 color = strength > 0.0F ? irradiance / strength : glm::vec3(1.0F);
     bool changed = ImGui::ColorEdit3("Colour", &color.x, ImGuiColorEditFlags_Float);
-    changed |= ImGui::DragFloat("Intensity", &strength, 0.01F, 0.0F, 1e6F, "%.3g");
+    changed |= drag_up("Intensity", strength);
     if (changed) irradiance = std::max(strength, 0.0F) * glm::max(color, glm::vec3(0.0F));
     return changed;
 }
@@ -26,87 +32,112 @@ bool edit_direction(glm::vec3& travels) {
     const glm::vec3 from = -glm::normalize(travels);
     float azimuth = glm::degrees(std::atan2(from.x, from.z));
     float elevation = glm::degrees(std::asin(std::clamp(from.y, -1.0F, 1.0F)));
-    bool changed = ImGui::SliderFloat("Azimuth", &azimuth, -180.0F, 180.0F, "%.0f deg");
-    changed |= ImGui::SliderFloat("Elevation", &elevation, -90.0F, 90.0F, "%.0f deg");
-    if (changed) {
-        const float a = glm::radians(azimuth);
-        const float e = glm::radians(elevation);
-        travels = -glm::vec3(std::cos(e) * std::sin(a), std::sin(e), std::cos(e) * std::cos(a));
+    bool changed = slide("Azimuth", azimuth, {-180.0F, 180.0F, "%.0f deg"});
+    changed |= slide("Elevation", elevation, {-90.0F, 90.0F, "%.0f deg"});
+    if (changed) travels = -towards(glm::radians(azimuth), glm::radians(elevation));
+    return changed;
+}
+
+bool edit_point(PointLight& light) {
+    bool changed = ImGui::DragFloat3("Position", &light.position_world.x, 0.01F);
+    changed |= edit_light_color(light.intensity);
+    bool falls_off = light.falloff == Falloff::inverse_square;
+    if (ImGui::Checkbox("Less with distance", &falls_off)) {
+        light.falloff = falls_off ? Falloff::inverse_square : Falloff::none;
+        changed = true;
     }
     return changed;
 }
 
-/// One light: its values, and a button that removes it. \return whether anything changed
-template <typename Light, typename Draw>
-bool edit_lights(const char* kind, std::vector<Light>& lights, const Draw& draw) {
+/// Full within the inner cone, nothing beyond the outer one; the inner one stays the smaller.
+bool edit_cones(SpotLight& light) {
+    float inner = glm::degrees(light.inner_cone);
+    float outer = glm::degrees(light.outer_cone);
+    bool changed = slide("Cone", outer, {1.0F, 90.0F, "%.0f deg"});
+    changed |= slide("Full within", inner, {0.0F, 90.0F, "%.0f deg"});
+    if (!changed) return false;
+    light.outer_cone = std::clamp(glm::radians(outer), 0.01F, 0.5F * std::numbers::pi_v<float>);
+    light.inner_cone = std::clamp(glm::radians(inner), 0.0F, 0.99F * light.outer_cone);
+    return true;
+}
+
+bool edit_lamp(Lamp& lamp) {
+    if (auto* directional = std::get_if<DirectionalLight>(&lamp)) {
+        const bool turned = edit_direction(directional->direction_world);
+        return edit_light_color(directional->irradiance) || turned;
+    }
+    if (auto* point = std::get_if<PointLight>(&lamp)) return edit_point(*point);
+    auto& spot = std::get<SpotLight>(lamp);
+    bool changed = edit_point(spot.point);
+    changed |= edit_direction(spot.direction_world);
+    return edit_cones(spot) || changed;
+}
+
+/// The kind, what it has, its own motion. \return whether anything changed
+bool edit_row(LampRow& row, const Ball& ball) {
+    LampKind kind = kind_of(row.lamp);
+    bool changed = choose("Kind", kind, {"Directional", "Point", "Spot"});
+    if (changed) row.lamp = as_kind(row.lamp, kind, ball);
+    changed |= edit_lamp(row.lamp);
+    float speed = glm::degrees(row.speed);
+    if (slide("Goes round", speed, {-180.0F, 180.0F, "%.0f deg/s"})) {
+        row.speed = glm::radians(speed);
+        changed = true;
+    }
+    return changed;
+}
+
+/// Each with its values, which are shown where it is opened. \return whether anything changed
+bool edit_rows(std::vector<LampRow>& rows, const Ball& ball) {
     bool changed = false;
     std::optional<std::size_t> removed;
-    for (std::size_t i = 0; i < lights.size(); ++i) {
-        ImGui::PushID(kind);
-        ImGui::PushID(static_cast<int>(i));
-        if (ImGui::TreeNode("light", "%s light %zu", kind, i + 1)) {
-            changed |= draw(lights[i]);
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        const std::string name = fmt::format("Light {}", i + 1);
+        ImGui::PushID(static_cast<int>(rows[i].id));
+        const bool is_open =
+            ImGui::TreeNode("light", "%s, %s", name.c_str(), name_of(kind_of(rows[i].lamp)));
+        mark_place(name);
+        if (is_open) {
+            changed |= edit_row(rows[i], ball);
             if (ImGui::Button("Remove")) removed = i;
+            mark_place("Remove");
             ImGui::TreePop();
         }
         ImGui::PopID();
-        ImGui::PopID();
     }
-    if (removed) lights.erase(lights.begin() + static_cast<std::ptrdiff_t>(*removed));
+    if (removed) rows.erase(rows.begin() + static_cast<std::ptrdiff_t>(*removed));
     return changed || removed;
+}
+
+bool add_rows(std::vector<LampRow>& rows, const Ball& ball) {
+    bool changed = false;
+    ImGui::TextUnformatted("Add");
+    for (const LampKind kind : kinds) {
+        ImGui::SameLine();
+        if (ImGui::Button(name_of(kind))) {
+            rows.push_back({new_lamp(kind, ball)});
+            changed = true;
+        }
+        mark_place(fmt::format("Add {}", name_of(kind)));
+    }
+    return changed;
 }
 
 }  // namespace
 
 void draw_light_panel(const PanelInput& input) {
-    if (!input.state.has_scene()) return;
-    std::vector<DirectionalLight> directional = input.state.scene().directional_lights;
-    std::vector<PointLight> points = input.state.scene().point_lights;
-    std::vector<SpotLight> spots = input.state.scene().spot_lights;
-    glm::vec3 ambient = input.state.scene().ambient;
+    ViewerState& state = input.state;
+    if (!state.has_scene()) return;
+    std::vector<LampRow> rows = state.lamps();
+    glm::vec3 ambient = state.scene().ambient;
     bool changed = ImGui::ColorEdit3("Ambient", &ambient.x,
                                      ImGuiColorEditFlags_Float | ImGuiColorEditFlags_HDR);
-    changed |= edit_lights("Directional", directional, [](DirectionalLight& light) {
-        const bool turned = edit_direction(light.direction_world);
-        return edit_light_color(light.irradiance) || turned;
-    });
-    const auto edit_place = [](PointLight& light) {
-        const bool moved = ImGui::DragFloat3("Position", &light.position_world.x, 0.01F);
-        return edit_light_color(light.intensity) || moved;
-    };
-    changed |= edit_lights("Point", points, edit_place);
-    changed |= edit_lights("Spot", spots, [&](SpotLight& light) {
-        bool edited = edit_place(light.point);
-        edited |= edit_direction(light.direction_world);
-        float cone = glm::degrees(light.outer_cone);
-        if (ImGui::SliderFloat("Cone", &cone, 1.0F, 90.0F, "%.0f deg")) {
-            light.outer_cone = glm::radians(cone);
-            light.inner_cone = std::min(light.inner_cone, 0.99F * light.outer_cone);
-            edited = true;
-        }
-        return edited;
-    });
-    const Ball& ball = input.state.ball();
-    if (ImGui::Button("Add directional")) {
-        directional.push_back({});
-        changed = true;
+    if (changed) {
+        state.edit([&](Scene& scene) { scene.ambient = glm::max(ambient, glm::vec3(0.0F)); });
     }
-    mark_place("Add directional");
-    ImGui::SameLine();
-    if (ImGui::Button("Add point")) {
-        PointLight light;
-        light.position_world = ball.center + ball.radius * glm::vec3(0.7F, 1.0F, 0.7F);
-        light.intensity = glm::vec3(ball.radius * ball.radius);
-        points.push_back(light);
-        changed = true;
-    }
-    if (!changed) return;
-    input.state.edit([&](Scene& scene) {
-        scene.directional_lights = directional;
-        scene.point_lights = points;
-        scene.spot_lights = spots;
-        scene.ambient = glm::max(ambient, glm::vec3(0.0F));
-    });
+    const bool has_changed = edit_rows(rows, state.ball());
+    const bool has_more = add_rows(rows, state.ball());
+    if (has_changed || has_more) state.set_lamps(std::move(rows));
 }
 
 }  // namespace relief::tools

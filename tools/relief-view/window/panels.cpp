@@ -5,6 +5,8 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
+#include <array>
+
 #include "common/text.h"
 #include "window/places.h"
 #include "window/progress_line.h"
@@ -31,14 +33,49 @@ std::string status_text(const PanelInput& input) {
                        input.is_drawing ? "drawing" : "idle", input.renderer, saved);
 }
 
-/// A panel's header. \return whether it is open
-bool begins(const char* name, ImGuiTreeNodeFlags flags = 0) {
-    const bool is_open = ImGui::CollapsingHeader(name, flags);
-    mark_place(name);
+struct Panel {
+    const char* name;
+    bool is_open_at_first;
+    void (*draw)(const PanelInput&, PanelWishes&);
+};
+
+/// A panel that asks nothing of the window.
+template <void (*draw)(const PanelInput&)>
+void plain(const PanelInput& input, PanelWishes&) {
+    draw(input);
+}
+
+constexpr std::array panels{
+    Panel{"Scene", true, plain<draw_scene_panel>},
+    Panel{"Lights", false, plain<draw_light_panel>},
+    Panel{"Materials", false, plain<draw_material_panel>},
+    Panel{"Environment", false, plain<draw_environment_panel>},
+    Panel{"Picture", false, plain<draw_picture_panel>},
+    Panel{"View", false, plain<draw_view_panel>},
+    Panel{"Save", false, draw_capture_panel},
+    Panel{"Effects", true, draw_effects_panel},
+};
+
+/// A panel's header, which opens and closes it; that is remembered. \return whether it is open
+bool begins(const Panel& panel, WindowLayout& layout) {
+    const auto remembered = layout.open_panels.find(panel.name);
+    const bool was_open =
+        remembered == layout.open_panels.end() ? panel.is_open_at_first : remembered->second;
+    ImGui::SetNextItemOpen(was_open);
+    const bool is_open = ImGui::CollapsingHeader(panel.name);
+    mark_place(panel.name);
+    if (is_open != was_open) layout.open_panels[panel.name] = is_open;
     return is_open;
 }
 
 }  // namespace
+
+std::vector<std::string> panel_names() {
+    std::vector<std::string> names;
+    for (const Panel& panel : panels)
+        names.emplace_back(panel.name);
+    return names;
+}
 
 float draw_panels(const PanelInput& input, PanelWishes& wishes) {
     const ImGuiIO& io = ImGui::GetIO();
@@ -49,13 +86,9 @@ float draw_panels(const PanelInput& input, PanelWishes& wishes) {
     ImGui::Begin("Panels", nullptr,
                  ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove);
     ImGui::PushItemWidth(0.5F * width);
-    if (begins("Scene", ImGuiTreeNodeFlags_DefaultOpen)) draw_scene_panel(input);
-    if (begins("Lights")) draw_light_panel(input);
-    if (begins("Materials")) draw_material_panel(input);
-    if (begins("Picture")) draw_picture_panel(input);
-    if (begins("View")) draw_view_panel(input);
-    if (begins("Save")) draw_capture_panel(input, wishes);
-    if (begins("Effects", ImGuiTreeNodeFlags_DefaultOpen)) draw_effects_panel(input, wishes);
+    for (const Panel& panel : panels) {
+        if (begins(panel, input.layout)) panel.draw(input, wishes);
+    }
     ImGui::PopItemWidth();
     ImGui::End();
     return width;
@@ -66,7 +99,8 @@ void draw_status(const PanelInput& input, PanelWishes& wishes) {
     const float height = ImGui::GetFrameHeightWithSpacing();
     ImGui::SetNextWindowPos({0, io.DisplaySize.y - height});
     ImGui::SetNextWindowSize({io.DisplaySize.x, height});
-    ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {8.0F, 2.0F});
+    const float letter = ImGui::GetFontSize();
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {0.6F * letter, 0.15F * letter});
     ImGui::Begin("Status", nullptr, ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove);
     const std::string& error =
         input.state.error().empty() ? input.drawn.error : input.state.error();

@@ -9,12 +9,14 @@
 #include "window/effect_prices.h"
 #include "window/shader_panel.h"
 #include "window/viewer_state.h"
+#include "window/window_layout.h"
 
 namespace relief::tools {
 
 /// Everything drawn with Dear ImGui for one frame of the window.
 struct PanelInput {
     ViewerState& state;
+    WindowLayout& layout;
     const DrawnPicture& drawn;
     const std::string& renderer;
     double loading_seconds = 0.0;  ///< 0: nothing is being read.
@@ -22,7 +24,8 @@ struct PanelInput {
     Progress::State progress;      ///< Of reading, else of preparing what is drawn next.
     bool is_drawing = false;       ///< Else the picture is the newest, and nothing goes on.
     CaptureSettings* capture = nullptr;
-    std::string captured;  ///< What was saved, in words.
+    std::string captured;     ///< What was saved, in words.
+    std::string layout_note;  ///< What became of the layout that was remembered.
     EffectPrices& prices;
     ShaderPanel& shaders;
 };
@@ -39,12 +42,16 @@ struct PanelWishes {
 void draw_scene_panel(const PanelInput& input);
 void draw_light_panel(const PanelInput& input);
 void draw_material_panel(const PanelInput& input);
+void draw_environment_panel(const PanelInput& input);
 void draw_picture_panel(const PanelInput& input);
 void draw_capture_panel(const PanelInput& input, PanelWishes& wishes);
 void draw_effects_panel(const PanelInput& input, PanelWishes& wishes);
 void draw_view_panel(const PanelInput& input);
 
-/// All of them in one column. \return its width in pixels
+/// The headers of all panels, from the top.
+std::vector<std::string> panel_names();
+
+/// All of them in one column. \return its width in the window's units
 float draw_panels(const PanelInput& input, PanelWishes& wishes);
 
 /// The line at the bottom: triangles, the frame's time, what is going on.

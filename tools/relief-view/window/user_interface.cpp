@@ -23,6 +23,7 @@ constexpr ImU32 backdrop = IM_COL32(24, 26, 30, 255);
 constexpr double double_click_seconds = 0.35;
 constexpr float double_click_reach = 6.0F;  // In the window's units.
 constexpr float drag_zoom = 0.02F;          // Steps of the wheel for each pixel of a right drag.
+constexpr float wheel_pan = 40.0F;          // The window's units for each step of the wheel.
 
 /// GLFW's code of a key by its name.
 int key_code(std::string_view name) {
@@ -74,8 +75,10 @@ void install_callbacks(GLFWwindow* window) {
     glfwSetCursorPosCallback(window, [](GLFWwindow* where, double x, double y) {
         interface_of(where).on_move(glm::vec2(x, y));
     });
-    glfwSetScrollCallback(window, [](GLFWwindow* where, double, double steps) {
-        interface_of(where).on_wheel(static_cast<float>(steps));
+    glfwSetScrollCallback(window, [](GLFWwindow* where, double x, double y) {
+        const bool has_shift = glfwGetKey(where, GLFW_KEY_LEFT_SHIFT) == GLFW_PRESS ||
+                               glfwGetKey(where, GLFW_KEY_RIGHT_SHIFT) == GLFW_PRESS;
+        interface_of(where).on_wheel(glm::vec2(x, y), has_shift);
     });
 }
 
@@ -85,6 +88,9 @@ bool is_windows_own(Action action) {
         case Action::paste_camera:
         case Action::save_picture:
         case Action::panels:
+        case Action::larger_interface:
+        case Action::smaller_interface:
+        case Action::usual_interface:
         case Action::help:
         case Action::quit:
             return true;
@@ -123,13 +129,6 @@ UserInterface::UserInterface(const WindowSystem& system) : system_(system) {
     ImGui::CreateContext();
     ImGuiIO& io = ImGui::GetIO();
     io.IniFilename = nullptr;
-    const float scale = system.content_scale();
-    ImFontConfig font;
-    font.SizePixels = std::round(13.0F * scale);
-    io.Fonts->AddFontDefault(&font);
-    ImGui::StyleColorsDark();
-    ImGui::GetStyle().ScaleAllSizes(scale);
-    ImGui::GetStyle().WindowRounding = 0.0F;
     ImGui_ImplGlfw_InitForOpenGL(window, true);
     ImGui_ImplOpenGL3_Init("#version 330 core");
 }
@@ -140,8 +139,30 @@ UserInterface::~UserInterface() {
     ImGui::DestroyContext();
 }
 
+/// Letters are drawn anew, in pixels; everything else in the window's units.
+void UserInterface::apply_scale() {
+    if (scale_ == wanted_scale_) return;
+    scale_ = wanted_scale_;
+    ImGuiIO& io = ImGui::GetIO();
+    ImFontConfig font;
+    font.SizePixels = std::round(13.0F * scale_.glyphs);
+    io.Fonts->Clear();
+    io.Fonts->AddFontDefault(&font);
+    io.FontGlobalScale = scale_.layout / scale_.glyphs;
+    ImGui::GetStyle() = ImGuiStyle();
+    ImGui::StyleColorsDark();
+    ImGui::GetStyle().ScaleAllSizes(scale_.layout);
+    ImGui::GetStyle().WindowRounding = 0.0F;
+    ImGui_ImplOpenGL3_DestroyFontsTexture();
+    ImGui_ImplOpenGL3_CreateFontsTexture();
+}
+
+bool UserInterface::is_typing() {
+    return ImGui::GetIO().WantTextInput;
+}
+
 void UserInterface::on_key(int key, int modifiers, bool is_held) {
-    if (ImGui::GetIO().WantTextInput) return;
+    if (is_typing()) return;
     for (const Binding& binding : bindings()) {
         if (is_named(binding.key, key, modifiers) && (!is_held || is_repeating(binding.action)))
             pressed_.push_back(binding.action);
@@ -186,8 +207,14 @@ void UserInterface::on_move(const glm::vec2& place) {
     if (drag_ != Drag::none) moves_.push_back({drag_, moved, 0.0F, place});
 }
 
-void UserInterface::on_wheel(float steps) {
-    if (is_on_picture()) moves_.push_back({Drag::none, {}, steps, pointer_});
+/// Two fingers zoom; with Shift they take the model along, as a drag with Shift does.
+void UserInterface::on_wheel(const glm::vec2& steps, bool has_shift) {
+    if (!is_on_picture()) return;
+    if (has_shift) {
+        moves_.push_back({Drag::pan, wheel_pan * steps, 0.0F, pointer_});
+    } else {
+        moves_.push_back({Drag::none, {}, steps.y, pointer_});
+    }
 }
 
 /// From the centre of the view, in halves of its height, y up.
@@ -215,13 +242,14 @@ void UserInterface::apply(const Move& move, ViewerState& state) const {
 
 UserInterface::Events UserInterface::draw(const PanelInput& input, const Handover::Shown& picture) {
     ImGui_ImplOpenGL3_NewFrame();
+    apply_scale();
     ImGui_ImplGlfw_NewFrame();
     ImGui::NewFrame();
     forget_places();
     Events events;
     events.dropped = std::exchange(dropped_, {});
     events.has_input = std::exchange(has_input_, false);
-    left_ = has_panels_ ? draw_panels(input, events.panels) : 0.0F;
+    left_ = input.layout.has_panels ? draw_panels(input, events.panels) : 0.0F;
     bottom_ = ImGui::GetFrameHeightWithSpacing();
     draw_status(input, events.panels);
     if (is_help_open_) draw_help(is_help_open_);

@@ -8,6 +8,7 @@
 #include <glm/vec2.hpp>
 #include <vector>
 
+#include "window/interface_scale.h"
 #include "window/panels.h"
 #include "window/window_system.h"
 
@@ -33,13 +34,19 @@ class UserInterface {
 
     void show_help() { is_help_open_ = !is_help_open_; }
     [[nodiscard]] bool is_help_open() const { return is_help_open_; }
-    void show_panels() { has_panels_ = !has_panels_; }
+
+    /// Keys go into a field, and do nothing else.
+    [[nodiscard]] static bool is_typing();
+
+    /// Letters and panels become so large before the next frame.
+    void set_scale(const InterfaceScale& scale) { wanted_scale_ = scale; }
+    [[nodiscard]] const InterfaceScale& scale() const { return scale_; }
 
     // From GLFW, as it happens: two events between frames are still two.
     void on_key(int key, int modifiers, bool is_held);
     void on_button(int button, bool is_down, int modifiers);
     void on_move(const glm::vec2& place);
-    void on_wheel(float steps);
+    void on_wheel(const glm::vec2& steps, bool has_shift);
     void on_drop(const std::filesystem::path& file) { dropped_.push_back(file); }
     void on_input() { has_input_ = true; }
 
@@ -54,6 +61,7 @@ class UserInterface {
         glm::vec2 place{0.0F};
     };
 
+    void apply_scale();
     [[nodiscard]] bool is_on_picture() const;
     [[nodiscard]] bool is_second_click();
     [[nodiscard]] glm::vec2 on_view(const glm::vec2& place, const ViewerState& state) const;
@@ -69,7 +77,8 @@ class UserInterface {
     glm::vec2 clicked_{-1e6F};  ///< Where and when a button last went down.
     double clicked_at_ = -1e9;
     bool is_help_open_ = false;
-    bool has_panels_ = true;
+    InterfaceScale scale_{.layout = 0.0F, .glyphs = 0.0F};  ///< None yet.
+    InterfaceScale wanted_scale_;
     float left_ = 0.0F;    ///< Of the picture, in the interface's units.
     float bottom_ = 0.0F;  ///< What is below it.
 };

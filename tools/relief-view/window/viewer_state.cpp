@@ -4,13 +4,16 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 #include <numbers>
 #include <utility>
 
 #include "debug_options.h"
+#include "environment_options.h"
 #include "window/draw_thread.h"
+#include "window/material_models.h"
 #include "window/pasted_view.h"
 #include "window/picking.h"
 
@@ -42,48 +45,104 @@ void ViewerState::take(Loaded loaded) {
     notes_ = std::move(loaded.composed->notes);
     findings_ = std::move(loaded.findings);
     const Camera camera = loaded.composed->camera;
+    tree_ = tree_of(loaded.composed->graph);
     auto scene = std::make_shared<Scene>(std::move(loaded.composed->scene()));
+    if (has_named_default_) tools::name_default_material(*scene);
     auto read = std::make_shared<const Scene>(*scene);
     kept_ = scene_ ? keep_edits(*read_, *scene_, *scene) : KeptEdits{};
     notes_.insert(notes_.end(), kept_.lost.begin(), kept_.lost.end());
-    scene_ = std::move(scene);
+    if (is_new || hidden_.size() != scene->instances.size())
+        hidden_.assign(scene->instances.size(), false);
+    replace(std::move(scene));
+    lamps_.meet(*scene_);
     read_ = std::move(read);
+    edit_error_.clear();
     ++scenes_;
     ball_ = ball_around(world_bounds(*scene_));
     mark_health();
-    ++revision_;
     if (!is_new) return;
     const std::optional<CameraOption>& view = options_.camera;
     camera_ = view && view->place ? orbit_of(*view, *view->place, camera.vertical_fov)
                                   : orbit_of(camera, ball_);
 }
 
+/// Another scene, or the same one edited.
+void ViewerState::replace(std::shared_ptr<const Scene> scene) {
+    scene_ = std::move(scene);
+    shown_ = scene_;
+    if (std::find(hidden_.begin(), hidden_.end(), true) != hidden_.end()) {
+        auto shown = std::make_shared<Scene>(*scene_);
+        shown->instances.clear();
+        for (std::size_t i = 0; i < scene_->instances.size(); ++i) {
+            if (is_shown(i)) shown->instances.push_back(scene_->instances[i]);
+        }
+        shown_ = std::move(shown);
+    }
+    ++revision_;
+}
+
+void ViewerState::show(const std::vector<std::size_t>& instances, bool are_shown) {
+    for (const std::size_t instance : instances)
+        hidden_[instance] = !are_shown;
+    replace(scene_);
+}
+
+void ViewerState::name_default_material() {
+    if (!scene_) return;
+    has_named_default_ = true;
+    auto read = std::make_shared<Scene>(*read_);
+    tools::name_default_material(*read);
+    read_ = std::move(read);
+    edit(tools::name_default_material);
+}
+
+void ViewerState::set_environment(const std::filesystem::path& file) {
+    ViewOptions options;
+    options.environment = {file};
+    try_edit([&](Scene& scene) {
+        Environment environment = environment_of(options);
+        environment.lights = std::any_of(
+            scene.materials.begin(), scene.materials.end(), [](const Material& material) {
+                return model_of(material) == MaterialModel::metallic_roughness;
+            });
+        if (scene.environment) {
+            environment.intensity = scene.environment->intensity;
+            environment.skybox = scene.environment->skybox;
+            environment.lights = scene.environment->lights;
+        }
+        scene.environment = std::move(environment);
+        options_.environment = options.environment;
+        options_.environment_layout.reset();
+        options_.left_handed_environment = false;
+    });
+}
+
+std::vector<LampRow> ViewerState::lamps() const {
+    return scene_ ? lamps_.rows(*scene_) : std::vector<LampRow>();
+}
+
+void ViewerState::set_lamps(std::vector<LampRow> rows) {
+    edit([&](Scene& scene) { lamps_.set(scene, std::move(rows)); });
+}
+
 void ViewerState::orbit_lights(const glm::vec2& pixels) {
     if (!scene_ || view_.y == 0) return;
     const float unit = 2.0F * quarter / static_cast<float>(view_.y);
     const glm::vec3 right(std::cos(camera_.azimuth), 0.0F, -std::sin(camera_.azimuth));
-    glm::mat4 turn = glm::rotate(glm::mat4(1.0F), unit * pixels.y, right);
-    turn = glm::rotate(turn, unit * pixels.x, {0.0F, 1.0F, 0.0F});
+    glm::mat4 rotation = glm::rotate(glm::mat4(1.0F), unit * pixels.y, right);
+    rotation = glm::rotate(rotation, unit * pixels.x, {0.0F, 1.0F, 0.0F});
     edit([&](Scene& scene) {
-        const glm::mat3 rotation(turn);
-        const auto moved = [&](const glm::vec3& position) {
-            return ball_.center + rotation * (position - ball_.center);
-        };
-        for (DirectionalLight& light : scene.directional_lights)
-            light.direction_world = rotation * light.direction_world;
-        for (PointLight& light : scene.point_lights)
-            light.position_world = moved(light.position_world);
-        for (SpotLight& light : scene.spot_lights) {
-            light.point.position_world = moved(light.point.position_world);
-            light.direction_world = rotation * light.direction_world;
-        }
+        std::vector<Lamp> lamps = lamps_of(scene);
+        for (Lamp& lamp : lamps)
+            tools::turn(lamp, glm::mat3(rotation), ball_.center);
+        tools::set_lamps(scene, lamps);
     });
 }
 
 void ViewerState::aim(const glm::vec2& pointer) {
     if (!scene_) return;
     const Ray ray = ray_through(camera_of(camera_, ball_), pointer);
-    if (const std::optional<glm::vec3> point = surface_on(*scene_, ray)) aim_at(camera_, *point);
+    if (const std::optional<glm::vec3> point = surface_on(*shown_, ray)) aim_at(camera_, *point);
 }
 
 void ViewerState::look_as(const std::string& text) {
@@ -209,7 +268,8 @@ void ViewerState::set_view(const glm::ivec2& pixels) {
 }
 
 bool ViewerState::pass(double seconds) {
-    if (!is_turning_) return false;
+    if (lamps_.is_moving()) edit([&](Scene& scene) { lamps_.pass(scene, seconds, ball_.center); });
+    if (!is_turning_) return lamps_.is_moving();
     camera_.azimuth = std::remainder(
         camera_.azimuth - turntable_speed * static_cast<float>(seconds), 4.0F * quarter);
     return true;
@@ -218,7 +278,7 @@ bool ViewerState::pass(double seconds) {
 std::optional<DrawWish> ViewerState::wish() const {
     if (!scene_ || view_.x <= 0 || view_.y <= 0) return std::nullopt;
     DrawWish wish;
-    wish.scene = scene_;
+    wish.scene = shown_;
     wish.revision = revision_;
     wish.effects = effects_;
     wish.settings.width = view_.x;
@@ -239,7 +299,7 @@ std::string ViewerState::command_line() const {
 nlohmann::ordered_json ViewerState::json(const DrawnPicture& drawn) const {
     const auto numbers = [](const glm::vec3& v) { return nlohmann::json{v.x, v.y, v.z}; };
     nlohmann::ordered_json state = {{"model", options_.model.string()},
-                                    {"error", !error_.empty() ? error_ : drawn.error},
+                                    {"error", !error().empty() ? error() : drawn.error},
                                     {"view", {view_.x, view_.y}},
                                     {"camera",
                                      {{"azimuth", glm::degrees(camera_.azimuth)},
@@ -264,11 +324,17 @@ nlohmann::ordered_json ViewerState::json(const DrawnPicture& drawn) const {
     for (const Instance& instance : scene_->instances)
         triangles += scene_->meshes[instance.mesh]->triangles.size();
     state["triangles"] = triangles;
+    state["shown"] = {shown_->instances.size(), scene_->instances.size()};
     state["materials"] = scene_->materials.size();
     nlohmann::json lights = nlohmann::json::array();
     for (const DirectionalLight& light : scene_->directional_lights)
         lights.push_back(numbers(light.direction_world));
     state["directional_lights"] = lights;
+    state["lights"] = nlohmann::json::array();
+    for (const LampRow& row : lamps()) {
+        state["lights"].push_back(
+            {{"kind", name_of(kind_of(row.lamp))}, {"speed", glm::degrees(row.speed)}});
+    }
     if (drawn.plan) state["effects"] = effects_in(*drawn.plan);
     return state;
 }

@@ -16,8 +16,10 @@
 #include "window/bindings.h"
 #include "window/health_search.h"
 #include "window/kept_edits.h"
+#include "window/lamp_rows.h"
 #include "window/loader.h"
 #include "window/orbit_camera.h"
+#include "window/scene_tree.h"
 
 namespace relief::tools {
 
@@ -33,7 +35,7 @@ class ViewerState {
     [[nodiscard]] const Scene& scene() const { return *scene_; }
     [[nodiscard]] const std::vector<std::string>& notes() const { return notes_; }
     [[nodiscard]] const Report& findings() const { return findings_; }
-    [[nodiscard]] const std::string& error() const { return error_; }
+    [[nodiscard]] const std::string& error() const { return error_.empty() ? edit_error_ : error_; }
 
     /// Takes over what was read, and puts the edits of the scene before it on that (kept_edits.h).
     /// The first scene, and one of another model, is shown whole; the same model read again keeps
@@ -49,9 +51,39 @@ class ViewerState {
         if (!scene_) return;
         auto edited = std::make_shared<Scene>(*scene_);
         change(*edited);
-        scene_ = std::move(edited);
-        ++revision_;
+        replace(std::move(edited));
     }
+
+    /// The same for what may fail: then nothing changes, and error() says why until something
+    /// succeeds.
+    template <typename Edit>
+    void try_edit(const Edit& change) {
+        try {
+            edit(change);
+            edit_error_.clear();
+        } catch (const std::exception& error) {
+            edit_error_ = error.what();
+        }
+    }
+
+    /// Lamps beside what the window knows of them.
+    [[nodiscard]] std::vector<LampRow> lamps() const;
+    void set_lamps(std::vector<LampRow> rows);
+
+    /// Gives the default material a place in the list, so that it can be edited, and in scenes that
+    /// are read later.
+    void name_default_material();
+
+    /// Surroundings from an image or a folder with six, also for what is read later; an error as
+    /// with try_edit. What was chosen of the surroundings before stays; else they shed light where
+    /// a material is metallic-roughness, as --environment does.
+    void set_environment(const std::filesystem::path& file);
+
+    /// What hangs on what, as the file has it.
+    [[nodiscard]] const SceneTree& tree() const { return tree_; }
+    /// Instances that are not drawn, though the scene has them.
+    [[nodiscard]] bool is_shown(std::size_t instance) const { return !hidden_[instance]; }
+    void show(const std::vector<std::size_t>& instances, bool are_shown);
 
     /// Turns the lights about the world's y and the view's right-hand side.
     void orbit_lights(const glm::vec2& pixels);
@@ -83,8 +115,9 @@ class ViewerState {
     [[nodiscard]] const OrbitCamera& camera() const { return camera_; }
     [[nodiscard]] const Ball& ball() const { return ball_; }
 
-    [[nodiscard]] bool is_turning() const { return is_turning_; }
-    /// Lets time pass for the turntable. \return whether anything moved
+    /// Whether the camera or a lamp moves by itself.
+    [[nodiscard]] bool is_turning() const { return is_turning_ || lamps_.is_moving(); }
+    /// Lets time pass for the turntable and for lamps. \return whether anything moved
     bool pass(double seconds);
 
     /// What is to be drawn now; none without a scene or a view.
@@ -96,15 +129,21 @@ class ViewerState {
     [[nodiscard]] nlohmann::ordered_json json(const DrawnPicture& drawn) const;
 
   private:
+    void replace(std::shared_ptr<const Scene> scene);
     void mark_health();
     void act_on_debug(Action action);
     void look_from(float azimuth, float elevation);
 
     ViewOptions options_;
     std::shared_ptr<const Scene> scene_;
-    std::shared_ptr<const Scene> read_;  ///< The same without any edit.
-    KeptEdits kept_;                     ///< Of the last scene that was read.
-    std::uint64_t scenes_ = 0;           ///< Read so far.
+    std::shared_ptr<const Scene> read_;   ///< The same without any edit.
+    KeptEdits kept_;                      ///< Of the last scene that was read.
+    std::uint64_t scenes_ = 0;            ///< Read so far.
+    std::shared_ptr<const Scene> shown_;  ///< The same without what is hidden.
+    std::vector<bool> hidden_;            ///< By instance.
+    bool has_named_default_ = false;
+    SceneTree tree_;
+    LampRows lamps_;
     std::filesystem::path shown_model_;
     std::uint64_t revision_ = 0;
     HealthMarkers markers_;  ///< Of the scene, where they are asked for and found.
@@ -117,6 +156,7 @@ class ViewerState {
     std::vector<std::string> notes_;
     Report findings_;
     std::string error_;
+    std::string edit_error_;
 };
 
 }  // namespace relief::tools

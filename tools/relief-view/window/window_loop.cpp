@@ -4,8 +4,10 @@
 
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
+#include <fmt/format.h>
 
 #include <chrono>
+#include <cstdio>
 
 #include "file_replacement.h"
 #include "window/dropped_files.h"
@@ -17,7 +19,6 @@
 namespace relief::tools {
 namespace {
 
-constexpr glm::ivec2 usual_size{1280, 800};
 constexpr int frames_to_settle = 3;  // Dear ImGui reacts to what it drew a frame ago.
 constexpr double turning_step = 1.0 / 60.0;
 constexpr double loading_step = 0.1;  // Seconds between looks at how far reading is.
@@ -28,10 +29,17 @@ nlohmann::ordered_json json_of(const Progress::State& progress) {
             {"part", progress.part ? nlohmann::ordered_json(*progress.part) : nullptr}};
 }
 
+RememberedLayout remembered_layout(const ViewOptions& options) {
+    const std::optional<std::filesystem::path> file = usual_layout_file();
+    return options.no_state || !file ? RememberedLayout() : RememberedLayout(*file);
+}
+
 class WindowLoop {
   public:
     explicit WindowLoop(const ViewOptions& options)
-        : system_("relief-view", usual_size),
+        : remembered_(remembered_layout(options)),
+          layout_(remembered_.layout()),
+          system_("relief-view", layout_),
           drawer_({[this] { system_.use_worker_context(); },
                    [this] { system_.release_worker_context(); }, WindowSystem::loader(),
                    WindowSystem::wake}),
@@ -41,6 +49,7 @@ class WindowLoop {
           interface_(system_),
           state_(options),
           reading_(options),
+          ui_scale_(options.ui_scale),
           dump_(options.dump_state) {
         if (dump_) keep_places();
         if (options.size_given) asked_view_ = options.size;
@@ -54,6 +63,10 @@ class WindowLoop {
             state_.pass(seconds_since_last());
             if (system_.is_visible()) draw();
         }
+        // A size that an option asked for is for this time.
+        if (!state_.options().size_given) system_.note_place(layout_);
+        if (const std::string problem = remembered_.remember(layout_); !problem.empty())
+            fmt::print(stderr, "relief-view: warning: {}\n", problem);
     }
 
   private:
@@ -122,7 +135,9 @@ class WindowLoop {
         files_.follow(drawn);
         if (drawn.frames > 0 && !is_reduced(drawn.settings))
             resolution_.whole_took(drawn.times.draw);
+        interface_.set_scale(scale());
         const PanelInput input{state_,
+                               layout_,
                                drawn,
                                drawer_.renderer_name(),
                                loader_.seconds_so_far(),
@@ -131,6 +146,7 @@ class WindowLoop {
                                was_busy || is_resting_later_,
                                &capture_settings_,
                                text_of(captured_->state()),
+                               remembered_.note(),
                                prices_,
                                shaders_};
         const UserInterface::Events events = interface_.draw(input, drawer_.shown());
@@ -151,7 +167,12 @@ class WindowLoop {
 
     void act(Action action) {
         if (action == Action::help) interface_.show_help();
-        if (action == Action::panels) interface_.show_panels();
+        if (action == Action::panels) layout_.has_panels = !layout_.has_panels;
+        if (action == Action::larger_interface)
+            rescale(next_scale(interface_.scale().glyphs, true));
+        if (action == Action::smaller_interface)
+            rescale(next_scale(interface_.scale().glyphs, false));
+        if (action == Action::usual_interface) rescale(std::nullopt);
         if (action == Action::quit) system_.close();
         if (action == Action::save_picture) save(0);
         if (action == Action::copy_camera)
@@ -162,6 +183,16 @@ class WindowLoop {
     void paste() {
         const char* text = glfwGetClipboardString(system_.window());
         state_.look_as(text == nullptr ? "" : text);
+    }
+
+    /// What was chosen here is remembered; the option holds until then, for this time only.
+    void rescale(std::optional<float> scale) {
+        ui_scale_.reset();
+        layout_.ui_scale = scale;
+    }
+    [[nodiscard]] InterfaceScale scale() const {
+        return interface_scale(ui_scale_ ? ui_scale_ : layout_.ui_scale, system_.content_scale(),
+                               system_.pixels_to_unit());
     }
 
     /// Whether two wishes show the same, in whatever resolution.
@@ -256,6 +287,11 @@ class WindowLoop {
         json["reduced"] = reduced_;
         json["costs"] = json_of(prices_.state());
         json["saved"] = json_of(captured_->state());
+        json["layout"] = {{"scale", interface_.scale().layout},
+                          {"panels", panel_names()},
+                          {"open", layout_.open_panels},
+                          {"note", remembered_.note()}};
+        json["typing"] = UserInterface::is_typing();
         json["help"] = interface_.is_help_open();
         json["places"] = places_json();
         const std::string text = json.dump(2) + "\n";
@@ -264,6 +300,8 @@ class WindowLoop {
         replace_file(*dump_, std::as_bytes(std::span(text)));
     }
 
+    RememberedLayout remembered_;
+    WindowLayout layout_;
     WindowSystem system_;
     DrawThread drawer_;
     Loader loader_;
@@ -273,6 +311,7 @@ class WindowLoop {
     ViewerState state_;
     ViewOptions reading_;                   ///< What was last begun to be read.
     std::optional<glm::ivec2> asked_view_;  ///< Until the first frame shows how large it is.
+    std::optional<float> ui_scale_;         ///< By option, until another one is chosen.
     std::optional<std::filesystem::path> dump_;
     std::string dumped_;
     CaptureSettings capture_settings_;

@@ -11,6 +11,7 @@
 
 #include "relief/mesh/error.h"
 #include "relief/shade/context.h"
+#include "window/window_layout.h"
 
 struct GLFWwindow;
 
@@ -25,9 +26,10 @@ class WindowError : public Error {
 
 class WindowSystem {
   public:
+    /// As it was, as far as the screen allows; else of the usual size, scaled as the screen wants.
     /// \throws WindowError saying what is missing (a display, a driver with OpenGL 3.3), and
     ///         that --output draws without either
-    WindowSystem(const std::string& title, const glm::ivec2& size);
+    WindowSystem(const std::string& title, const WindowLayout& layout);
     ~WindowSystem();
     WindowSystem(const WindowSystem&) = delete;
     WindowSystem& operator=(const WindowSystem&) = delete;
@@ -45,10 +47,12 @@ class WindowSystem {
     /// Until something happens, or so many seconds have passed; 0 or less: as long as it takes.
     static void wait(double seconds);
 
-    /// In pixels, which are more than the window's own units on dense screens.
-    [[nodiscard]] glm::ivec2 framebuffer_size() const;
-    /// How much larger than usual things are to be drawn.
+    /// How much larger than usual things are to be drawn, in pixels.
     [[nodiscard]] float content_scale() const;
+    /// Pixels of one of the window's own units: more than 1 on the dense screens of some systems.
+    [[nodiscard]] float pixels_to_unit() const;
+    /// Size and place go into a layout; of a maximised window, those that it had before stay.
+    void note_place(WindowLayout& layout) const;
     [[nodiscard]] bool is_closing() const;
     [[nodiscard]] bool is_visible() const;  ///< Not minimised.
     void close() const;
