@@ -69,6 +69,16 @@ TEST(Recommended, OfAlikeOnesTheSmallestIsTaken) {
     EXPECT_EQ(recommended(experiment, {}).method, 1U);
 }
 
+TEST(Recommended, ANextOneThatCostsTheSameIsSaidToTakeHardlyLonger) {
+    RecommendationRule rule;
+    rule.wish.max_error = 0.5;
+    EXPECT_EQ(
+        recommended(experiment_of({measured("a", 0.5, 0.0100), measured("b", 0.4, 0.0101)}), rule)
+            .words,
+        "a: 0.5 degrees RMS at 10.0 ms; the next better (b) takes hardly longer for 0.1 "
+        "degrees less");
+}
+
 TEST(Recommended, WhatTheTruthIsNotKnownBetterThanIsNotPaidFor) {
     RecommendationRule rule;
     rule.own_error = 2.0;  // 2.24 and 2.0004: 1.4 times the cost at most, and "good" takes 4.1.

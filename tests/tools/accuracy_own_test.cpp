@@ -56,7 +56,7 @@ TEST(AccuracyOwn, JsonHoldsTheCommandThatRepeatsIt) {
 TEST(AccuracyOwn, TellsHeightsFromNormalsAndSaysSo) {
     const Workplace workplace;
     const ProgramResult heights =
-        workplace.run("relief-accuracy own data/bricks-height.png --no-times --strength 4");
+        workplace.run("relief-accuracy own data/bricks-height.png --quick --no-times --strength 4");
     ASSERT_EQ(heights.exit_code, 0) << heights.error;
     EXPECT_THAT(heights.out, HasSubstr("data/bricks-height.png: a height map of "));
     EXPECT_THAT(heights.out, HasSubstr("(else: --image normals)"));
@@ -64,11 +64,12 @@ TEST(AccuracyOwn, TellsHeightsFromNormalsAndSaysSo) {
     ASSERT_EQ(workplace.run("relief-bake bump data/bricks-height.png out/normals.png --strength 4")
                   .exit_code,
               0);
-    const ProgramResult normals = workplace.run("relief-accuracy own out/normals.png --no-times");
+    const ProgramResult normals =
+        workplace.run("relief-accuracy own out/normals.png --quick --no-times");
     EXPECT_THAT(normals.out, HasSubstr("out/normals.png: a normal map of 16 bits"));
     EXPECT_THAT(normals.out, HasSubstr("(else: --image heights)"));
     const ProgramResult told =
-        workplace.run("relief-accuracy own out/normals.png --no-times --image heights");
+        workplace.run("relief-accuracy own out/normals.png --quick --no-times --image heights");
     EXPECT_THAT(told.out, HasSubstr("a height map of 16 bits"));
     EXPECT_THAT(told.out, Not(HasSubstr("else:")));
 }
@@ -93,7 +94,8 @@ TEST(AccuracyOwn, TakesAPairOnlyWhereItIsCalledOne) {
 
 TEST(AccuracyOwn, ABoundThatNothingKeepsIsExitOne) {
     const Workplace workplace;
-    const std::string line = "relief-accuracy own data/bricks-height.png --no-times --max-error ";
+    const std::string line =
+        "relief-accuracy own data/bricks-height.png --quick --no-times --max-error ";
     EXPECT_EQ(workplace.run(line + "90").exit_code, 0);
     const ProgramResult strict = workplace.run(line + "0");
     EXPECT_EQ(strict.exit_code, 1);

@@ -134,12 +134,10 @@ std::string words_of(const Experiment& experiment, const RecommendationRule& rul
     const std::string& name = all[next->index].method;
     if (!(taken.cost > 0.0)) return words + fmt::format("; the next better ({}): {}", name, gain);
     const double times = next->cost / taken.cost;
-    const std::string price =
-        rule.cost == CostKind::bytes
-            ? fmt::format("takes {}", cost_words(next->cost, rule.cost))
-            : (times < 1.05 ? fmt::format("takes {} more",
-                                          seconds_in_words(std::max(0.0, next->cost - taken.cost)))
-                            : fmt::format("takes {:.2g} times as long", times));
+    const std::string price = rule.cost == CostKind::bytes
+                                  ? fmt::format("takes {}", cost_words(next->cost, rule.cost))
+                              : times < 1.05 ? std::string("takes hardly longer")
+                                             : fmt::format("takes {:.2g} times as long", times);
     return words + fmt::format("; the next better ({}) {} for {}", name, price, gain);
 }
 

@@ -4,9 +4,12 @@
 #include "relief/mesh/bake_trials.h"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
+#include <glm/trigonometric.hpp>
 
 #include "bake/bake_check_casts.h"
+#include "progress_stage.h"
 
 namespace relief {
 namespace {
@@ -119,6 +122,41 @@ std::size_t BakeTrials::reference_rays() const {
     for (const Band& part : implementation_->bands)
         sum += part.casts.reference.rays;
     return sum;
+}
+
+std::span<const BakeWay> usual_bake_ways() {
+    static const std::array<BakeWay, 7> ways = {
+        {{1, {}}, {4, {}}, {16, {}}, {64, {}}, {16, 8.0}, {16, 2.0}, {16, 0.5}}};
+    return ways;
+}
+
+std::vector<NormalMapFormat> usual_map_formats(const NormalMapFormat& format) {
+    std::vector<NormalMapFormat> formats(4, format);
+    for (NormalMapFormat& one : formats)
+        one.dither = Dither::none;
+    formats[0].bits = formats[1].bits = 8;
+    formats[1].dither = Dither::blue_noise;
+    formats[2].bits = 16;
+    formats[3].bits = 32;
+    return formats;
+}
+
+std::vector<TimedBakeTrial> measured_in_turns(const BakeTrials& trials,
+                                              std::span<const BakeWay> ways,
+                                              std::span<const NormalMapFormat> formats,
+                                              const Repeats& repeats) {
+    std::vector<TimedBakeTrial> all(ways.size());
+    interleave(ways.size(), repeats, [&](std::size_t way, bool counted) {
+        check_cancelled();
+        TimedBakeTrial& one = all[way];
+        std::optional<double> angle;
+        if (ways[way].sample_degrees) angle = glm::radians(*ways[way].sample_degrees);
+        one.trial = trials.measure(ways[way].samples, angle, formats);
+        one.seconds.resize(formats.size());
+        for (std::size_t f = 0; counted && f < formats.size(); ++f)
+            one.seconds[f].push_back(one.trial.cast_seconds + one.trial.code_seconds[f]);
+    });
+    return all;
 }
 
 }  // namespace relief

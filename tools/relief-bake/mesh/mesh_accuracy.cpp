@@ -94,46 +94,22 @@ void keep_within(const BakeTrials& trials, MeshBakeRequest& request, NormalMapFo
     format = found.kept->format;
 }
 
-struct Way {
-    SampleChoice samples;
-    std::optional<double> angle;
-};
-
-std::vector<Way> all_ways() {
-    std::vector<Way> ways;
-    for (const int count : {1, 4, 16, 64})
-        ways.push_back({{count, false, false}, std::nullopt});
-    for (const double angle : {8.0, 2.0, 0.5})
-        ways.push_back({{16, true, false}, angle});
-    return ways;
+SampleChoice samples_of(const BakeWay& way) {
+    return {way.samples, way.sample_degrees.has_value(), false};
 }
 
-/// Of all depths: what a file of this name cannot hold, another can.
-std::vector<NormalMapFormat> all_formats(const NormalMapFormat& format) {
-    NormalMapFormat eight = format, dithered = format, sixteen = format, floats = format;
-    eight.bits = dithered.bits = 8;
-    eight.dither = sixteen.dither = floats.dither = Dither::none;
-    dithered.dither = Dither::blue_noise;
-    sixteen.bits = 16;
-    floats.bits = 32;
-    return {eight, dithered, sixteen, floats};
-}
-
+/// In all depths: what a file of this name cannot hold, another can.
 void compare(const BakeTrials& trials, const NormalMapFormat& format, MeshAccuracy& found) {
-    const std::vector<Way> ways = all_ways();
-    const std::vector<NormalMapFormat> formats = all_formats(format);
-    std::vector<std::vector<double>> seconds(ways.size() * formats.size());
-    found.measured.resize(seconds.size());
-    interleave(ways.size(), {rounds, 0}, [&](std::size_t way, bool) {
-        const std::vector<MeasuredBake> measured =
-            measure(trials, ways[way].samples, ways[way].angle, formats);
-        for (std::size_t i = 0; i < formats.size(); ++i) {
-            seconds[way * formats.size() + i].push_back(measured[i].seconds);
-            found.measured[way * formats.size() + i] = measured[i];
+    const std::span<const BakeWay> ways = usual_bake_ways();
+    const std::vector<NormalMapFormat> formats = usual_map_formats(format);
+    const std::vector<TimedBakeTrial> trial = measured_in_turns(trials, ways, formats, {rounds, 0});
+    for (std::size_t way = 0; way < ways.size(); ++way) {
+        for (std::size_t f = 0; f < formats.size(); ++f) {
+            found.measured.push_back({samples_of(ways[way]), ways[way].sample_degrees, formats[f],
+                                      trial[way].trial.errors[f], trial[way].trial.rays,
+                                      spread_of(trial[way].seconds[f]).median, false});
         }
-    });
-    for (std::size_t i = 0; i < seconds.size(); ++i)
-        found.measured[i].seconds = spread_of(seconds[i]).median;
+    }
     std::vector<Price> prices;
     for (const MeasuredBake& one : found.measured)
         prices.push_back({one.error.rms, one.seconds});

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// What maps of several sample counts and codes would be off, and take, without writing them.
-/// In the library relief::bake. Tests: tests/mesh/bake/bake_trials_test.cpp.
+/// In the library relief::bake. Tests: tests/mesh/bake/bake_trials_test.cpp,
+/// tests/accuracy/own_bake_test.cpp.
 #pragma once
 
 #include <cstddef>
@@ -11,6 +12,7 @@
 #include <vector>
 
 #include "relief/mesh/bake_check.h"
+#include "relief/mesh/timing.h"
 
 namespace relief {
 
@@ -51,5 +53,29 @@ class BakeTrials {
     struct Implementation;
     std::unique_ptr<Implementation> implementation_;
 };
+
+/// How many samples a texel gets.
+struct BakeWay {
+    int samples = 1;
+    std::optional<double> sample_degrees;  ///< All of them only where the first differ by more.
+};
+
+/// 1, 4, 16 and 64 samples; and up to 16, where the first differ by more than 8, 2 and 0.5 degrees.
+std::span<const BakeWay> usual_bake_ways();
+
+/// What maps are stored in: 8 bits, plain and dithered, 16 bits, and floats; else like `format`.
+std::vector<NormalMapFormat> usual_map_formats(const NormalMapFormat& format);
+
+struct TimedBakeTrial {
+    BakeTrial trial;
+    /// By format, in each round: of the bake and of its codes.
+    std::vector<std::vector<double>> seconds;
+};
+
+/// Bakes in every way, in turns. \throws Cancelled where that is wished, between bakes
+std::vector<TimedBakeTrial> measured_in_turns(const BakeTrials& trials,
+                                              std::span<const BakeWay> ways,
+                                              std::span<const NormalMapFormat> formats,
+                                              const Repeats& repeats);
 
 }  // namespace relief
