@@ -84,11 +84,11 @@ TEST_P(HelpPage, ShowsExamplesThatRun) {
 
 INSTANTIATE_TEST_SUITE_P(
     Tools, HelpPage,
-    testing::Values("relief-accuracy", "relief-accuracy run", "relief-accuracy compare",
-                    "relief-mesh", "relief-mesh process", "relief-mesh info",
-                    "relief-mesh decimate", "relief-mesh subdivide", "relief-mesh check",
-                    "relief-mesh compare", "relief-mesh conformance", "relief-bake",
-                    "relief-bake bump", "relief-bake mesh", "relief-bake check",
+    testing::Values("relief-accuracy", "relief-accuracy run", "relief-accuracy own",
+                    "relief-accuracy compare", "relief-mesh", "relief-mesh process",
+                    "relief-mesh info", "relief-mesh decimate", "relief-mesh subdivide",
+                    "relief-mesh check", "relief-mesh compare", "relief-mesh conformance",
+                    "relief-bake", "relief-bake bump", "relief-bake mesh", "relief-bake check",
                     "relief-bake heights", "relief-view"));
 
 }  // namespace

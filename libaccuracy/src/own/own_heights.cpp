@@ -51,17 +51,27 @@ std::string command_of(const BumpMethod& method, const BumpOptions& bump,
     return command + " --wrap " + words_of(bump.wrap);
 }
 
+/// Steps are smoothed away where there are any; one arithmetic and depth shows what that does.
+std::vector<BumpMethod> methods_for(const KernelChoice& choice) {
+    constexpr int most_bits_with_steps = 12;
+    const int radius = best_gaussian_radius(choice);
+    const std::array as_is = {false};
+    std::vector<BumpMethod> methods = bump_methods(radius, depths, both_arithmetics, as_is);
+    if (choice.depth.bits == 0 || choice.depth.bits > most_bits_with_steps) return methods;
+    const std::array smooth = {true};
+    for (const BumpMethod& method :
+         bump_methods(radius, std::array{16}, std::array{Arithmetic::float32}, smooth))
+        methods.push_back(method);
+    return methods;
+}
+
 }  // namespace
 
 OwnExperiment measure_own_heights(const BumpSample& sample, glm::ivec2 size,
                                   const BumpOptions& bump, const OwnOptions& options) {
     OwnExperiment own = own_experiment(Subject::bump, "bump", "Normals from heights", options);
     const KernelChoice choice = choose_kernel(sample.looked_at, bump);
-    const std::array ways = {false, true};
-    const bool has_steps = choice.depth.bits > 0 && choice.depth.bits <= 12;
-    const std::vector<BumpMethod> methods =
-        bump_methods(best_gaussian_radius(choice), depths, both_arithmetics,
-                     std::span(ways).first(has_steps ? 2 : 1));
+    const std::vector<BumpMethod> methods = methods_for(choice);
     BumpExperimentOptions how;
     how.bump = bump;
     how.repeats = {0, 0};

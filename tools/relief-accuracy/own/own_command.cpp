@@ -200,7 +200,7 @@ Command add_own_command(CLI::App& tool) {
               "relief-accuracy own data/bricks-height.png --strength 12 --max-error 0.5 --quick",
               "relief-mesh subdivide data/vase.obj out/high.obj --levels 2",
               "relief-accuracy own --high out/high.obj --low data/vase.obj --size 64 --repeats 3",
-              "relief-accuracy own data/vase.obj --truth file --no-times --output out/vase"});
+              "relief-accuracy own data/vase.obj --crease 40 --no-times --output out/vase"});
     return {&app, [options] { return run(*options); }};
 }
 
