@@ -25,10 +25,7 @@ void add_model_options(CLI::App& app, ViewOptions& options) {
                "glTF's materials by their own metallic-roughness model, or translated to Phong's. "
                "Default: as_authored, unless an option asks for what only Phong's model has.")
         .group(group);
-    add_choice(app, "--interpolation", options.interpolation,
-               Choices<Interpolation>{{"per_pixel", Interpolation::per_pixel},
-                                      {"gouraud", Interpolation::gouraud},
-                                      {"flat", Interpolation::flat}},
+    add_choice(app, "--interpolation", options.interpolation, interpolation_choices(),
                "Light at every pixel, at vertices only (Phong's model), or from the triangles' own "
                "planes. Default: as the scene says, else per_pixel.")
         .group(group);
@@ -47,6 +44,12 @@ void add_model_options(CLI::App& app, ViewOptions& options) {
 }
 
 }  // namespace
+
+Choices<Interpolation> interpolation_choices() {
+    return {{"per_pixel", Interpolation::per_pixel},
+            {"gouraud", Interpolation::gouraud},
+            {"flat", Interpolation::flat}};
+}
 
 void add_material_options(CLI::App& app, ViewOptions& options) {
     add_model_options(app, options);

@@ -78,22 +78,18 @@ void set_bump_map(Scene& scene, const ViewOptions& options) {
 }
 
 /// The height map as a normal map of 16 bits, which is more than the eye can tell apart.
-NormalMap converted_height_map(Scene& scene, const ViewOptions& options, Stages& stages,
-                               Report& report) {
+NormalMap normal_map_of_heights(Scene& scene, const ViewOptions& options, Stages& stages,
+                                Report& report) {
     const std::filesystem::path& file = *options.height_map;
     BumpOptions bump;
     bump.strength = options.strength.value_or(bump.strength);
     bump.kernel = options.kernel.value_or(bump.kernel);
-    const NormalMapFormat format{.bits = 16, .green = Green::up, .flat = FlatCode::middle};
     Image map = stages.run("height map", [&] {
         return about(file, [&] {
-            const Image height = height_field(read_image(file, ImageUse::data));
-            return encode_normal_map(normals_from_height(height, bump, report), format, report);
+            return converted_heights(read_image(file, ImageUse::data), bump, 16, report);
         });
     });
-    return {.texture = add_texture(scene, {file.string(), std::move(map)}),
-            .green = format.green,
-            .flat = format.flat};
+    return converted_map(add_texture(scene, {file.string(), std::move(map)}));
 }
 
 void set_normal_scale(Scene& scene, float scale) {
@@ -170,7 +166,22 @@ void set_shading(Scene& scene, const ViewOptions& options) {
     }
 }
 
+/// The format of maps that are made of heights here.
+constexpr NormalMapFormat converted_format{
+    .bits = 16, .green = Green::up, .flat = FlatCode::middle};
+
 }  // namespace
+
+Image converted_heights(const Image& image, const BumpOptions& bump, int bits, Report& report) {
+    NormalMapFormat format = converted_format;
+    format.bits = bits;
+    return encode_normal_map(normals_from_height(height_field(image), bump, report), format,
+                             report);
+}
+
+NormalMap converted_map(const Texture& texture) {
+    return {.texture = texture, .green = converted_format.green, .flat = converted_format.flat};
+}
 
 void override_materials(Scene& scene, const ViewOptions& options, Stages& stages, Report& report,
                         std::vector<std::string>& notes) {
@@ -201,7 +212,7 @@ void override_materials(Scene& scene, const ViewOptions& options, Stages& stages
         if (options.height_as == HeightUse::bump_map) {
             set_bump_map(scene, options);
         } else {
-            set_normal_map(scene, converted_height_map(scene, options, stages, report));
+            set_normal_map(scene, normal_map_of_heights(scene, options, stages, report));
         }
     }
     if (options.normal_scale) set_normal_scale(scene, *options.normal_scale);

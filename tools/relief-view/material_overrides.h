@@ -24,4 +24,10 @@ namespace relief::tools {
 void override_materials(Scene& scene, const ViewOptions& options, Stages& stages, Report& report,
                         std::vector<std::string>& notes);
 
+/// The heights in an image as a normal map in codes of so many bits: green up, flat exactly flat.
+Image converted_heights(const Image& image, const BumpOptions& bump, int bits, Report& report);
+
+/// How to read such a map.
+NormalMap converted_map(const Texture& texture);
+
 }  // namespace relief::tools

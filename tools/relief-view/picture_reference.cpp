@@ -30,39 +30,10 @@ void check_map(const ViewOptions& options) {
         throw UsageError("--difference-map " + map.string() + ": no format to write a map in",
                          "use .png for colours or .exr for numbers");
     }
-    if (map == options.model || map == *options.reference || map == options.output)
+    if (map == options.model || map == options.reference || map == options.output ||
+        map == options.compare.file)
         throw UsageError("--difference-map: would overwrite the model or a picture");
     require_folder_of(map);
-}
-
-/// The same picture with an alpha channel that is full everywhere.
-Image with_alpha(const Image& image) {
-    Image covered = make_image(image.width, image.height, 4, image.bits(), image.color_space);
-    std::visit(
-        [&](const auto& samples) {
-            using Samples = std::decay_t<decltype(samples)>;
-            using Sample = typename Samples::value_type;
-            auto& to = std::get<Samples>(covered.samples);
-            const auto full = std::is_integral_v<Sample> ? std::numeric_limits<Sample>::max()
-                                                         : static_cast<Sample>(1);
-            for (std::size_t i = 0; i < to.size(); ++i)
-                to[i] = i % 4 == 3 ? full : samples[i / 4 * 3 + i % 4];
-        },
-        image.samples);
-    return covered;
-}
-
-double peak_of(const Image& image) {
-    return image.bits() == 8 ? 255.0 : (image.bits() == 16 ? 65535.0 : 1.0);
-}
-
-void write_map(const ViewOptions& options, const Image& map) {
-    const std::filesystem::path& file = *options.difference_map;
-    write_image(file, extension_of(file) == ".png" ? heat_picture(map, 1.0) : map);
-}
-
-std::string with_peak(double value, double peak) {
-    return peak == 1.0 ? fmt::format("{:.4g}", value) : fmt::format("{:.4g} of {}", value, peak);
 }
 
 }  // namespace
@@ -85,8 +56,10 @@ void add_reference_options(CLI::App& app, ViewOptions& options) {
 
 void check_reference(const ViewOptions& options) {
     if (!options.reference) {
+        const bool has_sides = options.compare.compares() && options.output;
         refuse_without_reference(options.max_difference.has_value(), "--max-difference");
-        refuse_without_reference(options.difference_map.has_value(), "--difference-map");
+        refuse_without_reference(options.difference_map && !has_sides, "--difference-map");
+        if (options.difference_map) check_map(options);
         return;
     }
     if (options.output == options.reference)
@@ -115,42 +88,25 @@ ReferenceComparison compare_with_reference(const ViewOptions& options, const Ima
                                            const Image& reference) {
     ReferenceComparison result;
     result.allowed = options.max_difference.value_or(0.0);
-    result.peak = peak_of(reference);
-    about(*options.reference, [&] {
-        const bool one_has_alpha = picture.channels + reference.channels == 7;
-        result.difference =
-            compare(one_has_alpha && reference.channels == 3 ? with_alpha(reference) : reference,
-                    one_has_alpha && picture.channels == 3 ? with_alpha(picture) : picture);
-        result.flip = flip_difference(reference, picture);
-    });
-    if (options.difference_map) write_map(options, result.flip.map);
+    about(*options.reference,
+          [&] { static_cast<PictureComparison&>(result) = compare_pictures(reference, picture); });
+    write_difference_map(options, result);
     return result;
 }
 
-std::string in_words(const ReferenceComparison& comparison) {
-    const ImageDifference& difference = comparison.difference;
-    if (difference.differing_pixels == 0) return "no difference";
-    return fmt::format("largest {}, mean {:.3g}, PSNR {:.1f} dB, FLIP {:.3g} (largest {:.3g}), {}",
-                       with_peak(difference.max, comparison.peak), difference.mean, difference.psnr,
-                       comparison.flip.mean, comparison.flip.max,
-                       difference.differing_pixels == 1
-                           ? "1 pixel differs"
-                           : fmt::format("{} pixels differ", difference.differing_pixels));
+void write_difference_map(const ViewOptions& options, const PictureComparison& comparison) {
+    if (!options.difference_map) return;
+    const std::filesystem::path& file = *options.difference_map;
+    const Image& map = comparison.flip.map;
+    write_image(file, extension_of(file) == ".png" ? heat_picture(map, 1.0) : map);
 }
 
 nlohmann::ordered_json comparison_json(const ViewOptions& options,
                                        const ReferenceComparison& comparison) {
-    const ImageDifference& difference = comparison.difference;
     nlohmann::ordered_json json = {{"reference", options.reference->string()},
                                    {"matches", comparison.matches()},
-                                   {"allowed", comparison.allowed},
-                                   {"max", difference.max},
-                                   {"mean", difference.mean},
-                                   {"rms", difference.rms},
-                                   {"psnr", difference.psnr},
-                                   {"differing_pixels", difference.differing_pixels},
-                                   {"flip_mean", comparison.flip.mean},
-                                   {"flip_max", comparison.flip.max}};
+                                   {"allowed", comparison.allowed}};
+    json.update(numbers_json(comparison));
     if (options.difference_map) json["difference_map"] = options.difference_map->string();
     return json;
 }

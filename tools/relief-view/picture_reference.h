@@ -6,7 +6,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include "relief/shade/image_compare.h"
+#include "picture_comparison.h"
 #include "view_options.h"
 
 namespace relief::tools {
@@ -22,11 +22,8 @@ void check_reference(const ViewOptions& options);
 Image read_reference(const ViewOptions& options);
 
 /// How far the drawn picture is from the reference.
-struct ReferenceComparison {
-    ImageDifference difference;
-    FlipDifference flip;
+struct ReferenceComparison : PictureComparison {
     double allowed = 0;  ///< --max-difference
-    double peak = 1;     ///< What the largest sample stands for: 255, 65535 or 1.
 
     [[nodiscard]] bool matches() const { return difference.max <= allowed; }
 };
@@ -37,10 +34,9 @@ struct ReferenceComparison {
 ReferenceComparison compare_with_reference(const ViewOptions& options, const Image& picture,
                                            const Image& reference);
 
-/// "largest 3 of 255, mean 0.02, PSNR 58.1 dB, FLIP 0.004 (largest 0.21), 812 pixels differ"
-std::string in_words(const ReferenceComparison& comparison);
+/// Writes --difference-map, where one is asked for. \throws FileError
+void write_difference_map(const ViewOptions& options, const PictureComparison& comparison);
 
-/// Numbers without bound (PSNR of equal pictures) are null.
 nlohmann::ordered_json comparison_json(const ViewOptions& options,
                                        const ReferenceComparison& comparison);
 

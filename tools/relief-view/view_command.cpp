@@ -11,6 +11,7 @@
 
 #include "common/findings.h"
 #include "common/text.h"
+#include "compare_options.h"
 #include "debug_options.h"
 #include "effect_options.h"
 #include "effects_text.h"
@@ -49,6 +50,20 @@ Image picture_of(const Frame& frame, const Scene& scene) {
     return picture;
 }
 
+/// The picture of the other side.
+Image draw_other(const ViewOptions& options, const Context& context, const ComposedScene& composed,
+                 Stages& stages) {
+    Report told;  // What the first side reports is most of it.
+    const OtherSide other = other_side(options, composed, stages, told);
+    const FrameSettings settings = settings_of(options, chosen_markers(options.debug, other.scene));
+    const FramePlan plan = viewed_plan(options, other.scene, settings,
+                                       chosen_plan(options, other.scene, settings), told);
+    return stages.run("draw other side", [&] {
+        Renderer renderer(context, other.scene, plan, settings, told);
+        return picture_of(renderer.draw(other.camera), composed.scene());
+    });
+}
+
 /// Draws every picture that is asked for, writes them where they are to go, and compares.
 Drawn draw(const ViewOptions& options, const FrameSettings& settings, ComposedScene& composed,
            FramePlan plan, Stages& stages, Report& report) {
@@ -65,8 +80,16 @@ Drawn draw(const ViewOptions& options, const FrameSettings& settings, ComposedSc
     drawn.measures = std::move(measures);
     drawn.backend = context->backend_name();
     drawn.renderer = context->renderer_name();
+    const bool has_sides = options.compare.compares();
+    const Image other = has_sides ? draw_other(options, *context, composed, stages) : Image{};
     const auto take = [&](const Frame& frame) {
-        const Image picture = picture_of(frame, composed.scene());
+        Image picture = picture_of(frame, composed.scene());
+        if (has_sides) {
+            drawn.sides = compare_pictures(picture, other);
+            write_difference_map(options, *drawn.sides);
+            const float split = options.compare.split.value_or(usual_split);
+            picture = split_picture(picture, other, split);
+        }
         if (sink) sink->take(picture);
         if (options.reference)
             drawn.comparison = compare_with_reference(options, picture, reference);
@@ -111,6 +134,7 @@ ExitCode run(ViewOptions& options) {
         if (drawn && drawn->comparison) {
             json["comparison"] = comparison_json(options, *drawn->comparison);
         }
+        if (drawn && drawn->sides) json["compare"] = sides_json(options.compare, *drawn->sides);
         if (options.debug.health_markers) json["markers"] = legend_json(markers);
         if (options.explain_effects) json["effects"] = effects_json(composed.scene(), plan);
         if (options.effects.print_shaders) json["shaders"] = shaders_json(plan);
@@ -142,6 +166,8 @@ Command add_view_command(CLI::App& tool) {
          "relief-view data/vase.obj --material gold --turntable 24 --size 256x256 --output "
          "out/spin.apng",
          "relief-view data/vase.obj --show shading-normal --wireframe --output out/normals.png",
+         "relief-view data/vase.obj --height-map data/bricks-height.png --compare kernel=central3 "
+         "--output out/sides.png",
          "relief-view data/vase.obj --diffuse-map data/bricks-diffuse.png --explain-effects"});
     return {&tool, [options] { return run(*options); }};
 }

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "common/text.h"
+#include "compare_options.h"
 #include "debug_options.h"
 #include "effect_options.h"
 #include "environment_options.h"
@@ -226,6 +227,7 @@ void add_view_options(CLI::App& app, ViewOptions& options) {
     add_light_options(app, options);
     add_sequence_options(app, options);
     add_reference_options(app, options);
+    add_compare_options(app, options);
     add_effect_options(app, options);
     add_debug_options(app, options);
     const Choices<Backend> backends = {
@@ -244,6 +246,7 @@ void settle(ViewOptions& options) {
     check_output(options);
     check_sequence(options);
     check_reference(options);
+    check_compare_options(options);
     check_maps(options);
     check_materials(options);
     check_environment(options);

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "common/options.h"
+#include "compare_choices.h"
 #include "debug_choices.h"
 #include "effect_choices.h"
 #include "light_option.h"
@@ -127,6 +128,7 @@ struct ViewOptions {
     bool explain_effects = false;
     EffectChoices effects;
     DebugChoices debug;
+    CompareChoices compare;
     bool json = false;
     GeneralOptions general;
 };

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "common/text.h"
+#include "compare_options.h"
 #include "relief/mesh/timing.h"
 #include "sequence_options.h"
 
@@ -69,6 +70,9 @@ void print_summary(const ViewOptions& options, const ComposedScene& composed, co
     if (drawn.times.draw.size() > 1) print_entry("frames", frames_in_words(drawn.times));
     if (options.output) print_entry("wrote", written(options));
     if (drawn.comparison) print_entry("compared", in_words(*drawn.comparison));
+    if (drawn.sides)
+        print_entry("compared", fmt::format("with {}: {}", side_in_words(options.compare),
+                                            in_words(*drawn.sides)));
 }
 
 nlohmann::ordered_json summary_json(const ViewOptions& options, const ComposedScene& composed,

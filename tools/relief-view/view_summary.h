@@ -9,6 +9,7 @@
 
 #include "common/findings.h"
 #include "effect_options.h"
+#include "picture_comparison.h"
 #include "picture_reference.h"
 #include "scene_options.h"
 #include "sequence.h"
@@ -23,6 +24,7 @@ struct Drawn {
     std::string backend;
     std::string renderer;
     std::optional<ReferenceComparison> comparison;
+    std::optional<PictureComparison> sides;  ///< Of --compare.
     FrameMeasures measures;
 };
 

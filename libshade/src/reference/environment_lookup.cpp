@@ -14,7 +14,7 @@
 #include "environment/ggx.h"
 #include "environment/radiance.h"
 #include "relief/mesh/error.h"
-#include "scene/image_source.h"
+#include "relief/shade/image_source.h"
 
 namespace relief::reference {
 

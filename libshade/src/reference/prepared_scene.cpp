@@ -11,8 +11,8 @@
 #include "relief/mesh/error.h"
 #include "relief/mesh/frames.h"
 #include "relief/shade/effects.h"
+#include "relief/shade/image_source.h"
 #include "render/scene_textures.h"
-#include "scene/image_source.h"
 
 namespace relief::reference {
 

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-#include "scene/image_source.h"
+#include "relief/shade/image_source.h"
 
 namespace relief::reference {
 

@@ -15,7 +15,7 @@
 #include "gl/texture.h"
 #include "parallel.h"
 #include "progress_stage.h"
-#include "scene/image_source.h"
+#include "relief/shade/image_source.h"
 
 namespace relief {
 

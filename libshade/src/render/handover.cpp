@@ -2,9 +2,12 @@
 // Tests: tests/shade/render/handover_test.cpp.
 #include "relief/shade/handover.h"
 
+#include <algorithm>
 #include <array>
 #include <mutex>
 #include <optional>
+#include <span>
+#include <vector>
 
 #include "gl/framebuffer.h"
 
@@ -12,6 +15,12 @@ namespace relief {
 
 struct Handover::Implementation {
     explicit Implementation(const gl::Api& gl) : api(gl) {}
+
+    using Target = std::optional<gl::RenderTarget>;
+    struct Slot {
+        Target picture;
+        Target beside;
+    };
 
     /// One that is neither shown nor waiting.
     std::size_t free_one() {
@@ -22,32 +31,82 @@ struct Handover::Implementation {
         return free;
     }
 
+    void fit(Target& target, int width, int height) const {
+        if (target && target->width() == width && target->height() == height) return;
+        target.reset();
+        target.emplace(api, width, height, gl::ColorFormat::rgba8, 1);
+    }
+
+    void copy(Target& target, const gl::RenderTarget& drawn) const {
+        fit(target, drawn.width(), drawn.height());
+        target->copy(drawn);
+    }
+
+    void publish(std::size_t slot) {
+        api->Finish();
+        api.check("handing a picture over");
+        const std::lock_guard lock(mutex);
+        newest = slot;
+    }
+
     const gl::Api& api;
-    std::array<std::optional<gl::RenderTarget>, 3> targets;
+    std::array<Slot, 3> slots;
     std::mutex mutex;
     std::optional<std::size_t> shown;
     std::optional<std::size_t> newest;
 };
+
+namespace {
+
+/// Four channels, row 0 at the bottom.
+std::vector<std::uint8_t> as_texels(const Image& picture) {
+    const std::span<const std::uint8_t> from = picture.as<std::uint8_t>();
+    const auto width = static_cast<std::size_t>(picture.width);
+    const auto height = static_cast<std::size_t>(picture.height);
+    const auto channels = static_cast<std::size_t>(picture.channels);
+    std::vector<std::uint8_t> texels(4 * width * height, 255);
+    for (std::size_t y = 0; y < height; ++y) {
+        for (std::size_t x = 0; x < width; ++x) {
+            const auto pixel = from.subspan(channels * (y * width + x), channels);
+            std::copy(
+                pixel.begin(), pixel.end(),
+                texels.begin() + static_cast<std::ptrdiff_t>(4 * ((height - 1 - y) * width + x)));
+        }
+    }
+    return texels;
+}
+
+}  // namespace
 
 Handover::Handover(const Context& context)
     : implementation_(std::make_unique<Implementation>(context.api())) {}
 
 Handover::~Handover() = default;
 
-void Handover::put(const Renderer& renderer) {
+void Handover::put(const Renderer& renderer, const Renderer* beside) {
     Implementation& self = *implementation_;
-    const gl::RenderTarget& drawn = renderer.target();
     const std::size_t free = self.free_one();
-    std::optional<gl::RenderTarget>& target = self.targets.at(free);
-    if (!target || target->width() != drawn.width() || target->height() != drawn.height()) {
-        target.reset();
-        target.emplace(self.api, drawn.width(), drawn.height(), gl::ColorFormat::rgba8, 1);
-    }
-    target->copy(drawn);
-    self.api->Finish();
-    self.api.check("handing a picture over");
-    const std::lock_guard lock(self.mutex);
-    self.newest = free;
+    Implementation::Slot& slot = self.slots.at(free);
+    self.copy(slot.picture, renderer.target());
+    if (beside == nullptr)
+        slot.beside.reset();
+    else
+        self.copy(slot.beside, beside->target());
+    self.publish(free);
+}
+
+void Handover::put(const Image& picture) {
+    Implementation& self = *implementation_;
+    const std::size_t free = self.free_one();
+    Implementation::Slot& slot = self.slots.at(free);
+    slot.beside.reset();
+    self.fit(slot.picture, picture.width, picture.height);
+    const std::vector<std::uint8_t> texels = as_texels(picture);
+    self.api->BindTexture(GL_TEXTURE_2D, slot.picture->color().name());
+    self.api->TexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, picture.width, picture.height, GL_RGBA,
+                            GL_UNSIGNED_BYTE, texels.data());
+    self.api->BindTexture(GL_TEXTURE_2D, 0);
+    self.publish(free);
 }
 
 Handover::Shown Handover::get() {
@@ -55,8 +114,9 @@ Handover::Shown Handover::get() {
     const std::lock_guard lock(self.mutex);
     self.shown = self.newest;
     if (!self.shown) return {};
-    const gl::RenderTarget& target = *self.targets.at(*self.shown);
-    return {target.color().name(), target.width(), target.height()};
+    const Implementation::Slot& slot = self.slots.at(*self.shown);
+    return {slot.picture->color().name(), slot.picture->width(), slot.picture->height(),
+            slot.beside ? slot.beside->color().name() : 0U};
 }
 
 }  // namespace relief

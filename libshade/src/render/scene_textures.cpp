@@ -4,7 +4,7 @@
 
 #include "parallel.h"
 #include "progress_stage.h"
-#include "scene/image_source.h"
+#include "relief/shade/image_source.h"
 
 namespace relief {
 

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "scene/image_source.h"
+#include "relief/shade/image_source.h"
 
 namespace relief {
 

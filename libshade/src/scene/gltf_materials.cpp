@@ -12,7 +12,7 @@
 #include "parallel.h"
 #include "progress_stage.h"
 #include "relief/mesh/error.h"
-#include "scene/image_source.h"
+#include "relief/shade/image_source.h"
 #include "scene/texture_means.h"
 #include "scene/usable_numbers.h"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The one place where a scene's images are decoded. Bad files throw as read_image does.
 // Tests: tests/shade/scene/image_source_test.cpp.
-#include "scene/image_source.h"
+#include "relief/shade/image_source.h"
 
 #include <span>
 

@@ -64,5 +64,45 @@ TEST_F(Handing, WhatIsShownStaysAsItIsHoweverManyComeAfter) {
     EXPECT_EQ(color_of(handover.get().texture, 8, 8), glm::ivec3(0, 0, 255));
 }
 
+TEST_F(Handing, TwoPicturesComeTogetherAndTheSecondGoesWithoutOne) {
+    Handover handover(context());
+    Report report;
+    const FrameSettings settings{8, 4, 1};
+    const auto renderer_of = [&](const glm::vec3& color) {
+        Material material = test::black_material();
+        material.unlit = true;
+        material.diffuse = color;
+        const Scene scene = test::scene_of(test::facing_square(), material);
+        auto renderer = std::make_unique<Renderer>(context(), scene, settings, report);
+        renderer->draw_only(*scene.camera);
+        return renderer;
+    };
+    const std::unique_ptr<Renderer> red = renderer_of({1, 0, 0});
+    const std::unique_ptr<Renderer> blue = renderer_of({0, 0, 1});
+    handover.put(*red, blue.get());
+    const Handover::Shown both = handover.get();
+    EXPECT_EQ(color_of(both.texture, 8, 4), glm::ivec3(255, 0, 0));
+    ASSERT_NE(both.beside, 0U);
+    EXPECT_EQ(color_of(both.beside, 8, 4), glm::ivec3(0, 0, 255));
+    handover.put(*blue);
+    EXPECT_EQ(handover.get().beside, 0U);
+}
+
+TEST_F(Handing, APictureFromElsewhereStandsUpright) {
+    Handover handover(context());
+    Image picture = make_image(3, 2, 3, 8, ColorSpace::srgb);
+    auto& codes = std::get<std::vector<std::uint8_t>>(picture.samples);
+    for (std::size_t i = 0; i < codes.size(); ++i)
+        codes[i] = static_cast<std::uint8_t>(10 * i);
+    handover.put(picture);
+    const Handover::Shown shown = handover.get();
+    std::vector<std::uint8_t> texels(4 * 3 * 2);
+    context().api()->BindTexture(GL_TEXTURE_2D, shown.texture);
+    context().api()->GetTexImage(GL_TEXTURE_2D, 0, GL_RGBA, GL_UNSIGNED_BYTE, texels.data());
+    EXPECT_EQ(texels[0], codes[9]) << "the lower row begins";
+    EXPECT_EQ(texels[3], 255);
+    EXPECT_EQ(texels[12 + 4 + 2], codes[5]);
+}
+
 }  // namespace
 }  // namespace relief

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // An image gives the same pixels from its file, from its bytes, and decoded.
-#include "scene/image_source.h"
+#include "relief/shade/image_source.h"
 
 #include <gtest/gtest.h>
 

@@ -31,6 +31,9 @@ const std::vector<Binding>& bindings() {
         {Action::wireframe, "W", "Draw the edges of triangles, or not"},
         {Action::vertex_frames, "N", "Draw tangents, bitangents and normals, or not"},
         {Action::health_markers, "M", "Mark where the mesh has trouble, or not"},
+        {Action::compare, "K", "Compare with a change or another file, or not"},
+        {Action::swap_sides, "X", "Swap the two sides"},
+        {Action::show_difference, "D", "Show the difference of the two sides, or both"},
         {Action::copy_camera, "Ctrl+C", "Copy the camera as the option that repeats it"},
         {Action::paste_camera, "Ctrl+V", "Look from where copied options say"},
         {Action::save_picture, "S", "Save a picture beside the model"},
@@ -52,6 +55,7 @@ const std::vector<Gesture>& gestures() {
         {"Shift+wheel, Shift+two fingers", "Move the view, up and down or sideways"},
         {"Wheel, two fingers, right drag", "Come nearer or go farther, to where the pointer is"},
         {"Ctrl+drag", "Move the lights round the model"},
+        {"Drag the line", "Show more of one side, where two are compared"},
         {"Double click", "Go round this point of the surface"},
         {"Drop a file", "Show this model, or put this map on it"},
     };

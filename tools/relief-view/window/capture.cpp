@@ -10,6 +10,7 @@
 #include "relief/mesh/image_file.h"
 #include "sequence.h"
 #include "sequence_options.h"
+#include "window/draw_thread.h"
 
 namespace relief::tools {
 namespace {
@@ -51,9 +52,8 @@ class Capturing {
     void prepare(const Context& context, RenderCache& cache) {
         Report known;  // The window has shown these findings.
         const Scene& scene = composed_.scene();
-        const FramePlan planned = plan_effects(scene, wish_.settings);
-        FramePlan plan = force_effects(scene, wish_.settings, planned, wish_.effects);
-        renderer_.emplace(cache, context, scene, std::move(plan), wish_.settings, known);
+        renderer_.emplace(cache, context, scene, forced_plan(scene, wish_.settings, wish_.effects),
+                          wish_.settings, known);
     }
 
     CaptureWish wish_;

@@ -6,6 +6,11 @@
 
 namespace relief::tools {
 
+FramePlan forced_plan(const Scene& scene, const FrameSettings& settings,
+                      const EffectWishes& effects) {
+    return force_effects(scene, settings, plan_effects(scene, settings), effects);
+}
+
 /// What lives on the thread, in its context.
 class DrawThread::Drawer {
   public:
@@ -25,17 +30,18 @@ class DrawThread::Drawer {
     /// Draws, or throws; what was drawn before stays. What cannot be prepared is tried once, and
     /// what was there before can still be looked at from elsewhere.
     void draw(const DrawWish& wish, DrawnPicture& drawn, const Progress& progress) {
-        const bool is_tried =
-            has_tried_ && tried_revision_ == wish.revision && tried_settings_ == wish.settings;
+        if (wish.instead) {
+            show(*wish.instead, wish, drawn);
+            return;
+        }
+        const bool is_tried = has_tried_ && tried_revision_ == wish.revision &&
+                              tried_beside_ == revision_of(wish.beside) &&
+                              tried_settings_ == wish.settings;
         if (!is_tried) try_to_prepare(wish, drawn, progress);
         drawn.error = failure_;
         if (!renderer_) return;
         if (!failure_.empty() && is_same_view(drawn.camera, wish.camera)) return;
-        drawn.times = renderer_->draw_only(wish.camera).times;
-        handover_.put(*renderer_);
-        drawn.camera = wish.camera;
-        drawn.settings = settings_;
-        ++drawn.frames;
+        draw_prepared(wish, drawn);
     }
 
   private:
@@ -49,18 +55,47 @@ class DrawThread::Drawer {
         }
     };
 
+    static std::uint64_t revision_of(const std::optional<BesideWish>& beside) {
+        return beside ? beside->revision : 0;
+    }
+
     static bool is_same_view(const Camera& a, const Camera& b) {
         return a.world_from_view == b.world_from_view && a.vertical_fov == b.vertical_fov;
+    }
+
+    void show(const Image& picture, const DrawWish& wish, DrawnPicture& drawn) {
+        handover_.put(picture);
+        drawn.error.clear();
+        drawn.beside = 0;
+        drawn.is_difference = true;
+        drawn.camera = wish.camera;
+        drawn.settings = wish.settings;
+        ++drawn.frames;
+    }
+
+    void draw_prepared(const DrawWish& wish, DrawnPicture& drawn) {
+        drawn.times = renderer_->draw_only(wish.camera).times;
+        const bool has_beside = wish.beside && beside_;
+        if (has_beside) drawn.times.draw += beside_->draw_only(wish.beside->camera).times.draw;
+        handover_.put(*renderer_, has_beside ? beside_.get() : nullptr);
+        drawn.beside = has_beside ? wish.beside->revision : 0;
+        drawn.is_difference = false;
+        drawn.camera = wish.camera;
+        drawn.settings = settings_;
+        ++drawn.frames;
     }
 
     void try_to_prepare(const DrawWish& wish, DrawnPicture& drawn, const Progress& progress) {
         const NotedFiles noted{progress, drawn};
         tried_revision_ = wish.revision;
+        tried_beside_ = revision_of(wish.beside);
         tried_settings_ = wish.settings;
         has_tried_ = true;
         failure_.clear();
         try {
             prepare(wish, drawn);
+            prepare_beside(wish);
+            cache_.drop_unused();
         } catch (const Cancelled&) {
             throw;
         } catch (const std::exception& error) {
@@ -70,12 +105,7 @@ class DrawThread::Drawer {
 
     void prepare(const DrawWish& wish, DrawnPicture& drawn) {
         Report findings;
-        const FramePlan planned = plan_effects(*wish.scene, wish.settings);
-        FramePlan plan = force_effects(*wish.scene, wish.settings, planned, wish.effects);
-        auto made = std::make_unique<Renderer>(cache_, context_, *wish.scene, std::move(plan),
-                                               wish.settings, findings);
-        renderer_ = std::move(made);
-        cache_.drop_unused();
+        renderer_ = prepared(*wish.scene, wish, findings);
         settings_ = wish.settings;
         drawn.revision = wish.revision;
         drawn.plan = std::make_shared<const FramePlan>(renderer_->plan());
@@ -83,13 +113,28 @@ class DrawThread::Drawer {
         ++drawn.renderers;
     }
 
+    /// Goes where nothing is to be beside the scene, or what should be cannot.
+    void prepare_beside(const DrawWish& wish) {
+        Report findings;  // Nearly those of the scene.
+        beside_.reset();
+        if (wish.beside) beside_ = prepared(*wish.beside->scene, wish, findings);
+    }
+
+    std::unique_ptr<Renderer> prepared(const Scene& scene, const DrawWish& wish, Report& findings) {
+        return std::make_unique<Renderer>(cache_, context_, scene,
+                                          forced_plan(scene, wish.settings, wish.effects),
+                                          wish.settings, findings);
+    }
+
     Context context_;
     RenderCache cache_;
     Handover handover_;
     std::unique_ptr<Renderer> renderer_;
+    std::unique_ptr<Renderer> beside_;
     FrameSettings settings_;  ///< Of the renderer.
     bool has_tried_ = false;  ///< The last wish was prepared, and shaders have not changed since.
     std::uint64_t tried_revision_ = 0;
+    std::uint64_t tried_beside_ = 0;
     FrameSettings tried_settings_;
     std::string failure_;  ///< Of that; empty: none.
 };

@@ -26,6 +26,13 @@
 
 namespace relief::tools {
 
+/// What is drawn beside it at the same time, with the same effects and settings.
+struct BesideWish {
+    std::shared_ptr<const Scene> scene;
+    std::uint64_t revision = 0;
+    Camera camera;
+};
+
 /// What is to be drawn.
 struct DrawWish {
     std::shared_ptr<const Scene> scene;
@@ -33,11 +40,19 @@ struct DrawWish {
     EffectWishes effects;
     FrameSettings settings;
     Camera camera;
+    std::optional<BesideWish> beside = std::nullopt;
+    std::shared_ptr<const Image> instead = nullptr;  ///< A finished picture; nothing is drawn.
 };
+
+/// The plan of a scene with the effects that were forced.
+FramePlan forced_plan(const Scene& scene, const FrameSettings& settings,
+                      const EffectWishes& effects);
 
 /// What was drawn last, or why it could not be.
 struct DrawnPicture {
     std::uint64_t revision = 0;
+    std::uint64_t beside = 0;     ///< The revision of what is beside it; 0: nothing is.
+    bool is_difference = false;   ///< DrawWish::instead.
     std::uint64_t frames = 0;     ///< Drawn so far, all in all.
     std::uint64_t renderers = 0;  ///< Made so far.
     FrameTimes times;

@@ -56,7 +56,12 @@ Camera camera_of(const OrbitCamera& orbit, const Ball& ball) {
     camera.world_from_view = glm::mat4(axes);
     camera.world_from_view[3] = glm::vec4(eye, 1.0F);
     camera.vertical_fov = orbit.vertical_fov;
-    const float depth = glm::dot(eye - ball.center, axes[2]);
+    return seeing(camera, ball);
+}
+
+Camera seeing(Camera camera, const Ball& ball) {
+    const glm::vec3 eye(camera.world_from_view[3]);
+    const float depth = glm::dot(eye - ball.center, glm::vec3(camera.world_from_view[2]));
     camera.far = std::max(depth + room * ball.radius, room * ball.radius);
     camera.near = std::max(depth - room * ball.radius, nearest_share * camera.far);
     return camera;

@@ -32,6 +32,9 @@ Ball ball_around(const Bounds& bounds);
 /// far one, so that depth has a precision.
 Camera camera_of(const OrbitCamera& orbit, const Ball& ball);
 
+/// The same camera with a depth range for another ball.
+Camera seeing(Camera camera, const Ball& ball);
+
 /// As --camera AZIMUTH,ELEVATION@X,Y,Z,DISTANCE says it.
 OrbitCamera orbit_of(const CameraOption& option, const CameraPlace& place, float vertical_fov);
 

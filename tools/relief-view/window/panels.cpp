@@ -52,6 +52,7 @@ constexpr std::array panels{
     Panel{"Environment", false, plain<draw_environment_panel>},
     Panel{"Picture", false, plain<draw_picture_panel>},
     Panel{"View", false, plain<draw_view_panel>},
+    Panel{"Compare", false, plain<draw_compare_panel>},
     Panel{"Save", false, draw_capture_panel},
     Panel{"Effects", true, draw_effects_panel},
 };

@@ -13,6 +13,8 @@
 
 namespace relief::tools {
 
+class Comparison;
+
 /// Everything drawn with Dear ImGui for one frame of the window.
 struct PanelInput {
     ViewerState& state;
@@ -28,6 +30,7 @@ struct PanelInput {
     std::string layout_note;  ///< What became of the layout that was remembered.
     EffectPrices& prices;
     ShaderPanel& shaders;
+    Comparison* comparison = nullptr;
 };
 
 /// What a panel asks the window to do.
@@ -44,6 +47,7 @@ void draw_light_panel(const PanelInput& input);
 void draw_material_panel(const PanelInput& input);
 void draw_environment_panel(const PanelInput& input);
 void draw_picture_panel(const PanelInput& input);
+void draw_compare_panel(const PanelInput& input);
 void draw_capture_panel(const PanelInput& input, PanelWishes& wishes);
 void draw_effects_panel(const PanelInput& input, PanelWishes& wishes);
 void draw_view_panel(const PanelInput& input);

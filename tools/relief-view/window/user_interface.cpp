@@ -13,6 +13,7 @@
 #include <string_view>
 #include <utility>
 
+#include "window/compare_view.h"
 #include "window/picking.h"
 #include "window/places.h"
 
@@ -22,6 +23,7 @@ namespace {
 constexpr ImU32 backdrop = IM_COL32(24, 26, 30, 255);
 constexpr double double_click_seconds = 0.35;
 constexpr float double_click_reach = 6.0F;  // In the window's units.
+constexpr float line_reach = 6.0F;          // Of the line between two pictures.
 constexpr float drag_zoom = 0.02F;          // Steps of the wheel for each pixel of a right drag.
 constexpr float wheel_pan = 40.0F;          // The window's units for each step of the wheel.
 
@@ -80,23 +82,6 @@ void install_callbacks(GLFWwindow* window) {
                                glfwGetKey(where, GLFW_KEY_RIGHT_SHIFT) == GLFW_PRESS;
         interface_of(where).on_wheel(glm::vec2(x, y), has_shift);
     });
-}
-
-bool is_windows_own(Action action) {
-    switch (action) {
-        case Action::copy_camera:
-        case Action::paste_camera:
-        case Action::save_picture:
-        case Action::panels:
-        case Action::larger_interface:
-        case Action::smaller_interface:
-        case Action::usual_interface:
-        case Action::help:
-        case Action::quit:
-            return true;
-        default:
-            return false;
-    }
 }
 
 /// Whether a key that is held down does it on and on.
@@ -177,6 +162,10 @@ bool UserInterface::is_on_picture() const {
     return is_over && !is_help_open_ && !ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopup);
 }
 
+bool UserInterface::is_on_line() const {
+    return line_ && std::abs(pointer_.x - *line_) <= line_reach;
+}
+
 /// A second click soon after the first and near it; a third one is a first one again.
 bool UserInterface::is_second_click() {
     const double now = glfwGetTime();
@@ -190,6 +179,10 @@ bool UserInterface::is_second_click() {
 void UserInterface::on_button(int button, bool is_down, int modifiers) {
     drag_ = Drag::none;
     if (!is_down || !is_on_picture()) return;
+    if (button == GLFW_MOUSE_BUTTON_LEFT && is_on_line()) {
+        drag_ = Drag::line;
+        return;
+    }
     if (button == GLFW_MOUSE_BUTTON_LEFT && modifiers == 0 && is_second_click())
         moves_.push_back({Drag::aim, {}, 0.0F, pointer_});
     if (button == GLFW_MOUSE_BUTTON_RIGHT) {
@@ -240,6 +233,22 @@ void UserInterface::apply(const Move& move, ViewerState& state) const {
     zoom_by(state.camera(), is_drag ? -drag_zoom * moved.y : move.steps, pointer, state.ball());
 }
 
+/// The picture, or two of them, or their difference.
+void UserInterface::draw_view(const PanelInput& input, const Handover::Shown& picture,
+                              const ViewPlace& place) {
+    line_.reset();
+    if (picture.texture == 0) return;
+    if (input.drawn.is_difference) {
+        draw_difference(picture, place, *input.comparison);
+    } else if (picture.beside != 0) {
+        line_ = draw_sides(picture, place, *input.comparison);
+        const bool is_caught = drag_ == Drag::line || (is_on_line() && is_on_picture());
+        if (is_caught) ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeEW);
+    } else {
+        draw_picture(picture, place);
+    }
+}
+
 UserInterface::Events UserInterface::draw(const PanelInput& input, const Handover::Shown& picture) {
     ImGui_ImplOpenGL3_NewFrame();
     apply_scale();
@@ -260,21 +269,14 @@ UserInterface::Events UserInterface::draw(const PanelInput& input, const Handove
     input.state.set_view(glm::ivec2(glm::max(pixels, glm::vec2(1.0F))));
     // Under the picture, which may be transparent, and instead of it; nothing else clears.
     ImGui::GetBackgroundDrawList()->AddRectFilled({0.0F, 0.0F}, io.DisplaySize, backdrop);
-    if (picture.texture != 0) {
-        // Row 0 of the texture is at the bottom.
-        ImGui::GetBackgroundDrawList()->AddImage(
-            reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(picture.texture)),
-            {left_, 0.0F}, {io.DisplaySize.x, io.DisplaySize.y - bottom_}, {0, 1}, {1, 0});
+    draw_view(input, picture, {{left_, 0.0F}, {io.DisplaySize.x, io.DisplaySize.y - bottom_}});
+    for (const Move& move : std::exchange(moves_, {})) {
+        if (move.drag == Drag::line)
+            input.comparison->set_split((move.place.x - left_) / std::max(size.x, 1.0F));
+        else
+            apply(move, input.state);
     }
-    for (const Move& move : std::exchange(moves_, {}))
-        apply(move, input.state);
-    for (const Action action : std::exchange(pressed_, {})) {
-        if (is_windows_own(action)) {
-            events.actions.push_back(action);
-        } else {
-            input.state.act(action);
-        }
-    }
+    events.actions = std::exchange(pressed_, {});
     ImGui::Render();
     ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
     system_.swap();

@@ -8,6 +8,7 @@
 #include <glm/vec2.hpp>
 #include <vector>
 
+#include "window/compare_view.h"
 #include "window/interface_scale.h"
 #include "window/panels.h"
 #include "window/window_system.h"
@@ -23,7 +24,7 @@ class UserInterface {
 
     /// What came in since the last frame, beside what went into the state.
     struct Events {
-        std::vector<Action> actions;  ///< Those that are the window's own.
+        std::vector<Action> actions;  ///< In the order of their keys.
         std::vector<std::filesystem::path> dropped;
         PanelWishes panels;
         bool has_input = false;  ///< A key, the mouse or a drop: Dear ImGui needs frames to react.
@@ -51,7 +52,7 @@ class UserInterface {
     void on_input() { has_input_ = true; }
 
   private:
-    enum class Drag { none, orbit, pan, zoom, lights, aim };
+    enum class Drag { none, orbit, pan, zoom, lights, aim, line };
 
     /// What hands did to the picture, in pixels.
     struct Move {
@@ -66,6 +67,8 @@ class UserInterface {
     [[nodiscard]] bool is_second_click();
     [[nodiscard]] glm::vec2 on_view(const glm::vec2& place, const ViewerState& state) const;
     void apply(const Move& move, ViewerState& state) const;
+    [[nodiscard]] bool is_on_line() const;
+    void draw_view(const PanelInput& input, const Handover::Shown& picture, const ViewPlace& place);
 
     const WindowSystem& system_;
     std::vector<std::filesystem::path> dropped_;
@@ -79,8 +82,9 @@ class UserInterface {
     bool is_help_open_ = false;
     InterfaceScale scale_{.layout = 0.0F, .glyphs = 0.0F};  ///< None yet.
     InterfaceScale wanted_scale_;
-    float left_ = 0.0F;    ///< Of the picture, in the interface's units.
-    float bottom_ = 0.0F;  ///< What is below it.
+    std::optional<float> line_;  ///< Between two pictures; in the interface's units.
+    float left_ = 0.0F;          ///< Of the picture, in the interface's units.
+    float bottom_ = 0.0F;        ///< What is below it.
 };
 
 }  // namespace relief::tools

@@ -307,7 +307,6 @@ nlohmann::ordered_json ViewerState::json(const DrawnPicture& drawn) const {
                                       {"distance", camera_.distance},
                                       {"target", numbers(camera_.target)},
                                       {"fov", glm::degrees(camera_.vertical_fov)}}},
-                                    {"command_line", command_line()},
                                     {"show", debug_view_info(options_.debug.view).name},
                                     {"overlays", overlays_json(options_.debug, markers_)},
                                     {"turntable", is_turning_},

@@ -10,6 +10,7 @@
 #include <cstdio>
 
 #include "file_replacement.h"
+#include "window/comparison.h"
 #include "window/dropped_files.h"
 #include "window/followed_files.h"
 #include "window/places.h"
@@ -48,6 +49,7 @@ class WindowLoop {
           files_(WindowSystem::wake),
           interface_(system_),
           state_(options),
+          comparison_(options.compare, WindowSystem::wake),
           reading_(options),
           ui_scale_(options.ui_scale),
           dump_(options.dump_state) {
@@ -61,6 +63,7 @@ class WindowLoop {
             wait();
             take_results();
             state_.pass(seconds_since_last());
+            comparison_.follow(state_);
             if (system_.is_visible()) draw();
         }
         // A size that an option asked for is for this time.
@@ -148,7 +151,8 @@ class WindowLoop {
                                text_of(captured_->state()),
                                remembered_.note(),
                                prices_,
-                               shaders_};
+                               shaders_,
+                               &comparison_};
         const UserInterface::Events events = interface_.draw(input, drawer_.shown());
         // Whenever it came: while the panels settle after something else, too.
         if (events.has_input) settling_ = frames_to_settle;
@@ -162,10 +166,11 @@ class WindowLoop {
         if (events.panels.save_turn) save(capture_settings_.pictures);
         if (!events.dropped.empty()) drop(events.dropped);
         const bool is_busy = request() || was_busy || is_resting_later_ || health_.is_going_on();
-        dump(drawn, is_busy);
+        dump(drawn, is_busy || comparison_.is_working());
     }
 
     void act(Action action) {
+        state_.act(action);
         if (action == Action::help) interface_.show_help();
         if (action == Action::panels) layout_.has_panels = !layout_.has_panels;
         if (action == Action::larger_interface)
@@ -176,8 +181,15 @@ class WindowLoop {
         if (action == Action::quit) system_.close();
         if (action == Action::save_picture) save(0);
         if (action == Action::copy_camera)
-            glfwSetClipboardString(system_.window(), state_.command_line().c_str());
+            glfwSetClipboardString(system_.window(), command_line().c_str());
+        if (action == Action::compare) comparison_.toggle();
+        if (action == Action::swap_sides) comparison_.swap();
+        if (action == Action::show_difference) comparison_.toggle_difference();
         if (action == Action::paste_camera) paste();
+    }
+
+    [[nodiscard]] std::string command_line() const {
+        return state_.command_line() + comparison_.command_line();
     }
 
     void paste() {
@@ -198,7 +210,9 @@ class WindowLoop {
     /// Whether two wishes show the same, in whatever resolution.
     static bool is_same(const DrawWish& a, const DrawWish& b) {
         return a.revision == b.revision && a.camera.world_from_view == b.camera.world_from_view &&
-               a.camera.vertical_fov == b.camera.vertical_fov &&
+               a.camera.vertical_fov == b.camera.vertical_fov && a.instead == b.instead &&
+               a.beside.has_value() == b.beside.has_value() &&
+               (!a.beside || a.beside->revision == b.beside->revision) &&
                a.settings.width == b.settings.width && a.settings.height == b.settings.height;
     }
 
@@ -253,11 +267,12 @@ class WindowLoop {
 
     /// Asks for a picture where the last one asked for shows something else. \return whether it did
     bool request() {
-        const std::optional<DrawWish> wish = state_.wish();
+        std::optional<DrawWish> wish = state_.wish();
         if (!wish) return false;
+        if (std::optional<DrawTask> task = comparison_.add_to(*wish)) drawer_.add(std::move(*task));
         const bool is_moved = !wished_ || !is_same(*wished_, *wish);
         const double now = glfwGetTime();
-        if (is_moved && wished_) resolution_.moved(now);
+        if (is_moved && wished_ && !wish->instead) resolution_.moved(now);
         DrawWish reduced = *wish;
         reduced.settings = resolution_.settings_for(wish->settings, now);
         is_resting_later_ = is_reduced(reduced.settings);
@@ -286,6 +301,10 @@ class WindowLoop {
         json["drawn"]["whole"] = !is_reduced(drawn.settings);
         json["reduced"] = reduced_;
         json["costs"] = json_of(prices_.state());
+        json["command_line"] = command_line();
+        json["compare"] = comparison_.json();
+        json["drawn"]["beside"] = drawn.beside;
+        json["drawn"]["difference"] = drawn.is_difference;
         json["saved"] = json_of(captured_->state());
         json["layout"] = {{"scale", interface_.scale().layout},
                           {"panels", panel_names()},
@@ -309,6 +328,7 @@ class WindowLoop {
     FollowedFiles files_;
     UserInterface interface_;
     ViewerState state_;
+    Comparison comparison_;
     ViewOptions reading_;                   ///< What was last begun to be read.
     std::optional<glm::ivec2> asked_view_;  ///< Until the first frame shows how large it is.
     std::optional<float> ui_scale_;         ///< By option, until another one is chosen.

@@ -23,12 +23,17 @@ class Handover {
     Handover& operator=(const Handover&) = delete;
 
     /// Copies what the renderer drew last, and waits until it is there. Of 8-bit pictures.
-    void put(const Renderer& renderer);
+    /// \param beside  another picture that is handed over at the same moment
+    void put(const Renderer& renderer, const Renderer* beside = nullptr);
+
+    /// The same for a picture that was drawn elsewhere: 8-bit RGB or RGBA, sRGB.
+    void put(const Image& picture);
 
     struct Shown {
         unsigned texture = 0;  ///< 0: there is none yet. Row 0 at the bottom, sRGB codes.
         int width = 0;
         int height = 0;
+        unsigned beside = 0;  ///< Of the same size; 0: there is none.
     };
     /// The newest; its texture is left alone until the next call.
     Shown get();
