@@ -12,7 +12,7 @@
 #include "relief/mesh/bump.h"
 #include "relief/mesh/height_map.h"
 #include "relief/mesh/image_file.h"
-#include "window/material_models.h"
+#include "relief/shade/name_materials.h"
 
 namespace relief::tools {
 namespace {

@@ -20,6 +20,7 @@
 #include "relief/mesh/image_file.h"
 #include "relief/mesh/threads.h"
 #include "relief/shade/renderer.h"
+#include "save_files.h"
 #include "scene_options.h"
 #include "sequence.h"
 #include "view_options.h"
@@ -120,6 +121,7 @@ ExitCode run(ViewOptions& options) {
     if (options.explain_effects && !options.json) print_effects(composed.scene(), plan);
     if (options.effects.print_shaders && !options.json) print_shaders(composed.scene(), plan);
 
+    save_files(options, composed, stages);
     std::optional<Drawn> drawn;
     if (options.output || options.reference || options.effects.measures()) {
         drawn = draw(options, settings, composed, plan, stages, report);
@@ -168,6 +170,8 @@ Command add_view_command(CLI::App& tool) {
          "relief-view data/vase.obj --show shading-normal --wireframe --output out/normals.png",
          "relief-view data/vase.obj --height-map data/bricks-height.png --compare kernel=central3 "
          "--output out/sides.png",
+         "relief-view data/vase.obj --material gold --light point:2,2,2,4 --save-scene "
+         "out/golden.json",
          "relief-view data/vase.obj --diffuse-map data/bricks-diffuse.png --explain-effects"});
     return {&tool, [options] { return run(*options); }};
 }

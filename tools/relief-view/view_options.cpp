@@ -14,6 +14,7 @@
 #include "map_options.h"
 #include "material_options.h"
 #include "picture_reference.h"
+#include "save_files.h"
 #include "sequence_options.h"
 #include "window/interface_scale.h"
 
@@ -220,6 +221,7 @@ void add_view_options(CLI::App& app, ViewOptions& options) {
         "Model to show: .glb .gltf .obj .ply .stl .off, or a scene: .json. Without --output, in "
         "a window");
     add_output_options(app, options);
+    add_save_options(app, options);
     add_window_options(app, options);
     add_map_options(app, options);
     add_material_options(app, options);
@@ -244,6 +246,7 @@ void settle(ViewOptions& options) {
     if (options.model.empty() && !options.wants_window() && !options.list_bindings)
         throw UsageError("MODEL is missing");
     check_output(options);
+    check_save_options(options);
     check_sequence(options);
     check_reference(options);
     check_compare_options(options);

@@ -58,6 +58,8 @@ struct MetallicOption {
 struct ViewOptions {
     std::filesystem::path model;
     std::optional<std::filesystem::path> output;
+    std::optional<std::filesystem::path> save_scene;
+    std::optional<std::filesystem::path> save_model;
     glm::ivec2 size{1024, 1024};
     bool size_given = false;  ///< Else a scene file may say it.
     int samples = 4;
@@ -120,8 +122,8 @@ struct ViewOptions {
 
     /// Neither a picture nor words are asked for: a window it is.
     [[nodiscard]] bool wants_window() const {
-        return !output && !reference && !explain_effects && !effects.print_shaders &&
-               !effects.measures();
+        return !output && !save_scene && !save_model && !reference && !explain_effects &&
+               !effects.print_shaders && !effects.measures();
     }
 
     Backend backend = Backend::automatic;

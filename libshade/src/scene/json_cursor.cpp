@@ -172,6 +172,11 @@ float JsonCursor::number(float least, float most) const {
     return static_cast<float>(value);
 }
 
+double JsonCursor::exact_number() const {
+    (void)number();
+    return value_->get<double>();
+}
+
 int JsonCursor::whole_number(int least, int most) const {
     if (!value_->is_number_integer() || value_->get<double>() < least ||
         value_->get<double>() > most) {

@@ -47,6 +47,8 @@ class JsonCursor {
     [[nodiscard]] const std::string& text() const;
     [[nodiscard]] float number(float least = std::numeric_limits<float>::lowest(),
                                float most = std::numeric_limits<float>::max()) const;
+    /// The same before it becomes a float.
+    [[nodiscard]] double exact_number() const;
     [[nodiscard]] int whole_number(int least, int most) const;
     /// An array of so many finite numbers.
     [[nodiscard]] std::vector<float> numbers(std::size_t count) const;

@@ -22,8 +22,6 @@ enum class LightType { directional, point, spot };
 constexpr Named<LightType> light_types[] = {{"directional", LightType::directional},
                                             {"point", LightType::point},
                                             {"spot", LightType::spot}};
-constexpr Named<Falloff> falloffs[] = {{"inverse_square", Falloff::inverse_square},
-                                       {"none", Falloff::none}};
 
 /// The colours of a lamp, each times its intensity.
 struct LampColors {
@@ -66,7 +64,8 @@ PointLight point_from(const JsonCursor& object, const LampColors& colors) {
     light.highlight_intensity = colors.specular;
     light.position_world = vector_in(object, "position", glm::vec3(0.0F));
     if (const auto range = object.find("range")) light.range = range->number(1e-30F);
-    if (const auto falloff = object.find("falloff")) light.falloff = one_of(*falloff, falloffs);
+    if (const auto falloff = object.find("falloff"))
+        light.falloff = one_of(*falloff, falloff_words);
     return light;
 }
 
@@ -96,7 +95,8 @@ float number_in(const JsonCursor& object, const char* key, float absent) {
 
 float degrees_in(const JsonCursor& object, const char* key, float absent_radians) {
     const auto found = object.find(key);
-    return found ? glm::radians(found->number()) : absent_radians;
+    // In double: angles that were written come back bit for bit.
+    return found ? static_cast<float>(glm::radians(found->exact_number())) : absent_radians;
 }
 
 glm::vec3 vector_in(const JsonCursor& object, const char* key, const glm::vec3& absent) {
@@ -186,9 +186,31 @@ Camera node_camera_from(const JsonCursor& object, bool& sees_all) {
     return camera;
 }
 
+namespace {
+
+/// A camera as it was, number by number.
+Camera camera_by_matrix(const JsonCursor& object, bool& sees_all) {
+    for (const char* key : {"eye", "target", "azimuth", "elevation", "distance_factor"}) {
+        if (const auto extra = object.find(key))
+            extra->fail("says where the camera stands, and so does 'matrix'");
+    }
+    Camera camera;
+    const std::vector<float> values = object.at("matrix").numbers(16);
+    for (std::size_t i = 0; i < 16; ++i)
+        camera.world_from_view[static_cast<int>(i / 4)][static_cast<int>(i % 4)] = values[i];
+    camera.vertical_fov = degrees_in(object, "fov", default_vertical_fov);
+    camera.near = object.at("near").number();
+    camera.far = object.at("far").number();
+    sees_all = false;
+    return camera;
+}
+
+}  // namespace
+
 Camera camera_from(const JsonCursor& object, const Scene& scene, float aspect, bool& sees_all) {
-    object.allow(
-        {"eye", "target", "azimuth", "elevation", "distance_factor", "fov", "near", "far"});
+    object.allow({"eye", "target", "azimuth", "elevation", "distance_factor", "matrix", "fov",
+                  "near", "far"});
+    if (object.find("matrix")) return camera_by_matrix(object, sees_all);
     const float fov = degrees_in(object, "fov", default_vertical_fov);
     Camera camera;
     float depth = 0.0F;  // From the eye to what it looks at.

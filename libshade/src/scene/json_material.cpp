@@ -12,30 +12,6 @@ namespace relief {
 
 namespace {
 
-constexpr Named<Interpolation> interpolations[] = {{"per_pixel", Interpolation::per_pixel},
-                                                   {"gouraud", Interpolation::gouraud},
-                                                   {"flat", Interpolation::flat}};
-constexpr Named<SpecularModel> specular_models[] = {
-    {"phong", SpecularModel::phong},
-    {"blinn_phong", SpecularModel::blinn_phong},
-    {"blinn_phong_normalized", SpecularModel::blinn_phong_normalized}};
-constexpr Named<FresnelModel> fresnel_models[] = {{"schlick", FresnelModel::schlick},
-                                                  {"dielectric", FresnelModel::dielectric},
-                                                  {"conductor", FresnelModel::conductor}};
-constexpr Named<AlphaMode> alpha_modes[] = {
-    {"opaque", AlphaMode::opaque}, {"mask", AlphaMode::mask}, {"blend", AlphaMode::blend}};
-constexpr Named<TangentFrame> tangent_frames[] = {{"stored", TangentFrame::stored},
-                                                  {"derivatives", TangentFrame::derivatives}};
-constexpr Named<NormalSpace> normal_spaces[] = {{"tangent", NormalSpace::tangent},
-                                                {"object", NormalSpace::object}};
-constexpr Named<Green> greens[] = {{"up", Green::up}, {"down", Green::down}};
-constexpr Named<FlatCode> flat_codes[] = {{"middle", FlatCode::middle}, {"half", FlatCode::half}};
-constexpr Named<TextureWrap> wraps[] = {{"repeat", TextureWrap::repeat},
-                                        {"clamp", TextureWrap::clamp},
-                                        {"mirror", TextureWrap::mirror}};
-constexpr Named<TextureFilter> filters[] = {{"linear", TextureFilter::linear},
-                                            {"nearest", TextureFilter::nearest}};
-
 using Setter = std::function<void(const JsonCursor&)>;
 /// What each member of an object does, by its key.
 using Members = std::map<std::string, Setter>;
@@ -83,9 +59,9 @@ NormalMap normal_map_from(const JsonCursor& object, JsonImages& images) {
     read_members(object,
                  {{"texture", [&](const JsonCursor& c) { map.texture = images.texture(c); }},
                   {"scale", number(map.scale, -1e6F, 1e6F)},
-                  {"green", choice(map.green, greens)},
-                  {"flat", [&](const JsonCursor& c) { map.flat = one_of(c, flat_codes); }},
-                  {"space", choice(map.space, normal_spaces)}});
+                  {"green", choice(map.green, green_words)},
+                  {"flat", [&](const JsonCursor& c) { map.flat = one_of(c, flat_code_words); }},
+                  {"space", choice(map.space, normal_space_words)}});
     (void)object.at("texture");
     return map;
 }
@@ -112,6 +88,17 @@ MetallicRoughness metallic_roughness_from(const JsonCursor& object, JsonImages& 
     return model;
 }
 
+/// How a texture is looked up, where the file says more than its image.
+Texture with_sampling(const JsonCursor& cursor, Texture texture) {
+    if (cursor.is_object()) {
+        read_members(cursor, {{"image", [](const JsonCursor&) {}},
+                              {"wrap_u", choice(texture.wrap_u, wrap_words)},
+                              {"wrap_v", choice(texture.wrap_v, wrap_words)},
+                              {"filter", choice(texture.filter, filter_words)}});
+    }
+    return texture;
+}
+
 Material classic_material(const JsonCursor& cursor) {
     const auto found = material_by_name(cursor.text());
     if (!found) cursor.fail_unknown(cursor.text(), material_names());
@@ -123,19 +110,19 @@ Members members_of(Material& m, JsonImages& images) {
     return {
         {"like", [](const JsonCursor&) {}},
         {"name", [&](const JsonCursor& c) { m.name = c.text(); }},
-        {"interpolation", choice(m.interpolation, interpolations)},
+        {"interpolation", choice(m.interpolation, interpolation_words)},
         {"ambient", color(m.ambient)},
         {"diffuse", color(m.diffuse)},
         {"specular", color(m.specular)},
         {"emission", color(m.emission)},
         {"shininess", number(m.shininess, 0.0F, 1e6F)},
-        {"specular_model", choice(m.specular_model, specular_models)},
+        {"specular_model", choice(m.specular_model, specular_model_words)},
         {"metallic_roughness",
          optional(m.metallic_roughness,
                   [&](const JsonCursor& c) { return metallic_roughness_from(c, images); })},
         {"reflectivity", color(m.reflectivity)},
         {"grazing_reflectivity", color(m.grazing_reflectivity)},
-        {"fresnel", choice(m.fresnel, fresnel_models)},
+        {"fresnel", choice(m.fresnel, fresnel_words)},
         {"refractive_index", number(m.refractive_index, 1.0F, 1e3F)},
         {"conductor_index", color(m.conductor_index)},
         {"conductor_absorption", color(m.conductor_absorption)},
@@ -151,9 +138,9 @@ Members members_of(Material& m, JsonImages& images) {
          optional(m.normal_map, [&](const JsonCursor& c) { return normal_map_from(c, images); })},
         {"bump_map",
          optional(m.bump_map, [&](const JsonCursor& c) { return bump_map_from(c, images); })},
-        {"tangent_frame", choice(m.tangent_frame, tangent_frames)},
+        {"tangent_frame", choice(m.tangent_frame, tangent_frame_words)},
         {"specular_antialiasing", flag(m.specular_antialiasing)},
-        {"alpha_mode", choice(m.alpha_mode, alpha_modes)},
+        {"alpha_mode", choice(m.alpha_mode, alpha_mode_words)},
         {"opacity", number(m.opacity, 0.0F, 1.0F)},
         {"alpha_cutoff", number(m.alpha_cutoff, 0.0F, max_reflectance)},
         {"double_sided", flag(m.double_sided)},
@@ -180,20 +167,19 @@ ImageSource JsonImages::source(const JsonCursor& cursor) const {
     return {path.string(), path};
 }
 
+std::size_t JsonImages::own_image(const JsonCursor& number) const {
+    if (images_.empty()) number.fail("is the number of an image, but no model has brought one");
+    return static_cast<std::size_t>(number.whole_number(0, static_cast<int>(images_.size()) - 1));
+}
+
 Texture JsonImages::texture(const JsonCursor& cursor) {
     const JsonCursor image = cursor.is_object() ? cursor.at("image") : cursor;
+    if (image.is_number()) return with_sampling(cursor, {own_image(image)});
     const ImageSource found = source(image);
     const auto [entry, is_new] =
         index_of_.try_emplace(std::get<std::filesystem::path>(found.source), images_.size());
     if (is_new) images_.push_back(found);
-    Texture result{entry->second};
-    if (cursor.is_object()) {
-        read_members(cursor, {{"image", [](const JsonCursor&) {}},
-                              {"wrap_u", choice(result.wrap_u, wraps)},
-                              {"wrap_v", choice(result.wrap_v, wraps)},
-                              {"filter", choice(result.filter, filters)}});
-    }
-    return result;
+    return with_sampling(cursor, {entry->second});
 }
 
 void read_material(const JsonCursor& object, JsonImages& images, Material& material) {

@@ -10,15 +10,9 @@
 
 #include "relief/shade/scene.h"
 #include "scene/json_cursor.h"
+#include "scene/json_words.h"
 
 namespace relief {
-
-/// One of an enumeration's values by its name in files.
-template <typename Value>
-struct Named {
-    const char* name;
-    Value value;
-};
 
 /// \throws InvalidInput at the cursor's place, with all names
 template <typename Value, std::size_t count>
@@ -46,6 +40,8 @@ class JsonImages {
     Texture texture(const JsonCursor& cursor);
 
   private:
+    [[nodiscard]] std::size_t own_image(const JsonCursor& number) const;
+
     std::filesystem::path folder_;
     std::vector<ImageSource>& images_;
     std::map<std::filesystem::path, std::size_t> index_of_;

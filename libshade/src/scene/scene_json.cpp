@@ -10,6 +10,7 @@
 #include "file_bytes.h"
 #include "relief/mesh/error.h"
 #include "relief/mesh/shapes.h"
+#include "relief/shade/name_materials.h"
 #include "scene/append_graph.h"
 #include "scene/json_lights.h"
 
@@ -21,9 +22,6 @@ constexpr int version = 1;
 constexpr int most_pixels = 16384;
 /// Nodes below nodes: more than any scene needs, and less than a stack holds.
 constexpr int most_levels = 200;
-
-constexpr Named<ToneMapping> tone_mappings[] = {
-    {"none", ToneMapping::none}, {"reinhard", ToneMapping::reinhard}, {"aces", ToneMapping::aces}};
 
 /// "sphere", or {"sphere": {"slices": 12}}.
 Mesh shape_from(const JsonCursor& cursor) {
@@ -116,7 +114,7 @@ class SceneReader {
     SceneGraph read(const JsonCursor& root) {
         root.allow({"relief_scene", "description", "materials", "nodes", "lights", "camera",
                     "ambient", "environment", "background", "exposure", "tone_mapping",
-                    "light_markers", "picture"});
+                    "light_markers", "picture", "material_edits", "only_lights"});
         if (root.at("relief_scene").whole_number(0, 1000000) != version)
             root.at("relief_scene").fail(fmt::format("must be {}, the only version", version));
         if (const auto description = root.find("description")) (void)description->text();
@@ -130,6 +128,8 @@ class SceneReader {
             for (const JsonCursor& light : lights->elements())
                 add_light(light, std::nullopt, graph_);
         }
+        read_only_lights(root);
+        read_material_edits(root);
         pose(graph_, 0.0);
         read_camera(root);
         if (const auto radius = root.find("light_markers"))
@@ -171,6 +171,39 @@ class SceneReader {
         cursor.fail_unknown(name, known);
     }
 
+    /// What an editor has changed of all materials, in their order.
+    void read_material_edits(const JsonCursor& root) {
+        const auto edits = root.find("material_edits");
+        if (!edits) return;
+        name_default_material(graph_.scene);
+        std::vector<Material>& materials = graph_.scene.materials;
+        const std::vector<JsonCursor> changes = edits->elements();
+        if (changes.size() > materials.size()) {
+            edits->fail(fmt::format("changes {} materials, but the scene has {}", changes.size(),
+                                    materials.size()));
+        }
+        for (std::size_t i = 0; i < changes.size(); ++i) {
+            if (!changes[i].is_null()) read_material(changes[i], images_, materials[i]);
+        }
+    }
+
+    /// Lights that take the place of all others; of ambient light, only the file's own stays.
+    void read_only_lights(const JsonCursor& root) {
+        const auto lights = root.find("only_lights");
+        if (!lights) return;
+        Scene& scene = graph_.scene;
+        scene.directional_lights.clear();
+        scene.point_lights.clear();
+        scene.spot_lights.clear();
+        graph_.directional_lights.clear();
+        graph_.point_lights.clear();
+        graph_.spot_lights.clear();
+        const auto ambient = root.find("ambient");
+        scene.ambient = ambient ? ambient->color() : glm::vec3(0.0F);
+        for (const JsonCursor& light : lights->elements())
+            add_light(light, std::nullopt, graph_);
+    }
+
     void read_surroundings(const JsonCursor& root) {
         Scene& scene = graph_.scene;
         if (const auto ambient = root.find("ambient")) scene.ambient = ambient->color();
@@ -188,7 +221,7 @@ class SceneReader {
         if (const auto exposure = root.find("exposure"))
             scene.exposure = exposure->number(0.0F, max_reflectance);
         if (const auto mapping = root.find("tone_mapping"))
-            scene.tone_mapping = one_of(*mapping, tone_mappings);
+            scene.tone_mapping = one_of(*mapping, tone_mapping_words);
         if (const auto picture = root.find("picture")) {
             picture->allow({"width", "height"});
             graph_.picture_size = glm::ivec2(picture->at("width").whole_number(1, most_pixels),

@@ -37,6 +37,8 @@ const std::vector<Binding>& bindings() {
         {Action::copy_camera, "Ctrl+C", "Copy the camera as the option that repeats it"},
         {Action::paste_camera, "Ctrl+V", "Look from where copied options say"},
         {Action::save_picture, "S", "Save a picture beside the model"},
+        {Action::save_scene, "Ctrl+S", "Save the scene beside the model, as JSON"},
+        {Action::save_model, "Ctrl+E", "Save the model with its normals and tangents, as GLB"},
         {Action::panels, "Tab", "Hide the panels, or show them"},
         {Action::larger_interface, "Ctrl++", "Larger letters and panels"},
         {Action::larger_interface, "Ctrl+=", "Larger letters and panels"},

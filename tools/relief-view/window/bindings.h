@@ -39,6 +39,8 @@ enum class Action {
     copy_camera,
     paste_camera,
     save_picture,
+    save_scene,
+    save_model,
     panels,
     larger_interface,
     smaller_interface,

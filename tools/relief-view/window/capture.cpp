@@ -133,4 +133,14 @@ std::filesystem::path free_file(const std::filesystem::path& model, int turntabl
     }
 }
 
+std::filesystem::path free_beside(const std::filesystem::path& model, const std::string& middle,
+                                  const std::string& extension) {
+    for (int number = 1;; ++number) {
+        const std::filesystem::path file =
+            model.parent_path() /
+            fmt::format("{}{}{}{}", model.stem().string(), middle, number, extension);
+        if (!is_there(file)) return file;
+    }
+}
+
 }  // namespace relief::tools

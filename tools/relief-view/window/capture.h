@@ -71,4 +71,8 @@ DrawTask capture_task(CaptureWish wish, std::shared_ptr<CaptureProgress> progres
 /// \param turntable  how many pictures, of which none may be there; 0: one, and no turn
 std::filesystem::path free_file(const std::filesystem::path& model, int turntable);
 
+/// "vase-scene-1.json" beside the model, for "-scene-" and ".json", or the next that is free.
+std::filesystem::path free_beside(const std::filesystem::path& model, const std::string& middle,
+                                  const std::string& extension);
+
 }  // namespace relief::tools

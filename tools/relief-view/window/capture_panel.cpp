@@ -38,6 +38,8 @@ void draw_capture_panel(const PanelInput& input, PanelWishes& wishes) {
     ImGui::InputInt("Pictures a turn", &settings.pictures, 1, 12);
     settings.pictures = std::clamp(settings.pictures, 2, 9999);
     if (button("Save a turn")) wishes.save_turn = true;
+    if (button("Save the scene (JSON)")) wishes.save_scene = true;
+    if (button("Save the model (GLB)")) wishes.save_model = true;
     if (!input.captured.empty()) ImGui::TextWrapped("%s", input.captured.c_str());
 }
 

@@ -4,6 +4,7 @@
 /// Tests: tests/tools/window/material_models_test.cpp.
 #pragma once
 
+#include "relief/shade/name_materials.h"
 #include "relief/shade/scene.h"
 
 namespace relief::tools {
@@ -17,12 +18,5 @@ MaterialModel model_of(const Material& material);
 /// metallic-roughness: the Phong values that are beside it, which a model file's reader and the
 /// step before have left there.
 void set_model(Material& material, MaterialModel model);
-
-/// Gives the default material a place in the list, and every triangle without a material that one:
-/// so that it can be edited. Copies the meshes that it changes.
-void name_default_material(Scene& scene);
-
-/// Whether some triangle has no material of its own.
-bool uses_default_material(const Scene& scene);
 
 }  // namespace relief::tools

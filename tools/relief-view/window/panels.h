@@ -40,6 +40,8 @@ struct PanelWishes {
     bool save_turn = false;
     bool measure_effects = false;
     bool stop_measuring = false;
+    bool save_scene = false;
+    bool save_model = false;
 };
 
 void draw_scene_panel(const PanelInput& input);

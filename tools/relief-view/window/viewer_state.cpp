@@ -47,7 +47,7 @@ void ViewerState::take(Loaded loaded) {
     const Camera camera = loaded.composed->camera;
     tree_ = tree_of(loaded.composed->graph);
     auto scene = std::make_shared<Scene>(std::move(loaded.composed->scene()));
-    if (has_named_default_) tools::name_default_material(*scene);
+    if (has_named_default_) relief::name_default_material(*scene);
     auto read = std::make_shared<const Scene>(*scene);
     kept_ = scene_ ? keep_edits(*read_, *scene_, *scene) : KeptEdits{};
     notes_.insert(notes_.end(), kept_.lost.begin(), kept_.lost.end());
@@ -91,9 +91,9 @@ void ViewerState::name_default_material() {
     if (!scene_) return;
     has_named_default_ = true;
     auto read = std::make_shared<Scene>(*read_);
-    tools::name_default_material(*read);
+    relief::name_default_material(*read);
     read_ = std::move(read);
-    edit(tools::name_default_material);
+    edit(relief::name_default_material);
 }
 
 void ViewerState::set_environment(const std::filesystem::path& file) {

@@ -15,6 +15,7 @@
 #include "window/followed_files.h"
 #include "window/places.h"
 #include "window/resolution.h"
+#include "window/saving.h"
 #include "window/user_interface.h"
 
 namespace relief::tools {
@@ -50,6 +51,7 @@ class WindowLoop {
           interface_(system_),
           state_(options),
           comparison_(options.compare, WindowSystem::wake),
+          saving_(WindowSystem::wake),
           reading_(options),
           ui_scale_(options.ui_scale),
           dump_(options.dump_state) {
@@ -64,6 +66,7 @@ class WindowLoop {
             take_results();
             state_.pass(seconds_since_last());
             comparison_.follow(state_);
+            saving_.follow();
             if (system_.is_visible()) draw();
         }
         // A size that an option asked for is for this time.
@@ -148,7 +151,7 @@ class WindowLoop {
                                loader_.is_loading() ? loader_.progress() : drawer_.progress(),
                                was_busy || is_resting_later_,
                                &capture_settings_,
-                               text_of(captured_->state()),
+                               saved_text(),
                                remembered_.note(),
                                prices_,
                                shaders_,
@@ -163,10 +166,12 @@ class WindowLoop {
             system_.grow(*view - state_.view());
         measure(drawn, events.panels);
         if (events.panels.save_picture) save(0);
+        if (events.panels.save_scene) saving_.save_scene(state_);
+        if (events.panels.save_model) saving_.save_model(state_);
         if (events.panels.save_turn) save(capture_settings_.pictures);
         if (!events.dropped.empty()) drop(events.dropped);
         const bool is_busy = request() || was_busy || is_resting_later_ || health_.is_going_on();
-        dump(drawn, is_busy || comparison_.is_working());
+        dump(drawn, is_busy || comparison_.is_working() || saving_.is_going_on());
     }
 
     void act(Action action) {
@@ -180,6 +185,8 @@ class WindowLoop {
         if (action == Action::usual_interface) rescale(std::nullopt);
         if (action == Action::quit) system_.close();
         if (action == Action::save_picture) save(0);
+        if (action == Action::save_scene) saving_.save_scene(state_);
+        if (action == Action::save_model) saving_.save_model(state_);
         if (action == Action::copy_camera)
             glfwSetClipboardString(system_.window(), command_line().c_str());
         if (action == Action::compare) comparison_.toggle();
@@ -265,6 +272,13 @@ class WindowLoop {
         drawer_.add(capture_task(std::move(capture), captured_));
     }
 
+    /// What was saved last, in words: pictures, or scene and model.
+    [[nodiscard]] std::string saved_text() const {
+        const std::string pictures = text_of(captured_->state());
+        return pictures.empty() || saving_.text().empty() ? pictures + saving_.text()
+                                                          : pictures + "   " + saving_.text();
+    }
+
     /// Asks for a picture where the last one asked for shows something else. \return whether it did
     bool request() {
         std::optional<DrawWish> wish = state_.wish();
@@ -306,6 +320,7 @@ class WindowLoop {
         json["drawn"]["beside"] = drawn.beside;
         json["drawn"]["difference"] = drawn.is_difference;
         json["saved"] = json_of(captured_->state());
+        json["saved_files"] = saving_.json();
         json["layout"] = {{"scale", interface_.scale().layout},
                           {"panels", panel_names()},
                           {"open", layout_.open_panels},
@@ -329,6 +344,7 @@ class WindowLoop {
     UserInterface interface_;
     ViewerState state_;
     Comparison comparison_;
+    Saving saving_;
     ViewOptions reading_;                   ///< What was last begun to be read.
     std::optional<glm::ivec2> asked_view_;  ///< Until the first frame shows how large it is.
     std::optional<float> ui_scale_;         ///< By option, until another one is chosen.

@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: Apache-2.0
+// What is different from the scene as its file gives it, found by comparing both as JSON.
+// Tests: tests/tools/window/saving_test.cpp.
+#include "relief/shade/scene_writer.h"
+
+#include <fmt/format.h>
+
+#include <map>
+#include <span>
+
+#include "file_bytes.h"
+#include "file_replacement.h"
+#include "relief/mesh/error.h"
+#include "relief/mesh/image_file.h"
+#include "relief/shade/name_materials.h"
+#include "scene/json_values.h"
+#include "scene/json_words.h"
+
+namespace relief {
+namespace {
+
+bool is_scene_file(const std::filesystem::path& file) {
+    return file.extension() == ".json";
+}
+
+/// A path as a file in that folder names it.
+std::string named_from(const std::filesystem::path& folder, const std::filesystem::path& file) {
+    namespace fs = std::filesystem;
+    const fs::path whole = fs::absolute(file).lexically_normal();
+    const fs::path begin = fs::absolute(folder.empty() ? "." : folder).lexically_normal();
+    // Without the slash that "." leaves at its end.
+    const fs::path relative =
+        whole.lexically_relative(begin.has_filename() ? begin : begin.parent_path());
+    return relative.empty() ? whole.string() : relative.string();
+}
+
+class Writer {
+  public:
+    Writer(const std::filesystem::path& file, const SceneToSave& saved)
+        : file_(file), saved_(saved), scene_(saved.scene) {
+        Report told;
+        loaded_ = load_scene(saved.source, told);
+        name_default_material(loaded_);
+        name_default_material(scene_);
+    }
+
+    void write() {
+        check_meshes();
+        begin();
+        say_materials();
+        say_lights();
+        say_surroundings();
+        json_["camera"] = camera_json(saved_.camera);
+        json_["picture"] = {{"width", saved_.size.x}, {"height", saved_.size.y}};
+        for (const auto& [image, path] : made_images_)
+            write_image(path, *std::get<Shared<Image>>(scene_.images[image].source));
+        const std::string text = json_.dump(2) + "\n";
+        replace_file(file_, std::as_bytes(std::span(text)));
+    }
+
+  private:
+    void check_meshes() const {
+        bool are_same = loaded_.instances.size() == scene_.instances.size() &&
+                        loaded_.meshes.size() == scene_.meshes.size() &&
+                        loaded_.materials.size() == scene_.materials.size();
+        for (std::size_t i = 0; are_same && i < scene_.instances.size(); ++i) {
+            are_same =
+                loaded_.instances[i].world_from_object == scene_.instances[i].world_from_object &&
+                loaded_.instances[i].mesh == scene_.instances[i].mesh;
+        }
+        if (!are_same) {
+            throw InvalidInput(
+                fmt::format("meshes stand otherwise than in {} (moved by --time, or light markers "
+                            "added), which a scene file cannot say",
+                            saved_.source.string()));
+        }
+    }
+
+    void begin() {
+        if (!is_scene_file(saved_.source)) {
+            json_["relief_scene"] = 1;
+            json_["nodes"] =
+                Json::array({{{"model", named_from(file_.parent_path(), saved_.source)}}});
+            return;
+        }
+        if (std::filesystem::absolute(file_).parent_path().lexically_normal() !=
+            std::filesystem::absolute(saved_.source).parent_path().lexically_normal()) {
+            throw InvalidInput("a scene file names others by where it is, so " +
+                               saved_.source.string() + " can be saved in its own folder only");
+        }
+        json_ = Json::parse(read_file(saved_.source));
+        if (json_.contains("nodes")) drop_cameras(json_["nodes"]);
+    }
+
+    /// The scene has one camera.
+    static void drop_cameras(Json& nodes) {
+        for (Json& node : nodes) {
+            node.erase("camera");
+            if (node.contains("children")) drop_cameras(node["children"]);
+        }
+    }
+
+    void say_materials() {
+        Json edits = json_.contains("material_edits") ? json_["material_edits"] : Json::array();
+        bool is_edited = !edits.empty();
+        for (std::size_t i = 0; i < scene_.materials.size(); ++i) {
+            const Json before = material_json(loaded_.materials[i], loaded_name());
+            const Json now = material_json(scene_.materials[i], name());
+            if (edits.size() <= i) edits.push_back(nullptr);
+            for (const auto& [key, value] : now.items()) {
+                if (value == before[key]) continue;
+                edits[i][key] = value;
+                is_edited = true;
+            }
+        }
+        if (is_edited) json_["material_edits"] = std::move(edits);
+    }
+
+    void say_lights() {
+        if (lights_json(loaded_) == lights_json(scene_) && loaded_.ambient == scene_.ambient)
+            return;
+        json_["only_lights"] = lights_json(scene_);
+        json_["ambient"] = json_vector(scene_.ambient);
+    }
+
+    void say_surroundings() {
+        const glm::vec4& back = scene_.background;
+        Json background = json_vector(glm::vec3(back));
+        background.push_back(json_number(back.a));
+        json_["background"] = std::move(background);
+        json_["exposure"] = json_number(scene_.exposure);
+        json_["tone_mapping"] = word_for(scene_.tone_mapping, tone_mapping_words);
+        json_.erase("environment");
+        if (!scene_.environment) return;
+        json_["environment"] =
+            environment_json(*scene_.environment, [&](const ImageSource& source) -> Json {
+                const auto* path = std::get_if<std::filesystem::path>(&source.source);
+                if (path == nullptr)
+                    throw InvalidInput("the environment is no file, but " + source.name);
+                return named_from(file_.parent_path(), *path);
+            });
+    }
+
+    /// Images of the model keep their number: what is the same has the same name.
+    [[nodiscard]] static ImageName loaded_name() {
+        return [](std::size_t image) { return Json(image); };
+    }
+
+    [[nodiscard]] ImageName name() {
+        return [this](std::size_t image) -> Json {
+            if (image < loaded_.images.size()) return image;
+            const ImageSource& source = scene_.images.at(image);
+            if (const auto* path = std::get_if<std::filesystem::path>(&source.source))
+                return named_from(file_.parent_path(), *path);
+            if (!std::holds_alternative<Shared<Image>>(source.source))
+                throw InvalidInput(source.name + " is an image in memory, which cannot be named");
+            return made_image(image).filename().string();
+        };
+    }
+
+    /// The file for an image that was made here.
+    const std::filesystem::path& made_image(std::size_t image) {
+        const auto [entry, is_new] = made_images_.try_emplace(image);
+        if (is_new) {
+            entry->second =
+                file_.parent_path() /
+                fmt::format("{}-image-{}.png", file_.stem().string(), made_images_.size());
+            if (std::filesystem::exists(entry->second))
+                throw FileError(entry->second, "is there already");
+        }
+        return entry->second;
+    }
+
+    const std::filesystem::path& file_;
+    const SceneToSave& saved_;
+    Scene scene_;
+    Scene loaded_;
+    Json json_;
+    std::map<std::size_t, std::filesystem::path> made_images_;
+};
+
+}  // namespace
+
+void save_scene(const std::filesystem::path& file, const SceneToSave& saved) {
+    Writer(file, saved).write();
+}
+
+}  // namespace relief
