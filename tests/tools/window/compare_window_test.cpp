@@ -45,8 +45,12 @@ TEST(CompareWindow, DraggingTheLineShowsMoreOfOneSideAndDrawsNoScene) {
     display->act("mousemove 640 790");
     EXPECT_EQ(after["camera"], before["camera"]) << "a drag of the line is none of the camera";
     EXPECT_EQ(after["drawn"]["frames"], before["drawn"]["frames"]);
-    const Image moved = display->picture();
-    EXPECT_GT(changed_share(split, moved, middle_of_line + 4, 200, 150, 400), 0.2);
+    Image moved;
+    EXPECT_TRUE(eventually([&] {  // The state is told before the frame is on the screen.
+        moved = display->picture();
+        return changed_share(split, moved, middle_of_line + 4, 200, 150, 400) > 0.15 &&
+               changed_share(split, moved, middle_of_line + 159, 200, 2, 400) == 1.0;
+    }));
     EXPECT_EQ(changed_share(split, moved, 320, 60, middle_of_line - 330, 700, 0), 0.0);
     EXPECT_EQ(changed_share(split, moved, middle_of_line + 170, 60, 300, 700, 0), 0.0);
 }

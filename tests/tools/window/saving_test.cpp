@@ -40,7 +40,7 @@ TEST(SavedScene, DrawsTheSamePixelsWhateverTheOptionsChanged) {
           "--tone-mapping aces",
           "--height-map data/bricks-height.png --height-as bump_map --interpolation flat",
           "--environment data/sky --reflectivity 0.4 --light spot:2,3,2,0,0,0,23,5 --no-skybox",
-          "--diffuse-map data/bricks-diffuse.png --shininess 80 --background #204060"}) {
+          "--diffuse-map data/bricks-diffuse.png --shininess 80 --background '#204060'"}) {
         const std::string line = "data/vase.obj" + std::string(small) + options;
         ASSERT_EQ(workplace.run("relief-view " + line + " --save-scene saved.json").exit_code, 0);
         EXPECT_EQ(differing(workplace, line, "saved.json --samples 1"), 0U) << options;
