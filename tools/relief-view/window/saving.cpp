@@ -29,7 +29,9 @@ void Saving::save_scene(const ViewerState& state) {
     if (!wish || is_going_on()) return;
     const std::filesystem::path model = state.options().model;
     const std::filesystem::path file = free_beside(model, "-scene-", ".json");
-    begin(file, [model, file, scene = wish->scene, camera = wish->camera, size = state.view()] {
+    // All of it: what is hidden is hidden from the picture, not from the scene.
+    const auto scene = std::make_shared<const Scene>(state.scene());
+    begin(file, [model, file, scene, camera = wish->camera, size = state.view()] {
         relief::save_scene(file, {model, *scene, camera, size});
     });
 }
