@@ -55,6 +55,7 @@ constexpr std::array panels{
     Panel{"Compare", false, plain<draw_compare_panel>},
     Panel{"Save", false, draw_capture_panel},
     Panel{"Effects", true, draw_effects_panel},
+    Panel{"Accuracy", false, draw_accuracy_panel},
 };
 
 /// A panel's header, which opens and closes it; that is remembered. \return whether it is open

@@ -4,6 +4,9 @@
 /// reasons. Each panel reads the state and edits it. Tests: tests/tools/window/window_test.cpp.
 #pragma once
 
+#include <optional>
+
+#include "variant.h"
 #include "window/capture.h"
 #include "window/draw_thread.h"
 #include "window/effect_prices.h"
@@ -14,6 +17,7 @@
 namespace relief::tools {
 
 class Comparison;
+class SceneAccuracy;
 
 /// Everything drawn with Dear ImGui for one frame of the window.
 struct PanelInput {
@@ -31,6 +35,7 @@ struct PanelInput {
     EffectPrices& prices;
     ShaderPanel& shaders;
     Comparison* comparison = nullptr;
+    SceneAccuracy* accuracy = nullptr;
 };
 
 /// What a panel asks the window to do.
@@ -42,6 +47,9 @@ struct PanelWishes {
     bool stop_measuring = false;
     bool save_scene = false;
     bool save_model = false;
+    bool measure_accuracy = false;
+    bool stop_accuracy = false;
+    std::optional<Variant> use_method;
 };
 
 void draw_scene_panel(const PanelInput& input);
@@ -52,6 +60,7 @@ void draw_picture_panel(const PanelInput& input);
 void draw_compare_panel(const PanelInput& input);
 void draw_capture_panel(const PanelInput& input, PanelWishes& wishes);
 void draw_effects_panel(const PanelInput& input, PanelWishes& wishes);
+void draw_accuracy_panel(const PanelInput& input, PanelWishes& wishes);
 void draw_view_panel(const PanelInput& input);
 
 /// The headers of all panels, from the top.

@@ -33,6 +33,9 @@ class ViewerState {
     [[nodiscard]] const ViewOptions& options() const { return options_; }
     [[nodiscard]] bool has_scene() const { return scene_ != nullptr; }
     [[nodiscard]] const Scene& scene() const { return *scene_; }
+    [[nodiscard]] std::shared_ptr<const Scene> shared_scene() const { return scene_; }
+    /// How many were read so far.
+    [[nodiscard]] std::uint64_t scenes() const { return scenes_; }
     [[nodiscard]] const std::vector<std::string>& notes() const { return notes_; }
     [[nodiscard]] const Report& findings() const { return findings_; }
     [[nodiscard]] const std::string& error() const { return error_.empty() ? edit_error_ : error_; }

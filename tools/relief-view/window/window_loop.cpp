@@ -16,6 +16,7 @@
 #include "window/places.h"
 #include "window/resolution.h"
 #include "window/saving.h"
+#include "window/scene_accuracy.h"
 #include "window/user_interface.h"
 
 namespace relief::tools {
@@ -51,6 +52,7 @@ class WindowLoop {
           interface_(system_),
           state_(options),
           comparison_(options.compare, WindowSystem::wake),
+          accuracy_(WindowSystem::wake),
           saving_(WindowSystem::wake),
           reading_(options),
           ui_scale_(options.ui_scale),
@@ -65,6 +67,7 @@ class WindowLoop {
             wait();
             take_results();
             state_.pass(seconds_since_last());
+            accuracy_.follow(state_);
             comparison_.follow(state_);
             saving_.follow();
             if (system_.is_visible()) draw();
@@ -123,8 +126,8 @@ class WindowLoop {
 
     /// While something is read or drawn, a frame each step shows how far it is.
     bool is_working() {
-        return loader_.is_loading() || drawer_.is_busy() || prices_.state().is_going_on ||
-               captured_->state().is_going_on();
+        return loader_.is_loading() || drawer_.is_busy() || accuracy_.is_measuring() ||
+               prices_.state().is_going_on || captured_->state().is_going_on();
     }
 
     double seconds_since_last() {
@@ -155,7 +158,8 @@ class WindowLoop {
                                remembered_.note(),
                                prices_,
                                shaders_,
-                               &comparison_};
+                               &comparison_,
+                               &accuracy_};
         const UserInterface::Events events = interface_.draw(input, drawer_.shown());
         // Whenever it came: while the panels settle after something else, too.
         if (events.has_input) settling_ = frames_to_settle;
@@ -165,13 +169,15 @@ class WindowLoop {
         if (const auto view = std::exchange(asked_view_, std::nullopt))
             system_.grow(*view - state_.view());
         measure(drawn, events.panels);
+        judge_methods(events.panels);
         if (events.panels.save_picture) save(0);
         if (events.panels.save_scene) saving_.save_scene(state_);
         if (events.panels.save_model) saving_.save_model(state_);
         if (events.panels.save_turn) save(capture_settings_.pictures);
         if (!events.dropped.empty()) drop(events.dropped);
         const bool is_busy = request() || was_busy || is_resting_later_ || health_.is_going_on();
-        dump(drawn, is_busy || comparison_.is_working() || saving_.is_going_on());
+        dump(drawn, is_busy || accuracy_.is_working() || comparison_.is_working() ||
+                        saving_.is_going_on());
     }
 
     void act(Action action) {
@@ -228,12 +234,16 @@ class WindowLoop {
                settings.samples < state_.options().samples;
     }
 
-    /// What contradicts the options is said like what cannot be read.
     void drop(const std::vector<std::filesystem::path>& files) {
+        read_with([&](const ViewOptions& options) { return with_dropped(options, files); });
+    }
+
+    /// Reads with other options; what contradicts them is said like what cannot be read.
+    template <typename Change>
+    void read_with(const Change& change) {
         try {
             // On top of what is still being read.
-            ViewOptions options =
-                with_dropped(loader_.is_loading() ? reading_ : state_.options(), files);
+            ViewOptions options = change(loader_.is_loading() ? reading_ : state_.options());
             options.debug = {};  // Chosen in the window, where nothing is a useless choice.
             settle(options);
             reading_ = options;
@@ -242,6 +252,22 @@ class WindowLoop {
             Loaded refused;
             refused.error = error.what();
             state_.take(std::move(refused));
+        }
+    }
+
+    /// Figures for methods, and another method for the picture. A kernel is an option of what is
+    /// read, which is how it stays with the height map when that changes.
+    void judge_methods(const PanelWishes& wishes) {
+        if (wishes.measure_accuracy) accuracy_.measure(state_);
+        if (wishes.stop_accuracy) accuracy_.stop();
+        if (!wishes.use_method) return;
+        if (const Kernel* kernel = std::get_if<Kernel>(&*wishes.use_method)) {
+            read_with([&](ViewOptions options) {
+                options.kernel = *kernel;
+                return options;
+            });
+        } else {
+            accuracy_.use(*wishes.use_method);
         }
     }
 
@@ -317,6 +343,7 @@ class WindowLoop {
         json["costs"] = json_of(prices_.state());
         json["command_line"] = command_line();
         json["compare"] = comparison_.json();
+        json["accuracy"] = accuracy_.json(state_.options());
         json["drawn"]["beside"] = drawn.beside;
         json["drawn"]["difference"] = drawn.is_difference;
         json["saved"] = json_of(captured_->state());
@@ -344,6 +371,7 @@ class WindowLoop {
     UserInterface interface_;
     ViewerState state_;
     Comparison comparison_;
+    SceneAccuracy accuracy_;
     Saving saving_;
     ViewOptions reading_;                   ///< What was last begun to be read.
     std::optional<glm::ivec2> asked_view_;  ///< Until the first frame shows how large it is.

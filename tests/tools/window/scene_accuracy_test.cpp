@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: Apache-2.0
+// What is measured on a scene, what a choice does to it, and when both are forgotten.
+#include "window/scene_accuracy.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "relief/mesh/analytic_surfaces.h"
+#include "relief/mesh/direction_error.h"
+#include "tools/window/display.h"
+
+namespace relief::tools {
+namespace {
+
+using test::eventually;
+using testing::Contains;
+using testing::SizeIs;
+
+/// A jittered torus whose normals are the true ones.
+Loaded torus(const std::string& name) {
+    AnalyticMesh truth = analytic_mesh(AnalyticSurface::torus, Triangulation::jittered, 24, 1);
+    truth.mesh.normals.assign(truth.normals.begin(), truth.normals.end());
+    Loaded loaded;
+    loaded.options.model = name;
+    loaded.composed.emplace();
+    Scene& scene = loaded.composed->scene();
+    scene.meshes.emplace_back(std::move(truth.mesh));
+    scene.instances.push_back({});
+    return loaded;
+}
+
+ViewerState state_of(const std::string& name) {
+    ViewerState state{ViewOptions{}};
+    state.take(torus(name));
+    return state;
+}
+
+/// How far the first mesh's normals have moved, largest, in degrees.
+double moved(const ViewerState& before, const ViewerState& after) {
+    double most = 0.0;
+    const Mesh& a = *before.scene().meshes[0];
+    const Mesh& b = *after.scene().meshes[0];
+    for (std::size_t i = 0; i < a.normals.size(); ++i) {
+        most = std::max(most, degrees_between(glm::dvec3(a.normals[i]), glm::dvec3(b.normals[i])));
+    }
+    return most;
+}
+
+void wait_for(SceneAccuracy& accuracy, ViewerState& state) {
+    ASSERT_TRUE(eventually([&] {
+        accuracy.follow(state);
+        return !accuracy.is_working();
+    }));
+}
+
+TEST(SceneAccuracy, MeasuresEveryWeightingAndOffersThoseOfItsOwnArithmetic) {
+    ViewerState state = state_of("torus.obj");
+    SceneAccuracy accuracy([] {});
+    accuracy.follow(state);
+    accuracy.measure(state);
+    EXPECT_TRUE(accuracy.is_measuring());
+    wait_for(accuracy, state);
+    ASSERT_EQ(accuracy.found().error, "");
+    ASSERT_FALSE(accuracy.found().topics.empty());
+    const AccuracyTopic& normals = accuracy.found().topics.front();
+    EXPECT_EQ(normals.own.experiment.subject, Subject::normals);
+    std::vector<std::string> uses;
+    for (const std::size_t row : normals.rows) {
+        if (normals.uses[row]) uses.push_back(to_text(*normals.uses[row]));
+    }
+    EXPECT_THAT(uses, Contains("normals=max"));
+    EXPECT_THAT(uses, Contains("normals=area"));
+    EXPECT_THAT(uses, testing::Not(Contains("")));
+    EXPECT_GT(normals.rows.size(), uses.size()) << "float32 is shown, but the window has float64";
+}
+
+TEST(SceneAccuracy, WhatIsChosenIsPutIntoTheScene) {
+    ViewerState state = state_of("torus.obj");
+    const ViewerState before = state;
+    SceneAccuracy accuracy([] {});
+    accuracy.follow(state);
+    accuracy.use(Variant(NormalMode::area));
+    accuracy.follow(state);
+    wait_for(accuracy, state);
+    EXPECT_EQ(accuracy.found().error, "");
+    EXPECT_GT(moved(before, state), 0.5);
+    EXPECT_TRUE(accuracy.is_used(Variant(NormalMode::area), state.options()));
+    EXPECT_FALSE(accuracy.is_used(Variant(NormalMode::max), state.options()));
+}
+
+TEST(SceneAccuracy, ASceneReadAnewGetsTheMethodAgainAndNoOldFigures) {
+    ViewerState state = state_of("torus.obj");
+    const ViewerState before = state;
+    SceneAccuracy accuracy([] {});
+    accuracy.follow(state);
+    accuracy.measure(state);
+    wait_for(accuracy, state);
+    accuracy.use(Variant(NormalMode::area));
+    accuracy.follow(state);
+    wait_for(accuracy, state);
+    const ViewerState chosen = state;
+    state.take(torus("torus.obj"));
+    EXPECT_EQ(moved(before, state), 0.0);
+    accuracy.follow(state);
+    EXPECT_THAT(accuracy.found().topics, SizeIs(0));
+    wait_for(accuracy, state);
+    EXPECT_EQ(moved(chosen, state), 0.0);
+}
+
+TEST(SceneAccuracy, AStoppedMeasurementLeavesNothing) {
+    ViewerState state = state_of("torus.obj");
+    SceneAccuracy accuracy([] {});
+    accuracy.follow(state);
+    accuracy.measure(state);
+    accuracy.stop();
+    EXPECT_FALSE(accuracy.is_measuring());
+    accuracy.follow(state);
+    EXPECT_THAT(accuracy.found().topics, SizeIs(0));
+}
+
+TEST(SceneAccuracy, WhatCannotBeDoneIsAnErrorAndNotChosen) {
+    ViewerState state = state_of("torus.obj");
+    SceneAccuracy accuracy([] {});
+    accuracy.follow(state);
+    accuracy.use(Variant(TangentBasis::lengyel));  // No map needs tangents.
+    accuracy.follow(state);
+    wait_for(accuracy, state);
+    EXPECT_NE(accuracy.found().error, "");
+    EXPECT_FALSE(accuracy.is_used(Variant(TangentBasis::lengyel), state.options()));
+}
+
+}  // namespace
+}  // namespace relief::tools
