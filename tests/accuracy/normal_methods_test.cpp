@@ -83,7 +83,7 @@ TEST(NormalMethods, AgreeOnAPlaneAndDifferOnASurface) {
 }
 
 TEST(FanErrors, AreThoseOfTheVertexInTheMiddle) {
-    NormalMethod leaning{"leaning", Arithmetic::float64, [](const Mesh& mesh) {
+    NormalMethod leaning{"leaning", Arithmetic::float64, {}, [](const Mesh& mesh) {
                              std::vector<glm::vec3> normals(mesh.positions.size(),
                                                             glm::vec3(1.0F, 0.0F, 0.0F));
                              normals.front() = glm::vec3(0.0F, 3.0F, 4.0F);

@@ -15,8 +15,9 @@ namespace relief {
 ///
 /// A renderer made with a cache takes from it what it needs and finds there: programs by their
 /// Features; meshes and images that are the same Shared value as before; image files of the same
-/// name, size and time of change that were not replaced; the environment likewise. It draws the same pixels as one made
-/// without. The cache must outlive its renderers, and the context the cache.
+/// name, size and time of change that were not replaced; the environment likewise. It draws the
+/// same pixels as one made without. The cache must outlive its renderers, and the context the
+/// cache.
 class RenderCache {
   public:
     explicit RenderCache(const Context& context);
