@@ -51,18 +51,21 @@ TEST(SavedScene, DrawsTheSamePixelsWhateverTheOptionsChanged) {
 
 TEST(SavedScene, OfASceneFileStandsBesideItAndCanBeSavedAgain) {
     const Workplace workplace;
-    const std::string line = "data/scenes/lighting-and-environment.json --samples 1 ";
+    // data/ is the sources' own, where nothing is to be written.
+    std::filesystem::copy(workplace / "data", workplace / "mine",
+                          std::filesystem::copy_options::recursive);
+    const std::string line = "mine/scenes/lighting-and-environment.json --samples 1 ";
     const std::string edits = "--ambient 0.3 --light directional:20,50,0.8 ";
-    const std::string saved = "data/scenes/saved.json";
+    const std::string saved = "mine/scenes/saved.json";
     ASSERT_EQ(workplace.run("relief-view " + line + edits + "--save-scene " + saved).exit_code, 0);
     EXPECT_EQ(differing(workplace, line + edits, saved + " --samples 1"), 0U);
     ASSERT_EQ(
         workplace
-            .run("relief-view " + saved + " --exposure 1 --save-scene data/scenes/saved-2.json")
+            .run("relief-view " + saved + " --exposure 1 --save-scene mine/scenes/saved-2.json")
             .exit_code,
         0);
     EXPECT_EQ(differing(workplace, saved + " --samples 1 --exposure 1",
-                        "data/scenes/saved-2.json --samples 1"),
+                        "mine/scenes/saved-2.json --samples 1"),
               0U);
     const test::ProgramResult elsewhere =
         workplace.run("relief-view " + line + "--save-scene saved.json");
