@@ -9,9 +9,9 @@
 
 #include "bump/bump_accuracy.h"
 #include "common/options.h"
+#include "common/wrap_option.h"
 #include "map_output.h"
 #include "relief/mesh/bump_file.h"
-#include "common/wrap_option.h"
 
 namespace relief::tools {
 

@@ -7,8 +7,8 @@
 
 #include "common/map_choices.h"
 #include "common/options.h"
-#include "convert/convert_words.h"
 #include "common/wrap_option.h"
+#include "convert/convert_words.h"
 
 namespace relief::tools {
 namespace {

@@ -8,9 +8,9 @@
 #include <optional>
 
 #include "common/command.h"
+#include "common/normal_map_input.h"
 #include "convert/convert_space.h"
 #include "map_output.h"
-#include "common/normal_map_input.h"
 #include "relief/mesh/normal_blend.h"
 #include "relief/mesh/normal_map_operations.h"
 #include "relief/mesh/normal_resize.h"

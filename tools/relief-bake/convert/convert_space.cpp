@@ -6,9 +6,9 @@
 #include <fmt/format.h>
 
 #include "common/frame_choices.h"
+#include "common/map_models.h"
 #include "common/options.h"
 #include "convert/convert_steps.h"
-#include "common/map_models.h"
 #include "relief/mesh/error.h"
 #include "relief/mesh/normal_map_operations.h"
 #include "relief/mesh/normal_space.h"

@@ -8,8 +8,8 @@
 
 #include "common/command.h"
 #include "common/normal_map_input.h"
-#include "relief/mesh/heights_from_normals.h"
 #include "common/wrap_option.h"
+#include "relief/mesh/heights_from_normals.h"
 
 namespace relief::tools {
 

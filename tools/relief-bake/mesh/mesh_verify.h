@@ -12,9 +12,9 @@
 
 #include "common/command.h"
 #include "common/findings.h"
+#include "common/normal_map_input.h"
 #include "mesh/bake_models.h"
 #include "mesh/error_bound.h"
-#include "common/normal_map_input.h"
 #include "relief/mesh/bake_check.h"
 
 namespace relief::tools {
