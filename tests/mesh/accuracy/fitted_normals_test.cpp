@@ -55,7 +55,11 @@ TEST_P(FittedNormalsOnSurfaces, AreFarTruerThanAveragedOnesAndKnowHowMuch) {
     const double error = error_of(fitted, truth);
     EXPECT_LE(error, 0.1 * averaged_error(truth));
     EXPECT_LE(error, fitted.own_degrees);
-    EXPECT_GE(fitted.corners.size(), fitted.places * 9 / 10);
+    // At a border, triangles are on one side only, and mostly no fit is to be trusted.
+    const auto inner = std::count(truth.inner.begin(), truth.inner.end(), 1);
+    const double share = static_cast<double>(inner) / static_cast<double>(truth.inner.size());
+    EXPECT_GE(static_cast<double>(fitted.corners.size()),
+              0.9 * share * static_cast<double>(fitted.places));
 }
 
 INSTANTIATE_TEST_SUITE_P(
