@@ -138,7 +138,7 @@ TEST_F(Panel, WhatIsHiddenIsNotDrawn) {
     EXPECT_EQ(state()["shown"], json({3, 3}));
     window().click_on("tree");
     click("show normal map", [](const json& now) { return now["shown"] == json({2, 3}); });
-    const json& effects = window().state()["effects"];
+    const json effects = window().state()["effects"];
     EXPECT_EQ(std::count(effects.begin(), effects.end(), "normal map"), 0)
         << "and what it alone needed is not there";
     click("show normal map", [](const json& now) { return now["shown"] == json({3, 3}); });
