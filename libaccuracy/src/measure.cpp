@@ -6,7 +6,6 @@
 #include <malloc.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <fstream>
 #include <string>
@@ -72,12 +71,6 @@ std::optional<std::uint64_t> status_bytes(const std::string& name) {
 }
 
 }  // namespace
-
-double seconds_of(const std::function<void()>& work) {
-    const auto begin = std::chrono::steady_clock::now();
-    work();
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-}
 
 std::optional<std::uint64_t> peak_bytes_of(const std::function<void()>& work) {
     ::malloc_trim(0);  // Or work would be done in memory that was held before.

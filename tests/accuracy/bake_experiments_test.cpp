@@ -10,6 +10,7 @@
 
 #include "bake/bumpy_bake.h"
 #include "bake_errors/bumpy_truth.h"
+#include "drawn/picture_error.h"
 #include "experiment_checks.h"
 #include "relief/mesh/direction_error.h"
 #include "relief/mesh/normal_space.h"
@@ -106,8 +107,8 @@ TEST(BakeTruth, OfManyRaysIsThatOfTheFormula) {
     EXPECT_LT(rms_of(one, all, &test::TexelTruth::mesh_middle), 0.1);
     EXPECT_GT(rms_of(one, all, &test::TexelTruth::mesh), 0.3);
     // What the experiments count from is that bake of 256 rays, over all texels, poles as well.
-    const std::vector<RayWay> ways = {{1}};
-    const std::vector<RayWayFound> found = bake.measured(ways, test::quick_untimed());
+    const std::vector<BakeWay> ways = {{1}};
+    const std::vector<BakeWayFound> found = bake.measured(ways, test::quick_untimed());
     const double between = rms_between(one, many);
     EXPECT_NEAR(found[0].trial.errors[2].rms, between, 0.1 * between);
     // A map with x turned round is not taken for right.
@@ -133,6 +134,37 @@ TEST(BakeExperiments, FindFewerDegreesForMoreRays) {
                 of_codes, 0.25 * of_codes);
     EXPECT_LT(rms("16 rays, 16 bit"), 1.01 * rms("16 rays, float"));
     EXPECT_NEAR(samples.charts.front().curves.back().order.value(), -1.0, 0.35);
+}
+
+/// Root of the mean square of what is a number.
+double rms_of(const Image& map) {
+    double squares = 0.0;
+    double count = 0.0;
+    for (const float degrees : map.as<float>()) {
+        if (std::isnan(degrees)) continue;
+        squares += double{degrees} * double{degrees};
+        count += 1.0;
+    }
+    return std::sqrt(squares / count);
+}
+
+TEST(BakeExperiments, ShowWhereMapsErrAndWhatTheyLookLike) {
+    const std::vector<Experiment> all = bake_experiments(test::quick_untimed());
+    for (const Experiment& one : all) {
+        ASSERT_EQ(one.heat_maps.size(), 3U) << one.id;
+        for (const HeatMap& map : one.heat_maps) {
+            EXPECT_EQ(map.errors.width, 128);
+            EXPECT_EQ(map.errors.height, 128);
+            const double rms = test::measurement_of(one, map.method).error.rms;
+            EXPECT_NEAR(rms_of(map.errors), rms, 1e-4 * rms) << map.method;
+        }
+    }
+    ASSERT_EQ(all.front().pictures.size(), 2U);
+    for (const PicturePair& pair : all.front().pictures) {
+        const double off = picture_error(to_linear(pair.after), pair.before).figures.rms;
+        EXPECT_LT(off, 0.15) << pair.before_label;
+        EXPECT_GT(off, 0.01) << "outlines differ: " << pair.before_label;
+    }
 }
 
 TEST(BakeExperiments, FindThatRaysPayWhereTheFirstDiffer) {

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // What is drawn by OpenGL and held against a truth.
-#include "shading/drawn_methods.h"
+#include "drawn/drawn_methods.h"
 
 #include <gtest/gtest.h>
 
 #include <cstdlib>
 
+#include "drawn/lit_scene.h"
+#include "drawn/many_samples.h"
 #include "experiment_checks.h"
 #include "relief/mesh/shapes.h"
-#include "shading/lit_scene.h"
-#include "shading/many_samples.h"
 #include "shading/shading_plan.h"
 #include "support/gl_environment.h"
 

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // The truth of pictures against closed forms: a lit sphere, and how much of pixels a disc covers.
-#include "shading/many_samples.h"
+#include "drawn/many_samples.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
+#include "drawn/lit_scene.h"
 #include "relief/mesh/shapes.h"
-#include "shading/lit_scene.h"
 
 namespace relief {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Errors of pictures, where they are known.
-#include "shading/picture_error.h"
+#include "drawn/picture_error.h"
 
 #include <gtest/gtest.h>
 

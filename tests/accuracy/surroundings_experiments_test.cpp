@@ -5,9 +5,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "drawn/many_samples.h"
 #include "relief/mesh/image.h"
 #include "relief/shade/image_compare.h"
-#include "shading/many_samples.h"
 #include "shading/surroundings.h"
 
 namespace relief {

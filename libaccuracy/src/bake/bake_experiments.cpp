@@ -6,6 +6,7 @@
 
 #include <array>
 
+#include "bake/baked_pictures.h"
 #include "bake/bumpy_bake.h"
 #include "measured_methods.h"
 #include "planned_experiment.h"
@@ -13,17 +14,13 @@
 namespace relief {
 namespace {
 
-std::string depth_of(const NormalMapFormat& format) {
-    return format.bits == 32 ? "float" : fmt::format("{} bit", format.bits);
-}
-
-double rays_a_texel(const RayWayFound& found, const BumpyBake& bake) {
+double rays_a_texel(const BakeWayFound& found, const BumpyBake& bake) {
     return static_cast<double>(found.trial.rays) / bake.texels();
 }
 
 /// What all bakes have in common, and a measurement of each way in each of these formats.
-Experiment measured(const BumpyBake& bake, std::span<const RayWay> ways,
-                    const std::vector<RayWayFound>& found, std::span<const std::size_t> formats) {
+Experiment measured(const BumpyBake& bake, std::span<const BakeWay> ways,
+                    const std::vector<BakeWayFound>& found, std::span<const std::size_t> formats) {
     Experiment experiment{
         .subject = Subject::bake,
         .truth = fmt::format(
@@ -38,8 +35,8 @@ Experiment measured(const BumpyBake& bake, std::span<const RayWay> ways,
         for (const std::size_t format : formats) {
             const NormalMapFormat& depth = BumpyBake::formats()[format];
             experiment.measurements.push_back(
-                {.method = fmt::format("{}, {}", ways[i].words(), depth_of(depth)),
-                 .choices = {{"rays", ways[i].words()}, {"depth", depth_of(depth)}},
+                {.method = fmt::format("{}, {}", words_of(ways[i]), depth_of(depth)),
+                 .choices = {{"rays", words_of(ways[i])}, {"depth", depth_of(depth)}},
                  .error = figures_of(found[i].trial.errors[format]),
                  .cost = {.one_thread = found[i].one_thread,
                           .all_threads = found[i].all_threads,
@@ -51,16 +48,16 @@ Experiment measured(const BumpyBake& bake, std::span<const RayWay> ways,
     return experiment;
 }
 
-Curve curve_of(const std::string& name, const BumpyBake& bake, std::span<const RayWayFound> found,
+Curve curve_of(const std::string& name, const BumpyBake& bake, std::span<const BakeWayFound> found,
                std::size_t format) {
     Curve curve{.method = name};
-    for (const RayWayFound& one : found)
+    for (const BakeWayFound& one : found)
         curve.points.push_back({rays_a_texel(one, bake), one.trial.errors[format].rms});
     return curve;
 }
 
 /// "12 million rays a second on one thread, 23 on all"; empty where nothing was timed.
-std::string speed_of(const RayWayFound& found) {
+std::string speed_of(const BakeWayFound& found) {
     if (!found.one_thread || !found.all_threads) return {};
     const auto millions = [&](const Timing& timing) {
         return 1e-6 * static_cast<double>(found.trial.rays) / timing.spread().median;
@@ -70,9 +67,9 @@ std::string speed_of(const RayWayFound& found) {
 }
 
 Experiment by_samples(const BumpyBake& bake, const RunOptions& options) {
-    std::vector<RayWay> ways = {{1}, {4}, {16}};
+    std::vector<BakeWay> ways = {{1}, {4}, {16}};
     if (!options.is_quick) ways.push_back({64});
-    const std::vector<RayWayFound> found = bake.measured(ways, options);
+    const std::vector<BakeWayFound> found = bake.measured(ways, options);
     constexpr std::array<std::size_t, 3> formats = {0, 1, 2};
     Experiment experiment = measured(bake, ways, found, formats);
     experiment.id = "bake/samples";
@@ -88,6 +85,10 @@ Experiment by_samples(const BumpyBake& bake, const RunOptions& options) {
     chart.curves.back() =
         fitted_curve(chart.curves.back().method, chart.curves.back().points, -1.0);
     experiment.charts = {std::move(chart)};
+    const std::array maps = {BakedMap{ways.front(), {.bits = 8}}, BakedMap{ways[2], {.bits = 8}},
+                             BakedMap{ways[2], {.bits = 16}}};
+    add_error_maps(bake, maps, 2.0, experiment);
+    add_renderings(bake, std::span(maps).first(2), experiment);
     const auto rms = [&](std::size_t way, std::size_t format) {
         return found[way].trial.errors[format].rms;
     };
@@ -96,21 +97,21 @@ Experiment by_samples(const BumpyBake& bake, const RunOptions& options) {
         "{} a texel leaves {:.3f} degrees (RMS), {} {:.3f} and {} {:.4f}, if the map is not "
         "rounded. 8 bits alone are {:.3f} off, 16 bits {:.4f}: with {} the former make {:.3f}, the "
         "latter {:.4f}.{}",
-        ways[0].words(), rms(0, 2), ways[1].words(), rms(1, 2), ways[last].words(), rms(last, 2),
-        found[0].trial.quantisation[0].rms, found[0].trial.quantisation[1].rms, ways[last].words(),
-        rms(last, 0), rms(last, 1), speed_of(found[last]));
+        words_of(ways[0]), rms(0, 2), words_of(ways[1]), rms(1, 2), words_of(ways[last]),
+        rms(last, 2), found[0].trial.quantisation[0].rms, found[0].trial.quantisation[1].rms,
+        words_of(ways[last]), rms(last, 0), rms(last, 1), speed_of(found[last]));
     return experiment;
 }
 
 Experiment by_threshold(const BumpyBake& bake, const RunOptions& options) {
     const int most = options.is_quick ? 16 : 64;
-    std::vector<RayWay> ways;
+    std::vector<BakeWay> ways;
     for (const double degrees : {16.0, 8.0, 4.0, 2.0, 1.0, 0.5})
         ways.push_back({most, degrees});
     const auto adaptive = static_cast<std::ptrdiff_t>(ways.size());
     ways.push_back({most / 4});
     ways.push_back({most});
-    const std::vector<RayWayFound> found = bake.measured(ways, options);
+    const std::vector<BakeWayFound> found = bake.measured(ways, options);
     constexpr std::array<std::size_t, 1> formats = {2};
     Experiment experiment = measured(bake, ways, found, formats);
     experiment.id = "bake/adaptive";
@@ -131,15 +132,18 @@ Experiment by_threshold(const BumpyBake& bake, const RunOptions& options) {
     for (std::ptrdiff_t i = adaptive - 1; i >= 0; --i) {
         const auto at = static_cast<std::size_t>(i);
         thresholds.curves.front().points.push_back(
-            {*ways[at].degrees, found[at].trial.errors[2].rms});
+            {*ways[at].sample_degrees, found[at].trial.errors[2].rms});
     }
     experiment.charts = {std::move(rays), std::move(thresholds)};
-    const RayWayFound& chosen = found[2];
+    const std::array maps = {BakedMap{ways.front(), {.bits = 32}}, BakedMap{ways[2], {.bits = 32}},
+                             BakedMap{ways.back(), {.bits = 32}}};
+    add_error_maps(bake, maps, 0.5, experiment);
+    const BakeWayFound& chosen = found[2];
     experiment.finding = fmt::format(
         "Where only texels whose first rays differ by more than {:g} degrees get all {}, a texel "
         "takes {:.1f} rays and the error is {:.4f} degrees (RMS), against {:.4f} with {} "
         "everywhere and {:.4f} with all.",
-        *ways[2].degrees, most, rays_a_texel(chosen, bake), chosen.trial.errors[2].rms,
+        *ways[2].sample_degrees, most, rays_a_texel(chosen, bake), chosen.trial.errors[2].rms,
         found[found.size() - 2].trial.errors[2].rms, most / 4, found.back().trial.errors[2].rms);
     return experiment;
 }

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <glm/trigonometric.hpp>
 
 #include "relief/mesh/frames.h"
@@ -25,18 +26,12 @@ BakeMapOptions square_map(int side) {
     return map;
 }
 
-BakeTrial trial_of(const BakeTrials& trials, const RayWay& way) {
-    std::optional<double> angle;
-    if (way.degrees) angle = glm::radians(*way.degrees);
-    return trials.measure(way.samples, angle, BumpyBake::formats());
-}
-
 /// Seconds of every way's bake, in turns.
-std::vector<Timing> timings(const BakeTrials& trials, std::span<const RayWay> ways,
+std::vector<Timing> timings(const BakeTrials& trials, std::span<const BakeWay> ways,
                             const Repeats& repeats) {
     std::vector<Timing> times(ways.size());
     interleave(ways.size(), repeats, [&](std::size_t i, bool counted) {
-        const BakeTrial trial = trial_of(trials, ways[i]);
+        const BakeTrial trial = trials.measure(ways[i], BumpyBake::formats());
         if (counted) times[i].rounds.push_back(trial.cast_seconds);
     });
     return times;
@@ -44,9 +39,10 @@ std::vector<Timing> timings(const BakeTrials& trials, std::span<const RayWay> wa
 
 }  // namespace
 
-std::string RayWay::words() const {
-    if (degrees) return fmt::format("up to {} rays beyond {:g}°", samples, *degrees);
-    return samples == 1 ? "1 ray" : fmt::format("{} rays", samples);
+std::string words_of(const BakeWay& way) {
+    if (way.sample_degrees)
+        return fmt::format("up to {} rays beyond {:g}°", way.samples, *way.sample_degrees);
+    return way.samples == 1 ? "1 ray" : fmt::format("{} rays", way.samples);
 }
 
 BumpyBake::BumpyBake(int high_stacks, int side)
@@ -70,11 +66,28 @@ const std::vector<NormalMapFormat>& BumpyBake::formats() {
     return all;
 }
 
-std::vector<RayWayFound> BumpyBake::measured(std::span<const RayWay> ways,
-                                             const RunOptions& options) const {
-    std::vector<RayWayFound> found;
-    for (const RayWay& way : ways)
-        found.push_back({trial_of(trials_, way)});
+Image BumpyBake::map_by(const BakeWay& way, const NormalMapFormat& format) const {
+    BakeMapOptions map = map_;
+    map.samples = way.samples;
+    if (way.sample_degrees) map.sample_angle = glm::radians(*way.sample_degrees);
+    Image normals = make_image(map.width, map.height, 3, 32, ColorSpace::data);
+    std::span<float> left = normals.as<float>();
+    Report unsaid;
+    baker_.bake(
+        map,
+        [&](const BakedRows& rows) {
+            std::copy(rows.normals.begin(), rows.normals.end(), left.begin());
+            left = left.subspan(rows.normals.size());
+        },
+        unsaid);
+    return encode_normal_map(normals, format, unsaid);
+}
+
+std::vector<BakeWayFound> BumpyBake::measured(std::span<const BakeWay> ways,
+                                              const RunOptions& options) const {
+    std::vector<BakeWayFound> found;
+    for (const BakeWay& way : ways)
+        found.push_back({trials_.measure(way, formats())});
     if (!options.is_timed) return found;
     set_thread_limit(1);
     const std::vector<Timing> one = timings(trials_, ways, options.repeats);

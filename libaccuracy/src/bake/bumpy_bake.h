@@ -15,16 +15,10 @@
 
 namespace relief {
 
-/// How many rays a texel gets.
-struct RayWay {
-    int samples = 1;
-    std::optional<double> degrees{};  ///< All of them only where the first differ by more.
-
-    [[nodiscard]] std::string words() const;  ///< "16 rays", "up to 64 rays beyond 2°"
-};
+std::string words_of(const BakeWay& way);  ///< "16 rays", "up to 64 rays beyond 2°"
 
 /// What became of one way.
-struct RayWayFound {
+struct BakeWayFound {
     BakeTrial trial;  ///< Its errors by format.
     std::optional<Timing> one_thread{};
     std::optional<Timing> all_threads{};
@@ -50,8 +44,12 @@ class BumpyBake {
 
     /// All ways in turns. Seconds are of rays and their means, not of making meshes ready nor of
     /// codes.
-    [[nodiscard]] std::vector<RayWayFound> measured(std::span<const RayWay> ways,
-                                                    const RunOptions& options) const;
+    [[nodiscard]] std::vector<BakeWayFound> measured(std::span<const BakeWay> ways,
+                                                     const RunOptions& options) const;
+
+    /// The finished map, and the surface that it was baked from. \param way  as for measured()
+    [[nodiscard]] Image map_by(const BakeWay& way, const NormalMapFormat& format) const;
+    [[nodiscard]] const BumpySphere& high() const { return high_; }
 
   private:
     BumpySphere high_;

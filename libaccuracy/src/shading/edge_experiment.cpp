@@ -3,10 +3,10 @@
 // wanted. Tests: tests/accuracy/shading_experiments_test.cpp.
 #include <fmt/format.h>
 
+#include "drawn/lit_scene.h"
+#include "drawn/many_samples.h"
+#include "drawn/picture_error.h"
 #include "relief/mesh/shapes.h"
-#include "shading/lit_scene.h"
-#include "shading/many_samples.h"
-#include "shading/picture_error.h"
 #include "shading/shading_plan.h"
 
 namespace relief {

@@ -4,7 +4,7 @@
 // tests/accuracy/surroundings_experiments_test.cpp.
 #include <fmt/format.h>
 
-#include "shading/many_samples.h"
+#include "drawn/many_samples.h"
 #include "shading/shading_plan.h"
 #include "shading/surroundings.h"
 

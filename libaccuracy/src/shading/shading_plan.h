@@ -5,7 +5,7 @@
 /// unit_normal_experiment_test.cpp, surroundings_experiments_test.cpp.
 #pragma once
 
-#include "shading/drawn_methods.h"
+#include "drawn/drawn_methods.h"
 
 namespace relief {
 

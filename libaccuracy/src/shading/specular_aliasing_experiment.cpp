@@ -8,11 +8,11 @@
 #include <cmath>
 #include <numbers>
 
+#include "drawn/lit_scene.h"
+#include "drawn/many_samples.h"
+#include "drawn/picture_error.h"
 #include "relief/mesh/normal_map.h"
 #include "relief/mesh/shapes.h"
-#include "shading/lit_scene.h"
-#include "shading/many_samples.h"
-#include "shading/picture_error.h"
 #include "shading/shading_plan.h"
 
 namespace relief {
@@ -48,10 +48,8 @@ Scene plane(const Image& map, bool is_antialiased, double away) {
     Material material = glossy_plastic();
     material.shininess = 120.0F;
     material.specular = glm::vec3(0.9F);
-    material.normal_map = NormalMap{};
     material.specular_antialiasing = is_antialiased;
-    Scene scene = lit_scene(make_quad(), material);
-    scene.images = {{"bumps", Shared<Image>(map)}};
+    Scene scene = bumpy_scene(make_quad(), material, map);
     scene.directional_lights = {{{-0.15F, -0.2F, -1.0F}, glm::vec3(lamp_irradiance)}};
     scene.camera = Camera{};
     scene.camera->world_from_view[3] = glm::vec4(0.0F, 0.0F, 4.0F, 1.0F);

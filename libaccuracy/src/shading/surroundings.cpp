@@ -6,10 +6,10 @@
 #include <array>
 #include <cmath>
 
+#include "drawn/lit_scene.h"
 #include "environment/cube_faces.h"
 #include "parallel.h"
 #include "relief/mesh/shapes.h"
-#include "shading/lit_scene.h"
 
 namespace relief {
 namespace {

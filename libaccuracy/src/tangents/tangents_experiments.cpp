@@ -8,6 +8,7 @@
 #include <algorithm>
 
 #include "measured_methods.h"
+#include "tangents/drawn_frames_experiment.h"
 #include "tangents/tangent_methods.h"
 #include "tangents/textured_cases.h"
 
@@ -66,7 +67,9 @@ std::vector<MeasuredMethod> measured_on(const TexturedMesh& truth) {
         if (method.tangents)
             one.work = [tangents = method.tangents, &truth] { tangents(truth.mesh); };
         else
-            one.note = "Nothing to compute for the mesh: shaders derive frames for each pixel.";
+            one.note =
+                "Nothing to compute for the mesh: shaders derive frames for each pixel. What that "
+                "takes, tangents/drawn measures.";
         measured.push_back(std::move(one));
     }
     return measured;
@@ -238,6 +241,8 @@ std::vector<PlannedExperiment> tangents_plan(const RunOptions& options) {
     }
     plan.push_back({"Tangents: a large mesh", [&options] { return on_large_mesh(options); }});
     plan.push_back({"Tangents: bases that differ", [&options] { return mismatches(options); }});
+    plan.push_back({"Tangents: frames stored and derived, drawn",
+                    [&options] { return drawn_frames_experiment(Drawing(), options); }});
     return plan;
 }
 

@@ -11,7 +11,7 @@
 namespace relief {
 
 /// Bases on surfaces cut and textured in several ways; on a large mesh, for times and memory; maps
-/// baked in one basis and read in another; and frames stored in few bytes on a mesh.
+/// baked in one basis and read in another; and frames stored and derived, drawn.
 std::vector<Experiment> tangents_experiments(const RunOptions& options);
 
 /// The same before they are run. \param options  must outlive the plan

@@ -7,7 +7,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <limits>
 
@@ -48,12 +47,6 @@ BumpOptions options_of(const BumpMethod& method, BumpOptions bump) {
     bump.gaussian_radius = method.gaussian_radius;
     bump.arithmetic = method.arithmetic;
     return bump;
-}
-
-double seconds_of(const std::function<void()>& work) {
-    const auto begin = std::chrono::steady_clock::now();
-    work();
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }
 
 void smooth(Trial& trial) {

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Order statistics of repeated measurements, in whatever unit they come, and the order in which
-// they are taken. Series of different lengths throw InvalidInput.
+// A clock; order statistics of repeated measurements, in whatever unit they come, and the order in
+// which they are taken. Series of different lengths throw InvalidInput.
 // Tests: tests/mesh/accuracy/timing_test.cpp.
 #include "relief/mesh/timing.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 
 #include "relief/mesh/error.h"
@@ -29,6 +30,12 @@ Spread spread_of(std::vector<double> values) {
     if (values.empty()) return {};
     std::sort(values.begin(), values.end());
     return {quantile(values, 0.5), quantile(values, 0.1), quantile(values, 0.9), values.size()};
+}
+
+double seconds_of(const std::function<void()>& work) {
+    const auto begin = std::chrono::steady_clock::now();
+    work();
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }
 
 void interleave(std::size_t things, const Repeats& repeats,

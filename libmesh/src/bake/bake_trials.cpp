@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <glm/trigonometric.hpp>
 
 #include "bake/bake_check_casts.h"
@@ -14,13 +13,7 @@
 namespace relief {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
 constexpr int band = TexelCover::band_rows;
-
-double seconds_since(Clock::time_point start) {
-    return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 /// Some rows whose truth is known.
 struct Band {
@@ -36,6 +29,13 @@ struct BakeTrials::Implementation {
     int reference_samples;
     std::vector<Band> bands;
     bool is_whole = true;
+
+    [[nodiscard]] BakeMapOptions map_by(const BakeWay& way) const {
+        BakeMapOptions made = map;
+        made.samples = way.samples;
+        if (way.sample_degrees) made.sample_angle = glm::radians(*way.sample_degrees);
+        return made;
+    }
 
     [[nodiscard]] std::size_t texels_of(const BakeRowRange& rows) const {
         return static_cast<std::size_t>(map.width) *
@@ -69,26 +69,23 @@ BakeTrials::BakeTrials(const Baker& baker, const BakeMapOptions& map, std::size_
 
 BakeTrials::~BakeTrials() = default;
 
-BakeTrial BakeTrials::measure(int samples, std::optional<double> sample_angle,
-                              std::span<const NormalMapFormat> formats) const {
+BakeTrial BakeTrials::measure(const BakeWay& way, std::span<const NormalMapFormat> formats) const {
     const Implementation& all = *implementation_;
-    BakeMapOptions map = all.map;
-    map.samples = samples;
-    map.sample_angle = sample_angle;
+    const BakeMapOptions map = all.map_by(way);
     BakeTrial trial;
     trial.code_seconds.resize(formats.size());
     std::vector<CheckSums> sums(formats.size());
     Report unsaid;
     for (const Band& part : all.bands) {
-        const auto start = Clock::now();
-        const CastRows made = cast_rows(all.baker, map, part.rows.first, part.rows.last, unsaid);
-        trial.cast_seconds += seconds_since(start);
+        CastRows made;
+        trial.cast_seconds += seconds_of(
+            [&] { made = cast_rows(all.baker, map, part.rows.first, part.rows.last, unsaid); });
         trial.rays += made.rays;
         std::vector<float> degrees(all.texels_of(part.rows));
         for (std::size_t f = 0; f < formats.size(); ++f) {
-            const auto coding = Clock::now();
-            const std::vector<float> remade = coded(made.normals, map.width, formats[f]);
-            trial.code_seconds[f] += seconds_since(coding);
+            std::vector<float> remade;
+            trial.code_seconds[f] +=
+                seconds_of([&] { remade = coded(made.normals, map.width, formats[f]); });
             sums[f].add(check_strip(all.baker, map, part.casts, made, remade, {}, part.rows.first,
                                     0, degrees));
         }
@@ -100,6 +97,23 @@ BakeTrial BakeTrials::measure(int samples, std::optional<double> sample_angle,
         trial.centre.push_back(sum.centre.summary());
     }
     return trial;
+}
+
+Image BakeTrials::error_map(const BakeWay& way, const NormalMapFormat& format) const {
+    const Implementation& all = *implementation_;
+    const BakeMapOptions map = all.map_by(way);
+    Image errors =
+        make_image(map.width, static_cast<int>(texels()) / map.width, 1, 32, ColorSpace::data);
+    std::span<float> left = errors.as<float>();
+    Report unsaid;
+    for (const Band& part : all.bands) {
+        const CastRows made = cast_rows(all.baker, map, part.rows.first, part.rows.last, unsaid);
+        const std::vector<float> remade = coded(made.normals, map.width, format);
+        const std::span<float> rows = left.first(all.texels_of(part.rows));
+        check_strip(all.baker, map, part.casts, made, remade, {}, part.rows.first, 0, rows);
+        left = left.subspan(rows.size());
+    }
+    return errors;
 }
 
 std::size_t BakeTrials::texels() const {
@@ -149,9 +163,7 @@ std::vector<TimedBakeTrial> measured_in_turns(const BakeTrials& trials,
     interleave(ways.size(), repeats, [&](std::size_t way, bool counted) {
         check_cancelled();
         TimedBakeTrial& one = all[way];
-        std::optional<double> angle;
-        if (ways[way].sample_degrees) angle = glm::radians(*ways[way].sample_degrees);
-        one.trial = trials.measure(ways[way].samples, angle, formats);
+        one.trial = trials.measure(ways[way], formats);
         one.seconds.resize(formats.size());
         for (std::size_t f = 0; counted && f < formats.size(); ++f)
             one.seconds[f].push_back(one.trial.cast_seconds + one.trial.code_seconds[f]);

@@ -59,7 +59,7 @@ TEST(BakeTrials, SayOfAWholeMapWhatACheckSays) {
     EXPECT_EQ(trials.texels(), 64U * 192U);
     EXPECT_EQ(trials.reference_samples(), 64);
     for (const int samples : {1, 4}) {
-        const BakeTrial trial = trials.measure(samples, std::nullopt, all.formats);
+        const BakeTrial trial = trials.measure({samples}, all.formats);
         EXPECT_GE(trial.rays, static_cast<std::size_t>(samples) * 64U * 192U);
         for (std::size_t i = 0; i < 2; ++i) {
             const BakeCheck check = all.check_of(samples, all.formats[i]);
@@ -75,8 +75,8 @@ TEST(BakeTrials, MoreSamplesAndBitsAreTruer) {
     Trials all;
     const BakeTrials trials(all.baker, all.options, 64 * 192);
     EXPECT_EQ(trials.reference_samples(), 256);
-    const BakeTrial one = trials.measure(1, std::nullopt, all.formats);
-    const BakeTrial four = trials.measure(4, std::nullopt, all.formats);
+    const BakeTrial one = trials.measure({1}, all.formats);
+    const BakeTrial four = trials.measure({4}, all.formats);
     EXPECT_LT(four.errors[1].rms, one.errors[1].rms / 2.0);
     EXPECT_LT(four.errors[1].rms, four.errors[0].rms);
     EXPECT_LT(four.quantisation[1].rms, 0.001);
@@ -85,14 +85,37 @@ TEST(BakeTrials, MoreSamplesAndBitsAreTruer) {
     EXPECT_LT(one.centre[1].max, 0.002);
 }
 
+TEST(BakeTrials, ErrorMapsHoldTheErrorsOfEachTexel) {
+    Trials all;
+    for (const std::size_t texels : {std::size_t{64 * 192}, std::size_t{1}}) {
+        const BakeTrials trials(all.baker, all.options, texels);
+        const BakeTrial trial = trials.measure({4}, all.formats);
+        const Image map = trials.error_map({4}, all.formats[0]);
+        EXPECT_EQ(map.width, 64);
+        EXPECT_EQ(static_cast<std::size_t>(map.height), trials.texels() / 64);
+        double squares = 0.0;
+        double most = 0.0;
+        std::size_t count = 0;
+        for (const float degrees : map.as<float>()) {
+            if (std::isnan(degrees)) continue;
+            squares += double{degrees} * double{degrees};
+            most = std::max(most, double{degrees});
+            ++count;
+        }
+        EXPECT_EQ(count, trial.errors[0].count);
+        EXPECT_NEAR(std::sqrt(squares / static_cast<double>(count)), trial.errors[0].rms, 1e-6);
+        EXPECT_NEAR(most, trial.errors[0].max, 1e-6);
+    }
+}
+
 TEST(BakeTrials, OfAPartAreNearlyThoseOfTheWhole) {
     Trials all;
     const BakeTrials part(all.baker, all.options, 1);
     EXPECT_FALSE(part.is_whole());
     EXPECT_EQ(part.texels(), 64U * 64U);
     const BakeTrials whole(all.baker, all.options, 64 * 192);
-    EXPECT_NEAR(part.measure(1, std::nullopt, all.formats).errors[1].rms,
-                whole.measure(1, std::nullopt, all.formats).errors[1].rms, 0.01);
+    EXPECT_NEAR(part.measure({1}, all.formats).errors[1].rms,
+                whole.measure({1}, all.formats).errors[1].rms, 0.01);
 }
 
 }  // namespace

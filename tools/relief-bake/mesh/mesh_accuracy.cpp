@@ -37,16 +37,11 @@ std::vector<NormalMapFormat> open_formats(const MeshBakeRequest& request,
     return formats;
 }
 
-std::optional<double> radians(const std::optional<double>& degrees) {
-    if (!degrees) return std::nullopt;
-    return glm::radians(*degrees);
-}
-
 std::vector<MeasuredBake> measure(const BakeTrials& trials, const SampleChoice& samples,
                                   const std::optional<double>& angle,
                                   std::span<const NormalMapFormat> formats,
                                   std::vector<AngleSummary>* codes = nullptr) {
-    const BakeTrial trial = trials.measure(samples.count, radians(angle), formats);
+    const BakeTrial trial = trials.measure({samples.count, angle}, formats);
     std::vector<MeasuredBake> measured;
     for (std::size_t i = 0; i < formats.size(); ++i) {
         measured.push_back({samples, angle, formats[i], trial.errors[i], trial.rays,

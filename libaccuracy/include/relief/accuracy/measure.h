@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Time and memory of several ways to do a thing, measured in turns. The one home of clocks for
-/// experiments; none of it depends on what is measured. Tests: tests/accuracy/measure_test.cpp.
+/// Time and memory of several ways to do a thing, measured in turns. None of it depends on
+/// what is measured; clocks and turns are those of timing.h. Tests:
+/// tests/accuracy/measure_test.cpp.
 #pragma once
 
 #include <functional>
@@ -32,9 +33,6 @@ struct CostChoice {
 /// resident at the most, as Linux counts it, beyond what it held before: pages, not bytes.
 std::vector<Cost> measure_costs(std::span<const std::function<void()>> works,
                                 const RunOptions& options, const CostChoice& choice = {});
-
-/// The wall-clock time that something takes.
-double seconds_of(const std::function<void()>& work);
 
 /// The most memory that `work` held at a time beyond what there was before, in bytes; nothing where
 /// the system does not tell.

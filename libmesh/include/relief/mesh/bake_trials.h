@@ -16,6 +16,12 @@
 
 namespace relief {
 
+/// How many samples a texel gets.
+struct BakeWay {
+    int samples = 1;
+    std::optional<double> sample_degrees{};  ///< All of them only where the first differ by more.
+};
+
 /// One bake, in several codes.
 struct BakeTrial {
     std::vector<AngleSummary> errors;  ///< By format, from the mean over the texel.
@@ -41,8 +47,12 @@ class BakeTrials {
     BakeTrials& operator=(const BakeTrials&) = delete;
 
     /// Bakes in memory, and codes, and compares as check_bake() does.
-    [[nodiscard]] BakeTrial measure(int samples, std::optional<double> sample_angle,
+    [[nodiscard]] BakeTrial measure(const BakeWay& way,
                                     std::span<const NormalMapFormat> formats) const;
+
+    /// Where such a map is off: BakeTrial::errors texel by texel, in degrees, as one float channel;
+    /// NaN where there is no truth. Of parts of a map, one below the other.
+    [[nodiscard]] Image error_map(const BakeWay& way, const NormalMapFormat& format) const;
 
     [[nodiscard]] std::size_t texels() const;  ///< Looked at, covered or not.
     [[nodiscard]] bool is_whole() const;
@@ -52,12 +62,6 @@ class BakeTrials {
   private:
     struct Implementation;
     std::unique_ptr<Implementation> implementation_;
-};
-
-/// How many samples a texel gets.
-struct BakeWay {
-    int samples = 1;
-    std::optional<double> sample_degrees;  ///< All of them only where the first differ by more.
 };
 
 /// 1, 4, 16 and 64 samples; and up to 16, where the first differ by more than 8, 2 and 0.5 degrees.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// Repeated measurements: run in turns so that a machine's drift hits all alike, the first ones
-/// dropped, told by median and spread. The one home of repeats and medians.
+/// dropped, told by median and spread. The one home of clocks, repeats and medians.
 /// Tests: tests/mesh/accuracy/timing_test.cpp.
 #pragma once
 
@@ -28,6 +28,9 @@ struct Spread {
 /// \param values  finite, in any order and unit
 /// \return between two measurements, linearly interpolated; of none, all zeros
 Spread spread_of(std::vector<double> values);
+
+/// The wall-clock time that something takes.
+double seconds_of(const std::function<void()>& work);
 
 /// Does several things in turn, A B C A B C ..., and then counts rounds.
 ///

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Pictures compared as codes. FLIP: [Andersson et al. 2020], by image_compare.h.
 // Tests: tests/accuracy/picture_error_test.cpp.
-#include "shading/picture_error.h"
+#include "drawn/picture_error.h"
 
 #include "relief/mesh/error.h"
 #include "relief/shade/image_compare.h"

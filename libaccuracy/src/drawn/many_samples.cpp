@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Tests: tests/accuracy/many_samples_test.cpp.
-#include "shading/many_samples.h"
+#include "drawn/many_samples.h"
 
+#include "drawn/picture_error.h"
 #include "relief/shade/reference.h"
-#include "shading/picture_error.h"
 
 namespace relief {
 

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // Renderers live side by side, so that they can draw in turns. Tests:
 // tests/accuracy/drawn_methods_test.cpp.
-#include "shading/drawn_methods.h"
+#include "drawn/drawn_methods.h"
 
 #include <fmt/format.h>
 
+#include "drawn/picture_error.h"
 #include "relief/shade/error.h"
 #include "relief/shade/frame_timing.h"
 #include "relief/shade/renderer.h"
-#include "shading/picture_error.h"
 
 namespace relief {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Tests: tests/accuracy/many_samples_test.cpp.
-#include "shading/lit_scene.h"
+#include "drawn/lit_scene.h"
 
 namespace relief {
 
@@ -16,6 +16,13 @@ Scene lit_scene(Mesh mesh, Material material) {
     scene.camera =
         framed(world_bounds(scene), glm::radians(30.0F), glm::radians(35.0F), 0.7F, 1.0F);
     scene.camera->vertical_fov = 0.5F;  // What lies flat leaves room above and below.
+    return scene;
+}
+
+Scene bumpy_scene(Mesh mesh, Material material, Image normal_map) {
+    material.normal_map = NormalMap{};
+    Scene scene = lit_scene(std::move(mesh), std::move(material));
+    scene.images = {{"bumps", Shared<Image>(std::move(normal_map))}};
     return scene;
 }
 

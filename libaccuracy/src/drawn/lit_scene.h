@@ -20,6 +20,9 @@ inline constexpr glm::vec4 lit_background{0.03F, 0.04F, 0.06F, 1.0F};
 /// and 35 above, before a dark background, in a square picture.
 Scene lit_scene(Mesh mesh, Material material);
 
+/// The same with a normal map, which repeats.
+Scene bumpy_scene(Mesh mesh, Material material, Image normal_map);
+
 /// Smooth and reddish, with a highlight of shininess 40.
 Material glossy_plastic();
 
