@@ -62,6 +62,17 @@ TEST(OwnHeights, OfFewBitsAreAlsoSmoothed) {
     EXPECT_GE(found(own, "scharr3, float32, 16 bit, steps smoothed").error.count, 96U * 96U);
 }
 
+TEST(OwnHeights, AreTriedInTheBitsAskedForAlone) {
+    const BumpField field = waves(FieldCoding::bits8);
+    OwnOptions options = untimed();
+    options.map_bits = {16};
+    options.smooths_steps = false;
+    const OwnExperiment own = measure_own_heights(field.heights, field.options, options);
+    EXPECT_THAT(own.experiment.measurements, SizeIs(20));  // Ten kernels in two arithmetics.
+    for (const Measurement& one : own.experiment.measurements)
+        EXPECT_THAT(one.method, ::testing::EndsWith(", 16 bit"));
+}
+
 TEST(OwnHeights, OfLargeMapsAreMeasuredOnParts) {
     const BumpField field = waves(FieldCoding::float32);
     const OwnExperiment own = measure_own_heights(field.heights, field.options, untimed(), 48 * 48);

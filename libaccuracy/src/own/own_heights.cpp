@@ -14,7 +14,6 @@
 namespace relief {
 namespace {
 
-constexpr std::array depths = {8, 16, 32};
 constexpr std::array both_arithmetics = {Arithmetic::float32, Arithmetic::float64};
 
 /// The conversion as it is done, on all parts.
@@ -52,12 +51,13 @@ std::string command_of(const BumpMethod& method, const BumpOptions& bump,
 }
 
 /// Steps are smoothed away where there are any; one arithmetic and depth shows what that does.
-std::vector<BumpMethod> methods_for(const KernelChoice& choice) {
+std::vector<BumpMethod> methods_for(const KernelChoice& choice, const OwnOptions& options) {
     constexpr int most_bits_with_steps = 12;
     const int radius = best_gaussian_radius(choice);
     const std::array as_is = {false};
-    std::vector<BumpMethod> methods = bump_methods(radius, depths, both_arithmetics, as_is);
-    if (choice.depth.bits == 0 || choice.depth.bits > most_bits_with_steps) return methods;
+    std::vector<BumpMethod> methods = bump_methods(radius, options.map_bits, both_arithmetics, as_is);
+    const bool has_steps = choice.depth.bits > 0 && choice.depth.bits <= most_bits_with_steps;
+    if (!has_steps || !options.smooths_steps) return methods;
     const std::array smooth = {true};
     for (const BumpMethod& method :
          bump_methods(radius, std::array{16}, std::array{Arithmetic::float32}, smooth))
@@ -71,7 +71,7 @@ OwnExperiment measure_own_heights(const BumpSample& sample, glm::ivec2 size,
                                   const BumpOptions& bump, const OwnOptions& options) {
     OwnExperiment own = own_experiment(Subject::bump, "bump", "Normals from heights", options);
     const KernelChoice choice = choose_kernel(sample.looked_at, bump);
-    const std::vector<BumpMethod> methods = methods_for(choice);
+    const std::vector<BumpMethod> methods = methods_for(choice, options);
     BumpExperimentOptions how;
     how.bump = bump;
     how.repeats = {0, 0};

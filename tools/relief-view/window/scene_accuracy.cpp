@@ -31,13 +31,6 @@ std::string choice_of(const Measurement& measurement, const std::string& name) {
     return "";
 }
 
-/// Whether the window shows the method beside others: maps of 16 bits, as it makes them.
-bool is_shown(const Measurement& one) {
-    const std::string depth = choice_of(one, "depth");
-    const std::string steps = choice_of(one, "steps");
-    return (depth.empty() || depth == "16 bit") && (steps.empty() || steps == "as they are");
-}
-
 /// What puts a method to use: "normals=max", where that is a change which the window knows.
 std::optional<Variant> use_of(const Measurement& one) {
     const std::string arithmetic = choice_of(one, "arithmetic");
@@ -66,7 +59,7 @@ AccuracyTopic topic_of(OwnExperiment own) {
     const std::vector<Measurement>& all = own.experiment.measurements;
     for (std::size_t i = 0; i < all.size(); ++i) {
         topic.uses.push_back(use_of(all[i]));
-        if (is_shown(all[i])) topic.rows.push_back(i);
+        topic.rows.push_back(i);
     }
     std::stable_sort(topic.rows.begin(), topic.rows.end(), [&](std::size_t a, std::size_t b) {
         return seconds_of(all[a]) < seconds_of(all[b]);
@@ -87,6 +80,8 @@ FoundAccuracy measured(const Scene& scene, const ViewOptions& view) {
         found.topics.push_back(topic_of(std::move(own)));
     }
     if (!view.height_map) return found;
+    options.map_bits = {16};  // As the window makes them.
+    options.smooths_steps = false;
     BumpOptions bump;
     bump.strength = view.strength.value_or(bump.strength);
     options.file = view.height_map->filename().string();

@@ -25,7 +25,7 @@ namespace relief::tools {
 /// One thing that methods differ in.
 struct AccuracyTopic {
     OwnExperiment own;
-    std::vector<std::size_t> rows;  ///< The measurements to show, the fastest first.
+    std::vector<std::size_t> rows;  ///< All measurements, the fastest first.
     /// By measurement, what puts it to use; absent where the window cannot.
     std::vector<std::optional<Variant>> uses;
 };

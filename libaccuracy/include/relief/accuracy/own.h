@@ -35,6 +35,10 @@ struct OwnOptions {
     std::string arguments;  ///< As commands name it, or both of a pair: "'old vase.obj'".
     std::string command;    ///< What repeats it all: "relief-accuracy own vase.obj".
     Wish wish;
+    /// Of the normal maps that heights are converted to: bits, and whether steps of coarse heights
+    /// are smoothed away as well (in 16 bits).
+    std::vector<int> map_bits = {8, 16, 32};
+    bool smooths_steps = true;
 };
 
 /// An experiment, and what to take.
