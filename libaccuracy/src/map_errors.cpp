@@ -29,7 +29,8 @@ Image angles_of(const Image& normals, std::span<const glm::dvec3> truth) {
     return angles;
 }
 
-AngleDistribution map_errors(const Image& normals, std::span<const glm::dvec3> truth, int margin) {
+std::vector<float> inner_angles(const Image& normals, std::span<const glm::dvec3> truth,
+                                int margin) {
     const Image angles = angles_of(normals, truth);
     const std::span<const float> all = angles.as<float>();
     std::vector<float> counted;
@@ -38,7 +39,11 @@ AngleDistribution map_errors(const Image& normals, std::span<const glm::dvec3> t
         counted.insert(counted.end(), all.begin() + row + margin,
                        all.begin() + row + angles.width - margin);
     }
-    return angle_distribution(std::move(counted));
+    return counted;
+}
+
+AngleDistribution map_errors(const Image& normals, std::span<const glm::dvec3> truth, int margin) {
+    return angle_distribution(inner_angles(normals, truth, margin));
 }
 
 }  // namespace relief

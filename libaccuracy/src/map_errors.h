@@ -6,6 +6,7 @@
 
 #include <glm/glm.hpp>
 #include <span>
+#include <vector>
 
 #include "relief/accuracy/experiment.h"
 #include "relief/mesh/angle_distribution.h"
@@ -20,7 +21,11 @@ namespace relief {
 /// \throws InvalidInput if they are not equally many
 Image angles_of(const Image& normals, std::span<const glm::dvec3> truth);
 
-/// How these are distributed, those within `margin` texels of the border left out.
+/// These in one row, those within `margin` texels of the border left out.
+std::vector<float> inner_angles(const Image& normals, std::span<const glm::dvec3> truth,
+                                int margin);
+
+/// How these are distributed.
 AngleDistribution map_errors(const Image& normals, std::span<const glm::dvec3> truth,
                              int margin = 0);
 

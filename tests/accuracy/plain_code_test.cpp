@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "bump/bump_methods.h"
 #include "relief/mesh/direction_error.h"
 #include "relief/mesh/shapes.h"
 #include "relief/mesh/tangents.h"
@@ -46,6 +47,24 @@ TEST(PlainTangents, AreThoseOfTheTexture) {
             // lengyel_tangents() welds the torus's seam.
             EXPECT_LT(degrees_between(glm::dvec3(found[i]), glm::dvec3(expected[i])), 0.5) << i;
             EXPECT_EQ(found[i].w, expected[i].w);
+        }
+    }
+}
+
+TEST(PlainSobel, IsSobelAwayFromTheBorder) {
+    const WaveMap wave = oblique_wave(48, 16.0, 32);
+    BumpOptions options = wave.options;
+    options.kernel = Kernel::sobel3;
+    Report report;
+    const Image expected = normals_from_height(wave.heights, options, report);
+    const Image found = plain_sobel_normals(wave.heights, 1.0F);
+    for (int y = 1; y < 47; ++y) {
+        for (int x = 1; x < 47; ++x) {
+            const auto at = [&](const Image& map) {
+                const float* const n = &map.as<float>()[static_cast<std::size_t>(3 * (y * 48 + x))];
+                return glm::dvec3(n[0], n[1], n[2]);
+            };
+            EXPECT_LT(degrees_between(at(found), at(expected)), 1e-4) << x << ", " << y;
         }
     }
 }

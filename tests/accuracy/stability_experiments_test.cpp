@@ -88,6 +88,37 @@ TEST(TangentsByOffset, BreakWhenCoordinatesAreRounded) {
     }
 }
 
+TEST(BumpBySteepness, HoldsByReliefAndBreaksByPlainCode) {
+    const Experiment experiment = bump_by_steepness(test::quick_untimed());
+    ASSERT_EQ(experiment.charts.size(), 2U);
+    for (const Chart& chart : experiment.charts) {
+        for (const Curve& curve : chart.curves) {
+            SCOPED_TRACE(chart.id + ", " + curve.method);
+            EXPECT_EQ(curve.points.size(), 16U);
+            EXPECT_LT(curve.points.front().error, 0.5);
+            // The square of a slope of 1e20 is no float.
+            const bool breaks = is_plain(curve.method) && chart.id == "steeper";
+            ASSERT_EQ(curve.breaks_at.has_value(), breaks);
+            EXPECT_EQ(curve.breaks_at.value_or(1e20), 1e20);
+        }
+    }
+    // What is next to flat is flat, and what is next to upright errs by its direction alone.
+    const Curve& flatter = test::curve_of(experiment.charts[1], "sobel3, float64");
+    EXPECT_LT(flatter.points.back().error, 1e-12);
+}
+
+TEST(BumpByOffset, BreaksWhenHeightsAreRounded) {
+    const Experiment experiment = bump_by_offset(test::quick_untimed());
+    for (const Curve& curve : experiment.charts.front().curves) {
+        SCOPED_TRACE(curve.method);
+        // Floats are 2^-24 of the height apart: half a texel at 1e7, 0.06 at 1e6.
+        EXPECT_LT(curve.points[4].error, 0.5);
+        ASSERT_TRUE(curve.breaks_at);
+        EXPECT_GE(*curve.breaks_at, 1e6);
+        EXPECT_LE(*curve.breaks_at, 1e7);
+    }
+}
+
 TEST(StabilityExperiments, AreWholeButForWhatPlainCodeLoses) {
     std::vector<Experiment> all = stability_experiments(test::quick_untimed());
     for (Experiment& experiment : all) {

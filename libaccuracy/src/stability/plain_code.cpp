@@ -74,4 +74,31 @@ std::vector<glm::vec4> plain_tangents(const Mesh& mesh) {
     return corners;
 }
 
+Image plain_sobel_normals(const Image& height, float strength) {
+    Image normals = make_image(height.width, height.height, 3, 32, ColorSpace::data);
+    const std::span<const float> heights = height.as<float>();
+    const std::span<float> to = normals.as<float>();
+    const auto place = [&](int x, int y) {
+        return static_cast<std::size_t>(y) * static_cast<std::size_t>(height.width) +
+               static_cast<std::size_t>(x);
+    };
+    for (int y = 0; y < height.height; ++y) {
+        for (int x = 0; x < height.width; ++x) {
+            const auto h = [&](int dx, int dy) { return heights[place(x + dx, y + dy)]; };
+            glm::vec3 normal(0.0F, 0.0F, 1.0F);
+            if (x > 0 && y > 0 && x + 1 < height.width && y + 1 < height.height) {
+                const float right = h(1, -1) + 2.0F * h(1, 0) + h(1, 1);
+                const float left = h(-1, -1) + 2.0F * h(-1, 0) + h(-1, 1);
+                const float below = h(-1, 1) + 2.0F * h(0, 1) + h(1, 1);
+                const float above = h(-1, -1) + 2.0F * h(0, -1) + h(1, -1);
+                normal = over_length(
+                    {-strength * (right - left) / 8.0F, strength * (below - above) / 8.0F, 1.0F});
+            }
+            for (int i = 0; i < 3; ++i)
+                to[3 * place(x, y) + static_cast<std::size_t>(i)] = normal[i];
+        }
+    }
+    return normals;
+}
+
 }  // namespace relief

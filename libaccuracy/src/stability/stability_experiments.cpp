@@ -13,7 +13,9 @@ std::vector<Experiment> stability_experiments(const RunOptions& options) {
         {"Normals: distance from the origin", [&] { return normals_by_offset(options); }},
         {"Normals: needles", [&] { return normals_of_needles(options); }},
         {"Tangents: scale", [&] { return tangents_by_scale(options); }},
-        {"Tangents: distance from the origin", [&] { return tangents_by_offset(options); }}};
+        {"Tangents: distance from the origin", [&] { return tangents_by_offset(options); }},
+        {"Bump: steepness", [&] { return bump_by_steepness(options); }},
+        {"Bump: height above zero", [&] { return bump_by_offset(options); }}};
     std::vector<Experiment> experiments = run_planned(plan, options);
     for (Experiment& experiment : experiments) {
         experiment.subject = Subject::stability;

@@ -13,5 +13,7 @@ Experiment normals_by_offset(const RunOptions& options);
 Experiment normals_of_needles(const RunOptions& options);
 Experiment tangents_by_scale(const RunOptions& options);
 Experiment tangents_by_offset(const RunOptions& options);
+Experiment bump_by_steepness(const RunOptions& options);
+Experiment bump_by_offset(const RunOptions& options);
 
 }  // namespace relief
