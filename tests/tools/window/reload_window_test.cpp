@@ -141,6 +141,7 @@ TEST(ReloadWindow, AShaderThatChangesIsLinkedAndABrokenOneIsSaid) {
     EXPECT_EQ(changed_picture(picture, display->picture()), 0.0) << "the old one stays";
     window.key("7");  // And can still be looked at, from above.
     EXPECT_TRUE(eventually([&] { return changed_picture(picture, display->picture()) > 0.05; }));
+    window.wait_for_rest();  // A picture still to be drawn would find the shader mended by itself.
 
     std::filesystem::remove(workplace / shader);
     const json mended =
