@@ -7,16 +7,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "accuracy/random.h"
+#include "full_turn.h"
 #include "parallel.h"
 #include "relief/mesh/error.h"
 
 namespace relief {
 namespace {
-
-constexpr double full_turn = 2.0 * std::numbers::pi;
 
 std::size_t texel_at(int width, int column, int row) {
     return static_cast<std::size_t>(row) * static_cast<std::size_t>(width) +

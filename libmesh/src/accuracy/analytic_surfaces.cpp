@@ -14,12 +14,11 @@
 #include <utility>
 
 #include "accuracy/random.h"
+#include "full_turn.h"
 #include "relief/mesh/error.h"
 
 namespace relief {
 namespace {
-
-constexpr double full_turn = 2.0 * std::numbers::pi;
 
 struct SurfacePoint {
     glm::dvec3 position;

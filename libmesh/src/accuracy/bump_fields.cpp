@@ -11,15 +11,15 @@
 #include <numbers>
 
 #include "accuracy/random.h"
+#include "full_turn.h"
 #include "relief/mesh/error.h"
 
 namespace relief {
 namespace {
 
-constexpr double full_turn = 2.0 * std::numbers::pi;
 constexpr int waves_in_all = 24;
 
-using Field = std::function<HeightAt(const glm::dvec2&)>;
+using FieldFunction = std::function<HeightAt(const glm::dvec2&)>;
 
 /// Waves of any length: they do not tile.
 std::vector<HeightWave> open_waves(int size, const FieldRecipe& recipe) {
@@ -39,7 +39,7 @@ std::vector<HeightWave> open_waves(int size, const FieldRecipe& recipe) {
 }
 
 /// Bumps (1 - r^2)^3 in the cells of a lattice that goes into the size, of random heights.
-Field domes(int width, int height, const FieldRecipe& recipe) {
+FieldFunction domes(int width, int height, const FieldRecipe& recipe) {
     const glm::dvec2 size(width, height);
     const glm::dvec2 cells = glm::max(glm::round(size / recipe.shortest), glm::dvec2(1.0));
     const glm::dvec2 cell = size / cells;
@@ -58,7 +58,7 @@ Field domes(int width, int height, const FieldRecipe& recipe) {
 }
 
 /// Roofs along both axes: slopes of one size, and ridges between texels.
-Field creases(int width, int height, const FieldRecipe& recipe) {
+FieldFunction creases(int width, int height, const FieldRecipe& recipe) {
     const glm::dvec2 size(width, height);
     const glm::dvec2 period = size / glm::max(glm::round(size / recipe.shortest), glm::dvec2(1.0));
     return [=](const glm::dvec2& place) -> HeightAt {
@@ -71,7 +71,7 @@ Field creases(int width, int height, const FieldRecipe& recipe) {
 }
 
 /// Level ground whose height follows a long wave in stairs, with gentle waves on top.
-Field terraces(int width, int height, const FieldRecipe& recipe) {
+FieldFunction terraces(int width, int height, const FieldRecipe& recipe) {
     const std::vector<HeightWave> shape =
         tiling_waves(width, height, 6, 2.0 * recipe.shortest, 1.0, recipe.seed);
     const std::vector<HeightWave> ground =
@@ -96,7 +96,7 @@ Field terraces(int width, int height, const FieldRecipe& recipe) {
 }
 
 /// Long waves everywhere, short ones where a smooth mask of x lets them.
-Field mixed(int width, int height, const FieldRecipe& recipe) {
+FieldFunction mixed(int width, int height, const FieldRecipe& recipe) {
     const double longest = std::max(width, height);
     const std::vector<HeightWave> wide =
         tiling_waves(width, height, 8, longest / 4.0, recipe.rms_slope, recipe.seed);
@@ -115,7 +115,7 @@ Field mixed(int width, int height, const FieldRecipe& recipe) {
     };
 }
 
-Field shape_of(int width, int height, const FieldRecipe& recipe) {
+FieldFunction shape_of(int width, int height, const FieldRecipe& recipe) {
     switch (recipe.shape) {
         case FieldShape::waves: {
             auto waves = tiling_waves(width, height, waves_in_all, recipe.shortest,

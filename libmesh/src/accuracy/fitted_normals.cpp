@@ -127,9 +127,9 @@ std::optional<glm::dvec3> fitted_normal(const std::vector<glm::dvec3>& points, g
 }
 
 /// A mesh as fans: what is joined by smooth edges.
-class FanMesh {
+class MeshAsFans {
   public:
-    FanMesh(const Mesh& mesh, const HardEdges& hard_edges)
+    MeshAsFans(const Mesh& mesh, const HardEdges& hard_edges)
         : mesh_(mesh), welded_(welded_triangles(mesh.triangles, weld_positions(mesh.positions))) {
         normals_ = normals_or_zero(mesh.positions, mesh.triangles);
         const SmoothFans fans = smooth_fans(mesh.positions.size(), welded_, normals_, hard_edges);
@@ -216,7 +216,7 @@ struct Fit {
     double bend = 0.0;   ///< To the triangle furthest from it, degrees.
 };
 
-std::optional<Fit> fit_at(const FanMesh& mesh, std::size_t fan) {
+std::optional<Fit> fit_at(const MeshAsFans& mesh, std::size_t fan) {
     const std::span<const Corner> corners = mesh.corners_of(fan);
     if (corners.empty() || corners.size() > most_triangles_around) return std::nullopt;
     const std::optional<glm::dvec3> start = mesh.mean_normal(fan);
@@ -224,7 +224,7 @@ std::optional<Fit> fit_at(const FanMesh& mesh, std::size_t fan) {
     std::vector<std::uint32_t> triangles;
     for (const Corner corner : corners)
         triangles.push_back(triangle_of(corner));
-    FanMesh::make_unique(triangles);
+    MeshAsFans::make_unique(triangles);
     mesh.grow(triangles);
     const auto crude =
         fitted_normal(mesh.points_of(triangles, corners.front()), *start, crude_degree);
@@ -241,7 +241,7 @@ std::optional<Fit> fit_at(const FanMesh& mesh, std::size_t fan) {
 
 FittedNormals fitted_normals(const Mesh& mesh, const FitOptions& options) {
     validate(mesh);
-    const FanMesh fans(mesh, options.hard_edges);
+    const MeshAsFans fans(mesh, options.hard_edges);
     FittedNormals result;
     result.fans = fans.fan_count();
     result.places = std::min(result.fans, options.most_places);

@@ -61,12 +61,12 @@ void filter_lines(HeightTile& tile, std::span<const double> weights, int spacing
               });
 }
 
-constexpr int widest = 6;  ///< Half the order of the slopes.
+constexpr int widest_difference = 6;  ///< Half the order of the slopes.
 
 /// Weights of h[k] - h[-k] for a central difference of order 2 m.
-std::array<std::array<double, widest + 1>, widest + 1> central_weights() {
-    std::array<std::array<double, widest + 1>, widest + 1> weights{};
-    for (int m = 1; m <= widest; ++m) {
+std::array<std::array<double, widest_difference + 1>, widest_difference + 1> central_weights() {
+    std::array<std::array<double, widest_difference + 1>, widest_difference + 1> weights{};
+    for (int m = 1; m <= widest_difference; ++m) {
         double ratio = 1.0;  // (m!)^2 / ((m-k)! (m+k)!)
         for (int k = 1; k <= m; ++k) {
             ratio *= static_cast<double>(m - k + 1) / (m + k);
@@ -158,11 +158,11 @@ TileSlopes true_slopes(const HeightTile& tile, double least_cliff) {
         for_lines(tile, rows,
                   [&](std::size_t first, std::ptrdiff_t stride, int count, Wrap wrap,
                       std::vector<double>& padded) {
-                      constexpr int margin = widest + 6;
+                      constexpr int margin = widest_difference + 6;
                       read_line(tile.values.data() + first, stride, count, wrap, margin, padded);
                       const double* const line = padded.data() + margin;
                       std::vector<unsigned char> cliffs(padded.size(), 0);
-                      for (int i = -widest; i < count + widest; ++i)
+                      for (int i = -widest_difference; i < count + widest_difference; ++i)
                           cliffs[static_cast<std::size_t>(i + margin)] =
                               is_cliff(line + i, least_cliff) ? 1 : 0;
                       for (int i = 0; i < count; ++i) {
@@ -171,9 +171,9 @@ TileSlopes true_slopes(const HeightTile& tile, double least_cliff) {
                           const auto cliff = [&](int at) {
                               return cliffs[static_cast<std::size_t>(at + margin)] != 0;
                           };
-                          while (right < widest && !cliff(i + right))
+                          while (right < widest_difference && !cliff(i + right))
                               ++right;
-                          while (left < widest && !cliff(i - 1 - left))
+                          while (left < widest_difference && !cliff(i - 1 - left))
                               ++left;
                           const auto texel = first + static_cast<std::size_t>(i * stride);
                           result.slopes[texel][rows ? 0 : 1] = slope_at(line + i, left, right);

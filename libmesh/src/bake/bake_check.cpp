@@ -15,12 +15,11 @@ namespace relief {
 namespace {
 
 constexpr std::size_t strip_texels = 1'000'000;
-constexpr int band = TexelCover::band_rows;
 constexpr std::size_t known_texels = 16384;  // For the search of a convention, at least if known.
 
 int rows_of_strip(int width) {
     const auto fitting = static_cast<int>(strip_texels / static_cast<std::size_t>(width));
-    return std::max(fitting / band, 1) * band;
+    return std::max(fitting / TexelCover::band_rows, 1) * TexelCover::band_rows;
 }
 
 /// Rows of an image of its own kind.

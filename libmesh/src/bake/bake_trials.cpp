@@ -13,7 +13,6 @@
 namespace relief {
 namespace {
 
-constexpr int band = TexelCover::band_rows;
 
 /// Some rows whose truth is known.
 struct Band {
@@ -51,6 +50,7 @@ BakeTrials::BakeTrials(const Baker& baker, const BakeMapOptions& map, std::size_
     all.map.sample_angle.reset();
     all.reference_samples =
         reference_of(map, reference_samples > 0 ? reference_samples : 256).samples;
+    constexpr int band = TexelCover::band_rows;
     const int bands = (map.height + band - 1) / band;
     const std::size_t band_texels =
         static_cast<std::size_t>(map.width) * static_cast<std::size_t>(band);

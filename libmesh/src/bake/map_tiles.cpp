@@ -16,7 +16,7 @@
 namespace relief {
 namespace {
 
-constexpr double margin = 1e-5;  // Of a tile's side.
+constexpr double tile_margin = 1e-5;  // Of a tile's side.
 constexpr std::size_t most_tiles = 1000;
 
 using Corners = std::array<glm::dvec2, 3>;
@@ -26,7 +26,7 @@ struct Interval {
     double first, last;
 
     Interval(double least, double greatest)
-        : first(std::floor(least + margin)), last(std::ceil(greatest - margin) - 1.0) {
+        : first(std::floor(least + tile_margin)), last(std::ceil(greatest - tile_margin) - 1.0) {
         if (first > last) first = last = std::floor((least + greatest) / 2.0);
     }
 };
@@ -75,7 +75,8 @@ class Sorting {
         for (double y = begin.y; y <= end.y; ++y) {
             for (double x = begin.x; x <= end.x; ++x) {
                 const glm::dvec2 corner(x, y);
-                if (!is_one && is_apart(corners, corner + margin, corner + (1.0 - margin)))
+                if (!is_one &&
+                    is_apart(corners, corner + tile_margin, corner + (1.0 - tile_margin)))
                     continue;
                 is_anywhere = true;
                 place(glm::ivec2(corner), index);

@@ -16,11 +16,11 @@
 namespace relief {
 namespace {
 
-enum class Direction { to_object, to_tangent };
+enum class SpaceTurn { to_object, to_tangent };
 
 /// The normal of one texel in the other space, or (0, 0, 1) and why.
 glm::dvec3 converted(const Mesh& mesh, const CoveredTexel& texel, const glm::dvec3& normal,
-                     Direction direction, std::size_t index, Report& found) {
+                     SpaceTurn direction, std::size_t index, Report& found) {
     const glm::dvec3 flat(0.0, 0.0, 1.0);
     if (!texel.is_covered()) return flat;
     const TexelFrame frame(mesh, texel.triangle, glm::dvec3(texel.weights()));
@@ -29,13 +29,13 @@ glm::dvec3 converted(const Mesh& mesh, const CoveredTexel& texel, const glm::dve
         return flat;
     }
     const glm::dvec3 result =
-        direction == Direction::to_object ? frame.to_object(normal) : frame.to_tangent(normal);
+        direction == SpaceTurn::to_object ? frame.to_object(normal) : frame.to_tangent(normal);
     const double length = glm::length(result);
     if (!(length > 0.0) || !std::isfinite(length)) {
         found.add("normal without direction", "texel", index, "is (0, 0, 1)");
         return flat;
     }
-    if (direction == Direction::to_tangent && result.z < 0.0)
+    if (direction == SpaceTurn::to_tangent && result.z < 0.0)
         found.add("normal behind the surface", "texel", index, "kept");
     return result / length;
 }
@@ -53,7 +53,7 @@ void check(const Image& normals, const Mesh& mesh) {
 }
 
 ConvertedNormals convert(const Image& normals, const Mesh& mesh, const MapPlacement& placement,
-                         Direction direction, Report& report) {
+                         SpaceTurn direction, Report& report) {
     check(normals, mesh);
     CoverageOptions options;
     options.width = normals.width;
@@ -90,12 +90,12 @@ ConvertedNormals convert(const Image& normals, const Mesh& mesh, const MapPlacem
 
 ConvertedNormals object_from_tangent(const Image& normals, const Mesh& mesh,
                                      const MapPlacement& placement, Report& report) {
-    return convert(normals, mesh, placement, Direction::to_object, report);
+    return convert(normals, mesh, placement, SpaceTurn::to_object, report);
 }
 
 ConvertedNormals tangent_from_object(const Image& normals, const Mesh& mesh,
                                      const MapPlacement& placement, Report& report) {
-    return convert(normals, mesh, placement, Direction::to_tangent, report);
+    return convert(normals, mesh, placement, SpaceTurn::to_tangent, report);
 }
 
 }  // namespace relief

@@ -22,7 +22,6 @@ namespace relief {
 namespace {
 
 constexpr int rows_per_band = TexelCover::band_rows;
-constexpr int largest_side = TexelCover::largest_side;
 constexpr double most_turns = 64.0;  // Of a texture that repeats, across one triangle.
 
 /// The triangles of a map, found by index.
@@ -158,9 +157,9 @@ class Bands {
 };
 
 /// A band being drawn.
-class Band {
+class DrawnBand {
   public:
-    Band(const Triangles& triangles, const CoverageOptions& options, int first_row)
+    DrawnBand(const Triangles& triangles, const CoverageOptions& options, int first_row)
         : triangles_(triangles),
           options_(options),
           first_row_(first_row),
@@ -295,9 +294,10 @@ class Band {
 void check(std::span<const glm::vec2> texcoords, std::span<const glm::uvec3> triangles,
            const CoverageOptions& options) {
     for (const int side : {options.width, options.height}) {
-        if (side < 1 || side > largest_side)
+        if (side < 1 || side > TexelCover::largest_side)
             throw InvalidInput(fmt::format("a map of {} x {} texels is not within 1 to {}",
-                                           options.width, options.height, largest_side));
+                                           options.width, options.height,
+                                           TexelCover::largest_side));
     }
     const int across = options.samples_across;
     constexpr std::array known = {1, 2, 4, 8, 16};
@@ -345,7 +345,7 @@ Coverage TexelCover::cover(
         found.size(), 1, report, [&](std::size_t begin, std::size_t end, Report& findings) {
             for (std::size_t i = begin; i < end; ++i) {
                 const int band_row = static_cast<int>(first_band + i) * rows_per_band;
-                Band band(all, options, band_row);
+                DrawnBand band(all, options, band_row);
                 for (const std::uint32_t index : bands.members(first_band + i))
                     band.draw(index);
                 found[i] = band.finish(findings);

@@ -15,7 +15,7 @@ namespace relief {
 namespace {
 
 constexpr int bits_of_unit_square = 28;
-constexpr double farthest = 0x1p33;  // Texels.
+constexpr double farthest_texel = 0x1p33;  // Texels.
 
 Wide floor_of(Wide numerator, Wide positive) {
     const Wide quotient = numerator / positive;
@@ -55,7 +55,7 @@ TexelTriangle::Trouble TexelTriangle::make(const std::array<glm::dvec2, 3>& texe
     std::array<Point, 3> corners{};
     for (std::size_t i = 0; i < 3; ++i) {
         if (!std::isfinite(texels[i].x) || !std::isfinite(texels[i].y)) return Trouble::not_finite;
-        if (std::max(std::abs(texels[i].x), std::abs(texels[i].y)) > farthest)
+        if (std::max(std::abs(texels[i].x), std::abs(texels[i].y)) > farthest_texel)
             return Trouble::too_far;
         corners[i] = {scale.fixed(texels[i].x), scale.fixed(texels[i].y)};
     }

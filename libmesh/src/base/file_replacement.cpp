@@ -22,14 +22,14 @@ namespace relief {
 namespace {
 
 /// A file that is being written, for the handler.
-struct Place {
+struct ListedFile {
     enum State { free, changing, held };
     std::atomic<int> state = free;
     std::array<char, PATH_MAX> path;
 };
 
-constexpr std::size_t place_count = 128;
-std::array<Place, place_count> places;
+constexpr std::size_t most_listed = 128;
+std::array<ListedFile, most_listed> listed_files;
 std::atomic<bool> is_ending = false;
 static_assert(std::atomic<int>::is_always_lock_free && std::atomic<bool>::is_always_lock_free);
 
@@ -42,25 +42,26 @@ void wait_if_ending() {
 /// Where a file is listed; place_count where there is no room.
 std::size_t enter(const std::filesystem::path& file) {
     const std::string path = std::filesystem::absolute(file).string();
-    if (path.size() >= PATH_MAX) return place_count;
-    for (std::size_t at = 0; at < place_count; ++at) {
-        int expected = Place::free;
-        if (!places[at].state.compare_exchange_strong(expected, Place::changing)) continue;
-        std::memcpy(places[at].path.data(), path.c_str(), path.size() + 1);
-        places[at].state = Place::held;
+    if (path.size() >= PATH_MAX) return most_listed;
+    for (std::size_t at = 0; at < most_listed; ++at) {
+        int expected = ListedFile::free;
+        if (!listed_files[at].state.compare_exchange_strong(expected, ListedFile::changing))
+            continue;
+        std::memcpy(listed_files[at].path.data(), path.c_str(), path.size() + 1);
+        listed_files[at].state = ListedFile::held;
         return at;
     }
-    return place_count;
+    return most_listed;
 }
 
 void leave(std::size_t place) {
-    if (place < place_count) places[place].state = Place::free;
+    if (place < most_listed) listed_files[place].state = ListedFile::free;
 }
 
 /// Removes what is listed.
 void remove_all() {
-    for (const Place& place : places) {
-        if (place.state == Place::held) ::unlink(place.path.data());
+    for (const ListedFile& place : listed_files) {
+        if (place.state == ListedFile::held) ::unlink(place.path.data());
     }
 }
 
@@ -93,7 +94,7 @@ void remove_temporaries_on_signals() {
 }
 
 FileReplacement::FileReplacement(std::filesystem::path file)
-    : file_(std::move(file)), place_(place_count) {
+    : file_(std::move(file)), place_(most_listed) {
     const std::filesystem::path folder =
         file_.has_parent_path() ? file_.parent_path() : std::filesystem::path(".");
     if (!std::filesystem::is_directory(folder)) {

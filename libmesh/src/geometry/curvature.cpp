@@ -15,13 +15,13 @@
 namespace relief {
 namespace {
 
-constexpr std::size_t grain = 1 << 14;
+constexpr std::size_t curvature_grain = 1 << 14;
 
 /// A triangle seen from one of its corners: the vertices that follow, counter-clockwise.
-struct Spoke {
+struct RingSpoke {
     std::uint32_t next, last;
 
-    friend auto operator<=>(const Spoke&, const Spoke&) = default;
+    friend auto operator<=>(const RingSpoke&, const RingSpoke&) = default;
 };
 
 /// The triangles around every vertex.
@@ -51,11 +51,11 @@ class Rings {
         return triangle.x == triangle.y || triangle.y == triangle.z || triangle.z == triangle.x;
     }
 
-    [[nodiscard]] std::span<const Spoke> around(std::size_t vertex) const {
+    [[nodiscard]] std::span<const RingSpoke> around(std::size_t vertex) const {
         return std::span(spokes_).subspan(first_[vertex], first_[vertex + 1] - first_[vertex]);
     }
     /// Sorted by the vertices around.
-    [[nodiscard]] std::span<Spoke> sorted(std::size_t vertex) {
+    [[nodiscard]] std::span<RingSpoke> sorted(std::size_t vertex) {
         const auto ring =
             std::span(spokes_).subspan(first_[vertex], first_[vertex + 1] - first_[vertex]);
         std::sort(ring.begin(), ring.end());
@@ -64,13 +64,13 @@ class Rings {
 
   private:
     std::vector<std::size_t> first_;
-    std::vector<Spoke> spokes_;
+    std::vector<RingSpoke> spokes_;
 };
 
 /// Whether the ring goes round: each vertex around ends one triangle and begins one other.
-bool is_closed(std::span<const Spoke> sorted, std::vector<std::uint32_t>& ends) {
+bool is_closed(std::span<const RingSpoke> sorted, std::vector<std::uint32_t>& ends) {
     ends.clear();
-    for (const Spoke& spoke : sorted)
+    for (const RingSpoke& spoke : sorted)
         ends.push_back(spoke.last);
     std::sort(ends.begin(), ends.end());
     for (std::size_t i = 0; i < sorted.size(); ++i) {
@@ -114,10 +114,10 @@ bool has_area(const glm::dvec3& b, const glm::dvec3& c) {
 
 /// Absent: nothing gives a number.
 std::optional<double> curvature_at(std::span<const glm::vec3> positions, std::size_t vertex,
-                                   std::span<const Spoke> sorted) {
+                                   std::span<const RingSpoke> sorted) {
     VertexSum sum;
     const glm::dvec3 here(positions[vertex]);
-    for (const Spoke& spoke : sorted) {
+    for (const RingSpoke& spoke : sorted) {
         const glm::dvec3 b = glm::dvec3(positions[spoke.next]) - here;
         const glm::dvec3 c = glm::dvec3(positions[spoke.last]) - here;
         if (has_area(b, c)) sum.add(b, c);
@@ -127,21 +127,22 @@ std::optional<double> curvature_at(std::span<const glm::vec3> positions, std::si
     return result;
 }
 
-enum class Ring : std::uint8_t { none, closed, open };
+enum class RingKind : std::uint8_t { none, closed, open };
 
 /// Of the vertices around whose rings are closed.
-std::optional<double> mean_around(std::span<const Spoke> sorted, const std::vector<Ring>& kinds,
+std::optional<double> mean_around(std::span<const RingSpoke> sorted,
+                                  const std::vector<RingKind>& kinds,
                                   const std::vector<float>& values,
                                   std::vector<std::uint32_t>& around) {
     around.clear();
-    for (const Spoke& spoke : sorted)
+    for (const RingSpoke& spoke : sorted)
         around.insert(around.end(), {spoke.next, spoke.last});
     std::sort(around.begin(), around.end());
     around.erase(std::unique(around.begin(), around.end()), around.end());
     double sum = 0.0;
     int count = 0;
     for (const std::uint32_t vertex : around) {
-        if (kinds[vertex] != Ring::closed) continue;
+        if (kinds[vertex] != RingKind::closed) continue;
         sum += static_cast<double>(values[vertex]);
         ++count;
     }
@@ -151,16 +152,17 @@ std::optional<double> mean_around(std::span<const Spoke> sorted, const std::vect
 
 void count_flat_triangles(std::span<const glm::vec3> positions,
                           std::span<const glm::uvec3> triangles, Report& report) {
-    parallel_for_reporting(
-        triangles.size(), grain, report, [&](std::size_t begin, std::size_t end, Report& found) {
-            for (std::size_t i = begin; i < end; ++i) {
-                const glm::dvec3 a(positions[triangles[i].x]);
-                if (has_area(glm::dvec3(positions[triangles[i].y]) - a,
-                             glm::dvec3(positions[triangles[i].z]) - a))
-                    continue;
-                found.add("triangle without area under curvature", "triangle", i, "has no say");
-            }
-        });
+    parallel_for_reporting(triangles.size(), curvature_grain, report,
+                           [&](std::size_t begin, std::size_t end, Report& found) {
+                               for (std::size_t i = begin; i < end; ++i) {
+                                   const glm::dvec3 a(positions[triangles[i].x]);
+                                   if (has_area(glm::dvec3(positions[triangles[i].y]) - a,
+                                                glm::dvec3(positions[triangles[i].z]) - a))
+                                       continue;
+                                   found.add("triangle without area under curvature", "triangle", i,
+                                             "has no say");
+                               }
+                           });
 }
 
 }  // namespace
@@ -172,9 +174,9 @@ std::vector<float> mean_curvatures(std::span<const glm::vec3> positions,
     const std::vector<std::uint32_t> welded = weld_positions(positions);
     Rings rings(welded_triangles(triangles, welded), positions.size());
     std::vector<float> values(positions.size(), 0.0F);
-    std::vector<Ring> kinds(positions.size(), Ring::none);
+    std::vector<RingKind> kinds(positions.size(), RingKind::none);
     const auto each = [&](const auto& work) {
-        parallel_for_reporting(positions.size(), grain, report,
+        parallel_for_reporting(positions.size(), curvature_grain, report,
                                [&](std::size_t begin, std::size_t end, Report& found) {
                                    std::vector<std::uint32_t> scratch;
                                    for (std::size_t i = begin; i < end; ++i) {
@@ -183,15 +185,15 @@ std::vector<float> mean_curvatures(std::span<const glm::vec3> positions,
                                });
     };
     each([&](std::size_t i, std::vector<std::uint32_t>& scratch, Report& found) {
-        const std::span<const Spoke> ring = rings.sorted(i);
-        kinds[i] = is_closed(ring, scratch) ? Ring::closed : Ring::open;
-        if (kinds[i] == Ring::open) return;
+        const std::span<const RingSpoke> ring = rings.sorted(i);
+        kinds[i] = is_closed(ring, scratch) ? RingKind::closed : RingKind::open;
+        if (kinds[i] == RingKind::open) return;
         const std::optional<double> value = curvature_at(positions, i, ring);
         values[i] = static_cast<float>(value.value_or(0.0));
         if (!value) found.add("vertex without a curvature", "vertex", i, "has 0");
     });
     each([&](std::size_t i, std::vector<std::uint32_t>& scratch, Report& found) {
-        if (kinds[i] != Ring::open) return;
+        if (kinds[i] != RingKind::open) return;
         const auto value = mean_around(rings.around(i), kinds, values, scratch);
         values[i] = static_cast<float>(value.value_or(0.0));
         found.add("vertex on an open or non-manifold edge", "vertex", i,

@@ -11,11 +11,11 @@
 namespace relief {
 namespace {
 
-constexpr std::uint32_t unused = 0xffffffff;
+constexpr std::uint32_t not_in_part = 0xffffffff;
 
 /// The new number of each vertex, in the order of the old ones.
 std::vector<std::uint32_t> numbered(const Mesh& mesh, std::span<const std::uint32_t> triangles) {
-    std::vector<std::uint32_t> numbers(mesh.positions.size(), unused);
+    std::vector<std::uint32_t> numbers(mesh.positions.size(), not_in_part);
     for (const std::uint32_t triangle : triangles) {
         if (triangle >= mesh.triangles.size())
             throw InvalidInput(fmt::format("there is no triangle {}", triangle));
@@ -24,7 +24,7 @@ std::vector<std::uint32_t> numbered(const Mesh& mesh, std::span<const std::uint3
     }
     std::uint32_t next = 0;
     for (std::uint32_t& number : numbers) {
-        if (number != unused) number = next++;
+        if (number != not_in_part) number = next++;
     }
     return numbers;
 }
@@ -34,7 +34,7 @@ std::vector<Value> used(const std::vector<Value>& values,
                         const std::vector<std::uint32_t>& numbers) {
     std::vector<Value> result;
     for (std::size_t i = 0; i < values.size(); ++i) {
-        if (numbers[i] != unused) result.push_back(values[i]);
+        if (numbers[i] != not_in_part) result.push_back(values[i]);
     }
     return result;
 }

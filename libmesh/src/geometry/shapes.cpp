@@ -9,18 +9,18 @@
 #include <cmath>
 #include <numbers>
 
+#include "full_turn.h"
 #include "relief/mesh/error.h"
 
 namespace relief {
 namespace {
 
-constexpr int most = 4096;
-constexpr double full_turn = 2.0 * std::numbers::pi;
+constexpr int most_parts = 4096;
 
 void check_count(const char* thing, int count, int least) {
-    if (count < least || count > most) {
+    if (count < least || count > most_parts) {
         throw InvalidInput(
-            fmt::format("{} are {}, but must be within [{}, {}]", thing, count, least, most));
+            fmt::format("{} are {}, but must be within [{}, {}]", thing, count, least, most_parts));
     }
 }
 

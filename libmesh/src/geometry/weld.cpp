@@ -19,7 +19,7 @@
 namespace relief {
 namespace {
 
-constexpr std::uint32_t nobody = std::numeric_limits<std::uint32_t>::max();
+constexpr std::uint32_t no_vertex = std::numeric_limits<std::uint32_t>::max();
 
 /// The multiply-and-shift mixer of [Steele et al. 2014]: every bit of the input moves every bit of
 /// the result, so that regular grids of floats do not pile up in the table.
@@ -54,7 +54,7 @@ std::uint64_t hash_of(const std::array<std::uint32_t, N>& key) {
 }
 
 /// A vertex in the bucket of its hash.
-struct Entry {
+struct BucketEntry {
     std::uint32_t hash;
     std::uint32_t vertex;
 };
@@ -80,7 +80,7 @@ class Buckets {
     }
 
     [[nodiscard]] std::size_t count() const { return first_.size() - 1; }
-    [[nodiscard]] std::span<const Entry> at(std::size_t bucket) const {
+    [[nodiscard]] std::span<const BucketEntry> at(std::size_t bucket) const {
         return std::span(entries_).subspan(first_[bucket], first_[bucket + 1] - first_[bucket]);
     }
 
@@ -94,7 +94,7 @@ class Buckets {
 
     int shift_;
     std::vector<std::size_t> first_;
-    std::vector<Entry> entries_;
+    std::vector<BucketEntry> entries_;
 };
 
 /// `key_of(i)` gives the numbers of vertex i as an array of floats.
@@ -115,19 +115,19 @@ std::vector<std::uint32_t> weld(std::size_t count, const KeyOf& key_of) {
     std::vector<std::uint32_t> representatives = std::move(hashes);
     std::iota(representatives.begin(), representatives.end(), 0U);
     parallel_for(buckets.count(), 4, [&](std::size_t begin, std::size_t end) {
-        std::vector<Entry> table;
+        std::vector<BucketEntry> table;
         for (std::size_t b = begin; b < end; ++b) {
-            const std::span<const Entry> bucket = buckets.at(b);
+            const std::span<const BucketEntry> bucket = buckets.at(b);
             const std::size_t slots = std::bit_ceil(2 * bucket.size() + 1);
-            table.assign(slots, {0, nobody});
-            for (const Entry& entry : bucket) {
+            table.assign(slots, {0, no_vertex});
+            for (const BucketEntry& entry : bucket) {
                 // Positions are far apart in memory: they are looked at only where hashes agree.
                 std::size_t slot = entry.hash & (slots - 1);
-                while (table[slot].vertex != nobody &&
+                while (table[slot].vertex != no_vertex &&
                        (table[slot].hash != entry.hash ||
                         key_of(table[slot].vertex) != key_of(entry.vertex)))
                     slot = (slot + 1) & (slots - 1);
-                if (table[slot].vertex == nobody)
+                if (table[slot].vertex == no_vertex)
                     table[slot] = entry;
                 else
                     representatives[entry.vertex] = table[slot].vertex;

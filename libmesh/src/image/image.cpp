@@ -13,6 +13,7 @@
 #include <string_view>
 #include <type_traits>
 
+#include "image/texel_loops.h"
 #include "large_memory.h"
 #include "parallel.h"
 #include "relief/mesh/error.h"
@@ -72,10 +73,6 @@ Code code_of(double value) {
     constexpr double largest = std::numeric_limits<Code>::max();
     if (!(value > 0.0)) return 0;
     return static_cast<Code>(std::min(value, 1.0) * largest + 0.5);
-}
-
-bool has_alpha(const Image& image) {
-    return image.channels == 2 || image.channels == 4;
 }
 
 /// Every sample through `color`, but alpha samples through `alpha`.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// What is done texel by texel to normals, in parallel, and what a vector of any length is worth as
-/// a direction. Tests: tests/mesh/image/normals/normal_map_test.cpp,
+/// What is done texel by texel to heights and normals, in parallel, and what a vector of any length
+/// is worth as a direction. Tests: tests/mesh/image/normals/normal_map_test.cpp,
 /// normal_map_operations_test.cpp.
 #pragma once
 
@@ -45,6 +45,11 @@ auto with_sample_type(const Image& image, const With& with) {
     if (image.bits() == 8) return with(std::uint8_t{});
     if (image.bits() == 16) return with(std::uint16_t{});
     return with(float{});
+}
+
+/// The last channel of two or four is alpha.
+inline bool has_alpha(const Image& image) {
+    return image.channels == 2 || image.channels == 4;
 }
 
 /// \param what  in the plural, for messages: "normals"

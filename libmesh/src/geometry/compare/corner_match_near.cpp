@@ -17,15 +17,15 @@
 namespace relief {
 namespace {
 
-constexpr std::size_t grain = 1024;
+constexpr std::size_t near_match_grain = 1024;
 constexpr std::uint32_t nobody = std::numeric_limits<std::uint32_t>::max();
 constexpr std::size_t most_in_a_cell = 256;
 constexpr double radii_in_a_cell = 8.0;
-constexpr int most_rounds = 32;  // Few are left after three, but for crowds.
+constexpr int most_match_rounds = 32;  // Few are left after three, but for crowds.
 constexpr double narrowing = 8.0;
 constexpr std::size_t most_tolerances = 10;
 
-using Cell = glm::dvec3;  // Whole numbers, which may be larger than integers hold.
+using CentroidCell = glm::dvec3;  // Whole numbers, which may be larger than integers hold.
 
 glm::dvec3 centroid(const Mesh& mesh, std::uint32_t triangle) {
     const glm::uvec3& t = mesh.triangles[triangle];
@@ -34,7 +34,7 @@ glm::dvec3 centroid(const Mesh& mesh, std::uint32_t triangle) {
            3.0;
 }
 
-std::size_t hash_of(const Cell& cell) {
+std::size_t hash_of(const CentroidCell& cell) {
     std::uint64_t hash = 0;
     for (int i = 0; i < 3; ++i) {
         // Of whole numbers only the upper bits are set: they are brought down first.
@@ -47,9 +47,9 @@ std::size_t hash_of(const Cell& cell) {
 }
 
 /// Triangles of one mesh by the cell of their centroid.
-class Grid {
+class CentroidGrid {
   public:
-    Grid(const Mesh& mesh, std::span<const std::uint32_t> triangles, double cell_size)
+    CentroidGrid(const Mesh& mesh, std::span<const std::uint32_t> triangles, double cell_size)
         : cell_size_(cell_size),
           heads_(std::bit_ceil(2 * triangles.size() + 1), nobody),
           next_(triangles.size(), nobody),
@@ -72,10 +72,10 @@ class Grid {
     /// Calls visit(i) for the triangles in the cells that a box touches, and for some others.
     template <typename Visit>
     void near(const glm::dvec3& at, double radius, const Visit& visit) const {
-        const Cell low = glm::floor((at - radius) / cell_size_);
-        const Cell high = glm::floor((at + radius) / cell_size_);
+        const CentroidCell low = glm::floor((at - radius) / cell_size_);
+        const CentroidCell high = glm::floor((at + radius) / cell_size_);
         for (int corner = 0; corner < 8; ++corner) {
-            Cell cell = low;
+            CentroidCell cell = low;
             bool is_new = true;
             for (int i = 0; i < 3; ++i) {
                 if ((corner >> i & 1) == 0) continue;
@@ -160,7 +160,7 @@ class NearPairing {
         std::vector<std::uint32_t> asking(left_b_.size());
         for (std::uint32_t i = 0; i < asking.size(); ++i)
             asking[i] = i;
-        for (int i = 0; i < most_rounds && !asking.empty(); ++i)
+        for (int i = 0; i < most_match_rounds && !asking.empty(); ++i)
             asking = round(asking);
         return std::move(pairs_);
     }
@@ -204,7 +204,7 @@ class NearPairing {
     /// Grants what it can. \return those who have to ask again
     std::vector<std::uint32_t> round(const std::vector<std::uint32_t>& asking) {
         std::vector<Wish> wishes(asking.size());
-        parallel_for(asking.size(), grain, [&](std::size_t begin, std::size_t end) {
+        parallel_for(asking.size(), near_match_grain, [&](std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i)
                 wishes[i] = wish_of(left_b_[asking[i]]);
         });
@@ -234,7 +234,7 @@ class NearPairing {
     std::span<const std::uint32_t> left_b_;
     MatchOptions options_;
     double radius_;
-    Grid grid_;
+    CentroidGrid grid_;
     std::vector<unsigned char> is_taken_;
     std::vector<NearPair> pairs_;
 };

@@ -23,11 +23,11 @@ constexpr float coarsest = 1.0F / 65536.0F;
 
 /// The box of all finite points, and how coarse floats are out there.
 template <int N>
-struct Place {
+struct PointExtent {
     float size = 0.0F;     ///< The longest side.
     float spacing = 0.0F;  ///< Between neighbouring floats at the largest coordinate.
 
-    explicit Place(std::span<const glm::vec<N, float>> points) {
+    explicit PointExtent(std::span<const glm::vec<N, float>> points) {
         constexpr float infinity = std::numeric_limits<float>::infinity();
         glm::vec<N, float> low(infinity);
         glm::vec<N, float> high(-infinity);
@@ -51,11 +51,11 @@ struct Place {
 };
 
 void diagnose_places(const Mesh& mesh, Diagnosis& diagnosis, Tally& tally) {
-    const Place<3> positions(mesh.positions);
+    const PointExtent<3> positions(mesh.positions);
     diagnosis.size = positions.size;
     diagnosis.spacing = positions.spacing;
     if (positions.is_far()) tally.add(MeshCondition::mesh_far_away, 0);
-    if (Place<2>(mesh.texcoords).is_far()) tally.add(MeshCondition::texture_far_away, 0);
+    if (PointExtent<2>(mesh.texcoords).is_far()) tally.add(MeshCondition::texture_far_away, 0);
 }
 
 /// The triangles that have an area in space; others are moved together, so that they have none in

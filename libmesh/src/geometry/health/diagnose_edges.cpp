@@ -13,7 +13,7 @@
 namespace relief {
 namespace {
 
-constexpr std::size_t grain = 1024;
+constexpr std::size_t edge_grain = 1024;
 
 // Triangles on an edge lie on each other where their normals are opposite within a degree.
 constexpr float folded_cosine = -0.99984770F;
@@ -22,7 +22,7 @@ enum class Copy : std::uint8_t { none, repeated, backed };
 enum class Edge : std::uint8_t { unremarkable, boundary, folded, flipped, non_manifold };
 
 /// What was found, by element.
-struct Found {
+struct FoundEdges {
     std::vector<Copy> copies;           ///< By triangle.
     std::vector<Edge> edges;            ///< By the smallest corner that begins the edge.
     std::vector<std::uint8_t> bow_tie;  ///< By position class.
@@ -82,7 +82,7 @@ void find_copies(std::span<const Corner> around, std::uint32_t vertex,
 }
 
 /// A side of a triangle at the vertex in question.
-struct Spoke {
+struct SideAtVertex {
     std::uint32_t other;   ///< The class at its other end.
     Corner corner;         ///< Where the triangle's edge begins: here, or at the other end.
     bool is_outgoing;      ///< It begins here.
@@ -120,7 +120,7 @@ class Fans {
 };
 
 /// Judges one edge by the spokes that lie on it.
-Edge judge_edge(std::span<const Spoke> spokes, std::span<const glm::vec3> normals) {
+Edge judge_edge(std::span<const SideAtVertex> spokes, std::span<const glm::vec3> normals) {
     if (spokes.size() == 1) return Edge::boundary;
     if (spokes.size() > 2) return Edge::non_manifold;
     if (spokes[0].is_outgoing == spokes[1].is_outgoing) return Edge::flipped;
@@ -132,7 +132,7 @@ Edge judge_edge(std::span<const Spoke> spokes, std::span<const glm::vec3> normal
 /// What one piece of the loop over vertices needs room for.
 struct Workspace {
     std::vector<TriangleKey> keys;
-    std::vector<Spoke> spokes;
+    std::vector<SideAtVertex> spokes;
     Fans fans;
 };
 
@@ -148,15 +148,17 @@ void gather_spokes(std::span<const Corner> around, std::span<const glm::uvec3> t
         work.spokes.push_back({vertex_of(previous, triangles), previous, false, member});
         ++member;
     }
-    std::sort(work.spokes.begin(), work.spokes.end(), [](const Spoke& a, const Spoke& b) {
-        return a.other != b.other ? a.other < b.other : a.corner < b.corner;
-    });
+    std::sort(work.spokes.begin(), work.spokes.end(),
+              [](const SideAtVertex& a, const SideAtVertex& b) {
+                  return a.other != b.other ? a.other < b.other : a.corner < b.corner;
+              });
     work.fans.reset(member);
 }
 
 /// Edges and fans at one vertex.
-void judge_vertex(const Subject& subject, std::uint32_t vertex, Workspace& work, Found& found) {
-    const std::span<const Spoke> spokes(work.spokes);
+void judge_vertex(const Subject& subject, std::uint32_t vertex, Workspace& work,
+                  FoundEdges& found) {
+    const std::span<const SideAtVertex> spokes(work.spokes);
     for (std::size_t begin = 0; begin < spokes.size();) {
         std::size_t end = begin + 1;
         for (; end < spokes.size() && spokes[end].other == spokes[begin].other; ++end)
@@ -170,21 +172,21 @@ void judge_vertex(const Subject& subject, std::uint32_t vertex, Workspace& work,
     found.bow_tie[vertex] = work.fans.count() > 1 ? 1 : 0;
 }
 
-Found find(const Subject& subject) {
+FoundEdges find_edges(const Subject& subject) {
     const std::size_t vertices = subject.classes.size();
     const CornersByVertex corners(vertices, subject.triangles, [&](std::size_t t) {
         return subject.shapes[t] <= TriangleShape::collinear;
     });
-    Found found{std::vector<Copy>(subject.triangles.size(), Copy::none),
-                std::vector<Edge>(3 * subject.triangles.size(), Edge::unremarkable),
-                std::vector<std::uint8_t>(vertices, 0)};
-    parallel_for(vertices, grain, [&](std::size_t begin, std::size_t end) {
+    FoundEdges found{std::vector<Copy>(subject.triangles.size(), Copy::none),
+                     std::vector<Edge>(3 * subject.triangles.size(), Edge::unremarkable),
+                     std::vector<std::uint8_t>(vertices, 0)};
+    parallel_for(vertices, edge_grain, [&](std::size_t begin, std::size_t end) {
         std::vector<TriangleKey> keys;
         for (std::size_t v = begin; v < end; ++v)
             find_copies(corners.at(v), static_cast<std::uint32_t>(v), subject.triangles, keys,
                         found.copies);
     });
-    parallel_for(vertices, grain, [&](std::size_t begin, std::size_t end) {
+    parallel_for(vertices, edge_grain, [&](std::size_t begin, std::size_t end) {
         Workspace work;
         for (std::size_t v = begin; v < end; ++v) {
             gather_spokes(corners.at(v), subject.triangles, found.copies, work);
@@ -216,7 +218,7 @@ void count_edge(Edge edge, std::size_t triangle, Tally& tally) {
 }  // namespace
 
 void diagnose_edges(const Subject& subject, Tally& tally) {
-    const Found found = find(subject);
+    const FoundEdges found = find_edges(subject);
     for (std::size_t t = 0; t < found.copies.size(); ++t) {
         if (found.copies[t] == Copy::repeated) tally.add(MeshCondition::triangle_repeated, t);
         if (found.copies[t] == Copy::backed) tally.add(MeshCondition::triangle_backed, t);

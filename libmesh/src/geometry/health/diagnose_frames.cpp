@@ -15,7 +15,7 @@ constexpr float sidewise = 1e-3F;
 
 // A cosine between normal and tangent that leaves no more of the tangent than 8-bit storage could
 // have made up.
-constexpr double along = 0.999;
+constexpr double along_normal = 0.999;
 
 bool is_unit(double length) {
     return std::abs(length - 1.0) <= unit_tolerance;
@@ -75,7 +75,7 @@ void diagnose_slant(const Mesh& mesh, std::size_t vertex, Tally& tally) {
     const glm::dvec3 tangent = direction_or_zero(glm::dvec3(mesh.tangents[vertex]));
     const glm::dvec3 normal = direction_or_zero(glm::dvec3(mesh.normals[vertex]));
     const double cosine = std::abs(glm::dot(tangent, normal));
-    if (cosine > along)
+    if (cosine > along_normal)
         tally.add(MeshCondition::tangent_along_normal, vertex);
     else if (cosine > leaning_tolerance)
         tally.add(MeshCondition::tangent_leaning, vertex);

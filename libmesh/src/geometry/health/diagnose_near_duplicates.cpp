@@ -18,7 +18,7 @@
 namespace relief {
 namespace {
 
-constexpr std::size_t grain = 4096;
+constexpr std::size_t near_duplicate_grain = 4096;
 constexpr double cell_in_reaches = 64.0;
 
 // How many positions of one cell a search looks at. Sound meshes have one or two: only where
@@ -48,7 +48,7 @@ double reach_at(int exponent) {
     return power_of_two(exponent - 21);
 }
 
-struct Cell {
+struct PositionCell {
     int exponent;
     std::array<std::int64_t, 3> place;
 };
@@ -65,7 +65,7 @@ std::int64_t place_of(double coordinate, double cells) {
     return towards_zero - (place < static_cast<double>(towards_zero) ? 1 : 0);
 }
 
-Cell cell_of(const glm::vec3& position, int exponent) {
+PositionCell cell_of(const glm::vec3& position, int exponent) {
     const double cells = cells_by_length(exponent);
     return {
         exponent,
@@ -73,7 +73,7 @@ Cell cell_of(const glm::vec3& position, int exponent) {
 }
 
 /// A multiplicative hash of a cell; its upper bits are the good ones.
-std::uint64_t hash_of(const Cell& cell) {
+std::uint64_t hash_of(const PositionCell& cell) {
     constexpr std::uint64_t odd = 0x9e3779b97f4a7c15ULL;
     auto hash = static_cast<std::uint64_t>(cell.exponent - smallest_exponent);
     for (const std::int64_t place : cell.place)
@@ -82,14 +82,14 @@ std::uint64_t hash_of(const Cell& cell) {
 }
 
 /// The positions of every cell: buckets of a hash table, each a run of one array.
-class Grid {
+class PositionGrid {
   public:
-    Grid(std::span<const glm::vec3> positions, std::span<const std::uint32_t> members)
+    PositionGrid(std::span<const glm::vec3> positions, std::span<const std::uint32_t> members)
         : positions_(positions),
           shift_(64 - static_cast<int>(std::bit_width(members.size() | 1U))) {
         std::vector<std::uint32_t> buckets(members.size());
         first_.assign((std::size_t{1} << (64 - shift_)) + 1, 0);
-        parallel_for(members.size(), grain, [&](std::size_t begin, std::size_t end) {
+        parallel_for(members.size(), near_duplicate_grain, [&](std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i) {
                 const glm::vec3& position = positions[members[i]];
                 buckets[i] = bucket_of(cell_of(position, exponent_of(position)));
@@ -106,7 +106,8 @@ class Grid {
     }
 
     /// Whether some other position in this cell is near to `vertex`.
-    [[nodiscard]] bool has_near(const Cell& cell, std::uint32_t vertex, double reach) const {
+    [[nodiscard]] bool has_near(const PositionCell& cell, std::uint32_t vertex,
+                                double reach) const {
         const std::uint32_t bucket = bucket_of(cell);
         std::size_t looked_at = 0;
         for (std::uint32_t i = first_[bucket]; i < first_[bucket + 1]; ++i) {
@@ -121,7 +122,7 @@ class Grid {
     }
 
   private:
-    [[nodiscard]] std::uint32_t bucket_of(const Cell& cell) const {
+    [[nodiscard]] std::uint32_t bucket_of(const PositionCell& cell) const {
         return static_cast<std::uint32_t>(hash_of(cell) >> shift_);
     }
 
@@ -132,8 +133,8 @@ class Grid {
 };
 
 /// Looks into all cells of one exponent that are within reach.
-bool near_among(const Grid& grid, const glm::vec3& position, std::uint32_t vertex, int exponent,
-                double reach) {
+bool near_among(const PositionGrid& grid, const glm::vec3& position, std::uint32_t vertex,
+                int exponent, double reach) {
     const double cells = cells_by_length(exponent);
     std::array<std::int64_t, 3> low{};
     std::array<std::int64_t, 3> high{};
@@ -152,7 +153,7 @@ bool near_among(const Grid& grid, const glm::vec3& position, std::uint32_t verte
     return false;
 }
 
-bool is_near_another(const Grid& grid, const glm::vec3& position, std::uint32_t vertex) {
+bool is_near_another(const PositionGrid& grid, const glm::vec3& position, std::uint32_t vertex) {
     const int exponent = exponent_of(position);
     const double reach = reach_at(exponent);
     if (near_among(grid, position, vertex, exponent, reach)) return true;
@@ -175,9 +176,9 @@ void diagnose_near_duplicates(const Subject& subject, Tally& tally) {
         if (subject.classes[v] == v && is_finite(positions[v]))
             members.push_back(static_cast<std::uint32_t>(v));
     }
-    const Grid grid(positions, members);
+    const PositionGrid grid(positions, members);
     std::vector<std::uint8_t> is_near(members.size(), 0);
-    parallel_for(members.size(), grain, [&](std::size_t begin, std::size_t end) {
+    parallel_for(members.size(), near_duplicate_grain, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i)
             is_near[i] = is_near_another(grid, positions[members[i]], members[i]) ? 1 : 0;
     });

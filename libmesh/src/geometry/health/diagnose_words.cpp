@@ -9,10 +9,9 @@
 namespace relief {
 namespace {
 
-constexpr Severity trouble = Severity::trouble;
-constexpr Severity remark = Severity::remark;
+using enum Severity;
 
-constexpr std::array conditions = {
+constexpr std::array all_mesh_conditions = {
     MeshConditionInfo{MeshCondition::triangle_not_finite, "triangle with a non-finite corner",
                       "triangle", trouble, "has no area, no normal and no place"},
     MeshConditionInfo{MeshCondition::triangle_collapsed, "collapsed triangle", "triangle", trouble,
@@ -79,21 +78,21 @@ constexpr std::array conditions = {
 
 /// Whether the row of each condition is where the condition looks for it.
 constexpr bool are_in_order() {
-    for (std::size_t i = 0; i < conditions.size(); ++i) {
-        if (conditions[i].condition != static_cast<MeshCondition>(i)) return false;
+    for (std::size_t i = 0; i < all_mesh_conditions.size(); ++i) {
+        if (all_mesh_conditions[i].condition != static_cast<MeshCondition>(i)) return false;
     }
-    return conditions.back().condition == MeshCondition::texture_far_away;
+    return all_mesh_conditions.back().condition == MeshCondition::texture_far_away;
 }
 static_assert(are_in_order());
 
 }  // namespace
 
 std::span<const MeshConditionInfo> mesh_conditions() {
-    return conditions;
+    return all_mesh_conditions;
 }
 
 const MeshConditionInfo& condition_info(MeshCondition condition) {
-    return conditions[static_cast<std::size_t>(condition)];
+    return all_mesh_conditions[static_cast<std::size_t>(condition)];
 }
 
 }  // namespace relief

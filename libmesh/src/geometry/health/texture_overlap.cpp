@@ -30,9 +30,9 @@ constexpr std::uint64_t rows_by_triangle = 32;
 constexpr std::uint64_t rows_at_least = 4'000'000;
 
 // How far inside all edges the centre of a texel must be, in texels.
-constexpr double margin = 1e-3;
+constexpr double texel_margin = 1e-3;
 
-constexpr std::uint32_t nobody = std::numeric_limits<std::uint32_t>::max();
+constexpr std::uint32_t no_owner = std::numeric_limits<std::uint32_t>::max();
 
 struct Box {
     glm::dvec2 min{std::numeric_limits<double>::infinity()};
@@ -101,7 +101,7 @@ class Raster {
   public:
     Raster(int side, std::size_t triangle_count)
         : side_(side),
-          owners_(static_cast<std::size_t>(side) * static_cast<std::size_t>(side), nobody),
+          owners_(static_cast<std::size_t>(side) * static_cast<std::size_t>(side), no_owner),
           skips_(owners_.size(), 0),
           overlapping_(triangle_count, 0) {}
 
@@ -132,7 +132,7 @@ class Raster {
                 const std::size_t open = open_from(texel, end);
                 if (open != texel) meets = true;  // Those between are shut.
                 texel = open;
-                if (open == end || owners_[open] == nobody) continue;
+                if (open == end || owners_[open] == no_owner) continue;
                 meets = true;
                 overlapping_[owners_[open]] = 1;
             }
@@ -173,7 +173,7 @@ struct HalfPlane {
 
     HalfPlane(const glm::dvec2& from, const glm::dvec2& to)
         : normal(from.y - to.y, to.x - from.x),
-          offset(glm::dot(normal, from) + margin * glm::length(normal)) {}
+          offset(glm::dot(normal, from) + texel_margin * glm::length(normal)) {}
 };
 
 template <typename Visit>

@@ -20,7 +20,7 @@ namespace {
 
 // Votes that cancel to less than this leave only rounding: float positions cannot hold an angle
 // that would leave so little, while a million votes in double err by 1e-10 together.
-constexpr long double cancelled = 1e-9L;
+constexpr long double cancelled_votes = 1e-9L;
 
 using Term = std::array<long double, 3>;
 
@@ -115,7 +115,7 @@ Term float_term(const std::array<glm::vec3, 3>& at, std::size_t corner, float sc
     return term_of(triangle_votes<weight, double>(at[0], at[1], at[2], double(scale)), corner);
 }
 
-bool comes_before(const Term& a, const Term& b) {
+bool term_comes_before(const Term& a, const Term& b) {
     return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end());
 }
 
@@ -126,7 +126,7 @@ void decide(std::vector<Term>& terms, bool any_triangle, Place& place) {
         return;
     }
     std::sort(terms.begin(), terms.end(),
-              [](const Term& a, const Term& b) { return comes_before(a, b); });
+              [](const Term& a, const Term& b) { return term_comes_before(a, b); });
     Term sum{};
     long double longest = 0.0L;
     for (const Term& term : terms) {
@@ -135,7 +135,7 @@ void decide(std::vector<Term>& terms, bool any_triangle, Place& place) {
         longest += std::hypot(term[0], term[1], term[2]);
     }
     const long double length = std::hypot(sum[0], sum[1], sum[2]);
-    if (!(length > cancelled * longest)) {
+    if (!(length > cancelled_votes * longest)) {
         place.kind = PlaceKind::cancelling;
         return;
     }

@@ -66,7 +66,7 @@ template <typename Take>
 RELIEF_INLINE void take_part(const PartialSums& part, std::size_t begin, std::size_t from,
                              std::size_t to, BlockSums& block, const Take& take) {
     for (std::size_t v = from; v < to; ++v) {
-        const VoteSum& sum = part.sums()[v];
+        const NormalVoteSum& sum = part.sums()[v];
         take(block.x[v - begin], sum.x);
         take(block.y[v - begin], sum.y);
         take(block.z[v - begin], sum.z);
@@ -106,7 +106,7 @@ void load_shared(const NormalSums& sums, std::span<const std::uint32_t> first,
     for (std::size_t i = 0; i < size; ++i) {
         for (std::size_t k = first[i]; k < first[i + 1]; ++k) {
             for (const PartialSums& part : sums.parts) {
-                const VoteSum& sum = part.sums()[members[k]];
+                const NormalVoteSum& sum = part.sums()[members[k]];
                 block.x[i] += sum.x;
                 block.y[i] += sum.y;
                 block.z[i] += sum.z;

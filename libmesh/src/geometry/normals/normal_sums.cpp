@@ -241,7 +241,7 @@ void add_narrow(const Job& job, NormalWeight weight) {
                 triangle_votes<constant, double>(at[0], at[1], at[2], double(job.scale));
             for (int i = 0; i < 3; ++i) {
                 const auto k = static_cast<std::size_t>(i);
-                VoteSum& sum = job.sums->sums()[triangle[i]];
+                NormalVoteSum& sum = job.sums->sums()[triangle[i]];
                 sum.x += votes.factor[k] * votes.area_vector[0];
                 sum.y += votes.factor[k] * votes.area_vector[1];
                 sum.z += votes.factor[k] * votes.area_vector[2];
@@ -323,15 +323,15 @@ float scale_for(std::span<const glm::vec3> positions) {
 PartialSums::PartialSums(std::size_t vertex_count) {
     // Zeroed memory of large size comes from the system as it is needed: what no triangle touches
     // costs nothing.
-    const std::size_t bytes = vertex_count * (sizeof(VoteSum) + 1) + alignof(VoteSum);
+    const std::size_t bytes = vertex_count * (sizeof(NormalVoteSum) + 1) + alignof(NormalVoteSum);
     memory_.reset(std::calloc(bytes, 1));
     if (!memory_) throw std::bad_alloc();
     void* begin = memory_.get();
     std::size_t room = bytes;
-    sums_ = static_cast<VoteSum*>(
-        std::align(alignof(VoteSum), vertex_count * sizeof(VoteSum), begin, room));
+    sums_ = static_cast<NormalVoteSum*>(
+        std::align(alignof(NormalVoteSum), vertex_count * sizeof(NormalVoteSum), begin, room));
     counts_ = reinterpret_cast<std::uint8_t*>(sums_ + vertex_count);
-    expect_filling(sums_, vertex_count * sizeof(VoteSum));
+    expect_filling(sums_, vertex_count * sizeof(NormalVoteSum));
 }
 
 NormalSums sum_votes(std::span<const glm::vec3> positions, std::span<const glm::uvec3> triangles,

@@ -24,7 +24,7 @@
 namespace relief {
 
 /// Votes at one vertex. A vector register wide, so that one addition does it all.
-struct alignas(32) VoteSum {
+struct alignas(32) NormalVoteSum {
     double x = 0.0, y = 0.0, z = 0.0;
     double edge_product = 0.0;  ///< Sum of factor times edge product: rounding is in units of this.
 };
@@ -63,9 +63,9 @@ class PartialSums {
   public:
     explicit PartialSums(std::size_t vertex_count);
 
-    VoteSum* sums() { return sums_; }
+    NormalVoteSum* sums() { return sums_; }
     std::uint8_t* counts() { return counts_; }
-    [[nodiscard]] const VoteSum* sums() const { return sums_; }
+    [[nodiscard]] const NormalVoteSum* sums() const { return sums_; }
     [[nodiscard]] const std::uint8_t* counts() const { return counts_; }
 
     VertexRange touched{1, 0};  ///< Empty: no triangle.
@@ -75,7 +75,7 @@ class PartialSums {
         void operator()(void* memory) const { std::free(memory); }
     };
     std::unique_ptr<void, Free> memory_;
-    VoteSum* sums_;
+    NormalVoteSum* sums_;
     /// How many votes there are at each vertex, 255 for that many or more.
     std::uint8_t* counts_;
 };

@@ -28,7 +28,7 @@ struct Spoke {
     std::uint32_t group;   ///< Smoothing group of its triangle, 0 if all are one.
 };
 
-bool comes_before(const Spoke& a, const Spoke& b) {
+bool spoke_comes_before(const Spoke& a, const Spoke& b) {
     if (a.neighbour != b.neighbour) return a.neighbour < b.neighbour;
     return a.group != b.group ? a.group < b.group : a.corner < b.corner;
 }
@@ -110,7 +110,7 @@ class FansAtPosition {
             for (Spoke& spoke : spokes_)
                 spoke.neighbour = seen_through_.of(spoke.neighbour);
         }
-        std::sort(spokes_.begin(), spokes_.end(), comes_before);
+        std::sort(spokes_.begin(), spokes_.end(), spoke_comes_before);
     }
 
     [[nodiscard]] const glm::vec3& normal_at(const Spoke& spoke) const {
@@ -135,7 +135,7 @@ class FansAtPosition {
     /// each other.
     void join_seen_through(std::span<const Spoke> spokes) {
         const auto by_normal = [&](const Spoke& a, const Spoke& b) {
-            return relief::comes_before(glm::dvec3(normal_at(a)), glm::dvec3(normal_at(b)));
+            return comes_before(glm::dvec3(normal_at(a)), glm::dvec3(normal_at(b)));
         };
         const Spoke& host = sound_.empty()
                                 ? spokes.front()

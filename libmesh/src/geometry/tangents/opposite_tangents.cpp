@@ -20,10 +20,10 @@ constexpr std::size_t most_pairwise = 64;
 
 // A cosine in float is not above -1 from 2.4e-4 radians before the half turn. Hence the steps'
 // size.
-constexpr std::int32_t steps = 1 << 15;
+constexpr std::int32_t steps_around = 1 << 15;
 
 // Keeps the borders between steps away from the axes, where directions like to lie.
-constexpr double offset = 0.12345;
+constexpr double step_offset = 0.12345;
 
 /// Directions in a plane, counted in steps around a full turn.
 class TurnSteps {
@@ -39,13 +39,13 @@ class TurnSteps {
         const double y = glm::dot(direction, y_axis_);
         if (x == 0.0 && y == 0.0) return -1;
         const double angle = y < 0.0 ? -upper_angle(-y, x) : upper_angle(y, x);
-        const double turn = (angle + offset) / (2.0 * std::numbers::pi);
-        return static_cast<std::int32_t>((turn - std::floor(turn)) * steps) % steps;
+        const double turn = (angle + step_offset) / (2.0 * std::numbers::pi);
+        return static_cast<std::int32_t>((turn - std::floor(turn)) * steps_around) % steps_around;
     }
 
     /// The step half a turn away; -2, which no direction has, for -1.
     static std::int32_t opposite(std::int32_t step) {
-        return step < 0 ? -2 : (step + steps / 2) % steps;
+        return step < 0 ? -2 : (step + steps_around / 2) % steps_around;
     }
 
   private:

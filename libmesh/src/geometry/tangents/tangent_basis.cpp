@@ -19,7 +19,7 @@
 namespace relief {
 namespace {
 
-constexpr std::size_t grain = 2048;
+constexpr std::size_t basis_grain = 2048;
 
 /// What float arithmetic in another order leaves, in degrees, with room for exporters that store
 /// positions and normals anew.
@@ -41,7 +41,7 @@ struct Method {
 /// Each triangle's own direction of u, not averaged.
 std::vector<glm::vec4> triangle_tangents(const Mesh& mesh) {
     std::vector<glm::vec4> result(3 * mesh.triangles.size());
-    parallel_for(mesh.triangles.size(), grain, [&](std::size_t begin, std::size_t end) {
+    parallel_for(mesh.triangles.size(), basis_grain, [&](std::size_t begin, std::size_t end) {
         for (std::size_t t = begin; t < end; ++t) {
             const TriangleGradient gradient =
                 triangle_gradient(mesh.positions, mesh.texcoords, mesh.triangles[t]);
@@ -129,7 +129,7 @@ bool has_certain_gradient(const Mesh& mesh, const glm::uvec3& triangle) {
 /// Which corners can be judged: 1 for yes, 0 for uncertain, 2 for a stored tangent that is none.
 std::vector<unsigned char> judge_corners(const Mesh& mesh) {
     std::vector<unsigned char> kinds(3 * mesh.triangles.size(), 0);
-    parallel_for(mesh.triangles.size(), grain, [&](std::size_t begin, std::size_t end) {
+    parallel_for(mesh.triangles.size(), basis_grain, [&](std::size_t begin, std::size_t end) {
         for (std::size_t t = begin; t < end; ++t) {
             const glm::uvec3& triangle = mesh.triangles[t];
             if (!has_certain_gradient(mesh, triangle)) continue;
@@ -172,7 +172,7 @@ BasisAgreement agreement_with(const Method& method, const Mesh& mesh,
                               std::span<const unsigned char> kinds, double tolerance) {
     const std::vector<glm::vec4> computed = method.tangents(mesh);
     std::vector<float> turns(computed.size(), std::numeric_limits<float>::quiet_NaN());
-    parallel_for(computed.size(), grain, [&](std::size_t begin, std::size_t end) {
+    parallel_for(computed.size(), basis_grain, [&](std::size_t begin, std::size_t end) {
         for (std::size_t corner = begin; corner < end; ++corner) {
             if (kinds[corner] != 1) continue;
             const std::uint32_t v = vertex_of(static_cast<Corner>(corner), mesh.triangles);

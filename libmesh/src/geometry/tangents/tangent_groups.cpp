@@ -23,7 +23,7 @@ namespace {
 
 // Tangents that cancel to less than this part of their sum say nothing: the triangles' own floats
 // are not better.
-constexpr double cancelled = 1e-6;
+constexpr double cancelled_tangents = 1e-6;
 
 // The square of the cosine of 42 degrees. u directions that are all nearer than this to one of them
 // are within 84 degrees of each other; v directions that are not skewed then within 168.
@@ -225,7 +225,7 @@ class GroupAverager {
     /// Gives a corner the direction of a sum, or if that cancels its own triangle's.
     void settle(Place place, const VoteSum& sum) {
         const CornerVote& vote = votes_[place];
-        const bool cancels = sum.cancels(cancelled);
+        const bool cancels = sum.cancels(cancelled_tangents);
         if (cancels) findings_.cancelled.push_back(around_[place]);
         if (cancels && vote.side == 0) return;
         const glm::dvec3 used = cancels ? glm::dvec3(vote.x, vote.y, vote.z) : sum.vector();

@@ -20,10 +20,9 @@
 namespace relief {
 namespace {
 
-constexpr std::size_t texels_per_piece = 1 << 16;
 // Differences of floats reach 7e38; with these, slopes and their squares stay in double's range.
-constexpr double largest_strength = 1e30;
-constexpr double largest_texel = 1e30;
+constexpr double largest_bump_strength = 1e30;
+constexpr double largest_bump_texel = 1e30;
 
 void check(const Image& height, const BumpOptions& options) {
     if (height.empty()) throw InvalidInput("an empty height field has no normals");
@@ -36,7 +35,7 @@ void check(const Image& height, const BumpOptions& options) {
 bool make_all_rows(const HeightRows& heights, const BumpOptions& options,
                    const BumpTarget& target) {
     const std::size_t grain =
-        std::max<std::size_t>(1, texels_per_piece / static_cast<std::size_t>(heights.width));
+        std::max<std::size_t>(1, bump_texels_per_piece / static_cast<std::size_t>(heights.width));
     std::atomic<bool> finite = true;
     parallel_for(static_cast<std::size_t>(heights.height), grain,
                  [&](std::size_t begin, std::size_t end) {
@@ -103,14 +102,14 @@ Image image_to_fill(int width, int height, int channels, int bits) {
 }  // namespace
 
 void check_bump(const BumpOptions& options) {
-    if (!(std::abs(options.strength) <= largest_strength)) {
-        throw InvalidInput(
-            fmt::format("the strength {} is not within +-{}", options.strength, largest_strength));
+    if (!(std::abs(options.strength) <= largest_bump_strength)) {
+        throw InvalidInput(fmt::format("the strength {} is not within +-{}", options.strength,
+                                       largest_bump_strength));
     }
     for (const double size : {options.texel.x, options.texel.y}) {
-        if (!(size >= 1.0 / largest_texel && size <= largest_texel)) {
+        if (!(size >= 1.0 / largest_bump_texel && size <= largest_bump_texel)) {
             throw InvalidInput(fmt::format("the texel size {} is not within {} and {}", size,
-                                           1.0 / largest_texel, largest_texel));
+                                           1.0 / largest_bump_texel, largest_bump_texel));
         }
     }
     gradient_kernel(options.kernel, options.gaussian_radius);

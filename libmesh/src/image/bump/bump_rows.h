@@ -10,6 +10,9 @@
 
 namespace relief {
 
+/// Of a map whose rows are made on all threads.
+inline constexpr std::size_t bump_texels_per_piece = 1 << 16;
+
 /// \throws InvalidInput if the strength, the texel or the radius is out of range
 void check_bump(const BumpOptions& options);
 

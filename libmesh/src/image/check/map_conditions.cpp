@@ -12,7 +12,7 @@ namespace {
 using enum MapCondition;
 using enum Severity;
 
-constexpr std::array conditions = {
+constexpr std::array all_map_conditions = {
     MapConditionInfo{not_normals, "no normal map", "map", trouble,
                      "its vectors have no common length, or all its channels are the same"},
     MapConditionInfo{object_space, "object-space normals", "map", remark,
@@ -69,20 +69,20 @@ constexpr std::array conditions = {
 };
 
 static_assert([] {
-    for (std::size_t i = 0; i < conditions.size(); ++i) {
-        if (conditions[i].condition != static_cast<MapCondition>(i)) return false;
+    for (std::size_t i = 0; i < all_map_conditions.size(); ++i) {
+        if (all_map_conditions[i].condition != static_cast<MapCondition>(i)) return false;
     }
-    return conditions.size() == static_cast<std::size_t>(seam_y) + 1;
+    return all_map_conditions.size() == static_cast<std::size_t>(seam_y) + 1;
 }());
 
 }  // namespace
 
 std::span<const MapConditionInfo> map_conditions() {
-    return conditions;
+    return all_map_conditions;
 }
 
 const MapConditionInfo& condition_info(MapCondition condition) {
-    return conditions[static_cast<std::size_t>(condition)];
+    return all_map_conditions[static_cast<std::size_t>(condition)];
 }
 
 bool NormalMapCheck::has(MapCondition condition) const {

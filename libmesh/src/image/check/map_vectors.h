@@ -12,6 +12,7 @@
 
 #include "image/largest_sample.h"
 #include "image/normals/normal_coding.h"
+#include "image/texel_loops.h"
 #include "relief/mesh/image.h"
 #include "relief/mesh/normal_map_check.h"
 
@@ -74,13 +75,5 @@ class MapVectors {
     SampleMeaning meaning_;
     std::vector<float> table_;
 };
-
-/// Calls with(Sample{}) for the type of an image's samples.
-template <typename With>
-auto with_sample_type(const Image& image, const With& with) {
-    if (image.bits() == 8) return with(std::uint8_t{});
-    if (image.bits() == 16) return with(std::uint16_t{});
-    return with(float{});
-}
 
 }  // namespace relief

@@ -97,7 +97,7 @@ Meaning meaning_of(const Image& map, FlatCode flat) {
 }
 
 /// One channel of a map, for the statistics of height maps.
-Image channel_of(const Image& map, int channel) {
+Image channel_to_check(const Image& map, int channel) {
     Image one = make_image(map.width, map.height, 1, map.bits(), ColorSpace::data);
     with_sample_type(map, [&](auto sample) {
         using Sample = decltype(sample);
@@ -115,7 +115,7 @@ Image channel_of(const Image& map, int channel) {
 /// Seams of x and y, the worse of the two, and the bits of every channel.
 void look_at_channels(const Image& map, NormalMapCheck& check) {
     for (int channel = 0; channel < map.channels; ++channel) {
-        const Image one = channel_of(map, channel);
+        const Image one = channel_to_check(map, channel);
         check.bits.push_back(height_depth(one).bits);
         if (channel >= 2) continue;
         const Tiling tiling = detect_tiling(one);
@@ -125,9 +125,9 @@ void look_at_channels(const Image& map, NormalMapCheck& check) {
 }
 
 /// Collects conditions in the order of the enumeration.
-class Found {
+class FoundConditions {
   public:
-    explicit Found(NormalMapCheck& check) : check_(check) {}
+    explicit FoundConditions(NormalMapCheck& check) : check_(check) {}
 
     void if_so(bool is_so, MapCondition condition) {
         if (is_so) check_.found.push_back({condition, 1, {}});
@@ -145,7 +145,7 @@ bool has_directions(MapContent content) {
 }
 
 void find_meaning(const NormalMapCheck& check, const SampleMeaning& meaning,
-                  const MapStatistics& all, int channels, bool is_tagged, Found& found) {
+                  const MapStatistics& all, int channels, bool is_tagged, FoundConditions& found) {
     using enum MapCondition;
     found.if_so(check.content == MapContent::grey || check.content == MapContent::other,
                 not_normals);
@@ -162,7 +162,7 @@ void find_meaning(const NormalMapCheck& check, const SampleMeaning& meaning,
     found.if_so(meaning.is_signed, signed_samples);
 }
 
-void find_texels(const NormalMapCheck& check, const MapStatistics& all, Found& found) {
+void find_texels(const NormalMapCheck& check, const MapStatistics& all, FoundConditions& found) {
     found.texels(all.not_finite);
     if (!has_directions(check.content)) return;
     found.texels(all.without_direction);
@@ -175,7 +175,7 @@ void find_texels(const NormalMapCheck& check, const MapStatistics& all, Found& f
 
 void find_conventions(const Image& map, const NormalMapCheck& check,
                       const std::map<std::string, std::string>& metadata, const MapStatistics& all,
-                      Found& found) {
+                      FoundConditions& found) {
     using enum MapCondition;
     const bool has_slopes =
         (check.content == MapContent::tangent_normals || check.content == MapContent::xy_normals) &&
@@ -198,7 +198,7 @@ void find_conventions(const Image& map, const NormalMapCheck& check,
 }
 
 void find_channels(const Image& map, const NormalMapCheck& check, const MapStatistics& all,
-                   Found& found) {
+                   FoundConditions& found) {
     using enum MapCondition;
     if (check.content == MapContent::grey || check.content == MapContent::other) return;
     const bool is_flat = all.constant[0] && all.constant[1];
@@ -257,7 +257,7 @@ NormalMapCheck check_normal_map(const Image& map,
                                 std::string_view color_tag) {
     if (map.empty()) throw InvalidInput("an empty image holds no normals");
     NormalMapCheck check;
-    Found found(check);
+    FoundConditions found(check);
     look_at_channels(map, check);
     if (map.channels == 1) {
         check.content = MapContent::grey;

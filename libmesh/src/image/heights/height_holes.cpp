@@ -14,12 +14,11 @@
 #include <limits>
 
 #include "image/border.h"
+#include "image/texel_loops.h"
 #include "parallel.h"
 
 namespace relief {
 namespace {
-
-constexpr std::size_t texels_per_piece = 1 << 14;
 
 /// A lattice of texels with what lies beyond its border.
 struct Lattice {

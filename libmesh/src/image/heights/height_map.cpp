@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "image/largest_sample.h"
+#include "image/texel_loops.h"
 #include "large_memory.h"
 #include "parallel.h"
 #include "relief/mesh/error.h"
@@ -18,12 +19,6 @@
 
 namespace relief {
 namespace {
-
-constexpr std::size_t texels_per_piece = 1 << 14;
-
-bool has_alpha(const Image& image) {
-    return image.channels == 2 || image.channels == 4;
-}
 
 bool is_grey(const Image& image) {
     return image.channels < 3;

@@ -18,7 +18,7 @@ namespace relief {
 namespace {
 
 constexpr double damping = 1e-3;
-constexpr std::size_t lanes = RealTransform::lanes;
+constexpr std::size_t real_lanes = RealTransform::lanes;
 
 double squared_difference(const GradientKernel& kernel, double frequency, double texel) {
     std::complex<double> sum = 0.0;
@@ -71,36 +71,37 @@ void FrequencySolver::solve(double* values) const {
 
 void FrequencySolver::transform_rows(double* values, bool forward) const {
     const std::size_t width = x_.transform.length(), height = y_.transform.length();
-    parallel_for((height + lanes - 1) / lanes, 1, [&](std::size_t begin, std::size_t end) {
-        std::vector<double> rows(width * lanes), scratch;
-        for (std::size_t group = begin; group < end; ++group) {
-            const std::size_t first = group * lanes;
-            const std::size_t count = std::min(lanes, height - first);
-            for (std::size_t lane = 0; lane < count; ++lane) {
-                for (std::size_t column = 0; column < width; ++column)
-                    rows[column * lanes + lane] = values[(first + lane) * width + column];
+    parallel_for(
+        (height + real_lanes - 1) / real_lanes, 1, [&](std::size_t begin, std::size_t end) {
+            std::vector<double> rows(width * real_lanes), scratch;
+            for (std::size_t group = begin; group < end; ++group) {
+                const std::size_t first = group * real_lanes;
+                const std::size_t count = std::min(real_lanes, height - first);
+                for (std::size_t lane = 0; lane < count; ++lane) {
+                    for (std::size_t column = 0; column < width; ++column)
+                        rows[column * real_lanes + lane] = values[(first + lane) * width + column];
+                }
+                if (forward)
+                    x_.transform.forward(rows.data(), scratch);
+                else
+                    x_.transform.inverse(rows.data(), scratch);
+                for (std::size_t lane = 0; lane < count; ++lane) {
+                    for (std::size_t column = 0; column < width; ++column)
+                        values[(first + lane) * width + column] = rows[column * real_lanes + lane];
+                }
             }
-            if (forward)
-                x_.transform.forward(rows.data(), scratch);
-            else
-                x_.transform.inverse(rows.data(), scratch);
-            for (std::size_t lane = 0; lane < count; ++lane) {
-                for (std::size_t column = 0; column < width; ++column)
-                    values[(first + lane) * width + column] = rows[column * lanes + lane];
-            }
-        }
-    });
+        });
 }
 
 void FrequencySolver::solve_columns(double* values) const {
     const std::size_t width = x_.transform.length(), height = y_.transform.length();
-    parallel_for((width + lanes - 1) / lanes, 1, [&](std::size_t begin, std::size_t end) {
-        std::vector<double> columns(height * lanes), scratch;
+    parallel_for((width + real_lanes - 1) / real_lanes, 1, [&](std::size_t begin, std::size_t end) {
+        std::vector<double> columns(height * real_lanes), scratch;
         for (std::size_t group = begin; group < end; ++group) {
-            const std::size_t first = group * lanes;
-            const std::size_t count = std::min(lanes, width - first);
+            const std::size_t first = group * real_lanes;
+            const std::size_t count = std::min(real_lanes, width - first);
             for (std::size_t row = 0; row < height; ++row)
-                std::copy_n(values + row * width + first, count, &columns[row * lanes]);
+                std::copy_n(values + row * width + first, count, &columns[row * real_lanes]);
             y_.transform.forward(columns.data(), scratch);
             for (std::size_t row = 0; row < height; ++row) {
                 for (std::size_t lane = 0; lane < count; ++lane) {
@@ -109,13 +110,13 @@ void FrequencySolver::solve_columns(double* values) const {
                     const double fourth = shortness * shortness * shortness * shortness;
                     const double seen = x_.difference[column] * y_.smoothing[row] +
                                         x_.smoothing[column] * y_.difference[row];
-                    double& value = columns[row * lanes + lane];
+                    double& value = columns[row * real_lanes + lane];
                     value = row == 0 && column == 0 ? 0.0 : value / (seen + damping * fourth);
                 }
             }
             y_.transform.inverse(columns.data(), scratch);
             for (std::size_t row = 0; row < height; ++row)
-                std::copy_n(&columns[row * lanes], count, values + row * width + first);
+                std::copy_n(&columns[row * real_lanes], count, values + row * width + first);
         }
     });
 }

@@ -21,7 +21,7 @@ namespace {
 
 using Field = std::vector<double>;
 
-constexpr int most_rounds = 24;
+constexpr int most_solver_rounds = 24;
 constexpr double enough = 1e-10;  // Of the first error, squared.
 
 /// The slopes of a normal, and what was wrong with it.
@@ -141,7 +141,7 @@ int refine(const SlopeOperator& slopes, const FrequencySolver& solver, Field& ri
     double error = dot(rest, better, rows);
     const double first_error = error;
     int round = 0;
-    while (round < most_rounds && error > enough * first_error) {
+    while (round < most_solver_rounds && error > enough * first_error) {
         slopes.transpose(
             [&](int row, double* along_x, double* along_y) {
                 slopes.slopes(direction.data(), row, along_x, along_y);

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <functional>
 
+#include "geometry/direction.h"
 #include "io/gltf/gltf_accessor.h"
 #include "relief/mesh/error.h"
 
@@ -37,11 +38,6 @@ std::vector<glm::vec4> values_of(const GltfContents& contents, std::size_t acces
     return values;
 }
 
-bool is_finite(const glm::vec4& value) {
-    return std::isfinite(value.x) && std::isfinite(value.y) && std::isfinite(value.z) &&
-           std::isfinite(value.w);
-}
-
 bool is_usable(const GltfChannel& channel) {
     const bool cubic = channel.interpolation == GltfChannel::Interpolation::cubic_spline;
     const std::size_t per_key = cubic ? 3 : 1;
@@ -53,7 +49,8 @@ bool is_usable(const GltfChannel& channel) {
         !std::isfinite(channel.times.back())) {
         return false;
     }
-    if (!std::all_of(channel.values.begin(), channel.values.end(), is_finite)) return false;
+    if (!std::all_of(channel.values.begin(), channel.values.end(), is_finite<4, float>))
+        return false;
     if (channel.path != GltfChannel::Path::rotation) return true;
     for (std::size_t key = 0; key < channel.times.size(); ++key) {
         if (channel.values[key * per_key + per_key / 2] == glm::vec4(0.0F)) return false;

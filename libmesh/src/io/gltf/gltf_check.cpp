@@ -20,11 +20,6 @@
 namespace relief {
 namespace {
 
-template <typename... Values>
-[[noreturn]] void fail(fmt::format_string<Values...> format, Values&&... values) {
-    throw InvalidInput(fmt::format(format, std::forward<Values>(values)...));
-}
-
 /// "2.1" as 2 and 1.
 std::pair<int, int> version_in(const Json& asset, const char* key) {
     const std::string text = text_in(asset, key);
@@ -33,16 +28,16 @@ std::pair<int, int> version_in(const Json& asset, const char* key) {
     const char* end = text.data() + text.size();
     const auto [dot, error] = std::from_chars(text.data(), end, major);
     if (error == std::errc() && dot != end && *dot == '.') std::from_chars(dot + 1, end, minor);
-    if (major < 0 || minor < 0) fail("asset.{} is '{}', which is no version", key, text);
+    if (major < 0 || minor < 0) fail_gltf("asset.{} is '{}', which is no version", key, text);
     return {major, minor};
 }
 
 void check_version(const Json& root) {
     const Json& asset = root["asset"];
     const auto [major, minor] = version_in(asset, "version");
-    if (major != 2) fail("asset.version is {}.{}, but only 2 is read", major, minor);
+    if (major != 2) fail_gltf("asset.version is {}.{}, but only 2 is read", major, minor);
     if (asset.contains("minVersion") && version_in(asset, "minVersion") > std::pair(2, 0)) {
-        fail("asset.minVersion is {}, but only 2.0 is read", text_in(asset, "minVersion"));
+        fail_gltf("asset.minVersion is {}, but only 2.0 is read", text_in(asset, "minVersion"));
     }
 }
 
@@ -85,15 +80,15 @@ void check_required_extensions(const Json& root) {
     for (const Json& name : array_in(root, "extensionsRequired")) {
         const auto& extension = name.get_ref<const std::string&>();
         if (is_accepted(extension)) continue;
-        fail("requires the extension {}, which relief does not know", extension);
+        fail_gltf("requires the extension {}, which relief does not know", extension);
     }
 }
 
 void check_range(const std::string& what, std::size_t offset, std::size_t length, std::size_t limit,
                  const std::string& container) {
     if (offset + length > limit) {
-        fail("{} covers bytes {} to {}, but {} has only {}", what, offset, offset + length,
-             container, limit);
+        fail_gltf("{} covers bytes {} to {}, but {} has only {}", what, offset, offset + length,
+                  container, limit);
     }
 }
 
@@ -107,7 +102,7 @@ void check_views(const Json& root) {
                     fmt::format("buffers[{}]", buffer));
         const std::size_t stride = size_in(view, "byteStride", 4);
         if (stride < 4 || stride > 252) {
-            fail("bufferViews[{}].byteStride is {}, outside 4 to 252", i, stride);
+            fail_gltf("bufferViews[{}].byteStride is {}, outside 4 to 252", i, stride);
         }
         for (const char* extension : meshopt_extensions) {
             const Json* packed = find(view, "extensions", extension);
@@ -139,13 +134,13 @@ void check_sparse(const Json& root, const Json& accessor, const std::string& nam
     if (sparse == nullptr) return;
     const std::size_t count = size_in(*sparse, "count");
     if (count > size_in(accessor, "count")) {
-        fail("{}.sparse.count is {}, but there are only {} elements", name, count,
-             size_in(accessor, "count"));
+        fail_gltf("{}.sparse.count is {}, but there are only {} elements", name, count,
+                  size_in(accessor, "count"));
     }
     const Json& indices = (*sparse)["indices"];
     const std::size_t type = size_in(indices, "componentType");
     if (type != 5121 && type != 5123 && type != 5125) {
-        fail("{}.sparse.indices.componentType is {}", name, type);
+        fail_gltf("{}.sparse.indices.componentType is {}", name, type);
     }
     check_elements(root, name + ".sparse.indices", indices, count,
                    component_size(static_cast<int>(type)));
@@ -160,16 +155,17 @@ void check_accessors(const Json& root) {
         const std::string name = fmt::format("accessors[{}]", i);
         if (component_size(static_cast<int>(
                 std::min<std::size_t>(size_in(accessor, "componentType"), 100'000))) == 0) {
-            fail("{}.componentType is {}", name, size_in(accessor, "componentType"));
+            fail_gltf("{}.componentType is {}", name, size_in(accessor, "componentType"));
         }
         if (component_count(text_in(accessor, "type")) == 0) {
-            fail("{}.type is '{}'", name, text_in(accessor, "type"));
+            fail_gltf("{}.type is '{}'", name, text_in(accessor, "type"));
         }
         const std::size_t count = size_in(accessor, "count");
         if (accessor.contains("bufferView")) {
             check_elements(root, name, accessor, count, element_layout(accessor).size);
         } else if (count > most_zero_elements) {
-            fail("{} has no data for {} elements, more than {}", name, count, most_zero_elements);
+            fail_gltf("{} has no data for {} elements, more than {}", name, count,
+                      most_zero_elements);
         }
         check_sparse(root, accessor, name);
     }
@@ -181,8 +177,8 @@ void check_primitives(const Json& root) {
         const Json& primitives = meshes[i]["primitives"];
         for (std::size_t k = 0; k < primitives.size(); ++k) {
             if (size_in(primitives[k], "mode", 4) > 6) {
-                fail("meshes[{}].primitives[{}].mode is {}, more than 6", i, k,
-                     size_in(primitives[k], "mode"));
+                fail_gltf("meshes[{}].primitives[{}].mode is {}, more than 6", i, k,
+                          size_in(primitives[k], "mode"));
             }
         }
     }
@@ -195,8 +191,8 @@ void check_animations(const Json& root) {
         const Json& channels = animations[i]["channels"];
         for (std::size_t k = 0; k < channels.size(); ++k) {
             if (size_in(channels[k], "sampler") < samplers) continue;
-            fail("animations[{}].channels[{}].sampler is {}, but there are only {}", i, k,
-                 size_in(channels[k], "sampler"), samplers);
+            fail_gltf("animations[{}].channels[{}].sampler is {}, but there are only {}", i, k,
+                      size_in(channels[k], "sampler"), samplers);
         }
     }
 }
@@ -209,7 +205,7 @@ void check_nodes(const Json& root) {
     for (std::size_t i = 0; i < nodes.size(); ++i) {
         for (const Json& child : array_in(nodes[i], "children")) {
             const auto number = child.get<std::size_t>();
-            if (has_parent[number]) fail("nodes[{}] has more than one parent", number);
+            if (has_parent[number]) fail_gltf("nodes[{}] has more than one parent", number);
             has_parent[number] = true;
         }
     }
@@ -230,7 +226,7 @@ void check_nodes(const Json& root) {
     }
     if (reached == nodes.size()) return;
     const auto lost = std::find(is_reached.begin(), is_reached.end(), false) - is_reached.begin();
-    fail("nodes[{}] is its own ancestor", lost);
+    fail_gltf("nodes[{}] is its own ancestor", lost);
 }
 
 }  // namespace

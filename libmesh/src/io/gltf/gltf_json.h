@@ -6,15 +6,26 @@
 /// Tests: tests/mesh/io/gltf/gltf_document_test.cpp.
 #pragma once
 
+#include <fmt/format.h>
+
 #include <cstddef>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <utility>
+
+#include "relief/mesh/error.h"
 
 namespace relief {
 
 /// Keys are kept sorted; JSON gives their order no meaning.
 using Json = nlohmann::json;
+
+/// \throws InvalidInput always, saying what the values make of `format`
+template <typename... Values>
+[[noreturn]] void fail_gltf(fmt::format_string<Values...> format, Values&&... values) {
+    throw InvalidInput(fmt::format(format, std::forward<Values>(values)...));
+}
 
 /// A property, or null where it is absent.
 inline const Json* find(const Json& object, const char* key) {

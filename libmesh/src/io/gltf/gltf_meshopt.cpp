@@ -28,16 +28,11 @@ struct PackedView {
     std::string_view bytes;
 };
 
-template <typename... Values>
-[[noreturn]] void fail(fmt::format_string<Values...> format, Values&&... values) {
-    throw InvalidInput(fmt::format(format, std::forward<Values>(values)...));
-}
-
 PackedView packed_view(const GltfContents& contents, const Json& packed) {
     const std::string_view buffer = contents.buffers[size_in(packed, "buffer")].bytes();
     const std::size_t offset = size_in(packed, "byteOffset");
     const std::size_t length = size_in(packed, "byteLength");
-    if (offset + length > buffer.size()) fail("its data lies in a buffer without data");
+    if (offset + length > buffer.size()) fail_gltf("its data lies in a buffer without data");
     PackedView view;
     view.mode = text_in(packed, "mode");
     view.filter = packed.contains("filter") ? text_in(packed, "filter") : "NONE";
@@ -58,17 +53,17 @@ void check_stride(const PackedView& view) {
         } else if (view.filter == "QUATERNION") {
             fits = stride == 8;
         } else if (view.filter != "EXPONENTIAL" && view.filter != "NONE") {
-            fail("its filter is '{}'", view.filter);
+            fail_gltf("its filter is '{}'", view.filter);
         }
     } else if (view.mode == "TRIANGLES" || view.mode == "INDICES") {
-        if (view.filter != "NONE") fail("{} have no filter {}", view.mode, view.filter);
+        if (view.filter != "NONE") fail_gltf("{} have no filter {}", view.mode, view.filter);
         fits = stride == 2 || stride == 4;
     } else {
-        fail("its mode is '{}'", view.mode);
+        fail_gltf("its mode is '{}'", view.mode);
     }
-    if (!fits) fail("{} with filter {} have no stride of {}", view.mode, view.filter, stride);
+    if (!fits) fail_gltf("{} with filter {} have no stride of {}", view.mode, view.filter, stride);
     if (view.mode == "TRIANGLES" && view.count % 3 != 0)
-        fail("{} indices make no whole triangles", view.count);
+        fail_gltf("{} indices make no whole triangles", view.count);
 }
 
 /// That so few bytes could stand for so many.
@@ -78,14 +73,14 @@ void check_claim(const PackedView& view, std::size_t length) {
     constexpr std::size_t most_bytes_per_byte = 1024;
     // Both are below 2^53, and strides below 2^9 by now: nothing wraps.
     if (view.count > length || view.count * view.stride != length) {
-        fail("{} elements of {} bytes are not the {} bytes of the view", view.count, view.stride,
-             length);
+        fail_gltf("{} elements of {} bytes are not the {} bytes of the view", view.count,
+                  view.stride, length);
     }
     if (length / most_bytes_per_byte > view.bytes.size())
-        fail("{} bytes cannot stand for {}", view.bytes.size(), length);
+        fail_gltf("{} bytes cannot stand for {}", view.bytes.size(), length);
 }
 
-bool decode(const PackedView& view, std::string& elements) {
+bool decode_view(const PackedView& view, std::string& elements) {
     const auto* data = reinterpret_cast<const unsigned char*>(view.bytes.data());
     const std::size_t size = view.bytes.size();
     if (view.mode == "TRIANGLES")
@@ -99,7 +94,7 @@ bool decode(const PackedView& view, std::string& elements) {
     return meshopt_decodeVertexBuffer(elements.data(), view.count, view.stride, data, size) == 0;
 }
 
-void apply_filter(const PackedView& view, std::string& elements) {
+void unfilter(const PackedView& view, std::string& elements) {
     if (view.filter == "OCTAHEDRAL") {
         meshopt_decodeFilterOct(elements.data(), view.count, view.stride);
     } else if (view.filter == "QUATERNION") {
@@ -116,8 +111,8 @@ std::string unpacked_bytes(const PackedView& view, std::size_t length) {
     check_claim(view, length);
     std::string elements(length, '\0');
     if (length == 0) return elements;
-    if (!decode(view, elements)) fail("its data is damaged");
-    apply_filter(view, elements);
+    if (!decode_view(view, elements)) fail_gltf("its data is damaged");
+    unfilter(view, elements);
     return elements;
 }
 
@@ -137,7 +132,7 @@ void unpack_view(GltfContents& contents, std::size_t number, const char* extensi
     try {
         elements = unpacked_bytes(packed_view(contents, packed), length);
     } catch (const InvalidInput& error) {
-        fail("bufferViews[{}].extensions.{}: {}", number, extension, error.what());
+        fail_gltf("bufferViews[{}].extensions.{}: {}", number, extension, error.what());
     }
     const std::size_t offset = append_bytes(contents, elements);
     Json& view = contents.root["bufferViews"][number];

@@ -263,8 +263,8 @@ const std::vector<Rule>& rules_of(std::string_view type) {
 }
 
 /// Where a value stands, as a chain towards the root: written out only for messages.
-struct Place {
-    const Place* parent = nullptr;
+struct ValuePlace {
+    const ValuePlace* parent = nullptr;
     std::string_view key;
     std::size_t index = 0;
 
@@ -279,23 +279,24 @@ struct Place {
 struct Visitor {
     virtual ~Visitor() = default;
     /// Before a property's own parts are walked; `value` is null where it is absent.
-    virtual void property(const Place&, const Rule&, Json* /*value*/) {}
-    virtual void index(const Place&, std::string_view /*target*/, Json& /*value*/) {}
-    virtual void extension(const Place&, std::string_view /*name*/, Json& /*value*/) {}
+    virtual void property(const ValuePlace&, const Rule&, Json* /*value*/) {}
+    virtual void index(const ValuePlace&, std::string_view /*target*/, Json& /*value*/) {}
+    virtual void extension(const ValuePlace&, std::string_view /*name*/, Json& /*value*/) {}
 };
 
-void walk(Json& object, std::string_view type, const Place& place, Visitor& visitor);
+void walk(Json& object, std::string_view type, const ValuePlace& place, Visitor& visitor);
 
-void walk_each(Json& container, std::string_view type, const Place& place, Visitor& visitor) {
+void walk_each(Json& container, std::string_view type, const ValuePlace& place, Visitor& visitor) {
     std::size_t number = 0;
     for (auto& [key, value] : container.items()) {
         const bool is_map = container.is_object();
-        const Place inner{&place, is_map ? std::string_view(key) : std::string_view(), number++};
+        const ValuePlace inner{&place, is_map ? std::string_view(key) : std::string_view(),
+                               number++};
         walk(value, type, inner, visitor);
     }
 }
 
-void visit_each_index(Json& container, std::string_view target, const Place& place,
+void visit_each_index(Json& container, std::string_view target, const ValuePlace& place,
                       Visitor& visitor) {
     std::size_t number = 0;
     for (auto& [key, value] : container.items()) {
@@ -305,7 +306,7 @@ void visit_each_index(Json& container, std::string_view target, const Place& pla
     }
 }
 
-void walk_property(Json& value, const Rule& rule, const Place& place, Visitor& visitor) {
+void walk_property(Json& value, const Rule& rule, const ValuePlace& place, Visitor& visitor) {
     switch (rule.kind) {
         case Kind::object:
             walk(value, rule.refers, place, visitor);
@@ -334,26 +335,26 @@ void walk_property(Json& value, const Rule& rule, const Place& place, Visitor& v
 }
 
 /// Walks an object and all that the table knows inside it; properties in the table's order.
-void walk(Json& object, std::string_view type, const Place& place, Visitor& visitor) {
+void walk(Json& object, std::string_view type, const ValuePlace& place, Visitor& visitor) {
     for (const Rule& rule : rules_of(type)) {
         const auto found = object.find(rule.property);
-        const Place inner{&place, rule.property};
+        const ValuePlace inner{&place, rule.property};
         visitor.property(inner, rule, found == object.end() ? nullptr : &*found);
         if (found != object.end()) walk_property(*found, rule, inner, visitor);
     }
     const auto extensions = object.find("extensions");
     if (extensions == object.end()) return;
-    const Place outer{&place, "extensions"};
+    const ValuePlace outer{&place, "extensions"};
     visitor.property(outer, {type, "extensions", Kind::object}, &*extensions);
     for (auto& [name, value] : extensions->items()) {
-        const Place inner{&outer, name};
+        const ValuePlace inner{&outer, name};
         visitor.extension(inner, name, value);
         const std::string extension_type = fmt::format("{}+{}", type, name);
         if (value.is_object()) walk(value, extension_type, inner, visitor);
     }
 }
 
-[[noreturn]] void fail(const Place& place, const std::string& problem) {
+[[noreturn]] void fail(const ValuePlace& place, const std::string& problem) {
     throw InvalidInput(fmt::format("{} {}", place.text(), problem));
 }
 
@@ -367,7 +368,7 @@ class Checker : public Visitor {
         counts_["lights"] = lights != nullptr && lights->is_object() ? count(*lights, "lights") : 0;
     }
 
-    void property(const Place& place, const Rule& rule, Json* value) override {
+    void property(const ValuePlace& place, const Rule& rule, Json* value) override {
         if (value == nullptr) {
             if (rule.is_required) fail(place, "is missing");
             return;
@@ -376,7 +377,7 @@ class Checker : public Visitor {
             fail(place, fmt::format("is not {}", wanted));
     }
 
-    void index(const Place& place, std::string_view target, Json& value) override {
+    void index(const ValuePlace& place, std::string_view target, Json& value) override {
         if (!value.is_number_unsigned()) fail(place, "is not an index");
         const std::size_t count = counts_.find(target)->second;
         if (value.get<std::uint64_t>() >= count) {
@@ -385,7 +386,7 @@ class Checker : public Visitor {
         }
     }
 
-    void extension(const Place& place, std::string_view, Json& value) override {
+    void extension(const ValuePlace& place, std::string_view, Json& value) override {
         if (!value.is_object()) fail(place, "is not an object");
     }
 
@@ -456,7 +457,7 @@ void visit_references(Json& root,
                       const std::function<void(std::string_view target, Json& index)>& visit) {
     struct : Visitor {
         const std::function<void(std::string_view, Json&)>* visit = nullptr;
-        void index(const Place&, std::string_view target, Json& value) override {
+        void index(const ValuePlace&, std::string_view target, Json& value) override {
             if (target == "accessors" || target == "bufferViews" || target == "buffers") {
                 (*visit)(target, value);
             }
@@ -470,7 +471,7 @@ bool has_extension(const Json& root, std::string_view name) {
     struct : Visitor {
         std::string_view wanted;
         bool found = false;
-        void extension(const Place&, std::string_view extension, Json&) override {
+        void extension(const ValuePlace&, std::string_view extension, Json&) override {
             found = found || extension == wanted;
         }
     } visitor;
@@ -482,7 +483,7 @@ bool has_extension(const Json& root, std::string_view name) {
 bool has_unknown_extension(const Json& root) {
     struct : Visitor {
         bool found = false;
-        void extension(const Place&, std::string_view name, Json&) override {
+        void extension(const ValuePlace&, std::string_view name, Json&) override {
             found = found || !is_known(name);
         }
     } visitor;

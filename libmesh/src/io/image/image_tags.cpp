@@ -16,7 +16,7 @@
 namespace relief {
 namespace {
 
-constexpr std::string_view signature = "\x89PNG\r\n\x1a\n";
+constexpr std::string_view png_signature = "\x89PNG\r\n\x1a\n";
 
 std::uint32_t big32(const char* bytes) {
     std::uint32_t value = 0;
@@ -44,7 +44,7 @@ std::string color_tag(const std::filesystem::path& file) {
     if (!stream) throw FileError(file, "cannot be opened");
     std::array<char, 8> head{};
     if (!stream.read(head.data(), head.size()) ||
-        std::string_view(head.data(), head.size()) != signature)
+        std::string_view(head.data(), head.size()) != png_signature)
         return "";
     std::streamoff next = 8;
     while (stream.seekg(next) && stream.read(head.data(), head.size())) {

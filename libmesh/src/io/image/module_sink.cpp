@@ -22,20 +22,12 @@ namespace {
 
 using Metadata = std::map<std::string, std::string>;
 
-constexpr std::size_t bytes_per_band = std::size_t{1} << 23;
 /// Bands are of whole strips of TIFF and blocks of EXR, whichever heights the module gives them.
 constexpr std::size_t band_grain = 64;
 
 constexpr float largest_half = 65504.0F;
 /// Halfway to the number that would follow, were there one: rounds to infinity.
 constexpr float rounds_to_infinity = 65520.0F;
-
-ImageModuleFailure into(std::string& reason) {
-    return {&reason, [](void* receiver, const char* text) {
-                const std::string_view all(text);
-                static_cast<std::string*>(receiver)->assign(all.substr(0, all.find('\n')));
-            }};
-}
 
 std::string folded_description(const Metadata& metadata) {
     std::string description;
@@ -67,7 +59,7 @@ class ModuleSink final : public RowSink {
     explicit ModuleSink(const RowSinkPlan& plan)
         : plan_(plan),
           row_bytes_(plan.row_bytes()),
-          band_rows_(std::max<std::size_t>(bytes_per_band / row_bytes_ / band_grain, 1) *
+          band_rows_(std::max<std::size_t>(module_bytes_per_band / row_bytes_ / band_grain, 1) *
                      band_grain) {
         const Metadata entries = entries_for(plan.format, plan.metadata);
         std::vector<const char*> keys, values;
@@ -89,7 +81,7 @@ class ModuleSink final : public RowSink {
                                          entries.size()};
         const ImageModule& module = image_module(plan.file);
         std::string reason;
-        writer_ = {module.create(plan.format, plan.written.c_str(), &picture, into(reason)),
+        writer_ = {module.create(plan.format, plan.written.c_str(), &picture, failure_into(reason)),
                    ReleaseWriter{&module}};
         if (!writer_) fail(reason);
     }
@@ -113,7 +105,8 @@ class ModuleSink final : public RowSink {
     void finish() override {
         if (!pending_.empty()) pass_on_pending();
         std::string reason;
-        if (!writer_.get_deleter().module->finish(writer_.get(), into(reason))) fail(reason);
+        if (!writer_.get_deleter().module->finish(writer_.get(), failure_into(reason)))
+            fail(reason);
     }
 
     void report(Report& report) const override {
@@ -135,7 +128,8 @@ class ModuleSink final : public RowSink {
         std::string reason;
         const auto first = static_cast<std::int64_t>(next_);
         const auto end = first + static_cast<std::int64_t>(count);
-        if (!writer_.get_deleter().module->write(writer_.get(), first, end, rows, into(reason)))
+        if (!writer_.get_deleter().module->write(writer_.get(), first, end, rows,
+                                                 failure_into(reason)))
             fail(reason);
         next_ += count;
     }

@@ -24,19 +24,9 @@ namespace {
 
 using Metadata = std::map<std::string, std::string>;
 
-constexpr std::size_t bytes_per_band = std::size_t{1} << 23;
-
-ImageModuleFailure into(std::string& reason) {
-    return {&reason, [](void* receiver, const char* text) {
-                // The first line says it; decoders like to add more.
-                const std::string_view all(text);
-                static_cast<std::string*>(receiver)->assign(all.substr(0, all.find('\n')));
-            }};
-}
-
 /// Text that the file itself holds. Of what OpenImageIO adds, these are facts of the coding; the
 /// text of PNG is read by ourselves, and other formats have none worth keeping.
-ImageModuleText into(Metadata& metadata) {
+ImageModuleText text_into(Metadata& metadata) {
     return {&metadata, [](void* receiver, const char* key, const char* value) {
                 for (const std::string_view coding : {"compression", "textureformat", "wrapmodes",
                                                       "ResolutionUnit", "planarconfig"}) {
@@ -90,7 +80,7 @@ class ModuleSource final : public RowSource {
         ImageModuleHeader header;
         Metadata text;
         std::string reason;
-        reader_ = {open(module, container_, &header, into(text), into(reason)),
+        reader_ = {open(module, container_, &header, text_into(text), failure_into(reason)),
                    CloseReader{&module}};
         if (reader_ == nullptr) throw FileError(name_, reason);
         info_ = info_from(header, name_);
@@ -103,7 +93,7 @@ class ModuleSource final : public RowSource {
         // Whole tiles, and else a multiple of 64 rows, which compressed formats decode at once.
         const auto tile = static_cast<std::size_t>(module.row_grain(reader_.get()));
         grain_ = tile > 1 ? tile : 64;
-        band_rows_ = std::max<std::size_t>(bytes_per_band / row_bytes_ / grain_, 1) * grain_;
+        band_rows_ = std::max<std::size_t>(module_bytes_per_band / row_bytes_ / grain_, 1) * grain_;
     }
 
     [[nodiscard]] const ImageInfo& info() const override { return info_; }
@@ -149,7 +139,7 @@ class ModuleSource final : public RowSource {
         std::string reason;
         if (reader_.get_deleter().module->read(reader_.get(), static_cast<std::int64_t>(first),
                                                static_cast<std::int64_t>(end), rows,
-                                               into(reason))) {
+                                               failure_into(reason))) {
             return;
         }
         throw FileError(name_, fmt::format("rows {} to {} of {} are damaged: {}", first, end - 1,

@@ -10,14 +10,13 @@
 #include <type_traits>
 #include <vector>
 
+#include "image/bump/bump_rows.h"
 #include "image/largest_sample.h"
 #include "image/normals/normal_coding.h"
 #include "parallel.h"
 
 namespace relief {
 namespace {
-
-constexpr std::size_t texels_per_piece = 1 << 16;
 
 /// A sample of any depth, 1.0 being white.
 double value_at(const void* row, int bits, std::size_t x) {
@@ -195,8 +194,8 @@ bool make_bump_band(const BumpBandSource& source, const BumpOptions& options,
     const BandMaker maker(source, options, format);
     const auto count = static_cast<std::size_t>(last - first);
     const std::size_t row_bytes = rows.size() / count;
-    const std::size_t grain =
-        std::max<std::size_t>(1, texels_per_piece / static_cast<std::size_t>(source.heights.width));
+    const std::size_t grain = std::max<std::size_t>(
+        1, bump_texels_per_piece / static_cast<std::size_t>(source.heights.width));
     std::atomic<bool> finite = true;
     Report found_here;
     parallel_for_reporting(

@@ -16,10 +16,6 @@ bool ends_line(char c) {
     return c == '\n' || c == '\r';
 }
 
-bool is_blank(char c) {
-    return c == ' ' || c == '\t' || c == '\v' || c == '\f';
-}
-
 char lower(char c) {
     return c >= 'A' && c <= 'Z' ? static_cast<char>(c + ('a' - 'A')) : c;
 }

@@ -85,6 +85,11 @@ class TextScanner {
     std::size_t line_ = 1;
 };
 
+/// What is between the words of a line.
+inline bool is_blank(char c) {
+    return c == ' ' || c == '\t' || c == '\v' || c == '\f';
+}
+
 /// The next three numbers, less the origin, rounded once. \throws FileError as number() does
 glm::vec3 position_in(TextScanner& text, const glm::dvec3& origin);
 

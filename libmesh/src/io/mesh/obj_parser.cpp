@@ -23,10 +23,6 @@
 namespace relief {
 namespace {
 
-bool is_blank(char c) {
-    return c == ' ' || c == '\t' || c == '\v' || c == '\f';
-}
-
 /// Reads one statement after the other. A backslash at the end of a line joins the next one to it.
 class ObjParser {
   public:

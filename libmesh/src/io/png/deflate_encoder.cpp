@@ -16,7 +16,7 @@
 namespace relief {
 namespace {
 
-using Bytes = std::span<const std::uint8_t>;
+using ByteValues = std::span<const std::uint8_t>;
 
 constexpr std::size_t longest_stored = 65535;
 constexpr std::size_t symbols_per_block = 65000;
@@ -30,7 +30,7 @@ constexpr int longest_code = 14;
 using Counts = std::array<std::uint32_t, 256>;
 
 /// How often each byte occurs. Four tables, for equal bytes in a row would wait for one another.
-Counts byte_counts(Bytes bytes) {
+Counts byte_counts(ByteValues bytes) {
     std::array<Counts, 4> tables{};
     std::size_t at = 0;
     for (; at + 4 <= bytes.size(); at += 4) {
@@ -104,7 +104,7 @@ struct SymbolCounts {
     std::uint64_t extra_bits = 0;
 };
 
-SymbolCounts symbol_counts(Bytes block, std::span<const Sequence> sequences) {
+SymbolCounts symbol_counts(ByteValues block, std::span<const Sequence> sequences) {
     SymbolCounts counts;
     std::size_t at = 0;
     for (const Sequence& sequence : sequences) {
@@ -155,7 +155,7 @@ class BitWriter {
         count_ -= 8 * whole;
     }
     void to_whole_byte() { put(0, (8 - count_) & 7); }
-    void put_bytes(Bytes bytes) {
+    void put_bytes(ByteValues bytes) {
         if (bytes.empty()) return;  // Whose data may be null, which memcpy may not be given.
         std::memcpy(to_, bytes.data(), bytes.size());
         to_ += bytes.size();
@@ -289,7 +289,7 @@ void put_header(BitWriter& out, const Header& header) {
 // ---------------------------------------------------------------------------------------------
 // Blocks
 
-void put_literals(BitWriter& out, Bytes literals, const Code<literal_symbols>& code) {
+void put_literals(BitWriter& out, ByteValues literals, const Code<literal_symbols>& code) {
     std::size_t at = 0;
     for (; at + 4 <= literals.size(); at += 4) {
         for (std::size_t k = 0; k < 4; ++k)
@@ -301,7 +301,7 @@ void put_literals(BitWriter& out, Bytes literals, const Code<literal_symbols>& c
     out.flush();
 }
 
-void put_symbols(BitWriter& out, Bytes block, std::span<const Sequence> sequences,
+void put_symbols(BitWriter& out, ByteValues block, std::span<const Sequence> sequences,
                  const Code<literal_symbols>& literals, const Code<distance_symbols>& distances) {
     std::size_t at = 0;
     for (const Sequence& sequence : sequences) {
@@ -321,9 +321,9 @@ void put_symbols(BitWriter& out, Bytes block, std::span<const Sequence> sequence
     out.flush();
 }
 
-void put_stored(BitWriter& out, Bytes bytes, bool is_last) {
+void put_stored(BitWriter& out, ByteValues bytes, bool is_last) {
     do {
-        const Bytes block = bytes.first(std::min(bytes.size(), longest_stored));
+        const ByteValues block = bytes.first(std::min(bytes.size(), longest_stored));
         bytes = bytes.subspan(block.size());
         out.put(is_last && bytes.empty() ? 1 : 0, 3);
         out.to_whole_byte();
@@ -338,7 +338,8 @@ std::uint64_t stored_bits(std::size_t size) {
     return 8 * size + 40 * ((size + longest_stored - 1) / longest_stored);
 }
 
-void put_block(BitWriter& out, Bytes block, std::span<const Sequence> sequences, bool is_last) {
+void put_block(BitWriter& out, ByteValues block, std::span<const Sequence> sequences,
+               bool is_last) {
     const bool has_matches = sequences.size() > 1;
     const SymbolCounts counts =
         has_matches ? symbol_counts(block, sequences) : symbol_counts(byte_counts(block));

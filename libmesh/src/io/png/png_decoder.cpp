@@ -25,14 +25,14 @@ using Bytes = std::span<const std::byte>;
 
 constexpr int palette_type = 3;
 
-std::uint32_t big32(Bytes bytes, std::size_t at) {
+std::uint32_t big32_at(Bytes bytes, std::size_t at) {
     std::uint32_t value = 0;
     for (std::size_t i = 0; i < 4; ++i)
         value = value << 8 | std::to_integer<std::uint32_t>(bytes[at + i]);
     return value;
 }
 
-int byte_at(Bytes bytes, std::size_t at) {
+int code_at(Bytes bytes, std::size_t at) {
     return std::to_integer<int>(bytes[at]);
 }
 
@@ -47,10 +47,10 @@ std::optional<Chunks> chunks_of(Bytes stripped) {
     Chunks chunks;
     chunks.packed.reserve(stripped.size());
     for (std::size_t at = signature; stripped.size() - at >= frame;) {
-        const std::size_t length = big32(stripped, at);
+        const std::size_t length = big32_at(stripped, at);
         if (length > stripped.size() - at - frame) return std::nullopt;
         const Bytes data = stripped.subspan(at + 8, length);
-        if (crc32(stripped.subspan(at + 4, length + 4)) != big32(stripped, at + 8 + length))
+        if (crc32(stripped.subspan(at + 4, length + 4)) != big32_at(stripped, at + 8 + length))
             return std::nullopt;
         const Bytes type_bytes = stripped.subspan(at + 4, 4);
         const std::string_view type(reinterpret_cast<const char*>(type_bytes.data()), 4);
@@ -170,16 +170,16 @@ std::optional<PlainPng> plain_png(const PngChunks& chunks) {
     const Bytes header = chunks.header;
     if (header.size() != 13) return std::nullopt;
     static constexpr std::array channels_of_type{1, 0, 3, 1, 2, 0, 4};
-    const std::uint64_t width = big32(header, 0);
-    const std::uint64_t height = big32(header, 4);
-    const int type = byte_at(header, 9);
+    const std::uint64_t width = big32_at(header, 0);
+    const std::uint64_t height = big32_at(header, 4);
+    const int type = code_at(header, 9);
     PlainPng png;
-    png.stored_bits = byte_at(header, 8);
+    png.stored_bits = code_at(header, 8);
     if (type >= static_cast<int>(channels_of_type.size()) || !is_allowed(type, png.stored_bits))
         return std::nullopt;
     png.stored_channels = channels_of_type[static_cast<std::size_t>(type)];
-    const bool is_usual = byte_at(header, 10) == 0 && byte_at(header, 11) == 0;
-    const bool is_interlaced = byte_at(header, 12) != 0;
+    const bool is_usual = code_at(header, 10) == 0 && code_at(header, 11) == 0;
+    const bool is_interlaced = code_at(header, 12) != 0;
     constexpr std::uint64_t largest = std::numeric_limits<int>::max();
     if (png.stored_channels == 0 || !is_usual || is_interlaced || width == 0 || height == 0 ||
         width > largest || height > largest) {

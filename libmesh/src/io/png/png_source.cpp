@@ -28,7 +28,7 @@
 namespace relief {
 namespace {
 
-constexpr std::size_t bytes_per_band = std::size_t{1} << 20;
+constexpr std::size_t unpacked_per_band = std::size_t{1} << 20;
 constexpr std::size_t bytes_per_feed = std::size_t{1} << 17;
 constexpr std::uint64_t largest_kept_chunk = 1 << 16;
 
@@ -147,7 +147,7 @@ class DataChunks {
 };
 
 /// Some rows, each behind the byte that names its filter.
-struct Band {
+struct RowBand {
     std::vector<std::byte> bytes;
     std::size_t rows = 0;
     std::size_t taken = 0;  ///< Rows that have been handed out.
@@ -161,7 +161,7 @@ class PngSource final : public RowSource {
           png_(std::move(png)),
           info_{png_.width, png_.height, png_.channels, png_.bits(), layout.text},
           line_(png_.stored_row_size() + 1),
-          band_rows_(std::max<std::size_t>(bytes_per_band / line_, 1)),
+          band_rows_(std::max<std::size_t>(unpacked_per_band / line_, 1)),
           chunks_(*file_, layout.data_at),
           stream_([this] { return chunks_.next(); }),
           above_(line_ - 1) {}
@@ -199,7 +199,7 @@ class PngSource final : public RowSource {
         std::swap(ready_, coming_);
         if (!ready_.is_intact) return;
         parallel_tasks({[this] { inflate_band(); }, [this] { unfilter(); }},
-                       ready_.bytes.size() < bytes_per_band / 8);
+                       ready_.bytes.size() < unpacked_per_band / 8);
     }
 
     void inflate_band() {
@@ -246,7 +246,7 @@ class PngSource final : public RowSource {
     DataChunks chunks_;
     InflateStream stream_;
     std::vector<std::uint8_t> above_;  ///< The last row that was unfiltered.
-    Band ready_, coming_;
+    RowBand ready_, coming_;
     std::size_t inflated_rows_ = 0;
     std::size_t next_ = 0;
     std::unique_ptr<RowSource> judge_;
