@@ -13,7 +13,7 @@ namespace relief {
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 /// One Gaussian of the contrast sensitivity functions, a sqrt(pi / b) exp(-pi^2 d^2 / b) at d
 /// degrees from the middle.

@@ -12,7 +12,7 @@ namespace {
 using enum DebugViewKind;
 using V = DebugView;
 
-constexpr std::array rows = {
+constexpr std::array all_views = {
     DebugViewInfo{V::picture, "picture", "everything, as always", picture},
     DebugViewInfo{V::geometric_normal, "geometric-normal", "the normals of triangles", data},
     DebugViewInfo{V::shading_normal, "shading-normal", "the normals that light meets", data},
@@ -39,21 +39,21 @@ constexpr std::array rows = {
 
 /// Whether each view's row is where the view looks for it, and its kind is what is_data() says.
 constexpr bool are_in_order() {
-    for (std::size_t i = 0; i < rows.size(); ++i) {
-        if (rows[i].view != static_cast<V>(i)) return false;
+    for (std::size_t i = 0; i < all_views.size(); ++i) {
+        if (all_views[i].view != static_cast<V>(i)) return false;
     }
-    return rows.back().view == V::nothing_to_show;
+    return all_views.back().view == V::nothing_to_show;
 }
 static_assert(are_in_order());
 
 }  // namespace
 
 std::span<const DebugViewInfo> debug_views() {
-    return std::span(rows).first(rows.size() - 1);
+    return std::span(all_views).first(all_views.size() - 1);
 }
 
 const DebugViewInfo& debug_view_info(DebugView view) {
-    return rows.at(static_cast<std::size_t>(view));
+    return all_views.at(static_cast<std::size_t>(view));
 }
 
 }  // namespace relief

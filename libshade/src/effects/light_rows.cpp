@@ -67,10 +67,6 @@ void add_all(std::vector<glm::vec4>& rows, const std::vector<Light>& lights, std
     rows.resize(end, glm::vec4(0.0F));
 }
 
-bool any(const glm::vec3& color) {
-    return color != glm::vec3(0.0F);
-}
-
 }  // namespace
 
 std::uint32_t lamp_count(const Features& f) {
@@ -90,10 +86,10 @@ LightRowLayout light_row_layout(const Features& features) {
 }
 
 bool shines(const DirectionalLight& light) {
-    return any(light.irradiance) || any(highlights_of(light));
+    return is_not_black(light.irradiance) || is_not_black(highlights_of(light));
 }
 bool shines(const PointLight& light) {
-    return any(light.intensity) || any(highlights_of(light));
+    return is_not_black(light.intensity) || is_not_black(highlights_of(light));
 }
 bool shines(const SpotLight& light) {
     return shines(light.point);

@@ -39,6 +39,11 @@ struct LightRowLayout {
 };
 LightRowLayout light_row_layout(const Features& features);
 
+/// Whether there is any of a colour, negative or not.
+inline bool is_not_black(const glm::vec3& color) {
+    return color != glm::vec3(0.0F);
+}
+
 /// Whether a light gives any light at all.
 bool shines(const DirectionalLight& light);
 bool shines(const PointLight& light);

@@ -16,10 +16,6 @@ namespace relief {
 
 namespace {
 
-bool any(const glm::vec3& color) {
-    return color != glm::vec3(0.0F);
-}
-
 /// What the decisions of one draw look at.
 struct Subject {
     const Scene& scene;
@@ -29,7 +25,7 @@ struct Subject {
 };
 
 /// Decisions of one draw, as they are asked for: canonical() has the last word.
-struct Wishes {
+struct DrawWishes {
     Features features;
     std::vector<EffectReason> reasons;
 
@@ -40,7 +36,8 @@ struct Wishes {
 };
 
 /// A texture shows only on a mesh with texture coordinates.
-bool decide_texture(Wishes& wishes, const Subject& subject, const char* effect, bool has_texture) {
+bool decide_texture(DrawWishes& wishes, const Subject& subject, const char* effect,
+                    bool has_texture) {
     if (!has_texture) return wishes.decide(effect, false, subject.name + " has none");
     if (subject.mesh.texcoords.empty()) {
         return wishes.decide(effect, false,
@@ -51,7 +48,7 @@ bool decide_texture(Wishes& wishes, const Subject& subject, const char* effect, 
                          subject.name + " has one and the mesh has texture coordinates");
 }
 
-void decide_model(Wishes& wishes, const Subject& subject) {
+void decide_model(DrawWishes& wishes, const Subject& subject) {
     const Material& material = subject.material;
     const bool physical = material.metallic_roughness.has_value();
     Features& f = wishes.features;
@@ -93,7 +90,7 @@ AlphaMode shown_alpha_mode(const Subject& subject, bool textured, bool tinted) {
     return all_there ? AlphaMode::opaque : AlphaMode::mask;
 }
 
-void decide_color(Wishes& wishes, const Subject& subject) {
+void decide_color(DrawWishes& wishes, const Subject& subject) {
     const Material& material = subject.material;
     Features& f = wishes.features;
     f.diffuse_texture =
@@ -118,7 +115,7 @@ void decide_color(Wishes& wishes, const Subject& subject) {
         decide_texture(wishes, subject, "opacity texture", material.opacity_texture.has_value());
 }
 
-void decide_normal(Wishes& wishes, const Subject& subject) {
+void decide_normal(DrawWishes& wishes, const Subject& subject) {
     const Material& material = subject.material;
     Features& f = wishes.features;
     const bool object_space =
@@ -146,7 +143,8 @@ void decide_normal(Wishes& wishes, const Subject& subject) {
 }
 
 template <typename Light>
-std::uint32_t decide_lights(Wishes& wishes, const char* effect, const std::vector<Light>& lights) {
+std::uint32_t decide_lights(DrawWishes& wishes, const char* effect,
+                            const std::vector<Light>& lights) {
     const auto shining = static_cast<std::uint32_t>(std::count_if(
         lights.begin(), lights.end(), [](const Light& light) { return shines(light); }));
     const std::string black =
@@ -167,7 +165,7 @@ std::vector<const PointLight*> placed_lamps(const Scene& scene) {
     return lamps;
 }
 
-void decide_falloff(Wishes& wishes, const Scene& scene) {
+void decide_falloff(DrawWishes& wishes, const Scene& scene) {
     Features& f = wishes.features;
     const std::vector<const PointLight*> lamps = placed_lamps(scene);
     const auto falling = std::count_if(lamps.begin(), lamps.end(), [](const PointLight* light) {
@@ -206,7 +204,7 @@ bool has_highlight_colors(const Scene& scene) {
                        });
 }
 
-void decide_lamps(Wishes& wishes, const Subject& subject) {
+void decide_lamps(DrawWishes& wishes, const Subject& subject) {
     const Scene& scene = subject.scene;
     Features& f = wishes.features;
     f.directional_lights = decide_lights(wishes, "directional lights", scene.directional_lights);
@@ -224,18 +222,19 @@ void decide_lamps(Wishes& wishes, const Subject& subject) {
         fmt::format("the lights take {} of the {} rows of a uniform block", rows, max_block_rows));
 }
 
-void decide_scattering(Wishes& wishes, const Subject& subject) {
+void decide_scattering(DrawWishes& wishes, const Subject& subject) {
     const Material& material = subject.material;
     const Scene& scene = subject.scene;
     const bool physical = material.metallic_roughness.has_value();
     Features& f = wishes.features;
-    const bool takes_ambient = physical || any(material.ambient);
-    f.ambient = wishes.decide("ambient",
-                              physical ? any(scene.ambient) : any(scene.ambient * material.ambient),
-                              !any(scene.ambient) ? "the scene has no ambient light"
-                              : takes_ambient     ? subject.name + " scatters ambient light"
-                                                  : subject.name + " scatters none");
-    const bool scatters = physical || any(material.diffuse);
+    const bool takes_ambient = physical || is_not_black(material.ambient);
+    f.ambient = wishes.decide(
+        "ambient",
+        physical ? is_not_black(scene.ambient) : is_not_black(scene.ambient * material.ambient),
+        !is_not_black(scene.ambient) ? "the scene has no ambient light"
+        : takes_ambient              ? subject.name + " scatters ambient light"
+                                     : subject.name + " scatters none");
+    const bool scatters = physical || is_not_black(material.diffuse);
     f.diffuse = wishes.decide("diffuse", scatters,
                               subject.name + (scatters ? " scatters light" : " is black"));
     const bool sheds = scene.environment && scene.environment->lights;
@@ -249,12 +248,12 @@ void decide_scattering(Wishes& wishes, const Subject& subject) {
         material.occlusion_texture.has_value() && material.occlusion_strength > 0.0F);
 }
 
-void decide_highlights(Wishes& wishes, const Subject& subject) {
+void decide_highlights(DrawWishes& wishes, const Subject& subject) {
     const Material& material = subject.material;
     Features& f = wishes.features;
     const bool physical = material.metallic_roughness.has_value();
     const bool phong = material.specular_model == SpecularModel::phong;
-    const bool shiny = !physical && any(material.specular);
+    const bool shiny = !physical && is_not_black(material.specular);
     const std::string reason =
         physical ? subject.name + " has those of its own model"
         : !shiny ? subject.name + " has none"
@@ -265,13 +264,14 @@ void decide_highlights(Wishes& wishes, const Subject& subject) {
     }
     f.specular_texture =
         decide_texture(wishes, subject, "specular texture", material.specular_texture.has_value());
-    f.emission = wishes.decide("emission", any(material.emission),
-                               subject.name + (any(material.emission) ? " shines" : " has none"));
+    f.emission =
+        wishes.decide("emission", is_not_black(material.emission),
+                      subject.name + (is_not_black(material.emission) ? " shines" : " has none"));
     f.emission_texture =
         decide_texture(wishes, subject, "emission texture", material.emission_texture.has_value());
 }
 
-void decide_fresnel(Wishes& wishes, const Subject& subject, bool reflects) {
+void decide_fresnel(DrawWishes& wishes, const Subject& subject, bool reflects) {
     const Material& material = subject.material;
     const bool varies = material.grazing_reflectivity != material.reflectivity;
     const FresnelTerm term = material.fresnel == FresnelModel::dielectric  ? FresnelTerm::dielectric
@@ -292,12 +292,12 @@ void decide_fresnel(Wishes& wishes, const Subject& subject, bool reflects) {
     decide("conductor Fresnel", FresnelTerm::conductor, "it is not asked for");
 }
 
-void decide_reflection(Wishes& wishes, const Subject& subject) {
+void decide_reflection(DrawWishes& wishes, const Subject& subject) {
     const Material& material = subject.material;
     Features& f = wishes.features;
     const bool physical = material.metallic_roughness.has_value();
     const bool environment = subject.scene.environment.has_value();
-    const bool mirrors = physical || any(material.reflectivity);
+    const bool mirrors = physical || is_not_black(material.reflectivity);
     const bool rough = physical || material.reflection_roughness > 0.0F;
     const bool reflects = environment && mirrors;
     const std::string reason = !mirrors       ? subject.name + " reflects nothing"
@@ -318,7 +318,7 @@ void decide_reflection(Wishes& wishes, const Subject& subject) {
                                      : subject.name + " lets through what it does not mirror");
 }
 
-void decide_picture(Wishes& wishes, const Scene& scene) {
+void decide_picture(DrawWishes& wishes, const Scene& scene) {
     Features& f = wishes.features;
     f.exposure = wishes.decide("exposure", scene.exposure != 1.0F,
                                fmt::format("the scene's exposure is {}", scene.exposure));
@@ -336,7 +336,7 @@ void decide_picture(Wishes& wishes, const Scene& scene) {
 }
 
 /// The wishes that can show, and the reasons put right for those that cannot.
-Wishes granted(Wishes wishes) {
+DrawWishes granted(DrawWishes wishes) {
     const Features shown = canonical(wishes.features);
     for (const Effect& effect : effects()) {
         const auto entry =
@@ -351,10 +351,10 @@ Wishes granted(Wishes wishes) {
 }
 
 /// \param name  of the material, for the reasons
-Wishes decide(const Scene& scene, const Material& material, const std::string& name,
-              const Mesh& mesh, OutputCoding output) {
+DrawWishes decide(const Scene& scene, const Material& material, const std::string& name,
+                  const Mesh& mesh, OutputCoding output) {
     const Subject subject{scene, material, mesh, name};
-    Wishes wishes;
+    DrawWishes wishes;
     wishes.features.output = output;
     decide_model(wishes, subject);
     decide_color(wishes, subject);
@@ -373,7 +373,8 @@ DrawPlan plan_draw(const Scene& scene, std::size_t instance, const MaterialRange
     const Mesh& mesh = scene.meshes[scene.instances[instance].mesh];
     const Material& material =
         range.material ? scene.materials[*range.material] : default_material();
-    Wishes wishes = decide(scene, material, material_label(scene, range.material), mesh, output);
+    DrawWishes wishes =
+        decide(scene, material, material_label(scene, range.material), mesh, output);
     const Features& f = wishes.features;
     DrawPlan draw;
     draw.instance = instance;

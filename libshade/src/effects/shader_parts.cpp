@@ -13,18 +13,18 @@ namespace relief {
 namespace {
 
 /// For the table: what a part is chosen by.
-using F = const Features&;
+using By = const Features&;
 
-bool has_lamps(F f) {
+bool has_lamps(By f) {
     return lamp_count(f) > 0;
 }
-bool has_placed_lamps(F f) {
+bool has_placed_lamps(By f) {
     return f.point_lights + f.spot_lights > 0;
 }
-bool is_gouraud(F f) {
+bool is_gouraud(By f) {
     return f.interpolation == Interpolation::gouraud;
 }
-bool is_flat(F f) {
+bool is_flat(By f) {
     return f.interpolation == Interpolation::flat;
 }
 
@@ -37,7 +37,7 @@ struct Needs {
 };
 
 /// \param lamps  the stage computes them  \param rest  and everything else that shows the normal
-Needs needs_of(F f, bool lamps, bool rest) {
+Needs needs_of(By f, bool lamps, bool rest) {
     const bool reflects = rest && (f.reflection != ReflectionTerm::none || f.refraction);
     const bool lit_around = rest && f.environment_diffuse;
     Needs needs;
@@ -49,52 +49,52 @@ Needs needs_of(F f, bool lamps, bool rest) {
     return needs;
 }
 
-Needs vertex_needs(F f) {
+Needs vertex_needs(By f) {
     return needs_of(f, is_gouraud(f), false);
 }
-Needs fragment_needs(F f) {
+Needs fragment_needs(By f) {
     Needs needs = needs_of(f, !is_gouraud(f), true);
     needs.normal |= shows_normal(f);
     return needs;
 }
 
 /// Whether a tangent frame bends the normal, and which.
-bool is_bent(F f) {
+bool is_bent(By f) {
     const bool tangent_space =
         f.detail == NormalDetail::normal_map || f.detail == NormalDetail::bump_map;
     return tangent_space && fragment_needs(f).normal;
 }
-bool has_frame(F f) {
+bool has_frame(By f) {
     return is_bent(f) || shows_frame(f);
 }
-bool has_stored_frame(F f) {
+bool has_stored_frame(By f) {
     return has_frame(f) && f.frame == TangentFrame::stored;
 }
-bool has_derived_frame(F f) {
+bool has_derived_frame(By f) {
     return has_frame(f) && f.frame == TangentFrame::derivatives;
 }
 /// Whether a map's vector in tangent space is asked for.
-bool has_detail(F f, NormalDetail detail) {
+bool has_detail(By f, NormalDetail detail) {
     return f.detail == detail && (is_bent(f) || f.view == DebugView::normal_map);
 }
 
-bool passes_position(F f) {
+bool passes_position(By f) {
     const Needs here = fragment_needs(f);
     const Needs at_vertex = vertex_needs(f);
     return here.position || here.view || at_vertex.position || at_vertex.view ||
            has_derived_frame(f) || (here.normal && is_flat(f));
 }
-bool passes_normal(F f) {
+bool passes_normal(By f) {
     return has_frame(f) || vertex_needs(f).normal || (fragment_needs(f).normal && !is_flat(f));
 }
-bool passes_texcoord(F f) {
+bool passes_texcoord(By f) {
     return f.diffuse_texture || f.specular_texture || f.metallic_roughness_texture ||
            f.occlusion_texture || f.opacity_texture || f.emission_texture ||
            f.detail != NormalDetail::none || has_derived_frame(f) || f.view == DebugView::texcoords;
 }
 
 /// Vertex attributes on their way.
-Parts passing_parts(F f) {
+Parts passing_parts(By f) {
     const bool framed = has_stored_frame(f);
     return {
         {"pass_position", "absent/pass_position.glsl", !passes_position(f)},
@@ -120,7 +120,7 @@ Parts passing_parts(F f) {
 }
 
 /// What a stage knows of the surface at a point.
-Parts surface_parts(F f, const Needs& needs) {
+Parts surface_parts(By f, const Needs& needs) {
     const bool physical = f.metallic_roughness;
     const bool has_view = needs.view && !physical;
     const bool has_position = needs.position && !needs.view;
@@ -142,7 +142,7 @@ Parts surface_parts(F f, const Needs& needs) {
 }
 
 /// The normal at a fragment.
-Parts normal_parts(F f) {
+Parts normal_parts(By f) {
     const bool normal = fragment_needs(f).normal;
     const bool bent = is_bent(f);
     const bool object_map = normal && f.detail == NormalDetail::object_normal_map;
@@ -177,7 +177,7 @@ Parts normal_parts(F f) {
 }
 
 /// Lamps of every kind, in the stage that computes them.
-Parts lamp_parts(F f, bool in_this_stage) {
+Parts lamp_parts(By f, bool in_this_stage) {
     const bool any = in_this_stage && has_lamps(f);
     const bool placed = in_this_stage && has_placed_lamps(f);
     const auto kind = [&](std::uint32_t count) { return any && count > 0; };
@@ -206,7 +206,7 @@ Parts lamp_parts(F f, bool in_this_stage) {
 }
 
 /// What the surface does with a lamp's light.
-Parts scattering_parts(F f, bool in_this_stage) {
+Parts scattering_parts(By f, bool in_this_stage) {
     const bool physical = in_this_stage && has_lamps(f) && f.metallic_roughness;
     const bool phong = in_this_stage && has_lamps(f) && !f.metallic_roughness;
     const Takes highlight{.uniforms = {"specular_color", "shininess"}};
@@ -223,7 +223,7 @@ Parts scattering_parts(F f, bool in_this_stage) {
 }
 
 /// Light from everywhere.
-Parts surrounding_parts(F f) {
+Parts surrounding_parts(By f) {
     const bool physical = f.metallic_roughness;
     return {
         {"ambient", "absent/ambient.glsl", !f.ambient},
@@ -253,7 +253,7 @@ Parts surrounding_parts(F f) {
 }
 
 /// Textures and colours that multiply.
-Parts color_parts(F f) {
+Parts color_parts(By f) {
     const bool physical = f.metallic_roughness;
     // glTF's lamps scatter and mirror at once; a view of one of the two blackens the other.
     const bool no_scattering = physical && f.view == DebugView::specular;
@@ -292,7 +292,7 @@ Parts color_parts(F f) {
     };
 }
 
-Parts alpha_parts(F f) {
+Parts alpha_parts(By f) {
     return {
         {"alpha", "alpha/opaque.glsl", f.alpha == AlphaMode::opaque},
         {"alpha",
@@ -309,7 +309,7 @@ Parts alpha_parts(F f) {
 }
 
 /// The environment in the surface.
-Parts reflection_parts(F f) {
+Parts reflection_parts(By f) {
     const bool none = f.reflection == ReflectionTerm::none;
     const bool physical = !none && f.metallic_roughness;
     const bool phong = !none && !f.metallic_roughness;
@@ -364,7 +364,7 @@ Parts reflection_parts(F f) {
 }
 
 /// What a view of data writes.
-Parts view_parts(F f) {
+Parts view_parts(By f) {
     const auto is = [&](DebugView view) { return f.view == view; };
     const bool object_map =
         is(DebugView::normal_map) && f.detail == NormalDetail::object_normal_map;

@@ -19,7 +19,7 @@ namespace relief {
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 /// Texels of faces with fewer are cut into parts, so that the harmonics hardly change within one.
 constexpr int fewest_cells = 64;

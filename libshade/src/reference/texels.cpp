@@ -7,15 +7,12 @@
 #include <cmath>
 #include <limits>
 
+#include "geometry/direction.h"
 #include "relief/shade/image_source.h"
 
 namespace relief::reference {
 
 namespace {
-
-bool is_finite(const glm::dvec2& v) {
-    return std::isfinite(v.x) && std::isfinite(v.y);
-}
 
 /// Calls each(texture, use) for every texture that a material may have.
 template <typename Each>

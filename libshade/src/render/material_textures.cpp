@@ -11,7 +11,7 @@ namespace relief {
 namespace {
 
 /// One of a material's textures: where it is bound, how it is read, and whether features sample it.
-struct Row {
+struct TextureRow {
     TextureUnit unit;
     ImageUse use;
     bool (*sampled)(const Features& f);
@@ -23,10 +23,10 @@ const Texture* optional_texture(const Material& m) {
     return m.*Member ? &*(m.*Member) : nullptr;
 }
 
-const std::array<Row, material_unit_count>& rows() {
+const std::array<TextureRow, material_unit_count>& texture_rows() {
     using F = const Features&;
     using M = const Material&;
-    static const std::array<Row, material_unit_count> all{{
+    static const std::array<TextureRow, material_unit_count> all{{
         {TextureUnit::diffuse_texture, ImageUse::color, [](F f) { return f.diffuse_texture; },
          optional_texture<&Material::diffuse_texture>},
         {TextureUnit::specular_texture, ImageUse::color, [](F f) { return f.specular_texture; },
@@ -61,7 +61,7 @@ const std::array<Row, material_unit_count>& rows() {
 std::vector<UsedTexture> used_textures(const Features& features, const Material& material,
                                        const Mesh& mesh) {
     std::vector<UsedTexture> used;
-    for (const Row& row : rows()) {
+    for (const TextureRow& row : texture_rows()) {
         if (!row.sampled(features)) continue;
         const Texture* texture = mesh.texcoords.empty() ? nullptr : row.texture(material);
         used.push_back({row.unit, texture, row.use});
@@ -70,8 +70,8 @@ std::vector<UsedTexture> used_textures(const Features& features, const Material&
 }
 
 bool has_textures(const Material& material) {
-    return std::any_of(rows().begin(), rows().end(),
-                       [&](const Row& row) { return row.texture(material) != nullptr; });
+    return std::any_of(texture_rows().begin(), texture_rows().end(),
+                       [&](const TextureRow& row) { return row.texture(material) != nullptr; });
 }
 
 }  // namespace relief

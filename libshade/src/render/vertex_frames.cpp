@@ -6,14 +6,11 @@
 #include <cmath>
 
 #include "render/draw_values.h"
+#include "scene/is_finite.h"
 
 namespace relief {
 
 namespace {
-
-bool is_finite(const glm::dvec3& v) {
-    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
-}
 
 /// A line from a point, unless the direction has no length.
 void add_line(const glm::dvec3& from, const glm::dvec3& direction, double length,

@@ -8,13 +8,11 @@
 #include <map>
 #include <string_view>
 
+#include "scene/is_finite.h"
+
 namespace relief {
 
 namespace {
-
-bool is_finite(const glm::vec3& v) {
-    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
-}
 
 /// Where an element of a condition is; nothing if it is nowhere.
 std::optional<glm::vec3> place_of(const Mesh& mesh, std::string_view element, std::size_t index) {

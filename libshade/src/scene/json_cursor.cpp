@@ -20,7 +20,7 @@ namespace relief {
 
 namespace {
 
-using Json = nlohmann::json;
+using PlainJson = nlohmann::json;
 
 /// A key as a step of a JSON pointer.
 std::string escaped(std::string_view key) {
@@ -40,10 +40,10 @@ std::string escaped(std::string_view key) {
 /// Refuses keys that stand twice in an object, of which JSON parsers keep the last.
 class DuplicateKeys {
   public:
-    bool operator()(int, Json::parse_event_t event, Json& value) {
-        if (event == Json::parse_event_t::object_start) open_.emplace_back();
-        if (event == Json::parse_event_t::object_end) open_.pop_back();
-        if (event == Json::parse_event_t::key &&
+    bool operator()(int, PlainJson::parse_event_t event, PlainJson& value) {
+        if (event == PlainJson::parse_event_t::object_start) open_.emplace_back();
+        if (event == PlainJson::parse_event_t::object_end) open_.pop_back();
+        if (event == PlainJson::parse_event_t::key &&
             !open_.back().insert(value.get<std::string>()).second) {
             throw InvalidInput(
                 fmt::format("the key '{}' stands twice in one object", value.get<std::string>()));
@@ -76,22 +76,23 @@ std::optional<float> hex_code(std::string_view digits) {
 
 }  // namespace
 
-JsonCursor::JsonCursor(std::shared_ptr<const Json> document, const Json* value, std::string place)
+JsonCursor::JsonCursor(std::shared_ptr<const PlainJson> document, const PlainJson* value,
+                       std::string place)
     : document_(std::move(document)), value_(value), place_(std::move(place)) {}
 
 JsonCursor JsonCursor::parse(std::string_view text) {
     DuplicateKeys duplicates;
     try {
-        auto document = std::make_shared<const Json>(
-            Json::parse(text.begin(), text.end(), std::ref(duplicates)));
-        const Json* root = document.get();
+        auto document = std::make_shared<const PlainJson>(
+            PlainJson::parse(text.begin(), text.end(), std::ref(duplicates)));
+        const PlainJson* root = document.get();
         return {std::move(document), root, ""};
-    } catch (const Json::exception& error) {
+    } catch (const PlainJson::exception& error) {
         throw InvalidInput(fmt::format("is no JSON: {}", error.what()));
     }
 }
 
-JsonCursor JsonCursor::below(const Json& value, std::string_view step) const {
+JsonCursor JsonCursor::below(const PlainJson& value, std::string_view step) const {
     return {document_, &value, place_ + "/" + escaped(step)};
 }
 

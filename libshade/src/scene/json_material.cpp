@@ -12,9 +12,9 @@ namespace relief {
 
 namespace {
 
-using Setter = std::function<void(const JsonCursor&)>;
+using MemberSetter = std::function<void(const JsonCursor&)>;
 /// What each member of an object does, by its key.
-using Members = std::map<std::string, Setter>;
+using Members = std::map<std::string, MemberSetter>;
 
 void read_members(const JsonCursor& object, const Members& members) {
     std::vector<std::string> known;
@@ -25,28 +25,28 @@ void read_members(const JsonCursor& object, const Members& members) {
         members.at(key)(object.at(key));
 }
 
-Setter number(float& value, float least, float most) {
+MemberSetter number(float& value, float least, float most) {
     return [&value, least, most](const JsonCursor& c) { value = c.number(least, most); };
 }
-Setter color(glm::vec3& value) {
+MemberSetter color(glm::vec3& value) {
     return [&value](const JsonCursor& c) { value = c.color(); };
 }
-Setter flag(bool& value) {
+MemberSetter flag(bool& value) {
     return [&value](const JsonCursor& c) { value = c.boolean(); };
 }
 template <typename Value, std::size_t count>
-Setter choice(Value& value, const Named<Value> (&names)[count]) {
+MemberSetter choice(Value& value, const Named<Value> (&names)[count]) {
     return [&value, &names](const JsonCursor& c) { value = one_of(c, names); };
 }
 /// What a material may have or not: null takes it away.
 template <typename Value, typename Read>
-Setter optional(std::optional<Value>& value, const Read& read) {
+MemberSetter optional(std::optional<Value>& value, const Read& read) {
     return [&value, read](const JsonCursor& c) {
         value.reset();
         if (!c.is_null()) value = read(c);
     };
 }
-Setter texture(std::optional<Texture>& value, JsonImages& images) {
+MemberSetter texture(std::optional<Texture>& value, JsonImages& images) {
     return optional(value, [&images](const JsonCursor& c) { return images.texture(c); });
 }
 

@@ -15,7 +15,7 @@ namespace relief {
 
 namespace {
 
-struct Row {
+struct MaterialRow {
     const char* name;
     glm::vec3 ambient;
     glm::vec3 diffuse;
@@ -24,7 +24,7 @@ struct Row {
 };
 
 /// By name, ascending.
-constexpr Row table[] = {
+constexpr MaterialRow table[] = {
     {"black plastic", {0.0F, 0.0F, 0.0F}, {0.01F, 0.01F, 0.01F}, {0.5F, 0.5F, 0.5F}, 0.25F},
     {"black rubber", {0.02F, 0.02F, 0.02F}, {0.01F, 0.01F, 0.01F}, {0.4F, 0.4F, 0.4F}, 0.078125F},
     {"brass",
@@ -143,7 +143,7 @@ glm::vec3 decoded(const glm::vec3& codes) {
 std::optional<Material> material_by_name(std::string_view name) {
     const std::string wanted = as_in_table(name);
     const auto* row = std::find_if(std::begin(table), std::end(table),
-                                   [&](const Row& entry) { return entry.name == wanted; });
+                                   [&](const MaterialRow& entry) { return entry.name == wanted; });
     if (row == std::end(table)) return std::nullopt;
     Material material;
     material.name = row->name;
@@ -158,7 +158,7 @@ std::optional<Material> material_by_name(std::string_view name) {
 const std::vector<std::string>& material_names() {
     static const std::vector<std::string> names = [] {
         std::vector<std::string> result;
-        for (const Row& row : table)
+        for (const MaterialRow& row : table)
             result.emplace_back(row.name);
         return result;
     }();

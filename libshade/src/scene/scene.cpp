@@ -11,15 +11,12 @@
 #include <numbers>
 
 #include "relief/mesh/error.h"
+#include "scene/is_finite.h"
 #include "scene/orbit_axes.h"
 
 namespace relief {
 
 namespace {
-
-bool is_finite(const glm::vec3& v) {
-    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
-}
 
 /// How much more than the box is seen, so that nothing touches the picture's edge.
 constexpr float framing_margin = 1.05F;

@@ -5,11 +5,11 @@
 #include "relief/shade/scene_file.h"
 
 #include <algorithm>
-#include <cctype>
 #include <map>
 #include <string>
 #include <utility>
 
+#include "file_bytes.h"
 #include "relief/mesh/error.h"
 #include "relief/mesh/frames.h"
 #include "scene/gltf_scene.h"
@@ -18,13 +18,6 @@
 namespace relief {
 
 namespace {
-
-std::string lower_extension(const std::filesystem::path& file) {
-    std::string extension = file.extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    return extension;
-}
 
 /// The scene's images by path, each once.
 class ImagesByPath {

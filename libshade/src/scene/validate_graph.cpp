@@ -7,22 +7,12 @@
 
 #include "relief/mesh/error.h"
 #include "relief/shade/scene_graph.h"
+#include "scene/is_finite.h"
 #include "scene/key_channel.h"
 
 namespace relief {
 
 namespace {
-
-bool is_finite(const glm::vec3& v) {
-    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
-}
-
-bool is_finite(const glm::mat4& matrix) {
-    for (int column = 0; column < 4; ++column) {
-        if (!is_finite(glm::vec3(matrix[column])) || !std::isfinite(matrix[column].w)) return false;
-    }
-    return true;
-}
 
 std::string node_label(const SceneGraph& graph, std::size_t node) {
     const std::string& name = graph.nodes[node].name;
