@@ -17,6 +17,7 @@ inline constexpr std::array all_surfaces = {AnalyticSurface::sphere, AnalyticSur
 inline constexpr std::array all_triangulations = {Triangulation::regular, Triangulation::jittered,
                                                   Triangulation::anisotropic,
                                                   Triangulation::folded};
+inline constexpr std::array both_arithmetics = {Arithmetic::float64, Arithmetic::float32};
 
 inline std::string word_of(AnalyticSurface surface) {
     constexpr std::array words = {"sphere", "torus", "ellipsoid", "saddle", "cubic"};

@@ -25,7 +25,7 @@ struct SubjectEntry {
 };
 
 /// In the order of reports.
-constexpr std::array entries = {
+constexpr std::array subject_entries = {
     SubjectEntry{Subject::normals, normals_experiments},
     SubjectEntry{Subject::tangents, tangents_experiments},
     SubjectEntry{Subject::bump, bump_experiments},
@@ -40,7 +40,7 @@ struct SubjectWord {
     std::string_view word;
 };
 
-constexpr std::array words = {
+constexpr std::array subject_words = {
     SubjectWord{Subject::normals, "normals"},     SubjectWord{Subject::tangents, "tangents"},
     SubjectWord{Subject::bump, "bump"},           SubjectWord{Subject::storage, "storage"},
     SubjectWord{Subject::bake, "bake"},           SubjectWord{Subject::shading, "shading"},
@@ -51,20 +51,21 @@ constexpr std::array words = {
 
 std::vector<Subject> subjects_with_experiments() {
     std::vector<Subject> subjects;
-    for (const SubjectEntry& entry : entries)
+    for (const SubjectEntry& entry : subject_entries)
         subjects.push_back(entry.subject);
     return subjects;
 }
 
 std::string_view word_of(Subject subject) {
-    const auto* const found = std::find_if(
-        words.begin(), words.end(), [&](const SubjectWord& one) { return one.subject == subject; });
+    const auto* const found =
+        std::find_if(subject_words.begin(), subject_words.end(),
+                     [&](const SubjectWord& one) { return one.subject == subject; });
     return found->word;
 }
 
 Subject subject_from(std::string_view word) {
     std::vector<std::string_view> known;
-    for (const SubjectWord& one : words) {
+    for (const SubjectWord& one : subject_words) {
         if (one.word == word) return one.subject;
         known.push_back(one.word);
     }
@@ -72,7 +73,7 @@ Subject subject_from(std::string_view word) {
 }
 
 std::vector<Experiment> run_experiments(Subject subject, const RunOptions& options) {
-    for (const SubjectEntry& entry : entries) {
+    for (const SubjectEntry& entry : subject_entries) {
         if (entry.subject == subject) return entry.run(options);
     }
     throw InvalidInput(fmt::format("there are no experiments on {} yet", word_of(subject)));

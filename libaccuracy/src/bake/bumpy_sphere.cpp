@@ -14,27 +14,27 @@ namespace {
 constexpr double height = 0.02;
 constexpr double waves = 12.0;
 
-struct Angles {
+struct SphereAngles {
     double longitude = 0.0;  ///< From +z towards +x.
     double polar = 0.0;      ///< From +y.
 };
 
-Angles angles_of(const glm::dvec3& p) {
+SphereAngles angles_of(const glm::dvec3& p) {
     return {std::atan2(p.x, p.z), std::atan2(std::hypot(p.x, p.z), p.y)};
 }
 
-double radius_at(const Angles& a) {
+double radius_at(const SphereAngles& a) {
     return 1.0 + height * std::sin(waves * a.longitude) * std::sin(waves * a.polar);
 }
 
-glm::dvec3 direction_at(const Angles& a) {
+glm::dvec3 direction_at(const SphereAngles& a) {
     return {std::sin(a.polar) * std::sin(a.longitude), std::cos(a.polar),
             std::sin(a.polar) * std::cos(a.longitude)};
 }
 
 /// The gradient of |p| - radius: outwards - d radius / d polar * p_polar
 /// - d radius / d longitude / sin polar * p_longitude, over the radius.
-glm::dvec3 normal_at(const Angles& a) {
+glm::dvec3 normal_at(const SphereAngles& a) {
     const double sine = std::max(std::sin(a.polar), 1e-9);
     const glm::dvec3 polar_wards(std::cos(a.polar) * std::sin(a.longitude), -std::sin(a.polar),
                                  std::cos(a.polar) * std::cos(a.longitude));
@@ -68,8 +68,8 @@ BumpySphere::BumpySphere(int stacks) : stacks_(stacks) {
     const int slices = 2 * stacks;
     for (int stack = 0; stack <= stacks; ++stack) {
         for (int slice = 0; slice <= slices; ++slice) {
-            const Angles a{2.0 * std::numbers::pi * (slice % slices) / slices,
-                           std::numbers::pi * stack / stacks};
+            const SphereAngles a{2.0 * std::numbers::pi * (slice % slices) / slices,
+                                 std::numbers::pi * stack / stacks};
             mesh_.positions.emplace_back(radius_at(a) * direction_at(a));
             mesh_.normals.emplace_back(normal_at(a));
         }
@@ -98,7 +98,7 @@ SurfacePoint BumpySphere::on_surface(const glm::dvec3& from, const glm::dvec3& i
 }
 
 SurfacePoint BumpySphere::on_mesh(const glm::dvec3& from, const glm::dvec3& inward) const {
-    const Angles a = angles_of(on_surface(from, inward).position);
+    const SphereAngles a = angles_of(on_surface(from, inward).position);
     const int slices = 2 * stacks_;
     const auto near_stack = static_cast<int>(std::floor(a.polar / std::numbers::pi * stacks_));
     const auto near_slice =

@@ -20,8 +20,6 @@
 namespace relief {
 namespace {
 
-constexpr std::array both_arithmetics = {Arithmetic::float64, Arithmetic::float32};
-
 BumpOptions with_kernel(BumpOptions options, const NamedKernel& kernel, Arithmetic arithmetic) {
     options.kernel = kernel.kernel;
     options.gaussian_radius = kernel.radius;
@@ -67,7 +65,7 @@ std::string words_on_arithmetic(const Experiment& experiment) {
 }
 
 /// "gaussian 4, float64 is closest, 0.32 degrees RMS, where sobel3 is 0.99 off. ..."
-std::string finding_of(const Experiment& experiment) {
+std::string bump_finding(const Experiment& experiment) {
     const Measurement& best = *truest(experiment);
     std::string text =
         fmt::format("{} is closest, {:.2g} degrees RMS", best.method, best.error.rms);
@@ -112,7 +110,7 @@ Experiment on_wave(int bits, const RunOptions& options) {
     }
     measure_methods(measured, options, {.one_thread = true, .all_threads = true, .memory = false},
                     experiment);
-    experiment.finding = finding_of(experiment);
+    experiment.finding = bump_finding(experiment);
     experiment.charts.push_back(wavelength_chart(bits, side, options.is_quick));
     return experiment;
 }
@@ -174,7 +172,7 @@ Experiment on_recipe(const std::string& id, const FieldRecipe& recipe, int side,
     }
     measure_methods(measured, options, costs, experiment);
     experiment.finding =
-        fmt::format("{} On this map --kernel auto takes {}.", finding_of(experiment),
+        fmt::format("{} On this map --kernel auto takes {}.", bump_finding(experiment),
                     name_of(found.choice.kernel, found.choice.gaussian_radius));
     return experiment;
 }

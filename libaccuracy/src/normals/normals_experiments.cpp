@@ -15,10 +15,9 @@
 namespace relief {
 namespace {
 
-constexpr std::array both_arithmetics = {Arithmetic::float64, Arithmetic::float32};
 constexpr std::array float64_alone = {Arithmetic::float64};
-constexpr std::uint32_t seed = 1;
-constexpr int cells_of_tables = 64;  ///< As in docs/normals.md.
+constexpr std::uint32_t tables_seed = 1;
+constexpr int cells_of_normal_tables = 64;  ///< As in docs/normals.md.
 
 struct Case {
     AnalyticSurface surface;
@@ -83,7 +82,8 @@ Chart cells_chart(const Case& one, bool is_quick) {
     const std::vector<NormalMethod> methods = normal_methods(float64_alone);
     std::vector<std::vector<CurvePoint>> points(methods.size());
     for (const int cells : sizes) {
-        const AnalyticMesh truth = analytic_mesh(one.surface, one.triangulation, cells, seed);
+        const AnalyticMesh truth =
+            analytic_mesh(one.surface, one.triangulation, cells, tables_seed);
         for (std::size_t m = 0; m < methods.size(); ++m) {
             const double rms = normal_errors(methods[m].normals(truth.mesh), truth).rms;
             points[m].push_back({static_cast<double>(cells), rms});
@@ -97,7 +97,7 @@ Chart cells_chart(const Case& one, bool is_quick) {
 }
 
 /// "max, float64 is closest, 0.453 degrees RMS; area, float64 is farthest, 1.28."
-std::string finding_of(const Experiment& experiment) {
+std::string normals_finding(const Experiment& experiment) {
     const Measurement& best = *truest(experiment);
     const auto& all = experiment.measurements;
     const auto by_rms = [](const Measurement& a, const Measurement& b) {
@@ -147,15 +147,17 @@ Experiment on_mesh(const std::string& id, const AnalyticMesh& truth, const std::
                             .work = [normals = method.normals, &truth] { normals(truth.mesh); }});
     }
     measure_methods(measured, options, costs, experiment);
-    experiment.finding = finding_of(experiment);
+    experiment.finding = normals_finding(experiment);
     return experiment;
 }
 
 Experiment on_case(const Case& one, const RunOptions& options) {
-    const AnalyticMesh truth = analytic_mesh(one.surface, one.triangulation, cells_of_tables, seed);
+    const AnalyticMesh truth =
+        analytic_mesh(one.surface, one.triangulation, cells_of_normal_tables, tables_seed);
     Experiment experiment = on_mesh(
         fmt::format("normals/{}-{}", word_of(one.surface), word_of(one.triangulation)), truth,
-        fmt::format("{}, {} x {} cells", words_of(one), cells_of_tables, cells_of_tables),
+        fmt::format("{}, {} x {} cells", words_of(one), cells_of_normal_tables,
+                    cells_of_normal_tables),
         {.one_thread = true, .all_threads = true, .memory = false}, options);
     experiment.question = fmt::format(
         "Which weighting is closest to the normals of a surface ({}), and what does it cost?",
@@ -164,10 +166,10 @@ Experiment on_case(const Case& one, const RunOptions& options) {
     return experiment;
 }
 
-Experiment on_large_mesh(const RunOptions& options) {
+Experiment normals_on_large_mesh(const RunOptions& options) {
     const int cells = options.is_quick ? 160 : 512;
     const AnalyticMesh truth =
-        analytic_mesh(AnalyticSurface::torus, Triangulation::jittered, cells, seed);
+        analytic_mesh(AnalyticSurface::torus, Triangulation::jittered, cells, tables_seed);
     Experiment experiment =
         on_mesh("normals/large", truth, fmt::format("torus, jittered, {} x {} cells", cells, cells),
                 {}, options);
@@ -225,7 +227,8 @@ std::vector<PlannedExperiment> normals_plan(const RunOptions& options) {
     for (const Case& one : cases(options.is_quick))
         plan.push_back(
             {"Normals: " + words_of(one), [&options, one] { return on_case(one, options); }});
-    plan.push_back({"Normals: a large mesh", [&options] { return on_large_mesh(options); }});
+    plan.push_back(
+        {"Normals: a large mesh", [&options] { return normals_on_large_mesh(options); }});
     plan.push_back({"Normals: single fans", [&options] { return on_fans(options); }});
     return plan;
 }

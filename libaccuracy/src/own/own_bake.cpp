@@ -11,8 +11,6 @@ namespace relief {
 namespace {
 
 constexpr std::size_t texels_looked_at = std::size_t{1} << 16;
-/// Nobody sees less.
-constexpr double unseen_degrees = 0.01;
 
 std::string words_of(const BakeWay& way) {
     return way.sample_degrees ? fmt::format("auto {:g}", *way.sample_degrees)

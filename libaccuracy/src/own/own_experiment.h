@@ -13,6 +13,9 @@
 
 namespace relief {
 
+/// Nobody sees less; and nothing is worth a byte for it.
+inline constexpr double unseen_degrees = 0.01;
+
 /// A method and what does it.
 struct OwnMethod {
     MeasuredMethod measured;

@@ -14,7 +14,7 @@
 namespace relief {
 namespace {
 
-constexpr std::array both_arithmetics = {Arithmetic::float32, Arithmetic::float64};
+constexpr std::array arithmetics_tried = {Arithmetic::float32, Arithmetic::float64};
 
 /// The conversion as it is done, on all parts.
 std::function<void()> work_of(const BumpMethod& method, const BumpSample& sample,
@@ -55,7 +55,7 @@ std::vector<BumpMethod> methods_for(const KernelChoice& choice, const OwnOptions
     constexpr int most_bits_with_steps = 12;
     const int radius = best_gaussian_radius(choice);
     const std::array as_is = {false};
-    std::vector<BumpMethod> methods = bump_methods(radius, options.map_bits, both_arithmetics, as_is);
+    std::vector<BumpMethod> methods = bump_methods(radius, options.map_bits, arithmetics_tried, as_is);
     const bool has_steps = choice.depth.bits > 0 && choice.depth.bits <= most_bits_with_steps;
     if (!has_steps || !options.smooths_steps) return methods;
     const std::array smooth = {true};

@@ -16,9 +16,6 @@
 namespace relief {
 namespace {
 
-/// Nobody sees less; and nothing is worth a byte for it.
-constexpr double unseen_degrees = 0.01;
-
 void add_angles(const Image& found, const Image& expected, std::vector<float>& degrees) {
     const std::span<const float> a = found.as<float>();
     const std::span<const float> b = expected.as<float>();

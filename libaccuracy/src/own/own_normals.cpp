@@ -19,8 +19,6 @@
 namespace relief {
 namespace {
 
-constexpr std::array both_arithmetics = {Arithmetic::float64, Arithmetic::float32};
-
 /// Where the truth is known, and what it is.
 struct CornerTruth {
     std::vector<std::uint32_t> corners;

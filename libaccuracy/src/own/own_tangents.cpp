@@ -21,8 +21,6 @@ namespace {
 
 constexpr std::size_t most_triangles_sampled = 50'000;
 constexpr std::size_t most_frames = 100'000;
-/// Nobody sees less; and nothing is worth a byte for it.
-constexpr double unseen_degrees = 0.01;
 
 bool is_finite(const glm::dmat3& basis) {
     return std::isfinite(basis[0].x + basis[0].y + basis[0].z + basis[1].x + basis[2].x);

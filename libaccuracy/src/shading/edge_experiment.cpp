@@ -23,7 +23,7 @@ Scene cube_and_ring() {
     return scene;
 }
 
-std::vector<DrawnMethod> methods() {
+std::vector<DrawnMethod> edge_methods() {
     const Scene scene = cube_and_ring();
     const auto choices = [](const char* way, const char* samples) {
         return std::vector<std::pair<std::string, std::string>>{{"averaged", way},
@@ -52,7 +52,7 @@ Experiment edge_experiment(const Drawing& drawing, const RunOptions& options) {
         .item = "pixel",
         .items = static_cast<double>(size) * size};
     if (!drawing.is_possible_for(experiment)) return experiment;
-    const std::vector<DrawnMethod> all = methods();
+    const std::vector<DrawnMethod> all = edge_methods();
     const Image truth = many_samples(all.front().scene, size, rays);
     const std::vector<DrawnPicture> pictures =
         measure_drawn(drawing, all, truth, options, experiment);

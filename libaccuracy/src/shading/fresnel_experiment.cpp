@@ -34,7 +34,7 @@ ErrorFigures schlick_error(std::complex<double> index, std::span<const float> co
 }
 
 /// Schlick's error at each angle, boundary by boundary.
-Chart angle_chart() {
+Chart chart_by_incidence() {
     Chart chart{.id = "angle",
                 .title = "Schlick's error by angle",
                 .x_label = "angle of incidence, degrees",
@@ -102,7 +102,7 @@ Experiment glass_experiment(const RunOptions& options) {
     Experiment experiment = measured(boundaries[1], options);
     experiment.id = "shading/fresnel-glass";
     const std::vector<float> cosines = cosines_of_angles(901);
-    experiment.charts = {angle_chart(), index_chart(cosines)};
+    experiment.charts = {chart_by_incidence(), index_chart(cosines)};
     experiment.finding = fmt::format(
         "For glass, Schlick's fit is {} off, the reflectance of normal incidence taken everywhere "
         "{}. The fit is made for indices around 1.5: at 2.42 it is off by up to {:.2g}, at 3.5 by "

@@ -13,12 +13,12 @@ namespace {
 
 /// Cube maps below 256 texels are blurred into fewer, smaller levels (libshade/src/gl/prefilter.h).
 constexpr int large = 256;
-constexpr int small = 128;
+constexpr int small_map_side = 128;
 
 /// Scenes of one roughness: the truth's, and the methods'.
 struct Balls {
     Environment finest = cube_map_of(waves_and_lamps, large);
-    Environment coarser = cube_map_of(waves_and_lamps, small);
+    Environment coarser = cube_map_of(waves_and_lamps, small_map_side);
 
     [[nodiscard]] std::vector<DrawnMethod> methods(double roughness) const {
         return {{"not blurred", {{"levels", "none"}}, mirror_ball(finest, 0.0)},

@@ -21,20 +21,20 @@ namespace {
 /// Of the metal, colourless.
 constexpr float reflectance = 0.3F;
 
-struct Choice {
+struct HighlightChoice {
     const char* name;
     const char* model;
     const char* exponent;
     SpecularModel specular;
     double exponent_factor;  ///< Of Blinn's.
 };
-constexpr std::array choices = {
-    Choice{"Phong, a quarter of Blinn's exponent", "Phong", "a quarter", SpecularModel::phong,
-           0.25},
-    Choice{"Phong, Blinn's exponent", "Phong", "the same", SpecularModel::phong, 1.0},
-    Choice{"Blinn-Phong", "Blinn-Phong", "the same", SpecularModel::blinn_phong, 1.0},
-    Choice{"Blinn-Phong, Phong's exponent", "Blinn-Phong", "a quarter", SpecularModel::blinn_phong,
-           0.25}};
+constexpr std::array highlight_choices = {
+    HighlightChoice{"Phong, a quarter of Blinn's exponent", "Phong", "a quarter",
+                    SpecularModel::phong, 0.25},
+    HighlightChoice{"Phong, Blinn's exponent", "Phong", "the same", SpecularModel::phong, 1.0},
+    HighlightChoice{"Blinn-Phong", "Blinn-Phong", "the same", SpecularModel::blinn_phong, 1.0},
+    HighlightChoice{"Blinn-Phong, Phong's exponent", "Blinn-Phong", "a quarter",
+                    SpecularModel::blinn_phong, 0.25}};
 constexpr const char* metal_name = "GGX";
 
 double exponent_of(double roughness) {
@@ -57,7 +57,7 @@ Scene metal(double roughness) {
     return scene_of(material);
 }
 
-DrawnMethod method_of(const Choice& choice, double roughness) {
+DrawnMethod method_of(const HighlightChoice& choice, double roughness) {
     const double exponent = exponent_of(roughness) * choice.exponent_factor;
     Material material;
     material.ambient = material.diffuse = glm::vec3(0.0F);
@@ -69,9 +69,9 @@ DrawnMethod method_of(const Choice& choice, double roughness) {
         choice.name, {{"model", choice.model}, {"exponent", choice.exponent}}, scene_of(material)};
 }
 
-std::vector<DrawnMethod> methods(double roughness) {
+std::vector<DrawnMethod> highlight_methods(double roughness) {
     std::vector<DrawnMethod> all;
-    for (const Choice& choice : choices)
+    for (const HighlightChoice& choice : highlight_choices)
         all.push_back(method_of(choice, roughness));
     all.push_back({metal_name, {{"model", "GGX"}, {"exponent", "none"}}, metal(roughness)});
     return all;
@@ -83,13 +83,14 @@ Chart chart_of(const Drawing& drawing, int size) {
                 .x_label = "roughness",
                 .y_label = "FLIP",
                 .is_x_log = false};
-    for (const Choice& choice : choices)
+    for (const HighlightChoice& choice : highlight_choices)
         chart.curves.push_back({.method = choice.name});
     for (const double roughness : {0.2, 0.3, 0.4, 0.5, 0.6}) {
         const Image truth = many_samples(metal(roughness), size, 1);
-        for (std::size_t i = 0; i < choices.size(); ++i) {
+        for (std::size_t i = 0; i < highlight_choices.size(); ++i) {
             chart.curves[i].points.push_back(
-                {roughness, drawn_error(drawing, method_of(choices.at(i), roughness), truth)});
+                {roughness,
+                 drawn_error(drawing, method_of(highlight_choices.at(i), roughness), truth)});
         }
     }
     return chart;
@@ -114,7 +115,7 @@ Experiment highlight_experiment(const Drawing& drawing, const RunOptions& option
         .items = static_cast<double>(size) * size};
     if (!drawing.is_possible_for(experiment)) return experiment;
     const Image truth = many_samples(metal(roughness), size, 1);
-    const std::vector<DrawnMethod> all = methods(roughness);
+    const std::vector<DrawnMethod> all = highlight_methods(roughness);
     const std::vector<DrawnPicture> pictures =
         measure_drawn(drawing, all, truth, options, experiment);
     experiment.charts = {chart_of(drawing, options.is_quick ? 96 : size)};

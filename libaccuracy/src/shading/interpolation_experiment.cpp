@@ -16,13 +16,13 @@
 namespace relief {
 namespace {
 
-struct Choice {
+struct LightingChoice {
     const char* name;
     Interpolation interpolation;
 };
-constexpr std::array choices = {Choice{"flat", Interpolation::flat},
-                                Choice{"Gouraud", Interpolation::gouraud},
-                                Choice{"Phong", Interpolation::per_pixel}};
+constexpr std::array lighting_choices = {LightingChoice{"flat", Interpolation::flat},
+                                         LightingChoice{"Gouraud", Interpolation::gouraud},
+                                         LightingChoice{"Phong", Interpolation::per_pixel}};
 /// Around the tube's circle; half as many around the tube.
 constexpr std::array slices = {12, 24, 48, 96, 192};
 constexpr int true_slices = 768;
@@ -31,11 +31,11 @@ std::size_t triangles_of(int around) {
     return static_cast<std::size_t>(around) * static_cast<std::size_t>(around);
 }
 
-std::string name_of(const Choice& choice, int around) {
+std::string name_of(const LightingChoice& choice, int around) {
     return fmt::format("{}, {} triangles", choice.name, triangles_of(around));
 }
 
-Scene torus(int around, Interpolation interpolation) {
+Scene lit_torus(int around, Interpolation interpolation) {
     Material material = glossy_plastic();
     material.interpolation = interpolation;
     Scene scene = lit_scene(make_torus(0.4F, around, around / 2), material);
@@ -44,14 +44,14 @@ Scene torus(int around, Interpolation interpolation) {
     return scene;
 }
 
-std::vector<DrawnMethod> methods() {
+std::vector<DrawnMethod> interpolation_methods() {
     std::vector<DrawnMethod> all;
-    for (const Choice& choice : choices) {
+    for (const LightingChoice& choice : lighting_choices) {
         for (const int around : slices) {
             all.push_back(
                 {name_of(choice, around),
                  {{"lit", choice.name}, {"triangles", fmt::format("{}", triangles_of(around))}},
-                 torus(around, choice.interpolation)});
+                 lit_torus(around, choice.interpolation)});
         }
     }
     return all;
@@ -62,7 +62,7 @@ Chart chart_of(const Experiment& experiment) {
                 .title = "Error by triangles",
                 .x_label = "triangles",
                 .y_label = "FLIP"};
-    for (const Choice& choice : choices) {
+    for (const LightingChoice& choice : lighting_choices) {
         Curve curve{.method = choice.name};
         for (const int around : slices) {
             curve.points.push_back({static_cast<double>(triangles_of(around)),
@@ -74,9 +74,9 @@ Chart chart_of(const Experiment& experiment) {
     return chart;
 }
 
-std::string finding_of(const Experiment& experiment) {
+std::string interpolation_finding(const Experiment& experiment) {
     const auto at = [&](std::size_t choice, int around) -> const Measurement& {
-        return method_in(experiment, name_of(choices.at(choice), around));
+        return method_in(experiment, name_of(lighting_choices.at(choice), around));
     };
     return fmt::format(
         "With {} triangles, flat shading is off by FLIP {:.3f} (RMS), Gouraud's by {:.3f} and "
@@ -106,8 +106,8 @@ Experiment interpolation_experiment(const Drawing& drawing, const RunOptions& op
         .item = "pixel",
         .items = static_cast<double>(size) * size};
     if (!drawing.is_possible_for(experiment)) return experiment;
-    const Image truth = many_samples(torus(true_slices, Interpolation::per_pixel), size, 1);
-    const std::vector<DrawnMethod> all = methods();
+    const Image truth = many_samples(lit_torus(true_slices, Interpolation::per_pixel), size, 1);
+    const std::vector<DrawnMethod> all = interpolation_methods();
     const std::vector<DrawnPicture> pictures =
         measure_drawn(drawing, all, truth, options, experiment);
     experiment.charts = {chart_of(experiment)};
@@ -116,7 +116,7 @@ Experiment interpolation_experiment(const Drawing& drawing, const RunOptions& op
             pair_of("Where light is computed", all[i].name, pictures[i].picture, truth));
         experiment.heat_maps.push_back({"Where it is seen", all[i].name, pictures[i].errors, 0.5});
     }
-    experiment.finding = finding_of(experiment);
+    experiment.finding = interpolation_finding(experiment);
     return experiment;
 }
 

@@ -60,22 +60,22 @@ Scene plane(const Image& map, bool is_antialiased, double away) {
     return scene;
 }
 
-struct Choice {
+struct AliasingChoice {
     const char* name;
     const char* highlights;
     bool is_antialiased;
     int samples;
     int pixels_a_side;
 };
-constexpr std::array choices = {
-    Choice{"averaged normals", "as sharp as ever", false, 1, 1},
-    Choice{"averaged normals, MSAA", "as sharp as ever", false, 4, 1},
-    Choice{"averaged normals, 2 x 2 pixels", "as sharp as ever", false, 1, 2},
-    Choice{"averaged normals, 4 x 4 pixels", "as sharp as ever", false, 1, 4},
-    Choice{"Toksvig", "widened", true, 1, 1},
-    Choice{"Toksvig, 2 x 2 pixels", "widened", true, 1, 2}};
+constexpr std::array aliasing_choices = {
+    AliasingChoice{"averaged normals", "as sharp as ever", false, 1, 1},
+    AliasingChoice{"averaged normals, MSAA", "as sharp as ever", false, 4, 1},
+    AliasingChoice{"averaged normals, 2 x 2 pixels", "as sharp as ever", false, 1, 2},
+    AliasingChoice{"averaged normals, 4 x 4 pixels", "as sharp as ever", false, 1, 4},
+    AliasingChoice{"Toksvig", "widened", true, 1, 1},
+    AliasingChoice{"Toksvig, 2 x 2 pixels", "widened", true, 1, 2}};
 
-DrawnMethod method_of(const Choice& choice, const Image& map, double away) {
+DrawnMethod method_of(const AliasingChoice& choice, const Image& map, double away) {
     return {choice.name,
             {{"highlights", choice.highlights},
              {"samples a pixel",
@@ -107,7 +107,7 @@ Experiment specular_aliasing_experiment(const Drawing& drawing, const RunOptions
     if (!drawing.is_possible_for(experiment)) return experiment;
     const Image map = bumpy_normals();
     std::vector<DrawnMethod> all;
-    for (const Choice& choice : choices)
+    for (const AliasingChoice& choice : aliasing_choices)
         all.push_back(method_of(choice, map, away(shown)));
     const Image truth = many_samples(all.front().scene, size, rays);
     const std::vector<DrawnPicture> pictures =
@@ -117,11 +117,12 @@ Experiment specular_aliasing_experiment(const Drawing& drawing, const RunOptions
                 .x_label = "texels along a pixel",
                 .y_label = "FLIP"};
     for (const std::size_t i : {0U, 2U, 4U})
-        chart.curves.push_back({.method = choices.at(i).name});
+        chart.curves.push_back({.method = aliasing_choices.at(i).name});
     for (const double texels_a_pixel : {0.5, 1.0, 2.0, 4.0, 8.0, 16.0}) {
         const Image there = many_samples(plane(map, false, away(texels_a_pixel)), size, rays);
         for (std::size_t i = 0; i < chart.curves.size(); ++i) {
-            const DrawnMethod method = method_of(choices.at(2 * i), map, away(texels_a_pixel));
+            const DrawnMethod method =
+                method_of(aliasing_choices.at(2 * i), map, away(texels_a_pixel));
             chart.curves[i].points.push_back({texels_a_pixel, drawn_error(drawing, method, there)});
         }
     }

@@ -10,7 +10,7 @@
 namespace relief {
 namespace {
 
-Chart angle_chart() {
+Chart chart_by_turn() {
     Chart chart{.id = "angle",
                 .title = "Error by the angle between neighbouring normals",
                 .x_label = "degrees between the normals of a triangle's corners",
@@ -55,7 +55,7 @@ Experiment unit_normal_experiment(const RunOptions& options) {
         .item = "place",
         .items = static_cast<double>(samples.count())};
     measure_formulas(unit_normal_methods(samples), samples.true_radiances(), options, experiment);
-    experiment.charts = {angle_chart()};
+    experiment.charts = {chart_by_turn()};
     experiment.finding = fmt::format(
         "Where corners' normals are {} degrees apart, light from the interpolated normal as it is "
         "is {:.2g} (RMS; at most {:.2g}) too dark or bright, of {:.2g} at the most; one step of "

@@ -16,8 +16,7 @@
 namespace relief {
 namespace {
 
-constexpr std::uint32_t seed = 1;
-constexpr double bound = 1.0;
+constexpr std::uint32_t sweep_seed = 1;
 constexpr std::array arithmetics = {Arithmetic::float64, Arithmetic::float32};
 
 NormalMethod plain(const char* name, std::vector<glm::vec3> (*normals)(const Mesh&)) {
@@ -29,7 +28,7 @@ NormalMethod plain(const char* name, std::vector<glm::vec3> (*normals)(const Mes
 }
 
 /// relief's, and plain code's.
-std::vector<NormalMethod> all_methods() {
+std::vector<NormalMethod> swept_normal_methods() {
     std::vector<NormalMethod> methods = normal_methods(arithmetics);
     methods.push_back(plain("plain area", plain_area_normals));
     methods.push_back(plain("plain angle", plain_angle_normals));
@@ -51,9 +50,9 @@ std::vector<float> degrees_from(const std::vector<glm::vec3>& normals,
     return degrees;
 }
 
-AnalyticMesh torus(const RunOptions& options) {
+AnalyticMesh analytic_torus(const RunOptions& options) {
     return analytic_mesh(AnalyticSurface::torus, Triangulation::regular, options.is_quick ? 32 : 64,
-                         seed);
+                         sweep_seed);
 }
 
 /// Vertices are moved and scaled in double, and then rounded to float as any file would.
@@ -82,7 +81,7 @@ void measure(const std::vector<NormalMethod>& methods, const Sweeps& sweeps, con
     }
     measure_methods(measured, options, {.all_threads = false, .memory = false}, experiment);
     experiment.charts = sweeps.charts();
-    experiment.finding = fmt::format("Beyond {} degree: {}", bound, sweeps.breaks());
+    experiment.finding = fmt::format("Beyond {} degree: {}", broken_degrees, sweeps.breaks());
 }
 
 constexpr const char* torus_truth =
@@ -92,9 +91,9 @@ constexpr const char* torus_truth =
 }  // namespace
 
 Experiment normals_by_scale(const RunOptions& options) {
-    const AnalyticMesh truth = torus(options);
-    const std::vector<NormalMethod> methods = all_methods();
-    Sweeps sweeps(names_of(methods), bound);
+    const AnalyticMesh truth = analytic_torus(options);
+    const std::vector<NormalMethod> methods = swept_normal_methods();
+    Sweeps sweeps(names_of(methods), broken_degrees);
     const auto scaled = [&](bool is_larger) {
         return [&, is_larger](std::size_t method, double value) {
             const Mesh mesh = changed(truth.mesh, is_larger ? value : 1.0 / value, 0.0);
@@ -115,9 +114,9 @@ Experiment normals_by_scale(const RunOptions& options) {
 }
 
 Experiment normals_by_offset(const RunOptions& options) {
-    const AnalyticMesh truth = torus(options);
-    const std::vector<NormalMethod> methods = all_methods();
-    Sweeps sweeps(names_of(methods), bound);
+    const AnalyticMesh truth = analytic_torus(options);
+    const std::vector<NormalMethod> methods = swept_normal_methods();
+    Sweeps sweeps(names_of(methods), broken_degrees);
     sweeps.add("offset", "Farther away", "distance along each axis, in radii of the torus", 8, 1,
                [&](std::size_t method, double value) {
                    const Mesh mesh = changed(truth.mesh, 1.0, value);
@@ -140,14 +139,14 @@ Experiment normals_by_offset(const RunOptions& options) {
 
 Experiment normals_of_needles(const RunOptions& options) {
     const std::size_t count = options.is_quick ? 1000 : 4000;
-    const std::vector<NormalMethod> methods = all_methods();
-    Sweeps sweeps(names_of(methods), bound);
+    const std::vector<NormalMethod> methods = swept_normal_methods();
+    Sweeps sweeps(names_of(methods), broken_degrees);
     sweeps.add("width", "Narrower", "length over width", 12, 1,
                [&](std::size_t method, double value) {
-                   const Needles needles = make_needles(count, 1.0 / value, seed);
+                   const Needles needles = make_needles(count, 1.0 / value, sweep_seed);
                    return degrees_from(methods[method].normals(needles.mesh), needles.normals);
                });
-    const Needles wide = make_needles(count, 1.0, seed);
+    const Needles wide = make_needles(count, 1.0, sweep_seed);
     Experiment experiment{
         .id = "stability/normals-needles",
         .question = "How narrow may a triangle be, before its normal is wrong?",

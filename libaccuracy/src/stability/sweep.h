@@ -12,6 +12,9 @@
 
 namespace relief {
 
+/// What errs by more is broken.
+inline constexpr double broken_degrees = 1.0;
+
 class Sweeps {
   public:
     /// \param bound  of the RMS error, in degrees: what is beyond it is broken

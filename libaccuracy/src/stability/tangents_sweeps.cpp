@@ -13,10 +13,8 @@
 namespace relief {
 namespace {
 
-constexpr double bound = 1.0;
-
 /// Those that are stored, and plain code's.
-std::vector<TangentMethod> all_methods() {
+std::vector<TangentMethod> swept_tangent_methods() {
     std::vector<TangentMethod> methods = tangent_methods();
     std::erase_if(methods, [](const TangentMethod& method) { return !method.tangents; });
     methods.push_back({"plain", plain_tangents});
@@ -30,7 +28,7 @@ std::vector<std::string> names_of(const std::vector<TangentMethod>& methods) {
     return names;
 }
 
-TexturedMesh torus(const RunOptions& options) {
+TexturedMesh textured_torus(const RunOptions& options) {
     return textured_mesh(AnalyticSurface::torus, Triangulation::regular, TextureLayout::upright,
                          options.is_quick ? 32 : 64, 1);
 }
@@ -88,15 +86,15 @@ void measure(const std::vector<TangentMethod>& methods, const Sweeps& sweeps,
     }
     measure_methods(measured, options, {.all_threads = false, .memory = false}, experiment);
     experiment.charts = sweeps.charts();
-    experiment.finding = fmt::format("Beyond {} degree: {}", bound, sweeps.breaks());
+    experiment.finding = fmt::format("Beyond {} degree: {}", broken_degrees, sweeps.breaks());
 }
 
 }  // namespace
 
 Experiment tangents_by_scale(const RunOptions& options) {
-    const TexturedMesh truth = torus(options);
-    const std::vector<TangentMethod> methods = all_methods();
-    Sweeps sweeps(names_of(methods), bound);
+    const TexturedMesh truth = textured_torus(options);
+    const std::vector<TangentMethod> methods = swept_tangent_methods();
+    Sweeps sweeps(names_of(methods), broken_degrees);
     const auto add = [&](const char* id, const char* title, const char* label, bool is_image,
                          bool is_larger) {
         sweeps.add(id, title, label, 30, 2, [&, is_image, is_larger](std::size_t i, double value) {
@@ -124,9 +122,9 @@ Experiment tangents_by_scale(const RunOptions& options) {
 }
 
 Experiment tangents_by_offset(const RunOptions& options) {
-    const TexturedMesh truth = torus(options);
-    const std::vector<TangentMethod> methods = all_methods();
-    Sweeps sweeps(names_of(methods), bound);
+    const TexturedMesh truth = textured_torus(options);
+    const std::vector<TangentMethod> methods = swept_tangent_methods();
+    Sweeps sweeps(names_of(methods), broken_degrees);
     sweeps.add("offset", "Meshes farther away", "distance along each axis, in radii", 8, 1,
                [&](std::size_t i, double value) {
                    return degrees_of(methods[i], truth, {.offset = value}, {});

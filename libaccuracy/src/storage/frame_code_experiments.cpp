@@ -12,7 +12,7 @@ namespace relief {
 namespace {
 
 /// "in 4 bytes angle10, best is nearest: 0.08 degrees RMS, 0.21 at most; ..."
-std::string finding_of(const Experiment& experiment) {
+std::string frame_code_finding(const Experiment& experiment) {
     std::vector<std::string> parts;
     for (const double bytes : {4.0, 8.0}) {
         const Measurement* best = nullptr;
@@ -81,7 +81,7 @@ Experiment frame_reading_experiment(const RunOptions& options) {
         measured.push_back(std::move(method));
     }
     measure_methods(measured, options, {}, experiment);
-    experiment.finding = finding_of(experiment);
+    experiment.finding = frame_code_finding(experiment);
     return experiment;
 }
 

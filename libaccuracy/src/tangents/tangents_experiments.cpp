@@ -15,14 +15,14 @@
 namespace relief {
 namespace {
 
-constexpr int cells_of_tables = 64;  ///< As in docs/tangents.md.
+constexpr int cells_of_tangent_tables = 64;  ///< As in docs/tangents.md.
 constexpr const char* words_of_truth =
     "The surface's own frames in closed form, by which its image is laid on it; tests "
     "differentiate the surface numerically as well.";
 
 /// The methods, the first also as many shaders read it, and what is best for any stored frame: the
 /// surface's own, which leaves what interpolation errs.
-std::vector<TangentMethod> all_methods() {
+std::vector<TangentMethod> shown_tangent_methods() {
     std::vector<TangentMethod> methods = tangent_methods();
     methods.insert(methods.begin() + 1, made_unit(methods.front()));
     return methods;
@@ -58,7 +58,7 @@ MeasuredMethod true_frames(const TexturedMesh& truth) {
 
 std::vector<MeasuredMethod> measured_on(const TexturedMesh& truth) {
     std::vector<MeasuredMethod> measured = {true_frames(truth)};
-    for (const TangentMethod& method : all_methods()) {
+    for (const TangentMethod& method : shown_tangent_methods()) {
         MeasuredMethod one;
         one.name = method.name;
         one.choices = choices_of(method);
@@ -88,7 +88,7 @@ std::optional<double> expected_order(const TexturedCase& one, const TangentMetho
 Chart chart_over(const std::vector<std::pair<double, TexturedMesh>>& meshes) {
     Chart chart;
     chart.y_label = "RMS error, degrees";
-    for (const TangentMethod& method : all_methods()) {
+    for (const TangentMethod& method : shown_tangent_methods()) {
         Curve& curve = chart.curves.emplace_back();
         curve.method = method.name;
         for (const auto& [x, truth] : meshes) {
@@ -107,7 +107,7 @@ Chart cells_chart(const TexturedCase& one, bool is_quick) {
     chart.id = "cells";
     chart.title = "Finer cells";
     chart.x_label = "cells along each parameter";
-    const std::vector<TangentMethod> methods = all_methods();
+    const std::vector<TangentMethod> methods = shown_tangent_methods();
     for (std::size_t m = 0; m < methods.size(); ++m) {
         Curve& curve = chart.curves[m];
         curve = fitted_curve(curve.method, curve.points, expected_order(one, methods[m]));
@@ -127,7 +127,7 @@ Chart bevels_chart() {
 }
 
 /// "mikktspace is closest of those stored, ...; frames that shaders derive are ... off."
-std::string finding_of(const Experiment& experiment) {
+std::string tangents_finding(const Experiment& experiment) {
     const Measurement* best = nullptr;
     const Measurement* derived = nullptr;
     for (const Measurement& one : experiment.measurements) {
@@ -154,15 +154,16 @@ Experiment on_mesh(const std::string& id, const std::string& input, const Textur
     experiment.item = "triangle";
     experiment.items = static_cast<double>(truth.mesh.triangles.size());
     measure_methods(measured_on(truth), options, costs, experiment);
-    experiment.finding = finding_of(experiment);
+    experiment.finding = tangents_finding(experiment);
     return experiment;
 }
 
 Experiment on_case(const TexturedCase& one, const RunOptions& options) {
-    const TexturedMesh truth = one.mesh(cells_of_tables);
-    const std::string input =
-        one.has_cells ? fmt::format("{}, {} x {} cells", one.name, cells_of_tables, cells_of_tables)
-                      : one.name;
+    const TexturedMesh truth = one.mesh(cells_of_tangent_tables);
+    const std::string input = one.has_cells
+                                  ? fmt::format("{}, {} x {} cells", one.name,
+                                                cells_of_tangent_tables, cells_of_tangent_tables)
+                                  : one.name;
     Experiment experiment =
         on_mesh("tangents/" + one.id, input, truth,
                 {.one_thread = true, .all_threads = true, .memory = false}, options);
@@ -174,7 +175,7 @@ Experiment on_case(const TexturedCase& one, const RunOptions& options) {
     return experiment;
 }
 
-Experiment on_large_mesh(const RunOptions& options) {
+Experiment tangents_on_large_mesh(const RunOptions& options) {
     const int cells = options.is_quick ? 128 : 400;
     const TexturedMesh truth = textured_mesh(AnalyticSurface::torus, Triangulation::jittered,
                                              TextureLayout::upright, cells, 1);
@@ -188,7 +189,7 @@ Experiment on_large_mesh(const RunOptions& options) {
 Experiment mismatches(const RunOptions& options) {
     const TexturedMesh truth =
         textured_mesh(AnalyticSurface::torus, Triangulation::jittered, TextureLayout::upright,
-                      options.is_quick ? 32 : cells_of_tables, 1);
+                      options.is_quick ? 32 : cells_of_tangent_tables, 1);
     Experiment experiment;
     experiment.id = "tangents/mismatch";
     experiment.subject = Subject::tangents;
@@ -201,8 +202,8 @@ Experiment mismatches(const RunOptions& options) {
     experiment.item = "triangle";
     experiment.items = static_cast<double>(truth.mesh.triangles.size());
     std::vector<MeasuredMethod> measured;
-    for (const TangentMethod& baker : all_methods()) {
-        for (const TangentMethod& reader : all_methods()) {
+    for (const TangentMethod& baker : shown_tangent_methods()) {
+        for (const TangentMethod& reader : shown_tangent_methods()) {
             measured.push_back(
                 {.name = fmt::format("baked in {}, read in {}", baker.name, reader.name),
                  .choices = {{"baked in", baker.name}, {"read in", reader.name}},
@@ -239,7 +240,8 @@ std::vector<PlannedExperiment> tangents_plan(const RunOptions& options) {
         plan.push_back(
             {"Tangents: " + one.name, [&options, one] { return on_case(one, options); }});
     }
-    plan.push_back({"Tangents: a large mesh", [&options] { return on_large_mesh(options); }});
+    plan.push_back(
+        {"Tangents: a large mesh", [&options] { return tangents_on_large_mesh(options); }});
     plan.push_back({"Tangents: bases that differ", [&options] { return mismatches(options); }});
     plan.push_back({"Tangents: frames stored and derived, drawn",
                     [&options] { return drawn_frames_experiment(Drawing(), options); }});
