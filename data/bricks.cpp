@@ -35,7 +35,7 @@ struct Brick {
 };
 
 /// Everything that height and colour share at one place of the wall.
-struct Place {
+struct WallPlace {
     Brick brick;
     double inside;     ///< Distance from the brick's worn outline; negative in the joint.
     double from_left;  ///< Place within the brick, -1 to 1.
@@ -84,7 +84,7 @@ double chips(double x, double y, const Brick& brick, double corner) {
     return 34.0 * std::max(broad - 0.44 + luck, 0.0) + 6.0 * std::max(fine - 0.30 + luck, 0.0);
 }
 
-Place place_at(double x, double y) {
+WallPlace place_at(double x, double y) {
     // The outline is bent: slowly, as hand-made bricks are, and finely, as broken edges are.
     const double bent_x =
         x + unit * (3.2 * tiling_octaves(x, y, 12, 2, 1) + 1.3 * tiling_octaves(x, y, 64, 2, 2));
@@ -96,7 +96,7 @@ Place place_at(double x, double y) {
     const double column = bent_x * bricks_per_course + shift;
     const auto index = static_cast<std::int32_t>(std::floor(column));
 
-    Place place{};
+    WallPlace place{};
     place.brick = {(index % bricks_per_course + bricks_per_course) % bricks_per_course,
                    (course % courses + courses) % courses};
     const Brick& brick = place.brick;
@@ -128,13 +128,13 @@ Place place_at(double x, double y) {
     return place;
 }
 
-double mortar_height(double x, double y, const Place& place) {
+double mortar_height(double x, double y, const WallPlace& place) {
     const double hollow = smooth_step(-half_joint, 1.0, place.inside);
     return 0.20 + 0.05 * hollow + 0.050 * tiling_octaves(x, y, 40, 3, 50) + 0.030 * place.grain +
            0.035 * holes(x, y, 150, 0.5, 420);
 }
 
-double brick_face(double x, double y, const Place& place) {
+double brick_face(double x, double y, const WallPlace& place) {
     const Brick& brick = place.brick;
     const double tilt =
         0.035 * (brick.spread(11) * place.from_left + brick.spread(12) * place.from_top);
@@ -148,7 +148,7 @@ double brick_face(double x, double y, const Place& place) {
 }
 
 double height_at(double x, double y) {
-    const Place place = place_at(x, y);
+    const WallPlace place = place_at(x, y);
     const double mortar = mortar_height(x, y, place);
     if (place.inside <= 0.0) return mortar;
     // Rounded from the joint up to the face, steep at first but never a wall.
@@ -156,13 +156,9 @@ double height_at(double x, double y) {
     return mix(mortar, brick_face(x, y, place), 1.0 - left * left * left);
 }
 
-glm::dvec3 mixed(glm::dvec3 a, glm::dvec3 b, double t) {
-    return a + (b - a) * t;
-}
-
 /// Linear diffuse colour.
 glm::dvec3 color_at(double x, double y) {
-    const Place place = place_at(x, y);
+    const WallPlace place = place_at(x, y);
     const Brick& brick = place.brick;
     // Fired clay: from orange over red to nearly black, now and then a pale one.
     const glm::dvec3 orange(0.46, 0.165, 0.072);

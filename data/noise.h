@@ -6,6 +6,7 @@
 #pragma once
 
 #include <cstdint>
+#include <glm/glm.hpp>
 
 namespace relief::sample {
 
@@ -19,6 +20,9 @@ double random(std::int32_t x, std::int32_t y, std::uint32_t seed);
 double smooth_step(double from, double to, double x);
 
 double mix(double a, double b, double t);
+inline glm::dvec3 mixed(glm::dvec3 a, glm::dvec3 b, double t) {
+    return a + (b - a) * t;
+}
 
 /// Noise over a plane that repeats after `period` lattice cells both ways.
 double tiling_noise(double x, double y, std::int32_t period, std::uint32_t seed);

@@ -19,10 +19,6 @@ const glm::dvec3 sun_direction = glm::normalize(glm::dvec3(-0.58, 0.36, -0.72));
 constexpr glm::dvec3 sunlight(1.0, 0.74, 0.46);
 constexpr glm::dvec3 haze(0.72, 0.66, 0.60);
 
-glm::dvec3 mixed(glm::dvec3 a, glm::dvec3 b, double t) {
-    return a + (b - a) * t;
-}
-
 /// Clear air: blue overhead, pale and warm below, brighter towards the sun.
 glm::dvec3 air(glm::dvec3 direction) {
     const double up = std::max(direction.y, 0.0);

@@ -12,28 +12,29 @@
 #include <vector>
 
 #include "noise.h"
+#include "rounded.h"
 
 namespace relief::sample {
 namespace {
 
 constexpr double whole_turn = 2.0 * std::numbers::pi;
 
-using Curve = std::array<glm::dvec2, 4>;  // Radius and height.
-constexpr std::array<Curve, 3> profile = {{
+using Bezier = std::array<glm::dvec2, 4>;  // Radius and height.
+constexpr std::array<Bezier, 3> profile_curves = {{
     {{{0.260, 0.000}, {0.260, 0.050}, {0.215, 0.080}, {0.235, 0.140}}},  // Foot.
     {{{0.235, 0.140}, {0.262, 0.221}, {0.520, 0.360}, {0.520, 0.600}}},  // Belly.
     {{{0.520, 0.600}, {0.520, 0.800}, {0.420, 0.940}, {0.300, 1.000}}},  // Shoulder.
 }};
 
 /// A place on the profile; `along` is the number of the curve and how far along it that is.
-struct Place {
+struct ProfilePlace {
     glm::dvec2 point{0.0};
     glm::dvec2 outward{0.0};  ///< Unit.
 };
 
-Place place_at(double along) {
-    const std::size_t index = std::min(static_cast<std::size_t>(along), profile.size() - 1);
-    const Curve& c = profile[index];
+ProfilePlace place_at(double along) {
+    const std::size_t index = std::min(static_cast<std::size_t>(along), profile_curves.size() - 1);
+    const Bezier& c = profile_curves[index];
     const double t = along - static_cast<double>(index);
     const double s = 1.0 - t;
     const glm::dvec2 forward =
@@ -63,11 +64,6 @@ double carved(double angle, double along) {
            0.003 * marks * window(0.0, 3.0, 0.2, along);
 }
 
-/// To a multiple of 1 / 100000, so that seams meet exactly and files stay short; never -0.
-float rounded(double value) {
-    return static_cast<float>(std::round(value * 1e5) / 1e5 + 0.0);
-}
-
 glm::vec3 turned(const glm::dvec2& point, double angle) {
     return {rounded(point.x * std::sin(angle)), rounded(point.y),
             rounded(point.x * std::cos(angle))};
@@ -80,7 +76,7 @@ struct Fineness {
 
 std::vector<double> ring_places(const Fineness& fineness) {
     std::vector<double> places = {0.0};
-    for (std::size_t curve = 0; curve < profile.size(); ++curve) {
+    for (std::size_t curve = 0; curve < profile_curves.size(); ++curve) {
         for (int step = 1; step <= fineness.steps[curve]; ++step)
             places.push_back(static_cast<double>(curve) +
                              static_cast<double>(step) / fineness.steps[curve]);
@@ -105,7 +101,7 @@ void add_body(Mesh& mesh, const Fineness& fineness, bool is_carved) {
     const std::vector<double> places = ring_places(fineness);
     const std::vector<double> shares = shares_of_length(places);
     for (std::size_t ring = 0; ring < places.size(); ++ring) {
-        const Place place = place_at(places[ring]);
+        const ProfilePlace place = place_at(places[ring]);
         for (int segment = 0; segment <= fineness.segments; ++segment) {
             const double angle = whole_turn * (segment % fineness.segments) / fineness.segments;
             const double out = is_carved ? carved(angle, places[ring]) : 0.0;

@@ -12,6 +12,8 @@
 #include <numbers>
 #include <vector>
 
+#include "rounded.h"
+
 namespace relief::sample {
 namespace {
 
@@ -68,11 +70,6 @@ std::vector<Ring> profile() {
         }
     }
     return rings;
-}
-
-/// To a multiple of 1 / 100000, so that seams meet exactly and files stay short; never -0.
-float rounded(double value) {
-    return static_cast<float>(std::round(value * 1e5) / 1e5 + 0.0);
 }
 
 glm::vec3 turned(double radius, double height, int segment) {

@@ -9,6 +9,6 @@ namespace relief::tools {
 
 Command add_run_command(CLI::App& tool);
 Command add_own_command(CLI::App& tool);
-Command add_compare_command(CLI::App& tool);
+Command add_report_compare_command(CLI::App& tool);
 
 }  // namespace relief::tools

@@ -14,7 +14,7 @@ namespace {
 
 using Row = std::vector<std::string>;
 
-std::string quoted(const std::string& text) {
+std::string csv_quoted(const std::string& text) {
     if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
     std::string cell = "\"";
     for (const char letter : text)
@@ -26,13 +26,13 @@ std::string line_of(const Row& row) {
     std::string line;
     for (std::size_t i = 0; i < row.size(); ++i) {
         if (i > 0) line += ',';
-        line += quoted(row[i]);
+        line += csv_quoted(row[i]);
     }
     return line + "\n";
 }
 
 /// The shortest text that reads back as the same number.
-std::string number(double value) {
+std::string csv_number(double value) {
     return std::isfinite(value) ? fmt::format("{}", value) : "";
 }
 
@@ -50,7 +50,7 @@ void add_times(Row& row, const std::optional<Timing>& timing) {
     }
     const Spread spread = timing->spread();
     for (const double seconds : {spread.median, spread.p10, spread.p90})
-        row.push_back(number(seconds));
+        row.push_back(csv_number(seconds));
     row.push_back(fmt::to_string(spread.count));
 }
 
@@ -63,17 +63,17 @@ Row row_of(const Experiment& experiment, const Measurement& one) {
                experiment.error_unit,
                fmt::to_string(error.count),
                fmt::to_string(error.undefined),
-               number(error.rms),
-               number(error.mean),
-               number(error.p99),
-               number(error.max),
-               error.psnr ? number(*error.psnr) : "",
+               csv_number(error.rms),
+               csv_number(error.mean),
+               csv_number(error.p99),
+               csv_number(error.max),
+               error.psnr ? csv_number(*error.psnr) : "",
                experiment.item,
-               number(experiment.items)};
+               csv_number(experiment.items)};
     add_times(row, one.cost.one_thread);
     add_times(row, one.cost.all_threads);
     row.push_back(one.cost.peak_bytes ? fmt::to_string(*one.cost.peak_bytes) : "");
-    row.push_back(one.cost.stored_bytes > 0.0 ? number(one.cost.stored_bytes) : "");
+    row.push_back(one.cost.stored_bytes > 0.0 ? csv_number(one.cost.stored_bytes) : "");
     row.emplace_back(one.is_efficient ? "1" : "0");
     return row;
 }
@@ -121,7 +121,8 @@ std::string curves_csv(const AccuracyReport& report) {
             for (const Curve& curve : chart.curves) {
                 for (const CurvePoint& point : curve.points)
                     text += line_of({experiment.id, chart.id, curve.method, chart.x_label,
-                                     number(point.x), experiment.error_unit, number(point.error)});
+                                     csv_number(point.x), experiment.error_unit,
+                                     csv_number(point.error)});
             }
         }
     }

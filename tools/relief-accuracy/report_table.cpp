@@ -15,7 +15,7 @@ namespace relief::tools {
 namespace {
 
 /// A heading and a cell for each row; numbers stand at the right.
-struct Column {
+struct TextColumn {
     std::string heading;
     std::vector<std::string> cells;
     bool is_text = false;
@@ -38,15 +38,15 @@ struct Column {
 };
 
 std::string padded(const std::string& text, std::size_t width, bool is_text) {
-    const std::string space(width - Column::letters_of(text), ' ');
+    const std::string space(width - TextColumn::letters_of(text), ' ');
     return is_text ? text + space : space + text;
 }
 
-std::string line_of(const std::vector<Column>& columns, const std::string& begin,
+std::string line_of(const std::vector<TextColumn>& columns, const std::string& begin,
                     const std::vector<std::size_t>& widths, std::size_t row, bool is_heading) {
     std::string line = begin;
     for (std::size_t i = 0; i < columns.size(); ++i) {
-        const Column& column = columns[i];
+        const TextColumn& column = columns[i];
         const std::string& text = is_heading ? column.heading : column.cells[row];
         if (i > 0) line += "  ";
         line += padded(text, widths[i], column.is_text);
@@ -55,7 +55,7 @@ std::string line_of(const std::vector<Column>& columns, const std::string& begin
     return line + "\n";
 }
 
-std::string number(double value) {
+std::string table_number(double value) {
     return std::isfinite(value) ? fmt::format("{:.3g}", value) : "-";
 }
 
@@ -71,8 +71,8 @@ std::string median_of(const std::optional<Timing>& timing) {
     return timing ? seconds_in_words(timing->spread().median) : "";
 }
 
-std::vector<Column> columns_of(const Experiment& experiment) {
-    std::vector<Column> columns = {
+std::vector<TextColumn> columns_of(const Experiment& experiment) {
+    std::vector<TextColumn> columns = {
         {"", {}, true},    {"RMS", {}},    {"mean", {}},     {"99 %", {}}, {"max", {}},
         {"undefined", {}}, {"PSNR", {}},   {"1 thread", {}}, {"", {}},     {"all", {}},
         {"", {}},          {"memory", {}}, {"stored", {}}};
@@ -80,10 +80,10 @@ std::vector<Column> columns_of(const Experiment& experiment) {
         const ErrorFigures& error = one.error;
         const std::vector<std::string> cells = {
             one.method,
-            number(error.rms),
-            number(error.mean),
-            number(error.p99),
-            number(error.max),
+            table_number(error.rms),
+            table_number(error.mean),
+            table_number(error.p99),
+            table_number(error.max),
             error.undefined > 0 ? fmt::to_string(error.undefined) : "",
             error.psnr ? fmt::format("{:.1f} dB", *error.psnr) : "",
             median_of(one.cost.one_thread),
@@ -95,16 +95,16 @@ std::vector<Column> columns_of(const Experiment& experiment) {
         for (std::size_t i = 0; i < columns.size(); ++i)
             columns[i].cells.push_back(cells[i]);
     }
-    std::erase_if(columns, [](const Column& column) { return column.empty(); });
+    std::erase_if(columns, [](const TextColumn& column) { return column.empty(); });
     return columns;
 }
 
 std::string rows_of(const Experiment& experiment) {
     if (experiment.measurements.empty()) return "";
-    const std::vector<Column> columns = columns_of(experiment);
+    const std::vector<TextColumn> columns = columns_of(experiment);
     std::vector<std::size_t> widths;
     widths.reserve(columns.size());
-    for (const Column& column : columns)
+    for (const TextColumn& column : columns)
         widths.push_back(column.width());
     std::string text = line_of(columns, "    ", widths, 0, true);
     for (std::size_t row = 0; row < experiment.measurements.size(); ++row) {
@@ -139,8 +139,8 @@ std::string notes_of(const Experiment& experiment) {
 std::string line_of(const Curve& curve) {
     std::string text = curve.method + ":";
     if (curve.points.size() > 1) {
-        text += fmt::format(" {} at {:.4g}, {} at {:.4g}", number(curve.points.front().error),
-                            curve.points.front().x, number(curve.points.back().error),
+        text += fmt::format(" {} at {:.4g}, {} at {:.4g}", table_number(curve.points.front().error),
+                            curve.points.front().x, table_number(curve.points.back().error),
                             curve.points.back().x);
     }
     if (curve.order) text += fmt::format(", order {:.2f}", *curve.order);

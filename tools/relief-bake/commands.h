@@ -8,7 +8,7 @@
 namespace relief::tools {
 
 Command add_bump_command(CLI::App& tool);
-Command add_check_command(CLI::App& tool);
+Command add_map_check_command(CLI::App& tool);
 Command add_heights_command(CLI::App& tool);
 Command add_convert_command(CLI::App& tool);
 Command add_mesh_command(CLI::App& tool);

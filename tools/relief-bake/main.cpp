@@ -7,7 +7,7 @@ int main(int argc, char** argv) {
     using namespace relief::tools;
     return run_tool({"relief-bake",
                      "Makes normal maps.",
-                     {add_bump_command, add_mesh_command, add_convert_command, add_check_command,
-                      add_heights_command}},
+                     {add_bump_command, add_mesh_command, add_convert_command,
+                      add_map_check_command, add_heights_command}},
                     argc, argv);
 }

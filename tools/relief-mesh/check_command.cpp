@@ -49,7 +49,7 @@ void print_verdicts(const Verdicts& verdicts, std::size_t file_count) {
         print_entry("words", fmt::format("{} says what each comes to", page));
 }
 
-void print_json(const std::vector<CheckedModel>& models, const Verdicts& verdicts) {
+void print_checks(const std::vector<CheckedModel>& models, const Verdicts& verdicts) {
     nlohmann::ordered_json files = nlohmann::ordered_json::array();
     for (const CheckedModel& model : models)
         files.push_back(json_of(model));
@@ -90,7 +90,7 @@ ExitCode run(const CLI::App& app, const CheckOptions& options) {
     }
     const Verdicts verdicts(models);
     if (to_print) print_verdicts(verdicts, models.size());
-    if (options.json) print_json(models, verdicts);
+    if (options.json) print_checks(models, verdicts);
     return judge(app, verdicts, options.strict);
 }
 

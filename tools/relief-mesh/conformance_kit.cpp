@@ -14,9 +14,9 @@
 namespace relief::tools {
 namespace {
 
-const Choices<KitGroup> groups = {{"conformance", KitGroup::conformance},
-                                  {"defect", KitGroup::defect},
-                                  {"stability", KitGroup::stability}};
+const Choices<KitGroup> kit_groups = {{"conformance", KitGroup::conformance},
+                                      {"defect", KitGroup::defect},
+                                      {"stability", KitGroup::stability}};
 
 std::vector<glm::vec4> read_expected(const std::filesystem::path& file, std::size_t corners) {
     std::ifstream stream(file, std::ios::binary);
@@ -38,7 +38,7 @@ void append(std::vector<T>& all, const std::vector<T>& more, std::size_t count) 
 KitMesh read_entry(const nlohmann::json& entry, const std::filesystem::path& folder) {
     KitMesh kit;
     kit.name = entry.at("name").get<std::string>();
-    kit.group = parse_choice("group", entry.at("group").get<std::string>(), groups);
+    kit.group = parse_choice("group", entry.at("group").get<std::string>(), kit_groups);
     kit.about = entry.at("about").get<std::string>();
     kit.mesh = read_triangles(folder / (kit.name + ".glb"));
     if (kit.group != KitGroup::stability) {

@@ -15,7 +15,7 @@
 namespace relief::tools {
 namespace {
 
-constexpr std::size_t listed_at_most = 24;
+constexpr std::size_t lines_listed_at_most = 24;
 
 std::string in_words(const Bounds& bounds) {
     if (bounds.empty()) return "empty: no finite position";
@@ -62,7 +62,7 @@ template <typename Things>
 std::vector<std::string> list(const Things& things) {
     std::vector<std::string> lines;
     for (const auto& thing : things) {
-        if (lines.size() == listed_at_most) {
+        if (lines.size() == lines_listed_at_most) {
             lines.push_back(
                 fmt::format("... and {} more (--json lists all)", things.size() - lines.size()));
             break;
@@ -72,7 +72,7 @@ std::vector<std::string> list(const Things& things) {
     return lines;
 }
 
-void print_text(const std::filesystem::path& file, const ModelInfo& info) {
+void print_info(const std::filesystem::path& file, const ModelInfo& info) {
     print_entry("file",
                 fmt::format("{}: {}, {}", file.string(), info.format, byte_size(info.bytes)));
     print_entry("contents",
@@ -135,7 +135,7 @@ ExitCode run(const InfoOptions& options) {
     if (options.json)
         print_json(json_of(options.input, info));
     else
-        print_text(options.input, info);
+        print_info(options.input, info);
     return ExitCode::done;
 }
 

@@ -20,7 +20,7 @@ namespace {
 constexpr double usual_tolerance = 1e-5;
 constexpr double usual_uv_tolerance = 1e-6;
 
-constexpr std::size_t listed_at_most = 24;
+constexpr std::size_t parts_listed_at_most = 24;
 constexpr std::size_t worst_at_most = 24;
 
 /// Appends one primitive; arrays that it lacks are filled with zeros.
@@ -300,7 +300,7 @@ std::vector<std::string> part_lines(const ComparedModels& compared) {
     if (compared.a.parts.size() < 2) return {};
     std::vector<std::string> lines;
     for (const ComparedPart& part : compared.a.parts) {
-        if (lines.size() == listed_at_most) {
+        if (lines.size() == parts_listed_at_most) {
             lines.push_back(fmt::format("... and {} more (--json lists all)",
                                         compared.a.parts.size() - lines.size()));
             break;

@@ -64,7 +64,7 @@ void check_normals(const ProcessRequest& request) {
 }
 
 /// Refuses to choose texture coordinates for tangents that are not computed.
-void check_tangents(const ProcessRequest& request) {
+void check_tangent_options(const ProcessRequest& request) {
     const bool follow_normals =
         request.tangents == TangentMode::keep && request.normals != NormalMode::keep;
     if (!request.uv_set || computes_tangents(request.tangents) || follow_normals) return;
@@ -75,7 +75,7 @@ void check_tangents(const ProcessRequest& request) {
 /// The same work for every model. \throws UsageError, FileError before anything is done
 std::vector<ProcessRequest> requests_of(const ProcessOptions& options, const JobList& list) {
     check_normals(options.request);
-    check_tangents(options.request);
+    check_tangent_options(options.request);
     std::vector<ProcessRequest> requests;
     std::vector<std::filesystem::path> files;
     for (const Job& job : list.jobs) {

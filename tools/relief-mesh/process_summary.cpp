@@ -31,7 +31,7 @@ Totals totals_of(const Processed& done) {
     return totals;
 }
 
-std::string normals_in_words(const ProcessedPart& part) {
+std::string part_normals_in_words(const ProcessedPart& part) {
     switch (part.normals) {
         case Fate::kept:
             return "kept";
@@ -59,7 +59,7 @@ std::string method_in_words(TangentMode mode) {
     return mode == TangentMode::mikktspace ? "MikkTSpace" : word_of(mode);
 }
 
-std::string tangents_in_words(const ProcessedPart& part) {
+std::string part_tangents_in_words(const ProcessedPart& part) {
     switch (part.tangents) {
         case Fate::kept:
             return "kept";
@@ -174,8 +174,8 @@ void print_summary(const ProcessRequest& request, const Processed& done, const S
                                     counted(done.parts.size(), "primitive"),
                                     counted(totals.triangles, "triangle"),
                                     counted(totals.vertices_read, "vertex", "vertices")));
-    print_entry("normals", summed_up(done.parts, normals_in_words));
-    print_entry("tangents", summed_up(done.parts, tangents_in_words));
+    print_entry("normals", summed_up(done.parts, part_normals_in_words));
+    print_entry("tangents", summed_up(done.parts, part_tangents_in_words));
     print_entry("splits", splits_in_words(totals));
     print_entry("findings",
                 done.findings.empty() ? std::vector<std::string>{"none"} : done.findings.lines());
@@ -204,7 +204,7 @@ std::string line_of(const ProcessRequest& request, const Processed& done, const 
         "{}: {}, {}, normals {}, tangents {}, {}{}, {}", request.output.string(),
         counted(totals.triangles, "triangle"),
         counted(totals.vertices_written, "vertex", "vertices"),
-        summed_up(done.parts, normals_in_words), summed_up(done.parts, tangents_in_words),
+        summed_up(done.parts, part_normals_in_words), summed_up(done.parts, part_tangents_in_words),
         done.findings.empty() ? "no findings" : counted(done.findings.all().size(), "finding"),
         done.left_behind.empty() ? ""
                                  : fmt::format(", left out: {}", fmt::join(done.left_behind, ", ")),

@@ -230,7 +230,7 @@ Reshaped run(const ReshapeRequest& request, const std::string& verb, const MeshC
     return done;
 }
 
-void print_summary(const ReshapeRequest& request, const Reshaped& done, const Stages& stages) {
+void print_reshaped(const ReshapeRequest& request, const Reshaped& done, const Stages& stages) {
     print_entry("read", fmt::format("{}: {}, {}, {}", request.input.string(),
                                     format_name(readable_format(request.input)),
                                     counted(done.triangles_read, "triangle"),
@@ -284,7 +284,7 @@ ExitCode reshape(const CLI::App& app, const ReshapeRequest& request, const MeshC
     set_thread_limit(request.general.threads);
     Stages stages(request.general.quiet);
     const Reshaped done = run(request, command_name(app), change, stages);
-    if (!request.general.quiet) print_summary(request, done, stages);
+    if (!request.general.quiet) print_reshaped(request, done, stages);
     return finish(app, request.report, request.input, done.findings,
                   report_json(command_name(app), request, options, done, stages));
 }

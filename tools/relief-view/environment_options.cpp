@@ -14,7 +14,7 @@
 namespace relief::tools {
 namespace {
 
-constexpr const char* group = "Environment";
+constexpr const char* environment_group = "Environment";
 
 ImageSource image_file(const std::filesystem::path& file) {
     return {file.string(), file};
@@ -28,7 +28,7 @@ void add_image_options(CLI::App& app, ViewOptions& options) {
         [&](const std::string&, const std::string& text) {
             options.environment.emplace_back(text);
         })
-        .group(group)
+        .group(environment_group)
         .takes(1, 7);
     add_choice(app, "--environment-layout", options.environment_layout,
                Choices<EnvironmentLayout>{{"auto", EnvironmentLayout::automatic},
@@ -38,31 +38,31 @@ void add_image_options(CLI::App& app, ViewOptions& options) {
                "How one image is laid out: a panorama by longitude and latitude, a cross of six "
                "faces, or a light probe by angle. Default: auto, by its shape (2:1, 4:3 or 3:4, "
                "1:1).")
-        .group(group);
+        .group(environment_group);
     add_switch(app, "--left-handed", options.left_handed_environment,
                "The six images are drawn for a left-handed world: turn them round.")
-        .group(group);
+        .group(environment_group);
     add_number(app, "--environment-intensity", "I", options.environment_intensity, {0, 1e6, ""},
                "Multiplies the environment's light. Default: 1.")
-        .group(group);
+        .group(environment_group);
     add_choice(app, "--environment-light", options.environment_light,
                Choices<bool>{{"on", true}, {"off", false}},
                "Whether surfaces scatter the environment's light. Default: on if a material is "
                "metallic-roughness.")
-        .group(group);
+        .group(environment_group);
     add_switch(app, "--no-skybox", options.no_skybox,
                "Use the environment but do not show it behind the model.")
-        .group(group);
+        .group(environment_group);
 }
 
 void add_reflection_options(CLI::App& app, ViewOptions& options) {
     add_number(app, "--reflectivity", "R", options.reflectivity, {0, 1, ""},
                "Share of the environment that materials reflect, seen head on; more at grazing "
                "angles. With an exact --fresnel it multiplies. Default: as the model says, else 0.")
-        .group(group);
+        .group(environment_group);
     add_number(app, "--reflection-roughness", "R", options.reflection_roughness, {0, 1, ""},
                "How blurred reflections are, from 0, a mirror, to 1. Default: as the model says.")
-        .group(group);
+        .group(environment_group);
     add_value(app, "--fresnel", "none|schlick|dielectric|conductor",
               "How reflections grow towards grazing angles: not at all, by Schlick's formula, or "
               "exactly, for glass or for a metal (gold, which scatters nothing). Default: schlick.",
@@ -73,14 +73,14 @@ void add_reflection_options(CLI::App& app, ViewOptions& options) {
                   options.no_fresnel = chosen < 0;
                   if (chosen >= 0) options.fresnel = static_cast<FresnelModel>(chosen);
               })
-        .group(group);
+        .group(environment_group);
     add_number(app, "--refractive-index", "N", options.refractive_index, {1, 1000, ""},
                "Of --fresnel dielectric and --transmission. Default: 1.5, glass.")
-        .group(group);
+        .group(environment_group);
     add_number(app, "--transmission", "T", options.transmission, {0, 1, ""},
                "Share of what is not mirrored that shows the environment through the surface, bent "
                "once. Default: as the model says, else 0.")
-        .group(group);
+        .group(environment_group);
 }
 
 EnvironmentLayout layout_of(const std::filesystem::path& file) {

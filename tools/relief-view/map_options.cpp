@@ -6,54 +6,54 @@
 namespace relief::tools {
 namespace {
 
-constexpr const char* group = "Maps, for all materials; the model needs texture coordinates";
+constexpr const char* maps_group = "Maps, for all materials; the model needs texture coordinates";
 
 void add_normal_options(CLI::App& app, ViewOptions& options) {
-    add_path(app, "--normal-map", options.normal_map, "Normal map.").group(group);
+    add_path(app, "--normal-map", options.normal_map, "Normal map.").group(maps_group);
     add_choice(app, "--green", options.green, green_choices(),
                "Where the normal map's green is bright: on slopes facing up in the image (OpenGL, "
                "glTF) or down (DirectX). Default: up.")
-        .group(group);
+        .group(maps_group);
     add_choice(
         app, "--normal-space", options.normal_space,
         Choices<NormalSpace>{{"tangent", NormalSpace::tangent}, {"object", NormalSpace::object}},
         "The space of the normal map's vectors. Default: tangent.")
-        .group(group);
+        .group(maps_group);
     add_number(app, "--normal-scale", "S", options.normal_scale, {-100, 100, ""},
                "Multiplies the slopes of normal maps, the model's own too. Default: as the model "
                "says, else 1.")
-        .group(group);
+        .group(maps_group);
     add_choice(app, "--tangent-frame", options.tangent_frame,
                Choices<TangentFrame>{{"stored", TangentFrame::stored},
                                      {"derivatives", TangentFrame::derivatives}},
                "Where normal and bump maps get their frame from: the mesh's tangents (MikkTSpace's "
                "where it has none), or how texture coordinates change from pixel to pixel. "
                "Default: stored.")
-        .group(group);
+        .group(maps_group);
     add_choice(
         app, "--specular-antialiasing", options.specular_antialiasing,
         Choices<bool>{{"on", true}, {"off", false}},
         "Widen highlights where a normal map's detail is finer than a pixel, so that they do "
         "not sparkle. Default: off.")
-        .group(group);
+        .group(maps_group);
 }
 
 void add_height_options(CLI::App& app, ViewOptions& options) {
     add_path(app, "--height-map", options.height_map,
              "Height map, made into a normal map on the fly, or drawn as a bump map.")
-        .group(group);
+        .group(maps_group);
     add_choice(app, "--height-as", options.height_as,
                Choices<HeightUse>{{"normal_map", HeightUse::normal_map},
                                   {"bump_map", HeightUse::bump_map}},
                "Convert the height map once, or let the shader take its slopes at every pixel. "
                "Default: normal_map.")
-        .group(group);
+        .group(maps_group);
     add_number(app, "--strength", "S", options.strength, {},
                "Height in texels that the height map's value 1.0 stands for. Default: 16.")
-        .group(group);
+        .group(maps_group);
     add_choice(app, "--kernel", options.kernel, kernel_choices(),
                "How slopes are taken from the height map. Default: sobel3.")
-        .group(group);
+        .group(maps_group);
 }
 
 }  // namespace
@@ -61,7 +61,7 @@ void add_height_options(CLI::App& app, ViewOptions& options) {
 void add_map_options(CLI::App& app, ViewOptions& options) {
     add_path(app, "--diffuse-map", options.diffuse_map,
              "Colour image that replaces every material's diffuse colour.")
-        .group(group);
+        .group(maps_group);
     add_normal_options(app, options);
     add_height_options(app, options);
 }

@@ -7,7 +7,7 @@
 namespace relief::tools {
 namespace {
 
-constexpr const char* group = "Materials, for all of them";
+constexpr const char* materials_group = "Materials, for all of them";
 
 MetallicOption parse_metallic(const std::string& subject, const std::string& text) {
     const std::vector<double> numbers = parse_numbers(subject, text);
@@ -24,23 +24,23 @@ void add_model_options(CLI::App& app, ViewOptions& options) {
                Choices<Model>{{"as_authored", Model::as_authored}, {"phong", Model::phong}},
                "glTF's materials by their own metallic-roughness model, or translated to Phong's. "
                "Default: as_authored, unless an option asks for what only Phong's model has.")
-        .group(group);
+        .group(materials_group);
     add_choice(app, "--interpolation", options.interpolation, interpolation_choices(),
                "Light at every pixel, at vertices only (Phong's model), or from the triangles' own "
                "planes. Default: as the scene says, else per_pixel.")
-        .group(group);
+        .group(materials_group);
     add_value(
         app, "--material", "NAME",
         "One of the classic materials: gold, chrome, emerald, \"red plastic\", ... An unknown "
         "name lists near ones.",
         [&](const std::string&, const std::string& text) { options.material = text; })
-        .group(group);
+        .group(materials_group);
     add_value(app, "--metallic-roughness", "METALLIC,ROUGHNESS",
               "glTF's model with these numbers, coloured as the material was.",
               [&](const std::string& subject, const std::string& text) {
                   options.metallic_roughness = parse_metallic(subject, text);
               })
-        .group(group);
+        .group(materials_group);
 }
 
 }  // namespace
@@ -61,11 +61,11 @@ void add_material_options(CLI::App& app, ViewOptions& options) {
                "Model of highlights; the normalized one keeps their light whatever the shininess. "
                "Materials without a specular colour get a grey one of 0.25. "
                "Default: as the model says, else blinn_phong.")
-        .group(group);
+        .group(materials_group);
     add_number(app, "--shininess", "N", options.shininess, {0, 1e6, ""},
                "Exponent of highlights: larger is smaller and sharper. Materials without a "
                "specular colour get a grey one of 0.25. Default: as the model says, else 32.")
-        .group(group);
+        .group(materials_group);
 }
 
 void check_materials(const ViewOptions& options) {

@@ -37,9 +37,9 @@ class NumberedFiles : public PictureSink {
     int index_ = 0;
 };
 
-class Animation : public PictureSink {
+class AnimationSink : public PictureSink {
   public:
-    Animation(const std::filesystem::path& file, int frames, double seconds)
+    AnimationSink(const std::filesystem::path& file, int frames, double seconds)
         : animation_(file, static_cast<std::uint32_t>(frames), seconds) {}
     void take(const Image& picture) override { animation_.add(picture); }
     void finish() override { animation_.finish(); }
@@ -72,7 +72,7 @@ std::unique_ptr<PictureSink> make_sink(const ViewOptions& options) {
     const int count = picture_count(options);
     if (extension_of(output) == ".apng") {
         const double rate = options.frames_per_second.value_or(usual_frames_per_second);
-        return std::make_unique<Animation>(output, count, 1.0 / rate);
+        return std::make_unique<AnimationSink>(output, count, 1.0 / rate);
     }
     if (options.turntable || options.frames) return std::make_unique<NumberedFiles>(output);
     return std::make_unique<OneFile>(output);

@@ -75,7 +75,7 @@ ExitCode run(const CLI::App& app, const CompareOptions& options) {
 
 }  // namespace
 
-Command add_compare_command(CLI::App& tool) {
+Command add_report_compare_command(CLI::App& tool) {
     CLI::App& app =
         add_subcommand(tool, "compare",
                        "Says what became faster, slower, more or less exact between two reports.");

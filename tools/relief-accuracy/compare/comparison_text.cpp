@@ -29,7 +29,7 @@ std::string name_of(const ErrorChange& change) {
     return fmt::format("{}, chart {}: {}", change.experiment, change.chart, change.method);
 }
 
-std::string number(double value) {
+std::string result_text(double value) {
     return std::isnan(value) ? "no result" : fmt::format("{:.4g}", value);
 }
 
@@ -48,8 +48,8 @@ std::string line_of(const TimeChange& change) {
 std::string line_of(const ErrorChange& change) {
     std::vector<std::string> figures;
     for (const FigureChange& one : change.figures)
-        figures.push_back(
-            fmt::format("{} {} then {}", one.figure, number(one.before), number(one.after)));
+        figures.push_back(fmt::format("{} {} then {}", one.figure, result_text(one.before),
+                                      result_text(one.after)));
     return fmt::format("{}: {}", name_of(change), fmt::join(figures, ", "));
 }
 
@@ -186,8 +186,8 @@ std::vector<std::string> beyond(const ComparedReports& compared, const Compariso
             const FigureChange& worst = change.worst();
             if (100.0 * worst.growth() <= *bounds.max_error_growth) continue;
             lines.push_back(fmt::format("{}: {} {} then {} (at most {} % more)", name_of(change),
-                                        worst.figure, number(worst.before), number(worst.after),
-                                        *bounds.max_error_growth));
+                                        worst.figure, result_text(worst.before),
+                                        result_text(worst.after), *bounds.max_error_growth));
         }
     }
     return lines;

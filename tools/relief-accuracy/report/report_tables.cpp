@@ -37,21 +37,21 @@ std::string timing_cell(const ordered_json& measurement, const std::string& path
     return fmt::format("{} <small>{}</small>", seconds_text(median), range_text(*p10, *p90));
 }
 
-struct Column {
+struct HtmlColumn {
     std::string head;
     std::string path;  ///< In a measurement, to the number by which rows are sorted.
     std::function<std::string(const ordered_json& measurement)> cell;
 };
 
 /// A column of plain numbers.
-Column column(const std::string& head, const std::string& path,
-              std::string (*text)(std::optional<double>)) {
+HtmlColumn column(const std::string& head, const std::string& path,
+                  std::string (*text)(std::optional<double>)) {
     return {head, path, [path, text](const ordered_json& measurement) {
                 return text(number_at(measurement, path));
             }};
 }
 
-Column time_column(const std::string& head, const std::string& path) {
+HtmlColumn time_column(const std::string& head, const std::string& path) {
     return {head, path + "/median",
             [path](const ordered_json& measurement) { return timing_cell(measurement, path); }};
 }
@@ -63,16 +63,16 @@ bool says_something(const ordered_json& measurements, const std::string& path) {
     });
 }
 
-std::vector<Column> columns_of(const ordered_json& measurements) {
-    std::vector<Column> columns = {
+std::vector<HtmlColumn> columns_of(const ordered_json& measurements) {
+    std::vector<HtmlColumn> columns = {
         column("RMS", "/error/rms", number_text), column("mean", "/error/mean", number_text),
         column("99 %", "/error/p99", number_text), column("max", "/error/max", number_text)};
-    for (const Column& optional : {column("PSNR, dB", "/error/psnr", number_text),
-                                   column("no result", "/error/undefined", number_text),
-                                   time_column("one thread", "/cost/one_thread"),
-                                   time_column("all threads", "/cost/all_threads"),
-                                   column("memory", "/cost/peak_bytes", bytes_text),
-                                   column("stored", "/cost/stored_bytes", bytes_text)}) {
+    for (const HtmlColumn& optional : {column("PSNR, dB", "/error/psnr", number_text),
+                                       column("no result", "/error/undefined", number_text),
+                                       time_column("one thread", "/cost/one_thread"),
+                                       time_column("all threads", "/cost/all_threads"),
+                                       column("memory", "/cost/peak_bytes", bytes_text),
+                                       column("stored", "/cost/stored_bytes", bytes_text)}) {
         if (says_something(measurements, optional.path)) columns.push_back(optional);
     }
     return columns;
@@ -137,16 +137,16 @@ std::set<double> all_x(const ordered_json& chart) {
 
 std::string measurements_table(const ordered_json& experiment) {
     const ordered_json& measurements = experiment.at("measurements");
-    const std::vector<Column> columns = columns_of(measurements);
+    const std::vector<HtmlColumn> columns = columns_of(measurements);
     const std::string common = common_note(measurements);
     std::string head = R"(<th scope="col" data-path="/method">method</th>)";
-    for (const Column& one : columns)
+    for (const HtmlColumn& one : columns)
         head += fmt::format(R"(<th scope="col" data-path="{}">{}</th>)", one.path, one.head);
     std::string rows;
     for (std::size_t i = 0; i < measurements.size(); ++i) {
         rows += fmt::format(R"(<tr data-index="{}"><th scope="row">{}</th>)", i,
                             method_cell(measurements[i], common.empty()));
-        for (const Column& one : columns)
+        for (const HtmlColumn& one : columns)
             rows += "<td>" + one.cell(measurements[i]) + "</td>";
         rows += "</tr>\n";
     }

@@ -106,7 +106,7 @@ ExitCode run(const CLI::App& app, const CheckOptions& options) {
 
 }  // namespace
 
-Command add_check_command(CLI::App& tool) {
+Command add_map_check_command(CLI::App& tool) {
     CLI::App& app = add_subcommand(tool, "check",
                                    "Says whether images are normal maps, what their numbers mean "
                                    "and what is wrong with them.");

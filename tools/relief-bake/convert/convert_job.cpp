@@ -13,8 +13,6 @@
 namespace relief::tools {
 namespace {
 
-constexpr AxisMapping flip_green = {{{0, false}, {1, true}, {2, false}}};
-
 /// First one mapping, then flipped green.
 AxisMapping with_green_flipped(AxisMapping mapping) {
     mapping[1].is_negative = !mapping[1].is_negative;

@@ -60,7 +60,7 @@ struct ConvertRequest {
     ResizeChoice resize;
     std::optional<double> strength;
     DetailChoice detail;
-    SpaceChoice space;
+    SpaceConversion space;
     MipChoice mips;
     AlphaChoice alpha = AlphaChoice::keep;
     MapOutputOptions output;

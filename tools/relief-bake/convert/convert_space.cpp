@@ -18,7 +18,6 @@ namespace {
 
 constexpr int first_tile = 1001;
 constexpr int tiles_across = 10;
-constexpr AxisMapping flip_green = {{{0, false}, {1, true}, {2, false}}};
 
 Choices<UvOutside> outside_choices() {
     return {{"ignore", UvOutside::ignore}, {"repeat", UvOutside::repeat}};
@@ -34,7 +33,7 @@ Choices<TangentMode> made_tangents() {
 }
 
 /// UDIM counts upwards, texture coordinates downwards.
-MapPlacement placement_of(const SpaceChoice& choice) {
+MapPlacement placement_of(const SpaceConversion& choice) {
     const int index = choice.udim.value_or(first_tile) - first_tile;
     return {{index % tiles_across, -(index / tiles_across)},
             choice.outside.value_or(UvOutside::ignore) == UvOutside::repeat};
@@ -67,7 +66,8 @@ TargetMesh read_target(const std::filesystem::path& file, std::optional<TangentM
     return target;
 }
 
-TargetMesh mesh_of(const std::filesystem::path& file, const SpaceChoice& choice, Report& report) {
+TargetMesh mesh_of(const std::filesystem::path& file, const SpaceConversion& choice,
+                   Report& report) {
     Report found;
     TargetMesh target = read_target(file, choice.tangents, found);
     for (Finding finding : found.findings()) {
@@ -94,7 +94,7 @@ std::string words_of(const std::string& space, const std::filesystem::path& file
 
 }  // namespace
 
-void add_space_options(CLI::App& app, SpaceChoice& choice) {
+void add_space_options(CLI::App& app, SpaceConversion& choice) {
     const std::string group = "Space";
     add_path(
         app, "--to-object", choice.to_object,
@@ -121,7 +121,7 @@ void add_space_options(CLI::App& app, SpaceChoice& choice) {
         .group(group);
 }
 
-void check_space_options(const SpaceChoice& choice) {
+void check_space_options(const SpaceConversion& choice) {
     if (choice.to_object && choice.to_tangent)
         throw UsageError("--to-object, --to-tangent: contradict each other");
     if (choice.udim && choice.outside)
@@ -136,7 +136,7 @@ void check_space_options(const SpaceChoice& choice) {
     need(choice.udim.has_value(), "--udim");
 }
 
-ConvertStep to_object_step(const SpaceChoice& choice) {
+ConvertStep to_object_step(const SpaceConversion& choice) {
     return {
         words_of("object", *choice.to_object), [choice](NormalField& field, Report& report) {
             if (!field.green) {
@@ -151,7 +151,7 @@ ConvertStep to_object_step(const SpaceChoice& choice) {
         }};
 }
 
-ConvertStep to_tangent_step(const SpaceChoice& choice) {
+ConvertStep to_tangent_step(const SpaceConversion& choice) {
     return {words_of("tangent", *choice.to_tangent), [choice](NormalField& field, Report& report) {
                 const TargetMesh target = mesh_of(*choice.to_tangent, choice, report);
                 put(tangent_from_object(field.normals, target.mesh, placement_of(choice), report),

@@ -18,7 +18,7 @@ struct ConvertStep;
 enum class UvOutside { ignore, repeat };
 
 /// Which mesh, and how the map lies on it.
-struct SpaceChoice {
+struct SpaceConversion {
     std::optional<std::filesystem::path> to_object;
     std::optional<std::filesystem::path> to_tangent;
     std::optional<TangentMode> tangents;
@@ -26,13 +26,13 @@ struct SpaceChoice {
     std::optional<int> udim;  ///< 1001 and on.
 };
 
-void add_space_options(CLI::App& app, SpaceChoice& choice);
+void add_space_options(CLI::App& app, SpaceConversion& choice);
 
 /// \throws UsageError where options contradict each other, or one has no effect without another
-void check_space_options(const SpaceChoice& choice);
+void check_space_options(const SpaceConversion& choice);
 
 /// \throws FileError when applied, if the mesh cannot be read or has no texture coordinates
-ConvertStep to_object_step(const SpaceChoice& choice);
-ConvertStep to_tangent_step(const SpaceChoice& choice);
+ConvertStep to_object_step(const SpaceConversion& choice);
+ConvertStep to_tangent_step(const SpaceConversion& choice);
 
 }  // namespace relief::tools

@@ -11,9 +11,13 @@
 #include <vector>
 
 #include "convert/convert_options.h"
+#include "relief/mesh/normal_map_operations.h"
 #include "relief/mesh/report.h"
 
 namespace relief::tools {
+
+/// For maps of the other green.
+inline constexpr AxisMapping flip_green = {{{0, false}, {1, true}, {2, false}}};
 
 /// A map between its input's codes and its output's.
 struct NormalField {

@@ -14,7 +14,7 @@ namespace relief::tools {
 namespace {
 
 /// The depths that a format can hold heights in, the first being the one to use unless asked.
-std::vector<int> depths_of(const std::filesystem::path& output) {
+std::vector<int> height_depths_of(const std::filesystem::path& output) {
     const std::string extension = extension_of(output);
     if (extension == ".png") return {16, 8};
     if (extension == ".tif" || extension == ".tiff") return {16, 8, 32};
@@ -64,7 +64,7 @@ void add_heights_options(CLI::App& app, HeightsRequest& request) {
 }
 
 int bits_of(const HeightsRequest& request, const std::filesystem::path& output) {
-    const std::vector<int> depths = depths_of(output);
+    const std::vector<int> depths = height_depths_of(output);
     const int bits = request.bits.value_or(depths.front());
     if (std::find(depths.begin(), depths.end(), bits) == depths.end()) {
         throw UsageError(fmt::format("--bits {}: {} holds {} bits", bits, extension_of(output),

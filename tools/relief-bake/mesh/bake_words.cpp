@@ -15,9 +15,9 @@
 namespace relief::tools {
 namespace {
 
-constexpr std::array names = {"--back-faces", "--cage",         "--dither",  "--hardness",
-                              "--offset",     "--max-distance", "--outside", "--rays",
-                              "--samples",    "--sample-angle", "--space"};
+constexpr std::array option_names = {"--back-faces", "--cage",         "--dither",  "--hardness",
+                                     "--offset",     "--max-distance", "--outside", "--rays",
+                                     "--samples",    "--sample-angle", "--space"};
 
 /// The options alone, without a command.
 void add_options(CLI::App& app, MeshBakeRequest& request) {
@@ -82,7 +82,8 @@ BakeWords bake_words(const std::filesystem::path& file,
     std::istringstream stream(said->second);
     std::string name, value;
     while (stream >> name) {
-        const bool is_known = std::find(names.begin(), names.end(), name) != names.end();
+        const bool is_known =
+            std::find(option_names.begin(), option_names.end(), name) != option_names.end();
         if (!is_known || !(stream >> value)) {
             throw failure(file, fmt::format("says that it was baked by '{}'", said->second),
                           "which this version does not know");
@@ -94,7 +95,7 @@ BakeWords bake_words(const std::filesystem::path& file,
 
 BakeWords bake_words(const CLI::App& app) {
     BakeWords words;
-    for (const char* name : names) {
+    for (const char* name : option_names) {
         const CLI::Option* option = app.get_option_no_throw(name);
         if (option != nullptr && option->count() > 0) words[name] = option->results().front();
     }

@@ -11,7 +11,7 @@
 namespace relief::tools {
 namespace {
 
-constexpr int largest = 16384;
+constexpr int largest_picture_side = 16384;
 
 bool button(const char* label) {
     const bool is_pressed = ImGui::Button(label);
@@ -29,8 +29,8 @@ void draw_capture_panel(const PanelInput& input, PanelWishes& wishes) {
     if (settings.own_size) {
         ImGui::InputInt("Width, pixels", &settings.width, 0);
         ImGui::InputInt("Height, pixels", &settings.height, 0);
-        settings.width = std::clamp(settings.width, 1, largest);
-        settings.height = std::clamp(settings.height, 1, largest);
+        settings.width = std::clamp(settings.width, 1, largest_picture_side);
+        settings.height = std::clamp(settings.height, 1, largest_picture_side);
     }
     ImGui::Checkbox("Transparent background", &settings.transparent);
     mark_place("Transparent background");

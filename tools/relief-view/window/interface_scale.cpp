@@ -9,8 +9,10 @@
 namespace relief::tools {
 namespace {
 
-constexpr std::array steps{0.5F, 0.75F, 1.0F, 1.25F, 1.5F, 1.75F, 2.0F, 2.5F, 3.0F, 3.5F, 4.0F};
-static_assert(steps.front() == least_interface_scale && steps.back() == most_interface_scale);
+constexpr std::array scale_steps{0.5F, 0.75F, 1.0F, 1.25F, 1.5F, 1.75F,
+                                 2.0F, 2.5F,  3.0F, 3.5F,  4.0F};
+static_assert(scale_steps.front() == least_interface_scale &&
+              scale_steps.back() == most_interface_scale);
 
 /// What is no scale at all counts as 1.
 float usable(float scale) {
@@ -29,11 +31,11 @@ InterfaceScale interface_scale(std::optional<float> wanted, float content_scale,
 
 float next_scale(float scale, bool is_larger) {
     if (is_larger) {
-        const auto* const next = std::upper_bound(steps.begin(), steps.end(), scale);
-        return next == steps.end() ? steps.back() : *next;
+        const auto* const next = std::upper_bound(scale_steps.begin(), scale_steps.end(), scale);
+        return next == scale_steps.end() ? scale_steps.back() : *next;
     }
-    const auto* const next = std::lower_bound(steps.begin(), steps.end(), scale);
-    return next == steps.begin() ? steps.front() : *(next - 1);
+    const auto* const next = std::lower_bound(scale_steps.begin(), scale_steps.end(), scale);
+    return next == scale_steps.begin() ? scale_steps.front() : *(next - 1);
 }
 
 }  // namespace relief::tools

@@ -45,7 +45,7 @@ void plain(const PanelInput& input, PanelWishes&) {
     draw(input);
 }
 
-constexpr std::array panels{
+constexpr std::array all_panels{
     Panel{"Scene", true, plain<draw_scene_panel>},
     Panel{"Lights", false, plain<draw_light_panel>},
     Panel{"Materials", false, plain<draw_material_panel>},
@@ -74,7 +74,7 @@ bool begins(const Panel& panel, WindowLayout& layout) {
 
 std::vector<std::string> panel_names() {
     std::vector<std::string> names;
-    for (const Panel& panel : panels)
+    for (const Panel& panel : all_panels)
         names.emplace_back(panel.name);
     return names;
 }
@@ -88,7 +88,7 @@ float draw_panels(const PanelInput& input, PanelWishes& wishes) {
     ImGui::Begin("Panels", nullptr,
                  ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove);
     ImGui::PushItemWidth(0.5F * width);
-    for (const Panel& panel : panels) {
+    for (const Panel& panel : all_panels) {
         if (begins(panel, input.layout)) panel.draw(input, wishes);
     }
     ImGui::PopItemWidth();

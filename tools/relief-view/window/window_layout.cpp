@@ -25,7 +25,7 @@ using nlohmann::json;
 using nlohmann::ordered_json;
 
 constexpr int layout_version = 1;
-constexpr int largest = 16384;
+constexpr int largest_window_side = 16384;
 constexpr glm::ivec2 smallest{320, 240};
 
 /// A file of a later version: nothing is wrong with it.
@@ -35,7 +35,7 @@ class LaterVersion : public std::runtime_error {
 
 glm::ivec2 pair_of(const json& value) {
     const auto pair = value.get<std::array<int, 2>>();
-    const glm::ivec2 limit(largest);
+    const glm::ivec2 limit(largest_window_side);
     return glm::clamp(glm::ivec2(pair[0], pair[1]), -limit, limit);
 }
 

@@ -330,32 +330,32 @@ class WindowLoop {
     /// Tests and scripts see what the window sees.
     void dump(const DrawnPicture& drawn, bool is_busy) {
         if (!dump_) return;
-        nlohmann::ordered_json json = state_.json(drawn);
-        json["loading"] = loader_.is_loading();
-        json["progress"] = loader_.is_loading() ? json_of(loader_.progress()) : nullptr;
-        json["busy"] = is_busy;
-        json["files"] = files_.count();
-        json["relinked"] = relinked_;
-        json["drawn"]["size"] = {drawn.settings.width, drawn.settings.height};
-        json["drawn"]["samples"] = drawn.settings.samples;
-        json["drawn"]["whole"] = !is_reduced(drawn.settings);
-        json["reduced"] = reduced_;
-        json["costs"] = json_of(prices_.state());
-        json["command_line"] = command_line();
-        json["compare"] = comparison_.json();
-        json["accuracy"] = accuracy_.json(state_.options());
-        json["drawn"]["beside"] = drawn.beside;
-        json["drawn"]["difference"] = drawn.is_difference;
-        json["saved"] = json_of(captured_->state());
-        json["saved_files"] = saving_.json();
-        json["layout"] = {{"scale", interface_.scale().layout},
+        nlohmann::ordered_json seen = state_.json(drawn);
+        seen["loading"] = loader_.is_loading();
+        seen["progress"] = loader_.is_loading() ? json_of(loader_.progress()) : nullptr;
+        seen["busy"] = is_busy;
+        seen["files"] = files_.count();
+        seen["relinked"] = relinked_;
+        seen["drawn"]["size"] = {drawn.settings.width, drawn.settings.height};
+        seen["drawn"]["samples"] = drawn.settings.samples;
+        seen["drawn"]["whole"] = !is_reduced(drawn.settings);
+        seen["reduced"] = reduced_;
+        seen["costs"] = json_of(prices_.state());
+        seen["command_line"] = command_line();
+        seen["compare"] = comparison_.json();
+        seen["accuracy"] = accuracy_.json(state_.options());
+        seen["drawn"]["beside"] = drawn.beside;
+        seen["drawn"]["difference"] = drawn.is_difference;
+        seen["saved"] = json_of(captured_->state());
+        seen["saved_files"] = saving_.json();
+        seen["layout"] = {{"scale", interface_.scale().layout},
                           {"panels", panel_names()},
                           {"open", layout_.open_panels},
                           {"note", remembered_.note()}};
-        json["typing"] = UserInterface::is_typing();
-        json["help"] = interface_.is_help_open();
-        json["places"] = places_json();
-        const std::string text = json.dump(2) + "\n";
+        seen["typing"] = UserInterface::is_typing();
+        seen["help"] = interface_.is_help_open();
+        seen["places"] = places_json();
+        const std::string text = seen.dump(2) + "\n";
         if (text == dumped_) return;
         dumped_ = text;
         replace_file(*dump_, std::as_bytes(std::span(text)));
