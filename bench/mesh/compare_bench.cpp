@@ -18,20 +18,22 @@
 namespace relief::bench {
 namespace {
 
-constexpr std::uint32_t count = 1'000'000;
+constexpr std::uint32_t triangles_compared = 1'000'000;
 
 Mesh sphere() {
     Report report;
-    return with_frames(bumpy_sphere(count), {.tangents = TangentMode::mikktspace}, report).mesh;
+    return with_frames(bumpy_sphere(triangles_compared), {.tangents = TangentMode::mikktspace},
+                       report)
+        .mesh;
 }
 
 Mesh fan() {
     Mesh mesh;
     mesh.positions = {{0, 0, 0}};
-    for (std::uint32_t i = 0; i < count; ++i) {
-        const double angle = 2.0 * std::numbers::pi * i / count;
+    for (std::uint32_t i = 0; i < triangles_compared; ++i) {
+        const double angle = 2.0 * std::numbers::pi * i / triangles_compared;
         mesh.positions.emplace_back(std::cos(angle), std::sin(angle), 0.0F);
-        mesh.triangles.emplace_back(0, i + 1, (i + 1) % count + 1);
+        mesh.triangles.emplace_back(0, i + 1, (i + 1) % triangles_compared + 1);
     }
     mesh.normals.assign(mesh.positions.size(), glm::vec3(0, 0, 1));
     return mesh;

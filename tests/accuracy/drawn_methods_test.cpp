@@ -16,8 +16,8 @@
 namespace relief {
 namespace {
 
-constexpr int size = 64;
-const RunOptions untimed = test::quick_untimed();
+constexpr int drawn_size = 64;
+const RunOptions untimed_drawing = test::quick_untimed();
 
 Scene ball() {
     return lit_scene(make_sphere(), glossy_plastic());
@@ -30,15 +30,15 @@ TEST(DrawnMethods, FindALampThatIsTurnedRound) {
     broken.directional_lights.front().direction_world *= -1.0F;
     const std::vector<DrawnMethod> methods = {{"right", {}, ball()}, {"broken", {}, broken}};
     Experiment experiment;
-    const std::vector<DrawnPicture> pictures =
-        measure_drawn(drawing, methods, many_samples(ball(), size, 1), untimed, experiment);
+    const std::vector<DrawnPicture> pictures = measure_drawn(
+        drawing, methods, many_samples(ball(), drawn_size, 1), untimed_drawing, experiment);
     ASSERT_EQ(experiment.measurements.size(), 2U);
     EXPECT_LT(experiment.measurements[0].error.rms, 0.01);
     EXPECT_GT(experiment.measurements[0].error.psnr.value(), 45.0);
     EXPECT_GT(experiment.measurements[1].error.rms, 0.2);
     EXPECT_FALSE(experiment.measurements[0].cost.all_threads);
     EXPECT_EQ(pictures[0].picture.channels, 3);
-    EXPECT_EQ(pictures[0].errors.width, size);
+    EXPECT_EQ(pictures[0].errors.width, drawn_size);
     EXPECT_NE(experiment.measurements[0].note.find(drawing.context().renderer_name()),
               std::string::npos);
 }
@@ -49,7 +49,8 @@ TEST(DrawnMethods, AverageWhatTheyDrawMoreOf) {
     const std::vector<DrawnMethod> methods = {
         {"1", {}, ball()}, {"2 x 2", {}, ball(), 1, 2}, {"4 x 4", {}, ball(), 1, 4}};
     Experiment experiment;
-    measure_drawn(drawing, methods, many_samples(ball(), size, 8), untimed, experiment);
+    measure_drawn(drawing, methods, many_samples(ball(), drawn_size, 8), untimed_drawing,
+                  experiment);
     for (const std::size_t i : {1U, 2U}) {
         EXPECT_GT(experiment.measurements[i].error.psnr.value(),
                   experiment.measurements[i - 1].error.psnr.value() + 3.0);
@@ -63,7 +64,7 @@ TEST(DrawnMethods, AreTimedInTurnsInSeconds) {
     Experiment experiment;
     RunOptions options;
     options.repeats = {.counted = 3, .warm_up = 1};
-    measure_drawn(drawing, methods, many_samples(ball(), size, 1), options, experiment);
+    measure_drawn(drawing, methods, many_samples(ball(), drawn_size, 1), options, experiment);
     for (const Measurement& one : experiment.measurements) {
         ASSERT_TRUE(one.cost.all_threads);
         EXPECT_EQ(one.cost.all_threads->rounds.size(), 3U);
@@ -77,7 +78,7 @@ TEST(DrawnMethods, SayInWordsThatThereIsNoOpenGL) {
     const test::ScopedVariable osmesa("RELIEF_OSMESA_LIBRARY", "libnone.so");
     const Drawing drawing(Backend::osmesa);
     ASSERT_FALSE(drawing.is_there());
-    const Experiment experiment = edge_experiment(drawing, untimed);
+    const Experiment experiment = edge_experiment(drawing, untimed_drawing);
     EXPECT_TRUE(experiment.measurements.empty());
     EXPECT_EQ(experiment.id, "shading/edges");
     EXPECT_NE(experiment.finding.find("needs OpenGL"), std::string::npos) << experiment.finding;

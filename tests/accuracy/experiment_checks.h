@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "planned_experiment.h"
+#include "relief/accuracy/own.h"
 
 namespace relief::test {
 
@@ -83,6 +84,10 @@ inline void expect_whole(const std::vector<Experiment>& all, Subject subject) {
             }
         }
     }
+}
+
+inline const Measurement& found(const OwnExperiment& own, const std::string& method) {
+    return measurement_of(own.experiment, method);
 }
 
 }  // namespace relief::test

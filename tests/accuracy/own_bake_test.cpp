@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "experiment_checks.h"
 #include "relief/accuracy/own.h"
 #include "relief/mesh/bake.h"
 #include "relief/mesh/error.h"
@@ -13,6 +14,7 @@
 namespace relief {
 namespace {
 
+using test::found;
 using testing::HasSubstr;
 using testing::SizeIs;
 using testing::StartsWith;
@@ -24,13 +26,6 @@ OwnOptions quick(bool is_timed) {
     options.file = "high.obj and low.obj";
     options.arguments = "high.obj low.obj";
     return options;
-}
-
-const Measurement& found(const OwnExperiment& own, const std::string& method) {
-    for (const Measurement& one : own.experiment.measurements) {
-        if (one.method == method) return one;
-    }
-    throw InvalidInput("no method " + method);
 }
 
 /// Waves over the unit square, several to a texel of a map of 32.

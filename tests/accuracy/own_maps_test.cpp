@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "bump/bump_words.h"
+#include "experiment_checks.h"
 #include "relief/accuracy/own.h"
 #include "relief/mesh/bump_fields.h"
 #include "relief/mesh/error.h"
@@ -11,23 +12,17 @@
 namespace relief {
 namespace {
 
+using test::found;
 using testing::HasSubstr;
 using testing::Not;
 using testing::SizeIs;
 
-OwnOptions untimed() {
+OwnOptions untimed_map() {
     OwnOptions options;
     options.run.is_timed = false;
     options.file = "map.png";
     options.arguments = "map.png";
     return options;
-}
-
-const Measurement& found(const OwnExperiment& own, const std::string& method) {
-    for (const Measurement& one : own.experiment.measurements) {
-        if (one.method == method) return one;
-    }
-    throw InvalidInput("no method " + method);
 }
 
 BumpField waves(FieldCoding coding) {
@@ -40,7 +35,7 @@ BumpField waves(FieldCoding coding) {
 
 TEST(OwnHeights, AreThoseOfTheBumpExperiment) {
     const BumpField field = waves(FieldCoding::float32);
-    const OwnExperiment own = measure_own_heights(field.heights, field.options, untimed());
+    const OwnExperiment own = measure_own_heights(field.heights, field.options, untimed_map());
     EXPECT_THAT(own.experiment.measurements, SizeIs(60));  // Kernels x arithmetics x depths.
     BumpExperimentOptions how;
     how.bump = field.options;
@@ -57,7 +52,7 @@ TEST(OwnHeights, AreThoseOfTheBumpExperiment) {
 
 TEST(OwnHeights, OfFewBitsAreAlsoSmoothed) {
     const BumpField field = waves(FieldCoding::bits8);
-    const OwnExperiment own = measure_own_heights(field.heights, field.options, untimed());
+    const OwnExperiment own = measure_own_heights(field.heights, field.options, untimed_map());
     EXPECT_THAT(own.experiment.measurements, SizeIs(70));
     EXPECT_GE(found(own, "scharr3, float32, 16 bit, steps smoothed").error.count, 96U * 96U);
 }
@@ -75,13 +70,14 @@ TEST(OwnHeights, AreTriedInTheBitsAskedForAlone) {
 
 TEST(OwnHeights, OfLargeMapsAreMeasuredOnParts) {
     const BumpField field = waves(FieldCoding::float32);
-    const OwnExperiment own = measure_own_heights(field.heights, field.options, untimed(), 48 * 48);
+    const OwnExperiment own =
+        measure_own_heights(field.heights, field.options, untimed_map(), 48 * 48);
     EXPECT_EQ(own.experiment.input, "2304 texels in nine parts of 96 x 96");
 }
 
 TEST(OwnHeights, AreTimedWhereThatIsWished) {
     const BumpField field = waves(FieldCoding::bits8);
-    OwnOptions options = untimed();
+    OwnOptions options = untimed_map();
     options.run.is_timed = true;
     options.run.repeats = {1, 0};
     options.costs = {.one_thread = false, .all_threads = true, .memory = false};
@@ -102,7 +98,7 @@ TEST(OwnNormalMaps, AreComparedWithWhatTheFileHolds) {
     format.bits = 8;
     const Image map = encode_normal_map(normals_of(waves(FieldCoding::float32)), format, report);
     const Image normals = decode_normal_map(map, Green::up, FlatCode::middle, report);
-    const OwnExperiment own = measure_own_normals(normals, 8, untimed());
+    const OwnExperiment own = measure_own_normals(normals, 8, untimed_map());
     EXPECT_LE(found(own, "xyz float").error.max, 1e-4);
     // Vectors are made unit before they become codes again: most codes stay, not all.
     EXPECT_GT(found(own, "xyz 8 bit").error.rms, 0.0);
@@ -114,7 +110,7 @@ TEST(OwnNormalMaps, AreComparedWithWhatTheFileHolds) {
 
 TEST(OwnNormalMaps, AreOffByWhatTheirBitsHold) {
     const OwnExperiment own =
-        measure_own_normals(normals_of(waves(FieldCoding::float32)), 32, untimed());
+        measure_own_normals(normals_of(waves(FieldCoding::float32)), 32, untimed_map());
     // A code of 8 bits is 1 / 127: half of one along each axis at the most, and of 16 bits 256
     // times less.
     const double eight = found(own, "xyz 8 bit").error.rms;

@@ -7,6 +7,7 @@
 #include <glm/trigonometric.hpp>
 #include <numbers>
 
+#include "experiment_checks.h"
 #include "measured_methods.h"
 #include "normals/normal_methods.h"
 #include "own/own_creases.h"
@@ -20,11 +21,12 @@
 namespace relief {
 namespace {
 
+using test::found;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::SizeIs;
 
-OwnOptions untimed() {
+OwnOptions untimed_mesh() {
     OwnOptions options;
     options.run.is_timed = false;
     options.file = "vase.obj";
@@ -32,15 +34,8 @@ OwnOptions untimed() {
     return options;
 }
 
-const Measurement& found(const OwnExperiment& own, const std::string& method) {
-    for (const Measurement& one : own.experiment.measurements) {
-        if (one.method == method) return one;
-    }
-    throw InvalidInput("no method " + method);
-}
-
 OwnExperiment normals_of(const Mesh& mesh, const OwnMeshOptions& how = {}) {
-    return measure_own_mesh(mesh, how, untimed()).front();
+    return measure_own_mesh(mesh, how, untimed_mesh()).front();
 }
 
 TEST(OwnNormals, AreJudgedAsByTheTruthThatNobodyTold) {
@@ -119,7 +114,7 @@ TEST(OwnCreases, AreTheOnesToldOrThoseOfTheFile) {
 TEST(OwnTangents, AreFromTheImagesOwnDirectionAndFromMikktspace) {
     const TexturedMesh truth = textured_mesh(AnalyticSurface::torus, Triangulation::jittered,
                                              TextureLayout::upright, 24, 1);
-    const std::vector<OwnExperiment> all = measure_own_mesh(truth.mesh, {}, untimed());
+    const std::vector<OwnExperiment> all = measure_own_mesh(truth.mesh, {}, untimed_mesh());
     ASSERT_THAT(all, SizeIs(4));
     EXPECT_EQ(all[1].experiment.id, "own/vase.obj/tangents");
     EXPECT_GT(found(all[1], "mikktspace").error.rms, 0.1);
@@ -137,20 +132,20 @@ TEST(OwnTangents, AreFromTheImagesOwnDirectionAndFromMikktspace) {
 TEST(OwnTangents, OnAFlatImageAreAllTheSame) {
     Mesh mesh = test::grid(6);
     mesh.tangents.assign(mesh.positions.size(), glm::vec4(1.0F, 0.0F, 0.0F, 1.0F));
-    const std::vector<OwnExperiment> all = measure_own_mesh(mesh, {}, untimed());
+    const std::vector<OwnExperiment> all = measure_own_mesh(mesh, {}, untimed_mesh());
     for (const Measurement& one : all[1].experiment.measurements)
         EXPECT_LE(one.error.max, 1e-5) << one.method;
     EXPECT_LE(found(all[2], "the file's own").error.max, 1e-5);
     for (glm::vec4& tangent : mesh.tangents)
         tangent = {0.0F, 1.0F, 0.0F, 1.0F};
-    EXPECT_NEAR(found(measure_own_mesh(mesh, {}, untimed())[1], "the file's own").error.rms, 90.0,
-                1e-4);
+    EXPECT_NEAR(found(measure_own_mesh(mesh, {}, untimed_mesh())[1], "the file's own").error.rms,
+                90.0, 1e-4);
 }
 
 TEST(OwnTangents, LeaveOutTrianglesWithoutADirection) {
     Mesh mesh = test::grid(4);
     mesh.texcoords.assign(mesh.positions.size(), glm::vec2(0.5F));
-    const std::vector<OwnExperiment> all = measure_own_mesh(mesh, {}, untimed());
+    const std::vector<OwnExperiment> all = measure_own_mesh(mesh, {}, untimed_mesh());
     EXPECT_THAT(all[1].experiment.input, HasSubstr("(32 have no direction in the image)"));
     EXPECT_EQ(all[1].recommendation.method, std::nullopt);
 }
@@ -168,7 +163,7 @@ TEST(OwnMesh, OfManyTrianglesIsMeasuredOnEightRuns) {
 }
 
 TEST(OwnMesh, IsTimedAndRecommendedByTime) {
-    OwnOptions options = untimed();
+    OwnOptions options = untimed_mesh();
     options.run.is_timed = true;
     options.run.repeats = {3, 0};
     options.costs = {.one_thread = true, .all_threads = false, .memory = false};
@@ -185,8 +180,8 @@ TEST(OwnMesh, EndsWhenThatIsWished) {
     Progress progress;
     const ProgressScope scope(progress);
     progress.cancel();
-    EXPECT_THROW(measure_own_mesh(test::grid(4), {}, untimed()), Cancelled);
-    EXPECT_THROW(measure_own_mesh(Mesh{}, {}, untimed()), InvalidInput);
+    EXPECT_THROW(measure_own_mesh(test::grid(4), {}, untimed_mesh()), Cancelled);
+    EXPECT_THROW(measure_own_mesh(Mesh{}, {}, untimed_mesh()), InvalidInput);
 }
 
 }  // namespace

@@ -13,7 +13,7 @@
 namespace relief {
 namespace {
 
-constexpr int size = 24;
+constexpr int cube_side = 24;
 
 double furthest(const Image& a, const Image& b) {
     return compare(a, b).max;
@@ -46,11 +46,11 @@ double left_of_slope(double roughness) {
 
 TEST(TrueMirror, IsWhatTheReferenceShaderDraws) {
     const Scene ball = mirror_ball(cube_map_of(waves_and_lamps, 512), 0.0);
-    const Image traced = many_samples(ball, size, 4);
-    EXPECT_LT(furthest(traced, true_mirror(waves_and_lamps, size, 4)), 0.006);
+    const Image traced = many_samples(ball, cube_side, 4);
+    EXPECT_LT(furthest(traced, true_mirror(waves_and_lamps, cube_side, 4)), 0.006);
     // Surroundings that are turned round are not.
     const auto turned = [](const glm::dvec3& d) { return waves_and_lamps({-d.x, d.y, d.z}); };
-    EXPECT_GT(furthest(traced, true_mirror(turned, size, 4)), 0.1);
+    EXPECT_GT(furthest(traced, true_mirror(turned, cube_side, 4)), 0.1);
 }
 
 TEST(RoughMirror, OfConstantSurroundingsIsThose) {
@@ -66,9 +66,9 @@ TEST(RoughMirror, OfASlopeIsFlatterAsTheClosedFormSays) {
         cube_map_of([](const glm::dvec3& d) { return slope(d, 1.0); }, 64);
     for (const double roughness : {0.2, 0.5, 0.9}) {
         const double left = left_of_slope(roughness);
-        const Image blurred = many_samples(mirror_ball(environment, roughness), size, 1);
+        const Image blurred = many_samples(mirror_ball(environment, roughness), cube_side, 1);
         const Image expected =
-            true_mirror([&](const glm::dvec3& d) { return slope(d, left); }, size, 1);
+            true_mirror([&](const glm::dvec3& d) { return slope(d, left); }, cube_side, 1);
         EXPECT_LT(furthest(blurred, expected), 0.002) << roughness << ", " << left;
         EXPECT_LT(left, 1.0);
     }

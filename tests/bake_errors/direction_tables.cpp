@@ -14,7 +14,7 @@
 namespace relief::test {
 namespace {
 
-constexpr int map_side = 64;
+constexpr int direction_map_side = 64;
 constexpr double outside = 1.1;
 
 /// One face, +z, of a cube of half size 1 made of cells x cells cells, and the five others whole:
@@ -53,7 +53,7 @@ struct Kept {
 };
 
 Kept kept(const Mesh& low, BakeOptions options) {
-    options.width = options.height = map_side;
+    options.width = options.height = direction_map_side;
     options.space = BakeSpace::object;
     options.offset = 0.2;
     options.max_distance = 0.1;
@@ -67,13 +67,13 @@ Kept kept(const Mesh& low, BakeOptions options) {
                 if (rows.states[i] != TexelState::baked) continue;
                 const float* const n = &rows.normals[3 * i];
                 const glm::dvec2 met = outside / double{n[2]} * glm::dvec2(n[0], n[1]);
-                const auto x = static_cast<double>(i % map_side);
-                const auto y = static_cast<double>(i / map_side) + rows.first_row;
-                const glm::dvec2 from((x + 0.5) / map_side * 2.0 - 1.0,
-                                      1.0 - (y + 0.5) / map_side * 2.0);
+                const auto x = static_cast<double>(i % direction_map_side);
+                const auto y = static_cast<double>(i / direction_map_side) + rows.first_row;
+                const glm::dvec2 from((x + 0.5) / direction_map_side * 2.0 - 1.0,
+                                      1.0 - (y + 0.5) / direction_map_side * 2.0);
                 // Half a texel beyond the outermost centre ends what the map holds.
-                const double end =
-                    std::max(std::abs(met.x), std::abs(met.y)) * map_side / (map_side - 1.0);
+                const double end = std::max(std::abs(met.x), std::abs(met.y)) * direction_map_side /
+                                   (direction_map_side - 1.0);
                 result.seen = std::max(result.seen, std::min(end / outside, 1.0));
                 result.skewed = std::max(result.skewed, glm::length(met - from) / (outside - 1.0));
             }

@@ -15,7 +15,7 @@
 namespace relief::test {
 namespace {
 
-constexpr int map_side = 256;
+constexpr int padded_map_side = 256;
 constexpr int levels = 6;
 /// Corners of the chart, over the map: on no texel's border at any level.
 constexpr float chart_begin = 0.3134F;
@@ -28,17 +28,18 @@ Image baked(int padding) {
         texcoord = chart_begin + (chart_end - chart_begin) * texcoord;
     Mesh high = low;
     std::fill(high.normals.begin(), high.normals.end(), slant);
-    Image map = make_image(map_side, map_side, 3, 32, ColorSpace::data);
+    Image map = make_image(padded_map_side, padded_map_side, 3, 32, ColorSpace::data);
     BakeOptions options;
-    options.width = options.height = map_side;
+    options.width = options.height = padded_map_side;
     options.padding = padding;
     options.space = BakeSpace::object;
     Report report;
     bake_normals(
         std::span(&high, 1), low, options,
         [&](const BakedRows& rows) {
-            std::copy(rows.normals.begin(), rows.normals.end(),
-                      map.as<float>().begin() + std::ptrdiff_t{3} * map_side * rows.first_row);
+            std::copy(
+                rows.normals.begin(), rows.normals.end(),
+                map.as<float>().begin() + std::ptrdiff_t{3} * padded_map_side * rows.first_row);
         },
         report);
     return map;

@@ -20,7 +20,7 @@
 namespace relief::test {
 namespace {
 
-constexpr int map_side = 256;
+constexpr int sampled_map_side = 256;
 constexpr LowSphere low_sphere{46, 23};
 
 struct Baked {
@@ -29,9 +29,9 @@ struct Baked {
 };
 
 Baked baked(const BumpySphere& high, const Mesh& low, int samples, bool is_auto) {
-    Baked result{make_image(map_side, map_side, 3, 32, ColorSpace::data)};
+    Baked result{make_image(sampled_map_side, sampled_map_side, 3, 32, ColorSpace::data)};
     BakeOptions options;
-    options.width = options.height = map_side;
+    options.width = options.height = sampled_map_side;
     options.samples = samples;
     if (is_auto) options.sample_angle = glm::radians(2.0);
     Report report;
@@ -40,10 +40,10 @@ Baked baked(const BumpySphere& high, const Mesh& low, int samples, bool is_auto)
         std::span(&high.mesh(), 1), low, options,
         [&](const BakedRows& rows) {
             std::copy(rows.normals.begin(), rows.normals.end(),
-                      all.begin() + std::ptrdiff_t{3} * map_side * rows.first_row);
+                      all.begin() + std::ptrdiff_t{3} * sampled_map_side * rows.first_row);
         },
         report);
-    result.rays_per_texel = static_cast<double>(done.rays) / (map_side * map_side);
+    result.rays_per_texel = static_cast<double>(done.rays) / (sampled_map_side * sampled_map_side);
     return result;
 }
 
@@ -85,7 +85,7 @@ std::string sample_tables() {
                          .mesh;
     Mesh rays = low;  // By default they run along averaged normals, whatever the mesh's own are.
     rays.normals = vertex_normals(low.positions, low.triangles, NormalWeight::angle, report);
-    const std::vector<TexelTruth> all = texel_truths(high, rays, low_sphere, map_side);
+    const std::vector<TexelTruth> all = texel_truths(high, rays, low_sphere, sampled_map_side);
     const Baked single = baked(high, low, 1, false);
     std::string text =
         "\nOne ray, against the place on the surface that it asks about: RMS / 99 of 100 / "

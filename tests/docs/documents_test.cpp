@@ -32,11 +32,6 @@ std::vector<std::string> pages() {
     return {found.begin(), found.end()};
 }
 
-std::string contents_of(const fs::path& file) {
-    std::ifstream stream(file, std::ios::binary);
-    return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
-}
-
 class Document : public testing::TestWithParam<std::string> {};
 
 TEST_P(Document, ShowsCommandsThatRun) {

@@ -12,15 +12,12 @@
 
 #include "support/shared_data.h"
 
+#include "docs/shown_commands.h"
+
 namespace relief::test {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string contents_of(const fs::path& file) {
-    std::ifstream stream(file, std::ios::binary);
-    return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
-}
 
 /// Citations in a text, each with the place that it was found in.
 void collect(const std::string& text, const std::string& place,

@@ -4,6 +4,9 @@
 /// Tests: tests/docs/shown_commands_test.cpp.
 #pragma once
 
+#include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <string>
 #include <vector>
 
@@ -18,6 +21,12 @@ struct ShownCommand {
 /// call one of the tools ("relief-...", "build/release/bin/relief-...") or a script
 /// ("scripts/..."). A backslash at the end of a line continues it. Everything else is left alone.
 std::vector<ShownCommand> shown_commands(const std::string& page);
+
+/// A page as it stands.
+inline std::string contents_of(const std::filesystem::path& file) {
+    std::ifstream stream(file, std::ios::binary);
+    return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+}
 
 /// A script's path, where a command calls one; else empty.
 std::string called_script(const std::string& command);

@@ -12,8 +12,6 @@
 namespace relief::test {
 namespace {
 
-const glm::dvec3 flat(0, 0, 1);
-
 HardCase self_case() {
     return {
         "mesh baked onto itself",
@@ -22,7 +20,7 @@ HardCase self_case() {
         "rays that miss what they start on; bakers with a bias",
         {{"bake", "flat within 0.001 degrees, no texel missed, height 0", [] {
               for (const Mesh& mesh : {make_cube(), make_sphere(), make_torus()}) {
-                  const std::string problem = not_all(baked({mesh}, mesh), flat, 0.0);
+                  const std::string problem = not_all(baked({mesh}, mesh), flat_normal, 0.0);
                   if (!problem.empty()) return problem;
               }
               return std::string();
@@ -37,7 +35,7 @@ HardCase edges_case() {
                   Mesh high = moved(make_quad(8), {0, 0, 0.125F});
                   const HardBake map = baked({high}, make_quad());
                   std::reverse(high.triangles.begin(), high.triangles.end());
-                  const std::string problem = not_all(map, flat, 0.125);
+                  const std::string problem = not_all(map, flat_normal, 0.125);
                   if (!problem.empty()) return problem;
                   return std::string(baked({high}, make_quad()).normals == map.normals
                                          ? ""
@@ -61,7 +59,8 @@ HardCase border_case() {
               if (map.result.coverage.touched < bake_side)
                   return std::string("few texels touch it");
               for (std::size_t i = 0; i < bake_texels; ++i) {
-                  if (!(map.degrees(i, flat) < 0.001)) return fmt::format("texel {} is off", i);
+                  if (!(map.degrees(i, flat_normal) < 0.001))
+                      return fmt::format("texel {} is off", i);
               }
               if (map.result.texels_missed > 0)
                   return fmt::format("{} missed", map.result.texels_missed);
@@ -84,7 +83,7 @@ HardCase needle_case() {
                       const auto first = static_cast<std::uint32_t>(3 * i);
                       needles.triangles.emplace_back(first, first + 1, first + 2);
                   }
-                  return not_all(baked({make_quad(), needles}, make_quad()), flat, 0.0);
+                  return not_all(baked({make_quad(), needles}, make_quad()), flat_normal, 0.0);
               }}}};
 }
 
@@ -99,7 +98,7 @@ HardCase missed_case() {
                       position.x = (position.x - 1.0F) / 2.0F;
                   const HardBake map = baked({half}, make_quad());
                   return map.report.count("texel missed by its rays") == bake_texels / 2 &&
-                                 map.degrees(bake_side - 1, flat) == 0.0
+                                 map.degrees(bake_side - 1, flat_normal) == 0.0
                              ? ""
                              : std::string("not so");
               }},
@@ -118,20 +117,21 @@ HardCase missed_case() {
 }
 
 HardCase wall_case() {
-    return {
-        "far side of a thin wall",
-        "A square, and 0.3 above it a wall 0.01 thick, whose far side faces the same way.",
-        "wrong sheets in tight folds",
-        {{"bake", "the square; of two open sheets, the outer one", [] {
-              const Mesh own = moved(make_quad(), {0, 0, 0.05F});
-              Mesh near = moved(make_quad(), {0, 0, 0.3F});
-              for (glm::uvec3& triangle : near.triangles)
-                  std::swap(triangle.y, triangle.z);
-              const Mesh far = moved(make_quad(), {0, 0, 0.31F});
-              const std::string problem = not_all(baked({own, near, far}, make_quad()), flat, 0.05);
-              return problem.empty() ? not_all(baked({own, far}, make_quad()), flat, 0.31)
-                                     : problem;
-          }}}};
+    return {"far side of a thin wall",
+            "A square, and 0.3 above it a wall 0.01 thick, whose far side faces the same way.",
+            "wrong sheets in tight folds",
+            {{"bake", "the square; of two open sheets, the outer one", [] {
+                  const Mesh own = moved(make_quad(), {0, 0, 0.05F});
+                  Mesh near = moved(make_quad(), {0, 0, 0.3F});
+                  for (glm::uvec3& triangle : near.triangles)
+                      std::swap(triangle.y, triangle.z);
+                  const Mesh far = moved(make_quad(), {0, 0, 0.31F});
+                  const std::string problem =
+                      not_all(baked({own, near, far}, make_quad()), flat_normal, 0.05);
+                  return problem.empty()
+                             ? not_all(baked({own, far}, make_quad()), flat_normal, 0.31)
+                             : problem;
+              }}}};
 }
 
 HardCase scale_case() {
@@ -145,7 +145,7 @@ HardCase scale_case() {
                           position *= size;
                       HardBake map = baked({mesh}, mesh);
                       std::fill(map.heights.begin(), map.heights.end(), 0.0F);
-                      const std::string problem = not_all(map, flat, 0.0);
+                      const std::string problem = not_all(map, flat_normal, 0.0);
                       if (!problem.empty()) return problem;
                   }
                   return std::string();
@@ -167,7 +167,7 @@ HardCase broken_case() {
                   high.normals.insert(high.normals.end(), 2, {0, 0, 1});
                   high.texcoords.clear();
                   high.triangles.insert(high.triangles.end(), {{0, 1, 4}, {1, 2, 5}, {0, 0, 1}});
-                  return not_all(baked({high}, make_quad()), flat, 0.0);
+                  return not_all(baked({high}, make_quad()), flat_normal, 0.0);
               }}}};
 }
 

@@ -15,8 +15,6 @@
 namespace relief::test {
 namespace {
 
-const glm::dvec3 flat(0, 0, 1);
-
 std::string says(bool is_so, const std::string& otherwise = "not so") {
     return is_so ? "" : otherwise;
 }
@@ -41,11 +39,11 @@ HardCase upright_case() {
                   const HardBake map = baked({low}, low);
                   const auto count = map.report.count("triangle without area in the image");
                   if (count != 8) return fmt::format("{} reported", count);
-                  return not_all(map, flat, 0.0);
+                  return not_all(map, flat_normal, 0.0);
               }}}};
 }
 
-HardCase hole_case() {
+HardCase mesh_hole_case() {
     return {"high mesh with a hole",
             "A square of 2 x 2 cells without one of them.",
             "bakers that leave black texels",
@@ -83,12 +81,12 @@ HardCase coplanar_case() {
             "The square itself, twice, and once more in 8 x 8 cells.",
             "rays that start on what they should hit",
             {{"bake", "flat within 0.001 degrees, no texel missed, height 0", [] {
-                  return not_all(baked({make_quad(), make_quad(8), make_quad()}, make_quad()), flat,
-                                 0.0);
+                  return not_all(baked({make_quad(), make_quad(8), make_quad()}, make_quad()),
+                                 flat_normal, 0.0);
               }}}};
 }
 
-HardCase size_case() {
+HardCase model_size_case() {
     return {"high meshes far larger or smaller than the low one",
             "A square 100000 times as large; one a thousandth as large, in the middle of a texel.",
             "distances guessed from the high mesh",
@@ -99,7 +97,8 @@ HardCase size_case() {
                       small.positions[i] =
                           1e-3F * small.positions[i] + glm::vec3(0.0625F, 0.0625F, 0.01F);
                   }
-                  const std::string problem = not_all(baked({large}, make_quad()), flat, 0.0);
+                  const std::string problem =
+                      not_all(baked({large}, make_quad()), flat_normal, 0.0);
                   if (!problem.empty()) return problem;
                   const HardBake map = baked({small}, make_quad());
                   return says(map.result.texels_baked == 1 &&
@@ -122,7 +121,7 @@ HardCase fin_case() {
                   high.tangents.clear();
                   HardBake map = baked({high}, make_quad());
                   std::fill(map.heights.begin(), map.heights.end(), 0.0F);
-                  return not_all(map, flat, 0.0);
+                  return not_all(map, flat_normal, 0.0);
               }}}};
 }
 
@@ -195,7 +194,7 @@ HardCase outside_case() {
           }}}};
 }
 
-HardCase overlap_case() {
+HardCase texture_overlap_case() {
     return {"bake of charts that overlap, one of them mirrored",
             "Two squares with the same texture; the second one's is mirrored, and it is lower.",
             "two charts mixed texel by texel",
@@ -216,7 +215,7 @@ HardCase overlap_case() {
                   const HardBake map = baked({moved(make_quad(), {0, 0, 0.01F})}, low);
                   if (map.report.count("texel of several triangles") != bake_texels)
                       return std::string("not reported");
-                  return not_all(map, flat, 0.01);
+                  return not_all(map, flat_normal, 0.01);
               }}}};
 }
 
@@ -243,7 +242,7 @@ HardCase map_size_case() {
                       options.width = width;
                       options.height = height;
                       const HardBake map = baked({make_quad()}, make_quad(), options);
-                      const std::string problem = not_all(map, flat, 0.0);
+                      const std::string problem = not_all(map, flat_normal, 0.0);
                       if (!problem.empty()) return problem;
                   }
                   return std::string();
@@ -278,9 +277,11 @@ HardCase memory_case() {
 }  // namespace
 
 std::vector<HardCase> bake_shape_cases() {
-    return {upright_case(), hole_case(),       crossing_case(),    coplanar_case(), size_case(),
-            fin_case(),     degenerate_case(), nothing_low_case(), outside_case(),  overlap_case(),
-            speck_case(),   map_size_case(),   memory_case()};
+    return {upright_case(),         mesh_hole_case(),   crossing_case(),
+            coplanar_case(),        model_size_case(),  fin_case(),
+            degenerate_case(),      nothing_low_case(), outside_case(),
+            texture_overlap_case(), speck_case(),       map_size_case(),
+            memory_case()};
 }
 
 }  // namespace relief::test

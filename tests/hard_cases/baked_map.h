@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include <glm/glm.hpp>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,8 @@ namespace relief::test {
 /// Texels along each side, where a case says nothing else.
 inline constexpr int bake_side = 16;
 inline constexpr std::size_t bake_texels = std::size_t{bake_side} * bake_side;
+
+inline const glm::dvec3 flat_normal(0, 0, 1);
 
 struct HardBake {
     std::vector<float> normals, heights;

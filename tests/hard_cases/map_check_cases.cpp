@@ -25,7 +25,7 @@ Image hills() {
 
 /// Every sample of `channels` changed by `change`, in the range 0 to 1.
 template <typename Change>
-Image changed(Image map, std::size_t channel, const Change& change) {
+Image with_channel(Image map, std::size_t channel, const Change& change) {
     for (std::size_t i = 0; i < map.sample_count(); ++i) {
         if (channel < 3 && i % 3 != channel) continue;
         std::uint8_t& sample = map.as<std::uint8_t>()[i];
@@ -55,11 +55,11 @@ HardCase color_case() {
             "paintsystem#132",
             {{"check map", "trouble: stored through the sRGB curve",
               [] {
-                  return not_found(changed(hills(), every_channel, srgb_from_linear),
+                  return not_found(with_channel(hills(), every_channel, srgb_from_linear),
                                    {MapCondition::stored_through_srgb});
               }},
              {"check map", "trouble: darkened by the sRGB curve", [] {
-                  return not_found(changed(hills(), every_channel, linear_from_srgb),
+                  return not_found(with_channel(hills(), every_channel, linear_from_srgb),
                                    {MapCondition::decoded_from_srgb});
               }}}};
 }
@@ -76,7 +76,7 @@ HardCase green_case() {
               [flipped] {
                   const std::string up = not_found(hills(), {});
                   if (!up.empty()) return up;
-                  const Image down = changed(hills(), 1, flipped);
+                  const Image down = with_channel(hills(), 1, flipped);
                   const std::string told = not_found(down, {MapCondition::green_down});
                   if (!told.empty()) return told;
                   return not_found(down,

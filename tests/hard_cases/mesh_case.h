@@ -24,6 +24,11 @@ using Findings = std::vector<std::pair<std::string, std::size_t>>;
 /// The true normal at a vertex of the mesh, where there is one.
 using TrueNormal = std::function<std::optional<glm::dvec3>(const Mesh& mesh, std::size_t vertex)>;
 
+/// The true normal of a level plane, seen from above.
+inline std::optional<glm::dvec3> facing_up(const Mesh&, std::size_t) {
+    return glm::dvec3(0, 0, 1);
+}
+
 /// The true tangent at a corner of the mesh, where there is one; w 0: either.
 using TrueTangent = std::function<std::optional<glm::dvec4>(const Mesh& mesh, std::size_t corner)>;
 

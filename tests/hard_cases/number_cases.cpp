@@ -72,10 +72,6 @@ Mesh grid_with(float value) {
     return mesh;
 }
 
-std::optional<glm::dvec3> up(const Mesh&, std::size_t) {
-    return glm::dvec3(0, 0, 1);
-}
-
 HardCase non_finite_case(const std::string& name, float value) {
     using enum MeshCondition;
     return MeshCase(name,
@@ -85,7 +81,7 @@ HardCase non_finite_case(const std::string& name, float value) {
                     [value] { return grid_with(value); })
         .checked({{triangle_not_finite, 6}, {edge_boundary, 22}, {vertex_not_finite, 1}})
         .normals({{"triangle with a non-finite corner", 6}, {"non-finite position", 1}})
-        .accurate(all_weights(), 0, "the grid's; (0,0,1) at the vertex itself", up)
+        .accurate(all_weights(), 0, "the grid's; (0,0,1) at the vertex itself", facing_up)
         .tangents(
             {{"corner without texture direction", 6}, {"triangle with non-finite values", 6}});
 }
@@ -147,7 +143,7 @@ std::vector<HardCase> number_cases() {
                  })
             .checked({{edge_boundary, 3}})
             .normals()
-            .accurate(all_weights(), 0, "its own", up)
+            .accurate(all_weights(), 0, "its own", facing_up)
             .tangents(),
     };
 }

@@ -5,11 +5,10 @@
 #include "hard_cases/mesh_cases.h"
 #include "hard_cases/sample_meshes.h"
 #include "hard_cases/tangent_samples.h"
+#include "support/no_numbers.h"
 
 namespace relief::test {
 namespace {
-
-constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 
 Mesh square_with_normals(const std::vector<glm::vec3>& normals) {
     Mesh mesh = square();
@@ -35,12 +34,13 @@ Mesh square_with_tangents(const std::vector<glm::vec4>& tangents) {
 std::vector<HardCase> stored_cases() {
     using enum MeshCondition;
     return {
-        MeshCase("normals that are none",
-                 "A square whose normals are NaN, zero, of length 2, and sound.",
-                 "MikkTSpace: 3000 bad corners from normals that are not unit, measured",
-                 [] {
-                     return square_with_normals({{0, 0, nan}, {0, 0, 0}, {0, 0, 2}, {0, 0, 1}});
-                 })
+        MeshCase(
+            "normals that are none",
+            "A square whose normals are NaN, zero, of length 2, and sound.",
+            "MikkTSpace: 3000 bad corners from normals that are not unit, measured",
+            [] {
+                return square_with_normals({{0, 0, not_a_number}, {0, 0, 0}, {0, 0, 2}, {0, 0, 1}});
+            })
             .checked({{edge_boundary, 4},
                       {normal_not_finite, 1},
                       {normal_zero, 1},
@@ -55,14 +55,15 @@ std::vector<HardCase> stored_cases() {
             .checked({{edge_boundary, 4}, {normal_opposed, 1}, {normal_divided, 1}})
             .tangents({{"corner without texture direction", 1},
                        {"texture direction along the normal", 1}}),
-        MeshCase("tangents that are none",
-                 "A square whose tangents are NaN, of length 2 without handedness, along the "
-                 "normal, and leaning by 6 degrees.",
-                 "the VertexColorTest of the glTF samples",
-                 [] {
-                     return square_with_tangents(
-                         {{nan, 0, 0, 1}, {2, 0, 0, 0}, {0, 0, 1, 1}, {0.995F, 0, 0.1F, 1}});
-                 })
+        MeshCase(
+            "tangents that are none",
+            "A square whose tangents are NaN, of length 2 without handedness, along the "
+            "normal, and leaning by 6 degrees.",
+            "the VertexColorTest of the glTF samples",
+            [] {
+                return square_with_tangents(
+                    {{not_a_number, 0, 0, 1}, {2, 0, 0, 0}, {0, 0, 1, 1}, {0.995F, 0, 0.1F, 1}});
+            })
             .checked({{edge_boundary, 4},
                       {tangent_not_finite, 1},
                       {tangent_not_unit, 1},
@@ -85,7 +86,7 @@ std::vector<HardCase> stored_cases() {
                  "exporters that divide by zero",
                  [] {
                      Mesh mesh = textured_square();
-                     mesh.texcoords[1].x = nan;
+                     mesh.texcoords[1].x = not_a_number;
                      return mesh;
                  })
             .checked({{edge_boundary, 4}, {texture_not_finite, 1}})

@@ -10,10 +10,6 @@
 namespace relief::test {
 namespace {
 
-std::optional<glm::dvec3> up(const Mesh&, std::size_t) {
-    return glm::dvec3(0, 0, 1);
-}
-
 /// Two triangles on one edge, the second folded back over the first.
 Mesh fold_over() {
     return mesh_of({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0.2F, 0.7F, 0}}, {{0, 1, 2}, {1, 0, 3}});
@@ -131,7 +127,7 @@ std::vector<HardCase> surface_cases() {
             .accurate({NormalWeight::area}, 0, "the larger triangle's on the common edge",
                       [](const Mesh& mesh, std::size_t vertex) -> std::optional<glm::dvec3> {
                           if (vertex > 1) return std::nullopt;
-                          return up(mesh, vertex);
+                          return facing_up(mesh, vertex);
                       })
             .expect("normals, auto", "nowhere further off than by area", worse_than_area)
             .tangents(),
@@ -140,14 +136,14 @@ std::vector<HardCase> surface_cases() {
                  "scans and hand-made meshes", flipped_triangle)
             .checked({{edge_flipped, 3}, {edge_boundary, 16}})
             .normals()
-            .accurate(all_weights(), 0, "the grid's", up)
+            .accurate(all_weights(), 0, "the grid's", facing_up)
             .tangents(),
         MeshCase("double-sided sheet",
                  "A square with a back on the same vertices: its normals cancel, and are (0,0,1).",
                  "leaves and cloth in games", double_sided_square)
             .checked({{triangle_backed, 4}})
             .normals({{"cancelling normals", 4}})
-            .accurate(all_weights(), 0, "(0,0,1)", up)
+            .accurate(all_weights(), 0, "(0,0,1)", facing_up)
             .tangents(),
         MeshCase("tip of a cone",
                  "A cone with an open base; no normal at its tip suits every side.",
@@ -167,7 +163,7 @@ std::vector<HardCase> surface_cases() {
                  "CGAL PR#8684", [] { return fan(10000); })
             .checked({{edge_boundary, 10000}})
             .normals()
-            .accurate(all_weights(), 0, "the plane's", up)
+            .accurate(all_weights(), 0, "the plane's", facing_up)
             .tangents(),
         MeshCase("edge of three triangles",
                  "Three triangles on one edge, so that there is no inside and outside.",

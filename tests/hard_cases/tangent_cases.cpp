@@ -12,11 +12,11 @@
 #include "hard_cases/tangent_samples.h"
 #include "relief/mesh/frames.h"
 #include "support/angle.h"
+#include "support/no_numbers.h"
 
 namespace relief::test {
 namespace {
 
-constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 constexpr float infinity = std::numeric_limits<float>::infinity();
 
 // As a Report names them.
@@ -269,10 +269,10 @@ std::vector<HardCase> tangent_cases() {
             .tangents()
             .expect("tangents", "exactly those of the texture moved back",
                     differs_from(coarsely_textured, 0.0)),
-        texture_value_case("NaN in a texture coordinate", nan),
+        texture_value_case("NaN in a texture coordinate", not_a_number),
         texture_value_case("infinity in a texture coordinate", infinity),
         normal_value_case("normal of length zero", {0, 0, 0}, normal_zero),
-        normal_value_case("normal that is NaN", {0, nan, 1}, normal_not_finite),
+        normal_value_case("normal that is NaN", {0, not_a_number, 1}, normal_not_finite),
         normal_value_case("normal that is infinite", {0, 0, infinity}, normal_not_finite),
         MeshCase("normals of any length", "A torus with normals of lengths from 2^-40 to 2^40.",
                  "MikkTSpace and meshoptimizer: 3000 of 3072 corners lean, measured",

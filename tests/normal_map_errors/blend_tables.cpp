@@ -12,7 +12,7 @@
 namespace relief::test {
 namespace {
 
-constexpr int side = 128;
+constexpr int blend_side = 128;
 
 /// The words of `relief-bake convert --blend`, in the order of all_normal_blends.
 const std::vector<std::string> blend_names = {
@@ -49,8 +49,8 @@ glm::dvec3 carved_point(const Waves& base, const Waves& detail, const glm::dvec2
 std::vector<glm::dvec3> carved_normals(const Waves& base, const Waves& detail) {
     constexpr double step = 1e-4;
     std::vector<glm::dvec3> normals;
-    for (int row = 0; row < side; ++row) {
-        for (int column = 0; column < side; ++column) {
+    for (int row = 0; row < blend_side; ++row) {
+        for (int column = 0; column < blend_side; ++column) {
             const auto point = [&](double x, double y) {
                 return carved_point(base, detail, {column + x, -row + y});
             };
@@ -62,11 +62,11 @@ std::vector<glm::dvec3> carved_normals(const Waves& base, const Waves& detail) {
 }
 
 Waves base_waves(double slope) {
-    return tiling_waves(side, side, 6, 60, slope, 31);
+    return tiling_waves(blend_side, blend_side, 6, 60, slope, 31);
 }
 
 Waves detail_waves(double slope) {
-    return tiling_waves(side, side, 12, 7, slope, 32);
+    return tiling_waves(blend_side, blend_side, 12, 7, slope, 32);
 }
 
 std::string row_of(double base_slope, double detail_slope, bool is_carved) {
@@ -74,14 +74,14 @@ std::string row_of(double base_slope, double detail_slope, bool is_carved) {
     const Waves detail = detail_waves(detail_slope);
     Waves both = base;
     both.insert(both.end(), detail.begin(), detail.end());
-    AnalyticHeights truth = wave_heights(side, side, both);
+    AnalyticHeights truth = wave_heights(blend_side, blend_side, both);
     if (is_carved) truth.normals = carved_normals(base, detail);
     std::vector<double> ranks;
     std::vector<std::string> cells;
     for (const NormalBlend method : all_normal_blends) {
-        Image blended = normals_image(side, side, base);
+        Image blended = normals_image(blend_side, blend_side, base);
         Report report;
-        blend_normals(blended, normals_image(side, side, detail), method, report);
+        blend_normals(blended, normals_image(blend_side, blend_side, detail), method, report);
         const DirectionError error = normal_error(blended, truth);
         ranks.push_back(error.rms);
         cells.push_back(in_digits(error.rms) + " / " + in_digits(error.max));

@@ -11,7 +11,7 @@
 namespace relief::test {
 namespace {
 
-constexpr int side = 64;
+constexpr int mip_side = 64;
 
 /// The mean of both axes' variances of the slopes, over the whole map.
 double slope_variance(const Image& normals) {
@@ -29,7 +29,8 @@ double slope_variance(const Image& normals) {
 }
 
 std::string row_of(double rms_slope) {
-    const Image normals = normals_image(side, side, tiling_waves(side, side, 60, 4, rms_slope, 51));
+    const Image normals =
+        normals_image(mip_side, mip_side, tiling_waves(mip_side, mip_side, 60, 4, rms_slope, 51));
     const std::vector<Image> levels = normal_mip_levels(normals);
     const auto mean = levels.back().as<float>();
     const double length = glm::length(glm::dvec3(mean[0], mean[1], mean[2]));

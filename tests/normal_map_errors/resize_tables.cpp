@@ -11,7 +11,7 @@
 namespace relief::test {
 namespace {
 
-constexpr int side = 96;
+constexpr int resize_side = 96;
 
 const std::vector<std::string> filter_names = {"box", "triangle", "cubic", "lanczos", "best"};
 constexpr ResizeFilter filters[] = {ResizeFilter::box, ResizeFilter::triangle, ResizeFilter::cubic,
@@ -26,19 +26,19 @@ struct Situation {
 
 std::string row_of(const Situation& at, ResizeDomain domain) {
     const std::vector<HeightWave> held =
-        tiling_waves(side, side, 12, at.shortest_held, at.rms_slope, 5);
+        tiling_waves(resize_side, resize_side, 12, at.shortest_held, at.rms_slope, 5);
     std::vector<HeightWave> all = held;
     if (at.shortest_lost > 0.0) {
-        const double limit = 2.0 * side / at.to / 1.2;
+        const double limit = 2.0 * resize_side / at.to / 1.2;
         for (const HeightWave& wave :
-             tiling_waves(side, side, 300, at.shortest_lost, at.rms_slope, 6)) {
+             tiling_waves(resize_side, resize_side, 300, at.shortest_lost, at.rms_slope, 6)) {
             const bool is_lost = 2.0 * std::numbers::pi / glm::length(wave.frequency) < limit;
             if (is_lost && all.size() < 48) all.push_back(wave);
         }
     }
-    const Image normals = normals_image(side, side, all);
+    const Image normals = normals_image(resize_side, resize_side, all);
     const AnalyticHeights truth =
-        wave_heights(at.to, at.to, resized_waves(held, static_cast<double>(side) / at.to));
+        wave_heights(at.to, at.to, resized_waves(held, static_cast<double>(resize_side) / at.to));
     std::vector<double> ranks;
     std::vector<std::string> cells;
     for (const ResizeFilter filter : filters) {
@@ -51,7 +51,7 @@ std::string row_of(const Situation& at, ResizeDomain domain) {
         ranks.push_back(error);
         cells.push_back(in_digits(error));
     }
-    return table_row(fmt::format("to {:.0f} %, slope {:g}{}, {}", 100.0 * at.to / side,
+    return table_row(fmt::format("to {:.0f} %, slope {:g}{}, {}", 100.0 * at.to / resize_side,
                                  at.rms_slope, at.shortest_lost > 0.0 ? ", finer waves lost" : "",
                                  domain == ResizeDomain::slopes ? "slopes" : "vectors"),
                      ranks, cells);

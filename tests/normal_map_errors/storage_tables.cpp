@@ -10,10 +10,10 @@
 namespace relief::test {
 namespace {
 
-constexpr int side = 256;
+constexpr int storage_side = 256;
 
 std::string row_of(const char* name, const NormalMapFormat& format) {
-    const Image truth = image_of_normals(smooth_surface(side), side);
+    const Image truth = image_of_normals(smooth_surface(storage_side), storage_side);
     Report report;
     const Image read = decode_normal_map(encode_normal_map(truth, format, report), format.green,
                                          format.flat, report);

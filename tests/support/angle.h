@@ -3,9 +3,13 @@
 /// Directions are compared by the angle between them, never by components.
 #pragma once
 
+#include <numbers>
+
 #include "relief/mesh/direction_error.h"
 
 namespace relief::test {
+
+inline constexpr float half_turn = std::numbers::pi_v<float>;
 
 using relief::degrees_between;
 

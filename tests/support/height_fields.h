@@ -6,9 +6,12 @@
 #include <cstdint>
 #include <functional>
 
+#include "relief/mesh/bump.h"
 #include "relief/mesh/image.h"
 
 namespace relief::test {
+
+inline constexpr Wrap all_wraps[] = {Wrap::repeat, Wrap::clamp, Wrap::mirror};
 
 /// One channel of floats, `at(column, row)` each.
 Image heights_of(int width, int height, const std::function<double(int, int)>& at);

@@ -3,6 +3,10 @@
 /// Meshes whose true normals and tangents are known in closed form.
 #pragma once
 
+#include <glm/glm.hpp>
+#include <utility>
+#include <vector>
+
 #include "relief/mesh/mesh.h"
 
 namespace relief::test {
@@ -21,5 +25,13 @@ Mesh cube();
 
 /// The same triangles, each with vertices of its own; positions, normals and texture coordinates.
 Mesh soup(const Mesh& mesh);
+
+/// With nothing but these.
+inline Mesh mesh_from(std::vector<glm::vec3> positions, std::vector<glm::uvec3> triangles) {
+    Mesh mesh;
+    mesh.positions = std::move(positions);
+    mesh.triangles = std::move(triangles);
+    return mesh;
+}
 
 }  // namespace relief::test

@@ -20,17 +20,19 @@ using test::Refused;
 using test::Workplace;
 using testing::HasSubstr;
 
-constexpr const char* look = "relief-view data/vase.obj --size 64x48 --samples 1 ";
-constexpr const char* heights = "--height-map data/bricks-height.png ";
+constexpr const char* look_at_vase = "relief-view data/vase.obj --size 64x48 --samples 1 ";
+constexpr const char* vase_heights = "--height-map data/bricks-height.png ";
 
 TEST(Compare, EachHalfIsThePictureThatItsOptionsGive) {
     const Workplace workplace;
-    ASSERT_EQ(workplace.run(std::string(look) + heights + "--output a.png").exit_code, 0);
+    ASSERT_EQ(workplace.run(std::string(look_at_vase) + vase_heights + "--output a.png").exit_code,
+              0);
     ASSERT_EQ(
-        workplace.run(std::string(look) + heights + "--kernel central5 --output b.png").exit_code,
+        workplace.run(std::string(look_at_vase) + vase_heights + "--kernel central5 --output b.png")
+            .exit_code,
         0);
     const ProgramResult result =
-        workplace.run(std::string(look) + heights +
+        workplace.run(std::string(look_at_vase) + vase_heights +
                       "--compare kernel=central5 --split 0.25 --output sides.png --json");
     ASSERT_EQ(result.exit_code, 0) << result.error;
     const Image a = read_image(workplace / "a.png", ImageUse::color);
@@ -51,7 +53,7 @@ TEST(Compare, AnotherFileIsSeenFromTheSameEyeInTheSameLight) {
     const Workplace workplace;
     workplace.write("same.obj", workplace.read("data/vase.obj"));
     workplace.write_square("square.obj");
-    const std::string line = std::string(look) + "--output out/sides.png --compare-to ";
+    const std::string line = std::string(look_at_vase) + "--output out/sides.png --compare-to ";
     const ProgramResult same = workplace.run(line + "same.obj");
     EXPECT_THAT(same.out, HasSubstr("compared  with same.obj: "));
     const ProgramResult other = workplace.run(line + "square.obj --difference-map out/map.exr");

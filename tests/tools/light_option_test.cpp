@@ -13,14 +13,14 @@ namespace {
 using test::degrees_between;
 
 /// Of sines and cosines in float.
-constexpr double direction_tolerance = 1e-5;
+constexpr double light_tolerance = 1e-5;
 
 template <typename Light>
 Light parsed(const std::string& text) {
     return std::get<Light>(parse_light("--light " + text, text));
 }
 
-std::string refusal(const std::string& text) {
+std::string light_refusal(const std::string& text) {
     try {
         parse_light("--light " + text, text);
     } catch (const UsageError& error) {
@@ -32,13 +32,13 @@ std::string refusal(const std::string& text) {
 TEST(LightOption, ADirectionalLightComesFromWhereItIsNamed) {
     // From the right (+x), so it travels to the left.
     const auto right = parsed<DirectionalLight>("directional:90,0");
-    EXPECT_LT(degrees_between(right.direction_world, {-1, 0, 0}), direction_tolerance);
+    EXPECT_LT(degrees_between(right.direction_world, {-1, 0, 0}), light_tolerance);
     EXPECT_EQ(right.irradiance, glm::vec3(1.0F));
     const auto above = parsed<DirectionalLight>("directional:0,90,2.5");
-    EXPECT_LT(degrees_between(above.direction_world, {0, -1, 0}), direction_tolerance);
+    EXPECT_LT(degrees_between(above.direction_world, {0, -1, 0}), light_tolerance);
     EXPECT_EQ(above.irradiance, glm::vec3(2.5F));
     const auto front = parsed<DirectionalLight>("directional:0,0,2,#ff0000");
-    EXPECT_LT(degrees_between(front.direction_world, {0, 0, -1}), direction_tolerance);
+    EXPECT_LT(degrees_between(front.direction_world, {0, 0, -1}), light_tolerance);
     EXPECT_EQ(front.irradiance, glm::vec3(2.0F, 0.0F, 0.0F));
 }
 
@@ -51,7 +51,7 @@ TEST(LightOption, APointLightStandsWhereItIsNamed) {
 
 TEST(LightOption, ASpotLightShinesAtItsTargetWithinItsCone) {
     const auto light = parsed<SpotLight>("spot:0,5,0,0,0,0,40,10");
-    EXPECT_LT(degrees_between(light.direction_world, {0, -1, 0}), direction_tolerance);
+    EXPECT_LT(degrees_between(light.direction_world, {0, -1, 0}), light_tolerance);
     EXPECT_FLOAT_EQ(light.outer_cone, glm::radians(40.0F));
     EXPECT_FLOAT_EQ(light.inner_cone, glm::radians(30.0F));
     EXPECT_EQ(light.point.intensity, glm::vec3(10.0F));
@@ -63,20 +63,20 @@ TEST(LightOption, NoneIsNoLight) {
 }
 
 TEST(LightOption, RefusesWhatIsNotALight) {
-    EXPECT_EQ(refusal("sun"), "--light sun: not a light");
-    EXPECT_EQ(refusal("sun:1,2"), "--light sun:1,2: not a light");
-    EXPECT_EQ(refusal("point"), "--light point: '': not a number");
-    EXPECT_EQ(refusal("point:1,2"), "--light point:1,2: too few values");
-    EXPECT_EQ(refusal("point:1,2,x"), "--light point:1,2,x: 'x': not a number");
-    EXPECT_EQ(refusal("point:1,2,3,-1"),
+    EXPECT_EQ(light_refusal("sun"), "--light sun: not a light");
+    EXPECT_EQ(light_refusal("sun:1,2"), "--light sun:1,2: not a light");
+    EXPECT_EQ(light_refusal("point"), "--light point: '': not a number");
+    EXPECT_EQ(light_refusal("point:1,2"), "--light point:1,2: too few values");
+    EXPECT_EQ(light_refusal("point:1,2,x"), "--light point:1,2,x: 'x': not a number");
+    EXPECT_EQ(light_refusal("point:1,2,3,-1"),
               "--light point:1,2,3,-1: '-1': not between 0 and 1000000000");
-    EXPECT_EQ(refusal("point:1,2,3,1,#fff"),
+    EXPECT_EQ(light_refusal("point:1,2,3,1,#fff"),
               "--light point:1,2,3,1,#fff: '#fff': not a colour like #ff8000");
-    EXPECT_EQ(refusal("directional:0,0,1,#ffffff,9"),
+    EXPECT_EQ(light_refusal("directional:0,0,1,#ffffff,9"),
               "--light directional:0,0,1,#ffffff,9: too many values");
-    EXPECT_EQ(refusal("directional:0,91"),
+    EXPECT_EQ(light_refusal("directional:0,91"),
               "--light directional:0,91: '91': not between -90 and 90 degrees");
-    EXPECT_EQ(refusal("spot:1,1,1,1,1,1"),
+    EXPECT_EQ(light_refusal("spot:1,1,1,1,1,1"),
               "--light spot:1,1,1,1,1,1: the spot light shines at its own place");
 }
 

@@ -14,7 +14,7 @@ using testing::ElementsAre;
 
 /// The message of the UsageError that this throws.
 template <typename Call>
-std::string refusal(Call&& call) {
+std::string refusal_by(Call&& call) {
     try {
         call();
     } catch (const UsageError& error) {
@@ -31,22 +31,22 @@ TEST(OptionNumbers, AreReadWhole) {
 
 TEST(OptionNumbers, RefuseTextTrailingTextAndWhatIsNotFinite) {
     for (const char* text : {"abc", "", "12abc", "1,5", "inf", "nan", "1e999", "0x10", " 1"}) {
-        EXPECT_EQ(refusal([&] { parse_number("--strength X", text); }),
+        EXPECT_EQ(refusal_by([&] { parse_number("--strength X", text); }),
                   "--strength X: not a number")
             << text;
     }
-    EXPECT_EQ(refusal([] { parse_integer("--threads 1.5", "1.5", 1, 8); }),
+    EXPECT_EQ(refusal_by([] { parse_integer("--threads 1.5", "1.5", 1, 8); }),
               "--threads 1.5: not a whole number");
 }
 
 TEST(OptionNumbers, NameTheRangeTheyAreOutsideOf) {
     const Range degrees{1, 170, "degrees"};
-    EXPECT_EQ(refusal([&] { parse_number("--fov 200", "200", degrees); }),
+    EXPECT_EQ(refusal_by([&] { parse_number("--fov 200", "200", degrees); }),
               "--fov 200: not between 1 and 170 degrees");
     EXPECT_EQ(parse_number("--fov 170", "170", degrees), 170.0);
-    EXPECT_EQ(refusal([] { parse_number("--ambient -1", "-1", {.min = 0, .unit = ""}); }),
+    EXPECT_EQ(refusal_by([] { parse_number("--ambient -1", "-1", {.min = 0, .unit = ""}); }),
               "--ambient -1: not at least 0");
-    EXPECT_EQ(refusal([] { parse_integer("--threads 0", "0", 1, 1024); }),
+    EXPECT_EQ(refusal_by([] { parse_integer("--threads 0", "0", 1, 1024); }),
               "--threads 0: not between 1 and 1024");
 }
 
@@ -57,7 +57,7 @@ TEST(OptionColors, AreSrgbCodedAndBecomeLinear) {
     EXPECT_NEAR(color.g, 0.2158605, 1e-6) << "float rounding of the power";
     EXPECT_EQ(color.b, 0.0F);
     for (const char* text : {"ff8000", "#ff800", "#ff80000", "#gg0000", "red", "#-12345", ""}) {
-        EXPECT_EQ(refusal([&] { parse_color("--background X", text); }),
+        EXPECT_EQ(refusal_by([&] { parse_color("--background X", text); }),
                   "--background X: not a colour like #ff8000")
             << text;
     }
@@ -65,17 +65,17 @@ TEST(OptionColors, AreSrgbCodedAndBecomeLinear) {
 
 TEST(OptionSizes, AreTwoWholeNumbers) {
     EXPECT_EQ(parse_size("--size", "1920x1080"), glm::ivec2(1920, 1080));
-    EXPECT_EQ(refusal([] { parse_size("--size 640", "640"); }),
+    EXPECT_EQ(refusal_by([] { parse_size("--size 640", "640"); }),
               "--size 640: not a size like 1920x1080");
-    EXPECT_EQ(refusal([] { parse_size("--size 0x5", "0x5"); }),
+    EXPECT_EQ(refusal_by([] { parse_size("--size 0x5", "0x5"); }),
               "--size 0x5: not between 1 and 16384");
-    EXPECT_EQ(refusal([] { parse_size("--size 5x", "5x"); }), "--size 5x: not a whole number");
+    EXPECT_EQ(refusal_by([] { parse_size("--size 5x", "5x"); }), "--size 5x: not a whole number");
 }
 
 TEST(OptionChoices, ListWhatTheyTake) {
     const Choices<int> choices = {{"one", 1}, {"two", 2}};
     EXPECT_EQ(parse_choice("--n two", "two", choices), 2);
-    EXPECT_EQ(refusal([&] { parse_choice("--n three", "three", choices); }),
+    EXPECT_EQ(refusal_by([&] { parse_choice("--n three", "three", choices); }),
               "--n three: not one of one, two");
     EXPECT_EQ(name_of(2, choices), "two");
 }
@@ -107,12 +107,12 @@ TEST(OptionValues, MayBeginWithAMinus) {
 }
 
 TEST(OptionValues, AreNeededAndTakenOnce) {
-    EXPECT_EQ(refusal([] { Parsed({"--number", "--list", "x"}); }), "--number: needs a value");
-    EXPECT_EQ(refusal([] {
+    EXPECT_EQ(refusal_by([] { Parsed({"--number", "--list", "x"}); }), "--number: needs a value");
+    EXPECT_EQ(refusal_by([] {
                   Parsed({"--number", "1", "--number", "2"});
               }),
               "--number: given more than once");
-    EXPECT_EQ(refusal([] { Parsed({"--number", "x"}); }), "--number x: not a number");
+    EXPECT_EQ(refusal_by([] { Parsed({"--number", "x"}); }), "--number x: not a number");
 }
 
 TEST(OptionValues, OfARepeatableOptionComeInOrder) {

@@ -23,7 +23,8 @@ using test::Workplace;
 using testing::HasSubstr;
 
 /// Draws a square in 33 x 33 pixels.
-constexpr const char* look = "relief-view square.obj --camera 0,0 --size 33x33 --samples 1 ";
+constexpr const char* look_at_square =
+    "relief-view square.obj --camera 0,0 --size 33x33 --samples 1 ";
 
 /// A workplace with the square and its picture, right.png (sRGB) or right.exr.
 class Reference : public testing::Test {
@@ -34,7 +35,7 @@ class Reference : public testing::Test {
     }
 
     [[nodiscard]] ProgramResult run(const std::string& options) const {
-        return workplace_.run(look + options);
+        return workplace_.run(look_at_square + options);
     }
 
     /// right.png with 5 added to one sample, as near.png.

@@ -16,7 +16,7 @@ using test::jobs_in_words;
 using test::message_of;
 using test::TemporaryDirectory;
 
-std::string refusal(const FileWords& words, std::optional<ModelFormat> format = {}) {
+std::string model_refusal(const FileWords& words, std::optional<ModelFormat> format = {}) {
     return message_of<UsageError>([&] { model_jobs_of(words, format); });
 }
 
@@ -32,18 +32,18 @@ TEST(ProcessJobs, InAFolderModelsKeepTheirNamesAndFormatsWhereThoseCanBeWritten)
 TEST(ProcessJobs, TwoModelsThatGetOneNameByTheirFormatAreRefused) {
     const TemporaryDirectory folder;
     const std::string here = folder.path().string() + "/";
-    EXPECT_EQ(refusal({{here + "a.glb", here + "a.obj"}, here}, ModelFormat::obj),
+    EXPECT_EQ(model_refusal({{here + "a.glb", here + "a.obj"}, here}, ModelFormat::obj),
               here + "a.glb and " + here + "a.obj: would both become " + here + "a.obj");
 }
 
 TEST(ProcessJobs, RefusesFormatsThatDoNotServe) {
-    EXPECT_EQ(refusal({{"a.obj", "b.obj", "c.obj"}, "d.glb"}),
+    EXPECT_EQ(model_refusal({{"a.obj", "b.obj", "c.obj"}, "d.glb"}),
               "-o d.glb: is one file for 3 models, and no folder");
-    EXPECT_EQ(refusal({{"a.obj", "b.glb"}, {}}, ModelFormat::obj),
+    EXPECT_EQ(model_refusal({{"a.obj", "b.glb"}, {}}, ModelFormat::obj),
               "--format obj: the name b.glb says the format already");
-    EXPECT_EQ(refusal({{"a.txt"}, "out/"}), "a.txt: .txt is not a format that can be read");
+    EXPECT_EQ(model_refusal({{"a.txt"}, "out/"}), "a.txt: .txt is not a format that can be read");
     const TemporaryDirectory folder;
-    EXPECT_EQ(refusal({{folder.path()}, "out/"}), folder.path().string() + ": is a folder");
+    EXPECT_EQ(model_refusal({{folder.path()}, "out/"}), folder.path().string() + ": is a folder");
 }
 
 }  // namespace

@@ -28,7 +28,7 @@ using testing::IsEmpty;
 using testing::Not;
 
 /// Of float tangents read back from a file.
-constexpr double direction_tolerance = 1e-4;
+constexpr double tangent_tolerance = 1e-4;
 
 /// Numbers of the file below: where each attribute's begin.
 enum Accessor { position, normal, tangent, set_0, set_1, lift };
@@ -99,7 +99,7 @@ class ProcessTangents : public testing::Test {
 };
 
 void expect_along(const glm::vec4& tangent, const glm::vec3& direction, float w) {
-    EXPECT_LT(degrees_between(glm::vec3(tangent), direction), direction_tolerance);
+    EXPECT_LT(degrees_between(glm::vec3(tangent), direction), tangent_tolerance);
     EXPECT_EQ(tangent.w, w);
 }
 
@@ -214,7 +214,7 @@ TEST_F(ProcessTangents, OfMorphTargetsComeFromTheSameSet) {
     const std::string bytes = workplace_.read("out/back.bin");
     glm::vec3 displacement;
     std::memcpy(&displacement, bytes.data() + view.value("byteOffset", 0), sizeof(displacement));
-    EXPECT_LT(degrees_between(glm::vec3(0, 1, 0) + displacement, {0, 1, 1}), direction_tolerance);
+    EXPECT_LT(degrees_between(glm::vec3(0, 1, 0) + displacement, {0, 1, 1}), tangent_tolerance);
 }
 
 TEST_F(ProcessTangents, GivenWithoutNormalsAreIgnored) {

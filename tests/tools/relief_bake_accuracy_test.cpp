@@ -22,7 +22,7 @@ using test::Workplace;
 using testing::HasSubstr;
 
 /// Waves above the square of Workplace, of which a texel of 32 has a fifth of one.
-std::string waves() {
+std::string smooth_waves() {
     std::string text;
     constexpr int cells = 300;
     for (int column = 0; column <= cells; ++column) {
@@ -41,7 +41,7 @@ class BakeAccuracy : public testing::Test {
   protected:
     BakeAccuracy() {
         workplace.write_square("low.obj");
-        workplace.write("high.obj", waves());
+        workplace.write("high.obj", smooth_waves());
     }
     [[nodiscard]] json baked(const std::string& options) const {
         const ProgramResult result = workplace.run(
@@ -126,7 +126,7 @@ class BakeAccuracyRefusal : public testing::TestWithParam<Refused> {};
 TEST_P(BakeAccuracyRefusal, LeavesEverythingAsItWas) {
     const Workplace workplace;
     workplace.write_square("low.obj");
-    workplace.write("high.obj", waves());
+    workplace.write("high.obj", smooth_waves());
     expect_refusal(workplace, "relief-bake", GetParam(), "map.png");
 }
 

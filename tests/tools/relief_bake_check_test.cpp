@@ -16,20 +16,19 @@ namespace relief::tools {
 namespace {
 
 using nlohmann::json;
+using test::bricks_map;
 using test::expect_refusal;
 using test::ProgramResult;
 using test::Refused;
 using test::Workplace;
 using testing::HasSubstr;
 
-const std::string bricks = "data/scenes/bricks-normal.png";
-
 TEST(MapCheckCommand, SaysThatASoundMapIsSound) {
     const Workplace workplace;
-    const ProgramResult result = workplace.run("relief-bake check " + bricks + " --strict");
+    const ProgramResult result = workplace.run("relief-bake check " + bricks_map + " --strict");
     EXPECT_EQ(result.exit_code, 0);
     EXPECT_EQ(result.error, "");
-    EXPECT_THAT(result.out, HasSubstr("file      " + bricks +
+    EXPECT_THAT(result.out, HasSubstr("file      " + bricks_map +
                                       ": 256 x 256, 3 channels, 8 bit: sound\n"
                                       "content   tangent-space normals\n"
                                       "lengths   mean 1.000, off 1 by 0.003 (RMS), "
@@ -40,7 +39,7 @@ TEST(MapCheckCommand, SaysThatASoundMapIsSound) {
 
 TEST(MapCheckCommand, IsStrictAboutTroubleWhenAsked) {
     const Workplace workplace;
-    const std::string files = "data/bricks-height.png " + bricks;
+    const std::string files = "data/bricks-height.png " + bricks_map;
     const ProgramResult lenient = workplace.run("relief-bake check " + files);
     EXPECT_EQ(lenient.exit_code, 0);
     EXPECT_THAT(lenient.out,
@@ -58,9 +57,10 @@ TEST(MapCheckCommand, IsStrictAboutTroubleWhenAsked) {
 
 TEST(MapCheckCommand, ComparesGreenWithWhatIsWanted) {
     const Workplace workplace;
-    EXPECT_EQ(workplace.run("relief-bake check " + bricks + " --green up --strict").exit_code, 0);
+    EXPECT_EQ(workplace.run("relief-bake check " + bricks_map + " --green up --strict").exit_code,
+              0);
     const ProgramResult down =
-        workplace.run("relief-bake check " + bricks + " --green down --strict");
+        workplace.run("relief-bake check " + bricks_map + " --green down --strict");
     EXPECT_EQ(down.exit_code, 3);
     EXPECT_THAT(down.out, HasSubstr("trouble   green is not as said: "));
     // Of relief's own maps the file says it.
@@ -76,7 +76,7 @@ TEST(MapCheckCommand, ComparesGreenWithWhatIsWanted) {
 TEST(MapCheckCommand, SaysTheSameAsJson) {
     const Workplace workplace;
     const ProgramResult result =
-        workplace.run("relief-bake check data/bricks-height.png " + bricks + " --json");
+        workplace.run("relief-bake check data/bricks-height.png " + bricks_map + " --json");
     const json report = json::parse(result.out);
     EXPECT_EQ(report["tool"], "relief-bake check");
     EXPECT_EQ(report["sound"], 1);
@@ -183,7 +183,7 @@ TEST(MapCheckCommand, GoesOnAfterAFileThatCannotBeRead) {
     const Workplace workplace;
     workplace.write("broken.png", "\x89PNG");
     const ProgramResult result =
-        workplace.run("relief-bake check broken.png missing.png " + bricks + " --strict");
+        workplace.run("relief-bake check broken.png missing.png " + bricks_map + " --strict");
     EXPECT_EQ(result.exit_code, 1);
     EXPECT_THAT(result.error, HasSubstr("relief-bake: error: broken.png: "));
     EXPECT_THAT(result.error, HasSubstr("relief-bake: error: missing.png: "));

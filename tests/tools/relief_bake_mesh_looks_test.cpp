@@ -34,21 +34,21 @@ std::vector<std::uint16_t> normal_of(const Workplace& workplace) {
     return {samples.begin(), samples.begin() + 3};
 }
 
-const std::string line = "relief-bake mesh high.obj low.obj out/map.png --size 4 --strict ";
+const std::string strict_line = "relief-bake mesh high.obj low.obj out/map.png --size 4 --strict ";
 
 TEST(MeshBakeLooks, NormalMapsOfMaterialsGoOnTopUnlessToldOtherwise) {
     const Workplace workplace;
     write_models(workplace);
-    const ProgramResult result = workplace.run(line);
+    const ProgramResult result = workplace.run(strict_line);
     ASSERT_EQ(result.exit_code, 0) << result.error << result.out;
     EXPECT_THAT(result.out,
                 HasSubstr("high.obj: 2 triangles, 1 normal map on top of their normals\n"));
     EXPECT_EQ(normal_of(workplace), (std::vector<std::uint16_t>{52428, 32768, 58982}));
-    ASSERT_EQ(workplace.run(line + "--high-normal-map none").exit_code, 0);
+    ASSERT_EQ(workplace.run(strict_line + "--high-normal-map none").exit_code, 0);
     EXPECT_EQ(normal_of(workplace), (std::vector<std::uint16_t>{32768, 32768, 65535}));
-    ASSERT_EQ(workplace.run(line + "--high-normal-map other.png").exit_code, 0);
+    ASSERT_EQ(workplace.run(strict_line + "--high-normal-map other.png").exit_code, 0);
     EXPECT_EQ(normal_of(workplace), (std::vector<std::uint16_t>{32768, 52428, 58982}));
-    EXPECT_EQ(workplace.run(line + "--high-normal-map none.png").exit_code, 1);
+    EXPECT_EQ(workplace.run(strict_line + "--high-normal-map none.png").exit_code, 1);
 }
 
 TEST(MeshBakeLooks, OfGltfFilesAreTheSame) {
@@ -70,7 +70,8 @@ TEST(MeshBakeLooks, ColoursAreThoseOfMaterialsOrOfAFileOrNone) {
     const Workplace workplace;
     write_models(workplace);
     const auto color = [&](const std::string& options) {
-        const ProgramResult result = workplace.run(line + "--color-map out/k.png " + options);
+        const ProgramResult result =
+            workplace.run(strict_line + "--color-map out/k.png " + options);
         EXPECT_EQ(result.exit_code, 0) << result.error << result.out;
         const Image image = read_image(workplace / "out/k.png", ImageUse::data);
         const auto samples = image.as<std::uint8_t>();
@@ -79,7 +80,7 @@ TEST(MeshBakeLooks, ColoursAreThoseOfMaterialsOrOfAFileOrNone) {
     EXPECT_EQ(color(""), (std::vector<int>{188, 137, 137}));
     EXPECT_EQ(color("--high-color none"), (std::vector<int>{255, 255, 255}));
     EXPECT_EQ(color("--high-color color.png"), (std::vector<int>{188, 188, 255}));
-    EXPECT_EQ(workplace.run(line + "--high-color none").exit_code, 2);
+    EXPECT_EQ(workplace.run(strict_line + "--high-color none").exit_code, 2);
 }
 
 }  // namespace

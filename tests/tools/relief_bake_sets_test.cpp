@@ -71,11 +71,11 @@ class Sets : public testing::Test {
     const Workplace place_;
 };
 
-const char* const right = "0.6 0 0.8";
-const char* const up = "0 0.6 0.8";
+const char* const leaning_right = "0.6 0 0.8";
+const char* const leaning_up = "0 0.6 0.8";
 
 TEST_F(Sets, MaterialsThatShareTheUnitSquareHaveAMapEach) {
-    write({{"Skin", 0, 0, right}, {"Cloth/red", 0, 0, up}});
+    write({{"Skin", 0, 0, leaning_right}, {"Cloth/red", 0, 0, leaning_up}});
     const ProgramResult result = bake("out/<material>_n.png", "--report out/report.json");
     EXPECT_EQ(result.error, "");
     ASSERT_EQ(result.exit_code, 0);
@@ -98,7 +98,7 @@ TEST_F(Sets, MaterialsThatShareTheUnitSquareHaveAMapEach) {
 }
 
 TEST_F(Sets, WithoutTheWordThereIsOneMapAndAWarningWithTheRemedy) {
-    write({{"Skin", 0, 0, right}, {"Cloth", 0, 0, up}});
+    write({{"Skin", 0, 0, leaning_right}, {"Cloth", 0, 0, leaning_up}});
     const ProgramResult result = bake("out/n.png");
     EXPECT_EQ(result.exit_code, 0);
     EXPECT_EQ(result.error,
@@ -108,12 +108,12 @@ TEST_F(Sets, WithoutTheWordThereIsOneMapAndAWarningWithTheRemedy) {
     EXPECT_THAT(result.out, HasSubstr("64 x texel of several triangles"));
     EXPECT_THAT(result.out, HasSubstr("map       8 x 8: 64 texels baked"));
     // The materials of an atlas, which share no texel, are no reason to warn.
-    write({{"Skin", 0, 0, right}, {"Cloth", 1, 0, up}});
+    write({{"Skin", 0, 0, leaning_right}, {"Cloth", 1, 0, leaning_up}});
     EXPECT_EQ(bake("out/n.png").error, "");
 }
 
 TEST_F(Sets, TilesHaveAMapEachByTheirNumbers) {
-    write({{"", 0, 0, right}, {"", 1, 0, up}, {"", 0, 2, "-0.6 0 0.8"}});
+    write({{"", 0, 0, leaning_right}, {"", 1, 0, leaning_up}, {"", 0, 2, "-0.6 0 0.8"}});
     const ProgramResult result = bake("out/n.<UDIM>.png", "--report out/report.json --strict");
     EXPECT_EQ(result.error, "");
     ASSERT_EQ(result.exit_code, 0);
@@ -128,14 +128,17 @@ TEST_F(Sets, TilesHaveAMapEachByTheirNumbers) {
 }
 
 TEST_F(Sets, BothWordsGiveEveryTileOfEveryMaterial) {
-    write({{"A", 0, 0, right}, {"B", 0, 0, up}, {"B", 1, 0, right}});
+    write({{"A", 0, 0, leaning_right}, {"B", 0, 0, leaning_up}, {"B", 1, 0, leaning_right}});
     EXPECT_EQ(bake("out/<UDIM>_<material>.png").error, "");
     EXPECT_EQ(place_.outputs(), "1001_A.png 1001_B.png 1002_B.png");
     EXPECT_THAT(first_texel("out/1001_B.png"), near(0, 0.6, 0.8));
 }
 
 TEST_F(Sets, WhatIsOutsideOfTheMapIsCountedWithTheRemedy) {
-    write({{"", 0, 0, right}, {"", 1, 0, up}, {"", 0.5, 3, up}, {"", -1, 0, up}});
+    write({{"", 0, 0, leaning_right},
+           {"", 1, 0, leaning_up},
+           {"", 0.5, 3, leaning_up},
+           {"", -1, 0, leaning_up}});
     EXPECT_THAT(bake("out/n.png").out,
                 HasSubstr("6 x triangle outside of the map (triangle 2, 3, 4, 5, 6, 7): is not "
                           "baked; <UDIM> in the map's name gives a map for each tile"));
@@ -148,7 +151,7 @@ TEST_F(Sets, WhatIsOutsideOfTheMapIsCountedWithTheRemedy) {
 }
 
 TEST_F(Sets, PaddingToTheBorderFillsEveryMapAndIsNotOpaque) {
-    write({{"A", 0, 0, right}, {"B", 0.75, 0, up}});
+    write({{"A", 0, 0, leaning_right}, {"B", 0.75, 0, leaning_up}});
     const std::string line = "--padding border --background transparent ";
     EXPECT_EQ(bake("out/<material>.png", line).exit_code, 0);
     EXPECT_EQ(place_.outputs(), "A.png B.png");
@@ -161,7 +164,7 @@ TEST_F(Sets, PaddingToTheBorderFillsEveryMapAndIsNotOpaque) {
 }
 
 TEST_F(Sets, GltfMaterialsWithoutNamesHaveMadeOnes) {
-    write({{"A", 0, 0, right}, {"B", 0, 0, up}});
+    write({{"A", 0, 0, leaning_right}, {"B", 0, 0, leaning_up}});
     ASSERT_EQ(place_.run("relief-mesh process low.obj out/low.gltf").exit_code, 0);
     json document = json::parse(place_.read("out/low.gltf"));
     document["materials"][1].erase("name");
@@ -179,7 +182,7 @@ TEST_F(Sets, GltfMaterialsWithoutNamesHaveMadeOnes) {
 }
 
 TEST_F(Sets, NamesThatWouldBeTheSameFileAreRefusedBeforeAnyIsWritten) {
-    write({{"a/b", 0, 0, right}, {"c", 0, 0, up}, {"a:b", 0, 0, up}});
+    write({{"a/b", 0, 0, leaning_right}, {"c", 0, 0, leaning_up}, {"a:b", 0, 0, leaning_up}});
     const ProgramResult result = bake("out/<material>.png");
     EXPECT_EQ(result.exit_code, 1);
     EXPECT_EQ(result.error,
@@ -189,7 +192,7 @@ TEST_F(Sets, NamesThatWouldBeTheSameFileAreRefusedBeforeAnyIsWritten) {
 }
 
 TEST_F(Sets, NoReportTakesThePlaceOfAMap) {
-    write({{"A", 0, 0, right}, {"B", 0, 0, up}});
+    write({{"A", 0, 0, leaning_right}, {"B", 0, 0, leaning_up}});
     const ProgramResult result = bake("out/<material>.png", "--report out/../out/B.png");
     EXPECT_EQ(result.exit_code, 2);
     EXPECT_THAT(result.error, HasSubstr("--report out/../out/B.png: is also the input"));
@@ -197,7 +200,7 @@ TEST_F(Sets, NoReportTakesThePlaceOfAMap) {
 }
 
 TEST_F(Sets, ThoseWrittenBeforeAFailureAreNamed) {
-    write({{"A", 0, 0, right}, {"B", 0, 0, up}});
+    write({{"A", 0, 0, leaning_right}, {"B", 0, 0, leaning_up}});
     std::filesystem::create_directory(place_ / "out/B.png");
     const ProgramResult result = bake("out/<material>.png");
     EXPECT_EQ(result.exit_code, 1);

@@ -13,12 +13,11 @@
 namespace relief::tools {
 namespace {
 
+using test::bricks_map;
 using test::expect_refusal;
 using test::ProgramResult;
 using test::Workplace;
 using testing::HasSubstr;
-
-const std::string bricks = "data/scenes/bricks-normal.png";
 
 /// The greatest difference of two files' samples, in codes.
 int largest_difference(const Workplace& workplace, const char* a, const std::filesystem::path& b) {
@@ -36,7 +35,7 @@ TEST(ConvertSpace, ThereAndBackIsTheSameMapToTheCode) {
     const Workplace workplace;
     workplace.write_square("square.obj");
     ASSERT_EQ(workplace
-                  .run("relief-bake convert " + bricks +
+                  .run("relief-bake convert " + bricks_map +
                        " out/map.png --bits 16 --flat middle "
                        "--normalize --quiet")
                   .exit_code,
@@ -70,7 +69,7 @@ TEST(ConvertSpace, TurnsGreenAsAskedFor) {
     for (const char* green : {"up", "down"}) {
         const std::string flat = " --bits 16 --flat middle --quiet";
         ASSERT_EQ(workplace
-                      .run("relief-bake convert " + bricks +
+                      .run("relief-bake convert " + bricks_map +
                            " out/tangent.png --input-green up "
                            "--green " +
                            green + flat)
@@ -94,7 +93,7 @@ TEST(ConvertSpace, TurnsGreenAsAskedFor) {
 
 TEST(ConvertSpace, TellsTheMeshesOwnTangentsFromNewOnes) {
     const Workplace workplace;
-    const std::string line = "relief-bake convert " + bricks +
+    const std::string line = "relief-bake convert " + bricks_map +
                              " out/object.png --input-green up --to-object data/scenes/knot.glb";
     EXPECT_THAT(workplace.run(line + " --tangents lengyel").out,
                 HasSubstr(", with new tangents; "));
@@ -104,7 +103,7 @@ TEST(ConvertSpace, TellsTheMeshesOwnTangentsFromNewOnes) {
                   .exit_code,
               0);
     EXPECT_THAT(workplace
-                    .run("relief-bake convert " + bricks +
+                    .run("relief-bake convert " + bricks_map +
                          " out/object.png --input-green up "
                          "--to-object out/own.glb")
                     .out,
@@ -115,7 +114,7 @@ TEST(ConvertSpace, RefusesWhatCannotBe) {
     const Workplace workplace;
     workplace.write_square("square.obj");
     workplace.write_square("bare.obj", true);
-    const std::string start = "relief-bake convert " + bricks + " out/old.png ";
+    const std::string start = "relief-bake convert " + bricks_map + " out/old.png ";
     const std::string no_green = start + "--to-object square.obj";
     const std::string bare = start + "--input-green up --to-object bare.obj";
     const std::string missing = start + "--input-green up --to-object missing.obj";

@@ -25,16 +25,16 @@ using test::Refused;
 using test::Workplace;
 using testing::HasSubstr;
 
-constexpr int side = 16;
+constexpr int small_side = 16;
 
 /// Heights that rise by `step` from one column to the next, in 16 bit; row 0 at the top.
 void write_ramp(const Workplace& workplace, const std::string& name, bool upwards, int step) {
-    Image image = make_image(side, side, 1, 16, ColorSpace::data);
+    Image image = make_image(small_side, small_side, 1, 16, ColorSpace::data);
     const auto samples = image.as<std::uint16_t>();
-    for (int y = 0; y < side; ++y) {
-        for (int x = 0; x < side; ++x) {
-            const int height = upwards ? side - 1 - y : x;
-            samples[static_cast<std::size_t>(y * side + x)] =
+    for (int y = 0; y < small_side; ++y) {
+        for (int x = 0; x < small_side; ++x) {
+            const int height = upwards ? small_side - 1 - y : x;
+            samples[static_cast<std::size_t>(y * small_side + x)] =
                 static_cast<std::uint16_t>(height * step);
         }
     }
@@ -46,13 +46,13 @@ glm::dvec3 middle_normal(const std::filesystem::path& file, Green green) {
     Report report;
     const Image normals =
         decode_normal_map(read_image(file, ImageUse::data), green, FlatCode::middle, report);
-    const std::size_t texel = (side / 2 * side + side / 2) * 3;
+    const std::size_t texel = (small_side / 2 * small_side + small_side / 2) * 3;
     const auto samples = normals.as<float>();
     return {samples[texel], samples[texel + 1], samples[texel + 2]};
 }
 
 /// Rounding of 16-bit codes: half a code of 1/32767, seen as an angle, with room for the root.
-constexpr double degrees_of_16_bit = 0.005;
+constexpr double shown_degrees_of_16_bit = 0.005;
 
 TEST(BumpCommand, StoresTheSlopeThatStrengthSays) {
     const Workplace workplace;
@@ -67,7 +67,7 @@ TEST(BumpCommand, StoresTheSlopeThatStrengthSays) {
                                       "coded     16 bit, flat is the middle code, green up\n"
                                       "findings  none\n"));
     EXPECT_LT(degrees_between(middle_normal(workplace / "out/normal.png", Green::up), {-1, 0, 1}),
-              degrees_of_16_bit);
+              shown_degrees_of_16_bit);
     EXPECT_EQ(workplace.outputs(), "normal.png");
 }
 
@@ -83,9 +83,9 @@ TEST(BumpCommand, GreenDownIsTheMirrorOfGreenUp) {
     // Heights grow upwards in the image, so the surface looks down.
     const glm::dvec3 looks_down{0, -1, 1};
     EXPECT_LT(degrees_between(middle_normal(workplace / "out/up.png", Green::up), looks_down),
-              degrees_of_16_bit);
+              shown_degrees_of_16_bit);
     EXPECT_LT(degrees_between(middle_normal(workplace / "out/down.png", Green::down), looks_down),
-              degrees_of_16_bit);
+              shown_degrees_of_16_bit);
     EXPECT_EQ(read_image_info(workplace / "out/up.png").metadata.at("relief:green"), "up");
     EXPECT_EQ(read_image_info(workplace / "out/down.png").metadata.at("relief:green"), "down");
 }
@@ -120,7 +120,7 @@ TEST(BumpCommand, EveryKernelGivesTheSameDepth) {
             "relief-bake bump ramp.png out/n.png --strength 255 --wrap clamp --kernel " + kernel);
         ASSERT_EQ(result.exit_code, 0) << result.error;
         EXPECT_LT(degrees_between(middle_normal(workplace / "out/n.png", Green::up), {-1, 0, 1}),
-                  degrees_of_16_bit)
+                  shown_degrees_of_16_bit)
             << kernel;
     }
 }
@@ -136,7 +136,7 @@ TEST(BumpCommand, HeightAndTexelSizeAreInOneUnitAndPerAxis) {
     EXPECT_THAT(result.out, HasSubstr("slopes    sobel3, height 0.51 over texels of 0.004 x 0.5, "
                                       "clamp at the border\n"));
     EXPECT_LT(degrees_between(middle_normal(workplace / "out/n.png", Green::up), {-0.5, 0, 1}),
-              degrees_of_16_bit);
+              shown_degrees_of_16_bit);
     const json report = json::parse(workplace.read("out/report.json"));
     EXPECT_EQ(report["strength"], 0.51);
     EXPECT_EQ(report["texel_size"], json({0.004, 0.5}));
@@ -159,9 +159,9 @@ TEST(BumpCommand, EachAxisHasItsOwnBorder) {
         return glm::dvec3(map.as<float>()[0], map.as<float>()[1], map.as<float>()[2]);
     };
     // The ramp rises by one a texel; around the seam it falls by 15 over 2 texels less the step.
-    EXPECT_LT(degrees_between(left_normal("clamp,repeat"), {-1, 0, 1}), degrees_of_16_bit);
-    EXPECT_LT(degrees_between(left_normal("repeat,clamp"), {7, 0, 1}), degrees_of_16_bit);
-    EXPECT_LT(degrees_between(left_normal("mirror,clamp"), {-0.5, 0, 1}), degrees_of_16_bit);
+    EXPECT_LT(degrees_between(left_normal("clamp,repeat"), {-1, 0, 1}), shown_degrees_of_16_bit);
+    EXPECT_LT(degrees_between(left_normal("repeat,clamp"), {7, 0, 1}), shown_degrees_of_16_bit);
+    EXPECT_LT(degrees_between(left_normal("mirror,clamp"), {-0.5, 0, 1}), shown_degrees_of_16_bit);
 }
 
 TEST(BumpCommand, WrapAutoSaysWhatTheSeamsShow) {
@@ -189,7 +189,7 @@ TEST(BumpCommand, NegativeStrengthTurnsBumpsIntoDents) {
     write_ramp(workplace, "ramp.png", false, 257);
     ASSERT_EQ(workplace.run("relief-bake bump ramp.png out/n.png --strength -255").exit_code, 0);
     EXPECT_LT(degrees_between(middle_normal(workplace / "out/n.png", Green::up), {1, 0, 1}),
-              degrees_of_16_bit);
+              shown_degrees_of_16_bit);
 }
 
 TEST(BumpCommand, ATexelThatIsNoNumberIsFoundAndStrictExitsWith3) {
@@ -294,11 +294,11 @@ TEST(BumpCommand, EveryEffortWritesTheSameImage) {
 TEST(BumpCommand, InvertTurnsBumpsIntoDentsAndChannelsAreChosen) {
     const Workplace workplace;
     // Red rises to the right, green falls, by 257 / 65535 a texel.
-    Image image = make_image(side, side, 3, 16, ColorSpace::data);
-    for (std::size_t i = 0; i < side * side; ++i) {
-        const auto x = static_cast<int>(i % side);
+    Image image = make_image(small_side, small_side, 3, 16, ColorSpace::data);
+    for (std::size_t i = 0; i < small_side * small_side; ++i) {
+        const auto x = static_cast<int>(i % small_side);
         image.as<std::uint16_t>()[3 * i] = static_cast<std::uint16_t>(257 * x);
-        image.as<std::uint16_t>()[3 * i + 1] = static_cast<std::uint16_t>(257 * (side - x));
+        image.as<std::uint16_t>()[3 * i + 1] = static_cast<std::uint16_t>(257 * (small_side - x));
     }
     write_image(workplace / "h.tif", image);
     const auto slope = [&](const std::string& options) {
@@ -307,7 +307,7 @@ TEST(BumpCommand, InvertTurnsBumpsIntoDentsAndChannelsAreChosen) {
         EXPECT_EQ(result.exit_code, 0) << result.error;
         const std::vector<float> samples = std::get<std::vector<float>>(
             read_image(workplace / "out/n.exr", ImageUse::data).samples);
-        const std::size_t texel = (side / 2 * side + side / 2) * 3;
+        const std::size_t texel = (small_side / 2 * small_side + small_side / 2) * 3;
         return (1.0 - 2.0 * static_cast<double>(samples[texel])) /
                (2.0 * static_cast<double>(samples[texel + 2]) - 1.0);
     };
@@ -353,7 +353,7 @@ TEST(BumpCommand, ConvertsManyMapsAndTilesInOneCall) {
                                       "out/maps/b.1002.tif: [^\n]*\n"
                                       "in all    4 files, 1 failed\n"));
     const glm::dvec3 steep = middle_normal(workplace / "out/maps/b.1002.tif", Green::up);
-    EXPECT_LT(degrees_between(steep, glm::dvec3(0.0, -2.0, 1.0)), degrees_of_16_bit);
+    EXPECT_LT(degrees_between(steep, glm::dvec3(0.0, -2.0, 1.0)), shown_degrees_of_16_bit);
     const json report = json::parse(workplace.read("out/r.json"));
     EXPECT_EQ(report["tool"], "relief-bake bump");
     EXPECT_EQ(report["failed"], 1);

@@ -23,7 +23,7 @@ using testing::HasSubstr;
 using testing::Not;
 
 /// A bent surface above the square of Workplace, of strips with normals that turn along x and y.
-std::string waves(double frequency = 3.0) {
+std::string verified_waves(double frequency = 3.0) {
     std::string text;
     constexpr int cells = 48;
     for (int row = 0; row <= cells; ++row) {
@@ -46,7 +46,7 @@ class Verify : public testing::Test {
   protected:
     Verify() {
         workplace.write_square("low.obj");
-        workplace.write("high.obj", waves());
+        workplace.write("high.obj", verified_waves());
     }
 
     void bake(const std::string& options = "") const {
@@ -164,7 +164,7 @@ TEST_F(Verify, AnotherSpaceIsNamedAndItsRemedyHelps) {
 }
 
 TEST_F(Verify, AMapOfAnotherModelIsExplainedByNothing) {
-    workplace.write("other.obj", waves(7.0));
+    workplace.write("other.obj", verified_waves(7.0));
     ASSERT_EQ(
         workplace.run("relief-bake mesh other.obj low.obj out/map.png --size 64 --quiet").exit_code,
         0);
@@ -216,7 +216,7 @@ class VerifyRefusal : public testing::TestWithParam<Refused> {};
 TEST_P(VerifyRefusal, LeavesEverythingAsItWas) {
     const Workplace workplace;
     workplace.write_square("low.obj");
-    workplace.write("high.obj", waves());
+    workplace.write("high.obj", verified_waves());
     ASSERT_EQ(workplace.run("relief-bake mesh high.obj low.obj map.png --size 8 --quiet").exit_code,
               0);
     expect_refusal(workplace, "relief-bake", GetParam(), "e.png");

@@ -8,6 +8,7 @@
 #include "relief/mesh/gltf_document.h"
 #include "support/angle.h"
 #include "support/shared_data.h"
+#include "tools/read_files.h"
 #include "tools/refusal.h"
 #include "tools/workplace.h"
 
@@ -18,6 +19,7 @@ using nlohmann::json;
 using test::degrees_between;
 using test::expect_refusal;
 using test::ProgramResult;
+using test::read_document;
 using test::Refused;
 using test::Workplace;
 using testing::ElementsAre;
@@ -25,12 +27,7 @@ using testing::HasSubstr;
 using testing::Not;
 
 /// Of float normals read back from a file.
-constexpr double direction_tolerance = 1e-4;
-
-GltfDocument read_document(const std::filesystem::path& file) {
-    Report report;
-    return GltfDocument::read(file, report);
-}
+constexpr double normal_tolerance = 1e-4;
 
 /// A glTF file with one primitive that has texture coordinates and one that has none; both are the
 /// same triangle, without normals.
@@ -75,8 +72,8 @@ TEST(ProcessCommand, GivesAMeshFileNormalsAndTangents) {
     ASSERT_EQ(mesh.normals.size(), 4U);
     ASSERT_EQ(mesh.tangents.size(), 4U);
     for (std::size_t i = 0; i < 4; ++i) {
-        EXPECT_LT(degrees_between(mesh.normals[i], {0, 0, 1}), direction_tolerance);
-        EXPECT_LT(degrees_between(glm::vec3(mesh.tangents[i]), {1, 0, 0}), direction_tolerance);
+        EXPECT_LT(degrees_between(mesh.normals[i], {0, 0, 1}), normal_tolerance);
+        EXPECT_LT(degrees_between(glm::vec3(mesh.tangents[i]), {1, 0, 0}), normal_tolerance);
         EXPECT_EQ(mesh.tangents[i].w, 1.0F) << "upright texture";
     }
 }
@@ -160,8 +157,8 @@ TEST(ProcessCommand, NearVerticesShareNormalsWithinTheTolerance) {
         EXPECT_EQ(result.exit_code, 0) << result.error;
         return read_document(workplace / "out/roof.glb").mesh({0, 0}).normals[1];
     };
-    EXPECT_LT(degrees_between(normal_of_ridge(""), {0, 0, 1}), direction_tolerance);
-    EXPECT_LT(degrees_between(normal_of_ridge("--weld 0.01"), {1, 0, 1}), direction_tolerance);
+    EXPECT_LT(degrees_between(normal_of_ridge(""), {0, 0, 1}), normal_tolerance);
+    EXPECT_LT(degrees_between(normal_of_ridge("--weld 0.01"), {1, 0, 1}), normal_tolerance);
 }
 
 TEST(ProcessCommand, BrokenNormalsAreRepairedOnRequestAlone) {

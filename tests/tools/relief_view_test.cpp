@@ -9,6 +9,7 @@
 
 #include "relief/mesh/image_file.h"
 #include "support/shared_data.h"
+#include "tools/read_files.h"
 #include "tools/refusal.h"
 #include "tools/workplace.h"
 
@@ -17,6 +18,7 @@ namespace {
 
 using nlohmann::json;
 using test::expect_refusal;
+using test::picture_in;
 using test::ProgramResult;
 using test::Refused;
 using test::Workplace;
@@ -34,22 +36,18 @@ Pixel pixel(const Image& image, int x, int y) {
     return result;
 }
 
-Image picture(const std::filesystem::path& file) {
-    return read_image(file, ImageUse::color);
-}
-
 /// Looks straight at the square of Workplace::write_square, in 33 x 33 pixels.
-constexpr const char* look =
+constexpr const char* look_quietly =
     "relief-view square.obj --camera 0,0 --size 33x33 --samples 1 --quiet ";
 
 /// The pixel in the middle of what that shows.
 Pixel middle_of(const Workplace& workplace, const std::string& options) {
     workplace.write_square("square.obj");
-    const ProgramResult result = workplace.run(look + options + " --output out/p.png");
+    const ProgramResult result = workplace.run(look_quietly + options + " --output out/p.png");
     EXPECT_EQ(result.exit_code, 0) << result.error;
     EXPECT_EQ(result.out + result.error, "");
     if (result.exit_code != 0) return {};
-    return pixel(picture(workplace / "out/p.png"), 16, 16);
+    return pixel(picture_in(workplace / "out/p.png"), 16, 16);
 }
 
 /// 0.8, the diffuse colour of a model without materials, sRGB-coded: 1.055 * 0.8^(1/2.4) - 0.055.
@@ -90,22 +88,22 @@ TEST(ViewCommand, LightsAreAddedWhereThereAreNoneAndItSaysSo) {
                                       "key and a fill light were added\n"
                                       "findings  none\n"));
     EXPECT_THAT(result.out, HasSubstr("wrote     out/p.png: "));
-    EXPECT_GT(pixel(picture(workplace / "out/p.png"), 16, 16)[0], 100);
+    EXPECT_GT(pixel(picture_in(workplace / "out/p.png"), 16, 16)[0], 100);
 }
 
 TEST(ViewCommand, BackgroundIsTheColourOrNothing) {
     const Workplace workplace;
     workplace.write_square("square.obj");
     const auto corner = [&](const std::string& options) {
-        EXPECT_EQ(workplace.run(look + options + " --output out/p.png").exit_code, 0);
-        return pixel(picture(workplace / "out/p.png"), 0, 0);
+        EXPECT_EQ(workplace.run(look_quietly + options + " --output out/p.png").exit_code, 0);
+        return pixel(picture_in(workplace / "out/p.png"), 0, 0);
     };
     EXPECT_EQ(corner(""), (Pixel{0x1e, 0x21, 0x26, 255}));
-    EXPECT_EQ(picture(workplace / "out/p.png").channels, 3) << "nothing to see through";
+    EXPECT_EQ(picture_in(workplace / "out/p.png").channels, 3) << "nothing to see through";
     EXPECT_EQ(corner("--background '#ff8000'"), (Pixel{0xff, 0x80, 0x00, 255}));
     EXPECT_EQ(corner("--background transparent"), (Pixel{0, 0, 0, 0}));
-    EXPECT_EQ(picture(workplace / "out/p.png").channels, 4);
-    EXPECT_EQ(pixel(picture(workplace / "out/p.png"), 16, 16)[3], 255) << "the model covers";
+    EXPECT_EQ(picture_in(workplace / "out/p.png").channels, 4);
+    EXPECT_EQ(pixel(picture_in(workplace / "out/p.png"), 16, 16)[3], 255) << "the model covers";
 }
 
 TEST(ViewCommand, TheCameraShowsAllOfTheModelAndComesNearerWhenAsked) {
@@ -117,7 +115,7 @@ TEST(ViewCommand, TheCameraShowsAllOfTheModelAndComesNearerWhenAsked) {
             "transparent --output out/p.png --camera " +
             camera;
         EXPECT_EQ(workplace.run(line).exit_code, 0);
-        const Image image = picture(workplace / "out/p.png");
+        const Image image = picture_in(workplace / "out/p.png");
         int count = 0;
         int on_border = 0;
         for (int y = 0; y < 64; ++y) {
@@ -141,9 +139,9 @@ TEST(ViewCommand, ExrHoldsLinearRadiance) {
     const Workplace workplace;
     workplace.write_square("square.obj");
     const ProgramResult result =
-        workplace.run(std::string(look) + "--light directional:0,0,10 --output out/p.exr");
+        workplace.run(std::string(look_quietly) + "--light directional:0,0,10 --output out/p.exr");
     ASSERT_EQ(result.exit_code, 0) << result.error;
-    const Image image = picture(workplace / "out/p.exr");
+    const Image image = picture_in(workplace / "out/p.exr");
     ASSERT_EQ(image.bits(), 32);
     const auto middle = static_cast<std::size_t>((16 * 33 + 16) * image.channels);
     EXPECT_NEAR(image.as<float>()[middle], 8.0F, 1e-2) << "half-float frame buffer";
@@ -218,7 +216,7 @@ TEST(ViewCommand, TheEnvironmentStandsBehindTheModelHoweverItIsNamed) {
         const ProgramResult result =
             workplace.run("relief-view --quiet --size 33x33 --fov 20 --output out/p.png " + words);
         EXPECT_EQ(result.exit_code, 0) << result.error;
-        return pixel(picture(workplace / "out/p.png"), 0, 0);
+        return pixel(picture_in(workplace / "out/p.png"), 0, 0);
     };
     const Pixel behind = {255, 0, 255, 255};  // negz
     EXPECT_EQ(corner("--camera 0,0 --environment sky square.obj"), behind);
@@ -292,7 +290,7 @@ TEST(ViewCommand, PrintsOneJsonObject) {
     EXPECT_EQ(summary["picture"]["textures"], 0);
     ASSERT_EQ(summary["effects"]["draws"].size(), 1U);
     EXPECT_FALSE(summary["effects"]["draws"][0]["effects"].empty());
-    EXPECT_EQ(picture(workplace / "out/p.png").height, 10);
+    EXPECT_EQ(picture_in(workplace / "out/p.png").height, 10);
 }
 
 TEST(ViewCommand, DrawsRealModelsWithTheirOwnMaps) {

@@ -8,6 +8,7 @@
 
 #include "relief/mesh/gltf_document.h"
 #include "support/shared_data.h"
+#include "tools/read_files.h"
 #include "tools/refusal.h"
 #include "tools/workplace.h"
 
@@ -17,14 +18,10 @@ namespace {
 using nlohmann::json;
 using test::expect_refusal;
 using test::ProgramResult;
+using test::read_document;
 using test::Refused;
 using test::Workplace;
 using testing::HasSubstr;
-
-GltfDocument read_document(const std::filesystem::path& file) {
-    Report report;
-    return GltfDocument::read(file, report);
-}
 
 /// A wavy sheet of cells x cells in two materials, left and right of x = 0.
 void write_sheet(const Workplace& workplace, const std::string& name, int cells) {

@@ -10,12 +10,14 @@
 
 #include "relief/mesh/image_file.h"
 #include "sequence_options.h"
+#include "tools/read_files.h"
 #include "tools/refusal.h"
 #include "tools/workplace.h"
 
 namespace relief::tools {
 namespace {
 
+using test::picture_in;
 using test::ProgramResult;
 using test::Refused;
 using test::Workplace;
@@ -28,10 +30,6 @@ TEST(NumberedFile, HasItsNumberBehindTheNameOrInPlaceOfTheHashes) {
     EXPECT_EQ(numbered_file("out/#.png", 12), "out/12.png");
 }
 
-Image picture(const std::filesystem::path& file) {
-    return read_image(file, ImageUse::color);
-}
-
 TEST(Turntable, ComesRoundToWhereItBegan) {
     const Workplace workplace;
     workplace.write_square("square.obj");
@@ -42,10 +40,10 @@ TEST(Turntable, ComesRoundToWhereItBegan) {
     ASSERT_EQ(workplace.run("relief-view square.obj --size 64x64 --output out/p.png --camera 0,0")
                   .exit_code,
               0);
-    const Image still = picture(workplace / "out/p.png");
-    EXPECT_EQ(picture(workplace / "out/t-0001.png").samples, still.samples);
+    const Image still = picture_in(workplace / "out/p.png");
+    EXPECT_EQ(picture_in(workplace / "out/t-0001.png").samples, still.samples);
     // A quarter turned, a square is seen edge-on; half turned it fills the same pixels.
-    EXPECT_NE(picture(workplace / "out/t-0002.png").samples, still.samples);
+    EXPECT_NE(picture_in(workplace / "out/t-0002.png").samples, still.samples);
     EXPECT_THAT(turned.out, HasSubstr("t-0001.png to out/t-0004.png"));
 }
 
@@ -112,9 +110,12 @@ TEST(Frames, ShowTheAnimationEvenlySpacedInTime) {
     // The camera stays where the first picture has it, so single pictures at other times differ in
     // framing; the first is the same.
     ASSERT_EQ(workplace.run("relief-view moving.gltf" + look + "p.png").exit_code, 0);
-    EXPECT_EQ(picture(workplace / "out/f1.png").samples, picture(workplace / "out/p.png").samples);
-    EXPECT_NE(picture(workplace / "out/f2.png").samples, picture(workplace / "out/f1.png").samples);
-    EXPECT_NE(picture(workplace / "out/f3.png").samples, picture(workplace / "out/f2.png").samples);
+    EXPECT_EQ(picture_in(workplace / "out/f1.png").samples,
+              picture_in(workplace / "out/p.png").samples);
+    EXPECT_NE(picture_in(workplace / "out/f2.png").samples,
+              picture_in(workplace / "out/f1.png").samples);
+    EXPECT_NE(picture_in(workplace / "out/f3.png").samples,
+              picture_in(workplace / "out/f2.png").samples);
 }
 
 class SequenceRefusal : public testing::TestWithParam<Refused> {};

@@ -12,6 +12,9 @@
 
 namespace relief::test {
 
+/// A normal map of the project's own.
+inline const std::string bricks_map = "data/scenes/bricks-normal.png";
+
 /// data/, conformance/ and scripts/ as in the sources, build/release/bin, and an empty out/.
 /// Removed at exit.
 class Workplace {

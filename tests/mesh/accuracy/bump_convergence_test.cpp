@@ -13,8 +13,8 @@
 namespace relief {
 namespace {
 
-constexpr int side = 96;
-constexpr int margin = 8;  ///< As far as no kernel here reaches.
+constexpr int coarse_side = 96;
+constexpr int border_margin = 8;  ///< As far as no kernel here reaches.
 
 struct WaveError {
     double inside = 0.0;
@@ -26,7 +26,7 @@ WaveError error_on(Kernel kernel, double wavelength) {
     const double steepness = 2.0 * std::numbers::pi / wavelength;
     const HeightWave wave{1.0 / steepness, steepness * glm::dvec2(std::cos(0.6), std::sin(0.6)),
                           0.7};
-    const AnalyticHeights field = wave_heights(side, side, std::span(&wave, 1));
+    const AnalyticHeights field = wave_heights(coarse_side, coarse_side, std::span(&wave, 1));
     BumpOptions options;
     options.kernel = kernel;
     options.wrap = Wrap::clamp;
@@ -40,7 +40,7 @@ WaveError error_on(Kernel kernel, double wavelength) {
         return error.rms * error.rms * static_cast<double>(error.count);
     };
     const auto of_border = static_cast<double>(all.count - but_border.count);
-    return {normal_error(normals, field, margin).rms,
+    return {normal_error(normals, field, border_margin).rms,
             std::sqrt((squares(all) - squares(but_border)) / of_border)};
 }
 

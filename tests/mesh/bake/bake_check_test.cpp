@@ -22,6 +22,7 @@ namespace {
 
 using test::bake;
 using test::sized;
+using test::waves;
 
 const double degree = std::numbers::pi / 180.0;
 
@@ -66,17 +67,6 @@ Mesh tilted_square(const glm::vec3& normal, float height = 0.0F) {
     for (glm::vec3& position : mesh.positions)
         position.z = height;
     mesh.normals.assign(mesh.positions.size(), glm::normalize(normal));
-    return mesh;
-}
-
-Mesh waves(int cells, double frequency) {
-    Mesh mesh = make_quad(cells);
-    for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
-        glm::vec3& p = mesh.positions[i];
-        const double x = frequency * p.x;
-        p.z = static_cast<float>(0.3 / frequency * std::sin(x));
-        mesh.normals[i] = glm::normalize(glm::vec3(-0.3 * std::cos(x), 0.0, 1.0));
-    }
     return mesh;
 }
 

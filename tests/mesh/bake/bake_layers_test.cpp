@@ -18,13 +18,8 @@ namespace {
 
 using test::bake;
 using test::BakedImage;
+using test::moved;
 using test::sized;
-
-Mesh moved(Mesh mesh, float scale, const glm::vec3& by) {
-    for (glm::vec3& position : mesh.positions)
-        position = position * scale + by;
-    return mesh;
-}
 
 BakeOptions all_layers(int width, int height) {
     BakeOptions options = sized(width, height);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "relief/mesh/bake.h"
+#include "relief/mesh/shapes.h"
 
 namespace relief::test {
 
@@ -51,6 +52,24 @@ inline BakeOptions sized(int width, int height) {
     options.height = height;
     options.layers.heights = true;
     return options;
+}
+
+inline Mesh moved(Mesh mesh, float scale, const glm::vec3& by) {
+    for (glm::vec3& position : mesh.positions)
+        position = position * scale + by;
+    return mesh;
+}
+
+/// A square with waves along x, and their normals.
+inline Mesh waves(int cells, double frequency) {
+    Mesh mesh = make_quad(cells);
+    for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
+        glm::vec3& p = mesh.positions[i];
+        const double x = frequency * p.x;
+        p.z = static_cast<float>(0.3 / frequency * std::sin(x));
+        mesh.normals[i] = glm::normalize(glm::vec3(-0.3 * std::cos(x), 0.0, 1.0));
+    }
+    return mesh;
 }
 
 }  // namespace relief::test

@@ -20,18 +20,13 @@ namespace {
 
 using test::bake;
 using test::BakedImage;
+using test::moved;
 using test::sized;
 
-const glm::dvec3 flat(0, 0, 1);
-
-Mesh moved(Mesh mesh, float scale, const glm::vec3& by) {
-    for (glm::vec3& position : mesh.positions)
-        position = position * scale + by;
-    return mesh;
-}
+const glm::dvec3 straight_up(0, 0, 1);
 
 /// A square with waves, over the one of make_quad().
-Mesh waves(int cells) {
+Mesh gentle_waves(int cells) {
     Mesh mesh = make_quad(cells);
     mesh.normals.clear();
     for (glm::vec3& position : mesh.positions)
@@ -47,7 +42,7 @@ TEST(Bake, OfAMeshOntoItselfIsFlat) {
         double worst = 0.0;
         float farthest = 0.0F;
         for (std::size_t i = 0; i < image.states.size(); ++i) {
-            worst = std::max(worst, degrees_between(image.normal(i), flat));
+            worst = std::max(worst, degrees_between(image.normal(i), straight_up));
             farthest = std::max(farthest, std::abs(image.heights[i]));
         }
         // Codes of 16 bits are 0.002 degrees apart.
@@ -63,7 +58,7 @@ TEST(Bake, OntoItselfIsFlatAtEveryScale) {
         EXPECT_EQ(image.result.texels_baked, 64U * 64U);
         double worst = 0.0;
         for (std::size_t i = 0; i < image.states.size(); ++i)
-            worst = std::max(worst, degrees_between(image.normal(i), flat));
+            worst = std::max(worst, degrees_between(image.normal(i), straight_up));
         EXPECT_LT(worst, 0.001) << scale;
     }
 }
@@ -113,12 +108,12 @@ TEST(Bake, TexelsThatMeetNothingAreCountedAndFilledFromTheNearest) {
     EXPECT_EQ(image.count(TexelState::missed), 32U * 64U);
     EXPECT_EQ(image.report.count("texel missed by its rays"), 32U * 64U);
     EXPECT_EQ(image.result.texels_missed, 32U * 64U);
-    EXPECT_EQ(image.normal(63), flat);
+    EXPECT_EQ(image.normal(63), straight_up);
     options.padding = 5;
     const BakedImage padded = bake({high}, make_quad(), options);
     EXPECT_EQ(padded.count(TexelState::padded), 5U * 64U);
     EXPECT_LT(degrees_between(padded.normal(36), {0.6, 0, 0.8}), 1e-4);
-    EXPECT_EQ(padded.normal(37), flat);
+    EXPECT_EQ(padded.normal(37), straight_up);
 }
 
 TEST(Bake, NothingHighIsAllMissed) {
@@ -222,7 +217,7 @@ TEST(Bake, HardDirectionsLeaveGapsAndAveragedOnesNone) {
 }
 
 TEST(Bake, SamplesAreMeansAndAutoCastsThemWhereTheyDisagree) {
-    const Mesh high = waves(64);
+    const Mesh high = gentle_waves(64);
     BakeOptions options = sized(16, 16);
     const BakedImage one = bake({high}, make_quad(), options);
     EXPECT_EQ(one.result.samples, 256U);

@@ -14,17 +14,7 @@ namespace {
 
 using test::bake;
 using test::sized;
-
-Mesh waves(int cells, double frequency) {
-    Mesh mesh = make_quad(cells);
-    for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
-        glm::vec3& p = mesh.positions[i];
-        const double x = frequency * p.x;
-        p.z = static_cast<float>(0.3 / frequency * std::sin(x));
-        mesh.normals[i] = glm::normalize(glm::vec3(-0.3 * std::cos(x), 0.0, 1.0));
-    }
-    return mesh;
-}
+using test::waves;
 
 struct Trials {
     Mesh high = waves(256, 20.0);

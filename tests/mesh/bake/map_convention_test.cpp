@@ -22,8 +22,8 @@ namespace {
 
 using test::sized;
 
-constexpr int width = 128;
-constexpr int height = 128;
+constexpr int map_width = 128;
+constexpr int map_height = 128;
 
 /// A torus whose image is uneven, and mirrored on its right half.
 Mesh torus(int slices, int sides) {
@@ -79,13 +79,13 @@ const Pair& pair() {
 }
 
 BakeOptions options_of(BakeSpace space = BakeSpace::tangent) {
-    BakeOptions options = sized(width, height);
+    BakeOptions options = sized(map_width, map_height);
     options.space = space;
     return options;
 }
 
 Image baked(const Mesh& high, const Mesh& low, const BakeOptions& options) {
-    Image image = make_image(width, height, 3, 32, ColorSpace::data);
+    Image image = make_image(map_width, map_height, 3, 32, ColorSpace::data);
     const auto normals = test::bake({high}, low, options).normals;
     std::copy(normals.begin(), normals.end(), image.as<float>().begin());
     return image;
@@ -191,9 +191,9 @@ TEST(MapConvention, CurvesAreRecognised) {
 TEST(MapConvention, ImagesLyingOtherwiseAreRecognised) {
     Image turned = tangent_normals();
     const auto from = tangent_normals().as<float>();
-    for (std::size_t y = 0; y < height; ++y) {
-        std::copy_n(&from[(height - 1 - y) * width * 3], width * 3,
-                    &turned.as<float>()[y * width * 3]);
+    for (std::size_t y = 0; y < map_height; ++y) {
+        std::copy_n(&from[(map_height - 1 - y) * map_width * 3], map_width * 3,
+                    &turned.as<float>()[y * map_width * 3]);
     }
     const ConventionFit found = fit(encoded(turned));
     expect_explained(found, {ConventionPart::turn});
@@ -230,7 +230,7 @@ Image baked_by(const std::function<glm::dmat3(glm::dvec3 n, glm::dvec4 t, glm::d
     const Mesh& low = pair().low;
     Report report;
     cover_texels(
-        low.texcoords, low.triangles, {.width = width, .height = height},
+        low.texcoords, low.triangles, {.width = map_width, .height = map_height},
         [&](int first_row, std::span<const CoveredTexel> texels) {
             for (std::size_t i = 0; i < texels.size(); ++i) {
                 if (!texels[i].is_covered()) continue;
@@ -245,7 +245,7 @@ Image baked_by(const std::function<glm::dmat3(glm::dvec3 n, glm::dvec4 t, glm::d
                     t += weight * vertex_t;
                     b += weight * vertex_t.w * glm::cross(vertex_n, glm::dvec3(vertex_t));
                 }
-                const std::size_t at = 3 * (static_cast<std::size_t>(first_row) * width + i);
+                const std::size_t at = 3 * (static_cast<std::size_t>(first_row) * map_width + i);
                 const auto from = object.as<float>();
                 const glm::dvec3 components =
                     glm::normalize(glm::inverse(frame(n, t, b)) *

@@ -43,13 +43,13 @@ std::vector<OcclusionPlace> from_origin(std::size_t texels, std::uint32_t sample
     return places;
 }
 
-struct Error {
+struct OcclusionError {
     double root_mean_square = 0.0;
     double mean = 0.0;
 };
 
-Error error_of(const std::vector<double>& shares, double truth) {
-    Error error;
+OcclusionError error_of(const std::vector<double>& shares, double truth) {
+    OcclusionError error;
     for (const double share : shares) {
         error.mean += (share - truth) / static_cast<double>(shares.size());
         error.root_mean_square +=

@@ -29,7 +29,7 @@ glm::dvec3 place_of(const RayScene& scene, const RayHit& hit) {
 }
 
 /// Moved and scaled, each position rounded once.
-Mesh moved(Mesh mesh, double scale, const glm::dvec3& by) {
+Mesh placed_at(Mesh mesh, double scale, const glm::dvec3& by) {
     for (glm::vec3& position : mesh.positions)
         position = glm::vec3(glm::dvec3(position) * scale + by);
     return mesh;
@@ -39,7 +39,7 @@ TEST(RayScene, HitsAPlaneWhereTheRayMeetsItAtEveryScale) {
     for (const double scale : {1e-20, 1e-3, 1.0, 1e5, 1e20}) {
         for (const double away : {0.0, 100.0}) {
             const glm::dvec3 by(away * scale, 0.0, 0.0);
-            const Mesh quad = moved(make_quad(8), scale, by);
+            const Mesh quad = placed_at(make_quad(8), scale, by);
             const RayScene scene = scene_of(quad);
             std::mt19937 random(1);
             for (int i = 0; i < 100; ++i) {
@@ -139,7 +139,7 @@ TEST(RayScene, NumbersThatAreNoneAndTrianglesWithoutAreaAreNotHit) {
 }
 
 TEST(RayScene, RaysFromFarAwayHitTheSamePlace) {
-    const Mesh quad = moved(make_quad(8), 1.0, {3.0, 0.0, 0.0});  // The scene looks into it.
+    const Mesh quad = placed_at(make_quad(8), 1.0, {3.0, 0.0, 0.0});  // The scene looks into it.
     const RayScene scene = scene_of(quad);
     const glm::dvec3 place(3.3, -0.4, 0.0);
     const glm::dvec3 direction = glm::normalize(glm::dvec3(0.5, 0.25, -1.0));
@@ -171,7 +171,7 @@ TEST(RayScene, AnEmptySceneHasNoHits) {
 }
 
 TEST(RayScene, KnowsMeshesApartAndHowFarTheyAre) {
-    const Mesh near = moved(make_quad(), 1.0, {0, 0, 0.5});
+    const Mesh near = placed_at(make_quad(), 1.0, {0, 0, 0.5});
     const Mesh far = make_quad();
     const RayScene scene({{far.positions, far.triangles}, {near.positions, near.triangles}});
     const Ray down{{0.1, 0.3, 1}, {0, 0, -1}, 0.0, 2.0};

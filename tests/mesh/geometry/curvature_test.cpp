@@ -28,14 +28,14 @@ std::vector<float> curvatures(const Mesh& mesh) {
     return values;
 }
 
-struct Error {
+struct CurvatureError {
     double mean = 0.0;
     double largest = 0.0;
 };
 
-Error error_of(const Mesh& mesh, const std::function<double(const glm::dvec3&)>& truth) {
+CurvatureError error_of(const Mesh& mesh, const std::function<double(const glm::dvec3&)>& truth) {
     const std::vector<float> values = curvatures(mesh);
-    Error error;
+    CurvatureError error;
     for (std::size_t i = 0; i < values.size(); ++i) {
         const double off =
             std::abs(static_cast<double>(values[i]) - truth(glm::dvec3(mesh.positions[i])));
@@ -50,7 +50,7 @@ void expect_second_order(const std::function<Mesh(int)>& mesh_of,
                          const std::function<double(const glm::dvec3&)>& truth, double finest) {
     double before = std::numeric_limits<double>::infinity();
     for (const int cells : {16, 32, 64}) {
-        const Error error = error_of(mesh_of(cells), truth);
+        const CurvatureError error = error_of(mesh_of(cells), truth);
         EXPECT_LT(error.mean, before / 3.0) << cells;
         before = error.mean;
     }

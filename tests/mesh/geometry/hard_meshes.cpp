@@ -8,14 +8,12 @@
 #include <cmath>
 #include <limits>
 
+#include "support/no_numbers.h"
 #include "support/shapes.h"
 #include "support/tangent_invariant.h"
 
 namespace relief::test {
 namespace {
-
-constexpr float nan = std::numeric_limits<float>::quiet_NaN();
-constexpr float infinity = std::numeric_limits<float>::infinity();
 
 /// Facing +z, texture laid on from above.
 Mesh flat(std::vector<glm::vec3> positions, std::vector<glm::uvec3> triangles) {
@@ -102,17 +100,18 @@ void add_scales(std::vector<NamedMesh>& meshes) {
 }
 
 void add_non_finite(std::vector<NamedMesh>& meshes) {
-    meshes.push_back(changed("NaN position", [](Mesh& m) { m.positions[17].y = nan; }));
-    meshes.push_back(changed("infinite position", [](Mesh& m) { m.positions[17].x = infinity; }));
-    meshes.push_back(changed("NaN texture coordinate", [](Mesh& m) { m.texcoords[17].x = nan; }));
+    meshes.push_back(changed("NaN position", [](Mesh& m) { m.positions[17].y = not_a_number; }));
+    meshes.push_back(changed("infinite position", [](Mesh& m) { m.positions[17].x = infinite; }));
     meshes.push_back(
-        changed("infinite texture coordinate", [](Mesh& m) { m.texcoords[17].y = -infinity; }));
-    meshes.push_back(changed("NaN normal", [](Mesh& m) { m.normals[17].z = nan; }));
-    meshes.push_back(changed("infinite normal", [](Mesh& m) { m.normals[17].z = infinity; }));
+        changed("NaN texture coordinate", [](Mesh& m) { m.texcoords[17].x = not_a_number; }));
+    meshes.push_back(
+        changed("infinite texture coordinate", [](Mesh& m) { m.texcoords[17].y = -infinite; }));
+    meshes.push_back(changed("NaN normal", [](Mesh& m) { m.normals[17].z = not_a_number; }));
+    meshes.push_back(changed("infinite normal", [](Mesh& m) { m.normals[17].z = infinite; }));
     meshes.push_back(changed("everything NaN", [](Mesh& m) {
-        std::fill(m.positions.begin(), m.positions.end(), glm::vec3(nan));
-        std::fill(m.normals.begin(), m.normals.end(), glm::vec3(nan));
-        std::fill(m.texcoords.begin(), m.texcoords.end(), glm::vec2(nan));
+        std::fill(m.positions.begin(), m.positions.end(), glm::vec3(not_a_number));
+        std::fill(m.normals.begin(), m.normals.end(), glm::vec3(not_a_number));
+        std::fill(m.texcoords.begin(), m.texcoords.end(), glm::vec2(not_a_number));
     }));
 }
 

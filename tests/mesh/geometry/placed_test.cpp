@@ -16,7 +16,7 @@ namespace {
 using test::degrees_between;
 
 /// Of directions that went through float matrices.
-constexpr double rounding = 1e-4;
+constexpr double placed_rounding = 1e-4;
 
 Mesh framed(Mesh mesh, NormalMode normals) {
     Report report;
@@ -40,7 +40,7 @@ TEST(Placed, NormalsStayPerpendicularWhereScalesDiffer) {
     const Mesh ellipsoid = placed(sphere, glm::scale(glm::mat4(1.0F), {3.0F, 1.0F, 0.5F}));
     for (std::size_t v = 0; v < sphere.positions.size(); ++v) {
         const glm::vec3 gradient = ellipsoid.positions[v] / glm::vec3(9.0F, 1.0F, 0.25F);
-        EXPECT_LT(degrees_between(ellipsoid.normals[v], gradient), rounding);
+        EXPECT_LT(degrees_between(ellipsoid.normals[v], gradient), placed_rounding);
         EXPECT_NEAR(glm::dot(ellipsoid.normals[v], glm::vec3(ellipsoid.tangents[v])), 0.0F, 1e-5F);
         EXPECT_NEAR(glm::length(ellipsoid.normals[v]), 1.0F, 1e-6F);
     }

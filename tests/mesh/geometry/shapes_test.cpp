@@ -41,7 +41,7 @@ double largest_tilt(const Mesh& mesh) {
     return largest;
 }
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 TEST(Shapes, HaveTheirVolumesAndLookOutwards) {
     struct Case {

@@ -16,20 +16,20 @@ namespace {
 
 using testing::ElementsAre;
 
-const std::vector<glm::uvec3> quad = {{0, 1, 2}, {0, 2, 3}};
+const std::vector<glm::uvec3> two_triangles = {{0, 1, 2}, {0, 2, 3}};
 
 TEST(Split, EqualCornersSplitNothing) {
     const std::vector<glm::vec3> values(6, glm::vec3(0, 0, 1));
-    const VertexSplit split = split_where_corners_differ(5, quad, values);
+    const VertexSplit split = split_where_corners_differ(5, two_triangles, values);
     EXPECT_THAT(split.source_vertex, ElementsAre(0, 1, 2, 3, 4));
-    EXPECT_EQ(split.triangles, quad);
+    EXPECT_EQ(split.triangles, two_triangles);
 }
 
 TEST(Split, OnlyVerticesWhoseCornersDifferAreSplit) {
     // Vertex 0 differs between the triangles, vertex 2 does not.
     const std::vector<glm::vec4> values = {{1, 0, 0, 1}, {2, 0, 0, 1}, {3, 0, 0, 1},
                                            {9, 0, 0, 1}, {3, 0, 0, 1}, {4, 0, 0, 1}};
-    const VertexSplit split = split_where_corners_differ(4, quad, values);
+    const VertexSplit split = split_where_corners_differ(4, two_triangles, values);
     EXPECT_THAT(split.source_vertex, ElementsAre(0, 1, 2, 3, 0));
     EXPECT_THAT(split.triangles, ElementsAre(glm::uvec3(0, 1, 2), glm::uvec3(4, 2, 3)));
 }
@@ -37,16 +37,16 @@ TEST(Split, OnlyVerticesWhoseCornersDifferAreSplit) {
 TEST(Split, EveryComponentCounts) {
     std::vector<glm::vec4> values(6, glm::vec4(1, 2, 3, 1));
     values[3].w = -1;
-    EXPECT_EQ(split_where_corners_differ(4, quad, values).source_vertex.size(), 5U);
+    EXPECT_EQ(split_where_corners_differ(4, two_triangles, values).source_vertex.size(), 5U);
 }
 
 TEST(Split, MinusZeroIsZeroAndAnEqualNaNIsEqual) {
     const float nan = std::numeric_limits<float>::quiet_NaN();
     std::vector<glm::vec3> values(6, glm::vec3(0, nan, 1));
     values[3].x = -0.0F;
-    EXPECT_EQ(split_where_corners_differ(4, quad, values).source_vertex.size(), 4U);
+    EXPECT_EQ(split_where_corners_differ(4, two_triangles, values).source_vertex.size(), 4U);
     values[3].y = 0;
-    EXPECT_EQ(split_where_corners_differ(4, quad, values).source_vertex.size(), 5U);
+    EXPECT_EQ(split_where_corners_differ(4, two_triangles, values).source_vertex.size(), 5U);
 }
 
 TEST(Split, MakesOneCopyForEachFurtherValue) {
@@ -105,10 +105,11 @@ TEST(Split, CarriesEveryAttributeAndKeepsTheRanges) {
 
 TEST(Split, WrongLengthsAndIndicesAreRefused) {
     const std::vector<glm::vec3> values(5);
-    EXPECT_THAT([&] { split_where_corners_differ(4, quad, values); },
+    EXPECT_THAT([&] { split_where_corners_differ(4, two_triangles, values); },
                 testing::ThrowsMessage<InvalidInput>(
                     testing::StrEq("there are 5 corner values, but 6 corners")));
-    EXPECT_THROW(split_where_corners_differ(3, quad, std::vector<glm::vec3>(6)), InvalidInput);
+    EXPECT_THROW(split_where_corners_differ(3, two_triangles, std::vector<glm::vec3>(6)),
+                 InvalidInput);
 }
 
 }  // namespace

@@ -9,15 +9,15 @@
 #include <cmath>
 #include <limits>
 
+#include "support/no_numbers.h"
 #include "support/shapes.h"
 
 namespace relief {
 namespace {
 
+using test::infinite;
+using test::not_a_number;
 using testing::ElementsAre;
-
-constexpr float nan = std::numeric_limits<float>::quiet_NaN();
-constexpr float infinity = std::numeric_limits<float>::infinity();
 
 TEST(Weld, TheSmallestIndexOfAPositionStandsForAll) {
     const std::vector<glm::vec3> positions = {
@@ -27,17 +27,18 @@ TEST(Weld, TheSmallestIndexOfAPositionStandsForAll) {
 
 TEST(Weld, MinusZeroIsZeroAndInfinitiesEqualThemselves) {
     const std::vector<glm::vec3> positions = {
-        {0, -0.0F, 1}, {-0.0F, 0, 1}, {infinity, 0, 0}, {infinity, -0.0F, 0}, {-infinity, 0, 0}};
+        {0, -0.0F, 1}, {-0.0F, 0, 1}, {infinite, 0, 0}, {infinite, -0.0F, 0}, {-infinite, 0, 0}};
     EXPECT_THAT(weld_positions(positions), ElementsAre(0, 0, 2, 2, 4));
 }
 
 TEST(Weld, ANaNEqualsNothingNotEvenItself) {
-    const std::vector<glm::vec3> positions(4, glm::vec3(0, nan, 0));
+    const std::vector<glm::vec3> positions(4, glm::vec3(0, not_a_number, 0));
     EXPECT_THAT(weld_positions(positions), ElementsAre(0, 1, 2, 3));
 }
 
 TEST(Weld, ByBitsANaNEqualsItselfAndMinusZeroIsNotZero) {
-    const std::vector<glm::vec2> values = {{0.0F, nan}, {-0.0F, nan}, {0.0F, nan}, {-0.0F, nan}};
+    const std::vector<glm::vec2> values = {
+        {0.0F, not_a_number}, {-0.0F, not_a_number}, {0.0F, not_a_number}, {-0.0F, not_a_number}};
     EXPECT_EQ(weld_bits<glm::vec2>(values), (std::vector<std::uint32_t>{0, 1, 0, 1}));
     const std::vector<std::array<float, 7>> rows = {{0, 0, 0, 0, 0, 0, 1}, {}, {}};
     EXPECT_EQ((weld_bits<std::array<float, 7>>(rows)), (std::vector<std::uint32_t>{0, 1, 1}));

@@ -15,7 +15,7 @@
 namespace relief {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 /// Six faces whose texels hold what they show: the direction of their middle.
 std::vector<Image> faces_of_directions(int size) {

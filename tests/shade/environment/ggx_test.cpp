@@ -11,7 +11,7 @@
 namespace relief {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 TEST(Ggx, ProjectedFacetsCoverTheSurfaceOnce) {
     for (const double alpha : {0.05, 0.3, 0.7, 1.0}) {

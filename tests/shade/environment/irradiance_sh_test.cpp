@@ -21,7 +21,7 @@ namespace {
 using test::faces_of;
 using test::spread_directions;
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 double grey_at(const IrradianceSh& sh, const glm::dvec3& normal) {
     return irradiance_over_pi(sh, normal).x;

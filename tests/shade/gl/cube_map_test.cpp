@@ -29,7 +29,7 @@ class CubeMaps : public test::GlTest {};
 RELIEF_ON_EACH_BACKEND(CubeMaps);
 
 /// The directions of OpenGL's table 3.10: s to the right, t downwards, both from -1 to 1.
-glm::vec3 face_direction(std::size_t face, float s, float t) {
+glm::vec3 direction_in_floats(std::size_t face, float s, float t) {
     switch (face) {
         case 0:
             return {1, -t, -s};
@@ -47,7 +47,7 @@ glm::vec3 face_direction(std::size_t face, float s, float t) {
 }
 
 /// Six faces whose texels hold what `radiance` says of their direction.
-std::vector<Image> faces_of(int size, const std::function<glm::vec3(glm::vec3)>& radiance) {
+std::vector<Image> float_faces_of(int size, const std::function<glm::vec3(glm::vec3)>& radiance) {
     std::vector<Image> faces;
     for (std::size_t face = 0; face < 6; ++face) {
         Image image = make_image(size, size, 3, 32, ColorSpace::linear);
@@ -56,7 +56,7 @@ std::vector<Image> faces_of(int size, const std::function<glm::vec3(glm::vec3)>&
             for (int x = 0; x < size; ++x) {
                 const float s = 2.0F * (static_cast<float>(x) + 0.5F) / static_cast<float>(size);
                 const float t = 2.0F * (static_cast<float>(y) + 0.5F) / static_cast<float>(size);
-                const glm::vec3 value = radiance(face_direction(face, s - 1.0F, t - 1.0F));
+                const glm::vec3 value = radiance(direction_in_floats(face, s - 1.0F, t - 1.0F));
                 for (int c = 0; c < 3; ++c)
                     image.as<float>()[i++] = value[c];
             }
@@ -68,7 +68,7 @@ std::vector<Image> faces_of(int size, const std::function<glm::vec3(glm::vec3)>&
 
 TEST_P(CubeMaps, EveryDirectionFindsItsTexelOfTheSixImages) {
     Report report;
-    const CubeMap cube = make_cube_map(api(), faces_of(64, direction_itself), "axes", report);
+    const CubeMap cube = make_cube_map(api(), float_faces_of(64, direction_itself), "axes", report);
     EXPECT_EQ(cube.size, 64);
     EXPECT_EQ(cube.levels, 7);
     EXPECT_TRUE(report.empty());
@@ -90,7 +90,7 @@ TEST_P(CubeMaps, AxesFindTheMiddlesOfTheirFaces) {
         return glm::vec3(axis * glm::sign(d[static_cast<int>(axis) - 1]), 0, 0);
     };
     Report report;
-    const CubeMap cube = make_cube_map(api(), faces_of(4, name_of), "names", report);
+    const CubeMap cube = make_cube_map(api(), float_faces_of(4, name_of), "names", report);
     const auto seen =
         look_up(api(), cube, {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}});
     std::vector<float> names;
@@ -103,7 +103,7 @@ TEST_P(CubeMaps, EdgesBetweenFacesAreBlendedAcross) {
     // A seamless lookup at the edge of +x and +z is the mean of both faces; without, one of them.
     const auto only_x = [](glm::vec3 d) { return glm::vec3(d.x == 1.0F ? 1.0F : 0.0F); };
     Report report;
-    const CubeMap cube = make_cube_map(api(), faces_of(8, only_x), "half", report);
+    const CubeMap cube = make_cube_map(api(), float_faces_of(8, only_x), "half", report);
     EXPECT_NEAR(look_up(api(), cube, {{1, 0, 1}})[0].x, 0.5F, 0.01F);
 }
 
@@ -131,7 +131,7 @@ TEST_P(CubeMaps, CodedFacesAreDecodedAtLookup) {
 TEST_P(CubeMaps, TheSmallestLevelIsTheMeanOfAll) {
     Report report;
     const auto half_bright = [](glm::vec3 d) { return glm::vec3(d.y > 0.0F ? 2.0F : 0.0F); };
-    const CubeMap cube = make_cube_map(api(), faces_of(16, half_bright), "sky", report);
+    const CubeMap cube = make_cube_map(api(), float_faces_of(16, half_bright), "sky", report);
     const auto seen = look_up(api(), cube, {{1, 0, 0}, {0, 1, 0}, {0, -1, 0}}, 4.0F);
     EXPECT_NEAR(seen[0].x, 1.0F, 1e-3F);
     EXPECT_NEAR(seen[1].x, 2.0F, 1e-3F);
@@ -160,7 +160,7 @@ TEST_P(CubeMaps, RadianceThatHalfFloatsCannotHoldIsClampedAndCounted) {
         }
     }
     EXPECT_GT(brightest, 60000.0F);
-    std::vector<Image> faces = faces_of(2, direction_itself);
+    std::vector<Image> faces = float_faces_of(2, direction_itself);
     faces[4].as<float>()[0] = 70000.0F;
     Report of_faces;
     make_cube_map(api(), faces, "sun", of_faces);
@@ -177,7 +177,7 @@ TEST_P(CubeMaps, FacesThatDoNotFitTogetherAreRefusedByName) {
             return error.what();
         }
     };
-    std::vector<Image> faces = faces_of(4, direction_itself);
+    std::vector<Image> faces = float_faces_of(4, direction_itself);
     EXPECT_EQ(error_of({faces.begin(), faces.begin() + 5}),
               "cube map 'room' has 5 faces, but needs 6");
     faces[3] = make_image(4, 5, 3, 32, ColorSpace::linear);
@@ -216,7 +216,8 @@ TEST_P(CubeMaps, FacesReadBackAreLinearLightAtEveryLevel) {
             sample = static_cast<std::uint8_t>(40 * face);
     }
     const CubeMap coded = make_cube_map(api(), faces, "coded", report);
-    const CubeMap linear = make_cube_map(api(), faces_of(4, direction_itself), "linear", report);
+    const CubeMap linear =
+        make_cube_map(api(), float_faces_of(4, direction_itself), "linear", report);
     for (int level = 0; level < 3; ++level) {
         const std::vector<Image> read = read_faces(api(), coded, level);
         ASSERT_EQ(read.size(), 6U);
@@ -224,7 +225,8 @@ TEST_P(CubeMaps, FacesReadBackAreLinearLightAtEveryLevel) {
         EXPECT_EQ(read[5].color_space, ColorSpace::linear);
         EXPECT_NEAR(read[5].as<float>()[0], linear_from_srgb(200.0F / 255.0F), 1e-6F);
     }
-    EXPECT_EQ(compare(read_faces(api(), linear, 0)[3], faces_of(4, direction_itself)[3]).max, 0.0);
+    EXPECT_EQ(compare(read_faces(api(), linear, 0)[3], float_faces_of(4, direction_itself)[3]).max,
+              0.0);
 }
 
 }  // namespace

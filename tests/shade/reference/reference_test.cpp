@@ -45,13 +45,13 @@ Material unlit(const glm::vec3& color, AlphaMode mode = AlphaMode::opaque, float
     return material;
 }
 
-glm::dvec4 in_the_middle(const Scene& scene) {
+glm::dvec4 pixel_in_the_middle(const Scene& scene) {
     return pixel(test::traced(scene, 3).radiance, 1, 1);
 }
 
 TEST(Reference, ShowsTheNearestOpaqueSurface) {
     const Scene scene = stacked({unlit({1, 0, 0}), unlit({0, 1, 0})});
-    EXPECT_EQ(in_the_middle(scene), glm::dvec4(1, 0, 0, 1));
+    EXPECT_EQ(pixel_in_the_middle(scene), glm::dvec4(1, 0, 0, 1));
     EXPECT_EQ(test::traced(scene, 3).hits[4].instance, 0U);
 }
 
@@ -59,13 +59,13 @@ TEST(Reference, ComposesBlendedSurfacesFarthestFirst) {
     const Scene scene =
         stacked({unlit({1, 0, 0}, AlphaMode::blend, 0.5F),
                  unlit({0, 1, 0}, AlphaMode::blend, 0.25F), unlit({0, 0, 1}), unlit({9, 9, 9})});
-    EXPECT_EQ(in_the_middle(scene), glm::dvec4(0.5, 0.125, 0.375, 1));
+    EXPECT_EQ(pixel_in_the_middle(scene), glm::dvec4(0.5, 0.125, 0.375, 1));
 }
 
 TEST(Reference, LeavesBlendedSurfacesTheirShareOfTheBackground) {
     const Scene scene = stacked(
         {unlit({1, 0, 0}, AlphaMode::blend, 0.5F), unlit({0, 1, 0}, AlphaMode::blend, 0.5F)});
-    const glm::dvec4 found = in_the_middle(scene);
+    const glm::dvec4 found = pixel_in_the_middle(scene);
     EXPECT_NEAR(found.r, 2.0 / 3, 1e-7);
     EXPECT_NEAR(found.g, 1.0 / 3, 1e-7);
     EXPECT_EQ(found.a, 0.75);
@@ -82,9 +82,9 @@ TEST(Reference, BlendsTheEdgeBetweenTwoTrianglesOnce) {
 TEST(Reference, CutsMasksAtTheirCutoff) {
     Material cut = unlit({1, 0, 0}, AlphaMode::mask, 0.5F);
     cut.alpha_cutoff = 0.5F;
-    EXPECT_EQ(in_the_middle(stacked({cut, unlit({0, 1, 0})})), glm::dvec4(1, 0, 0, 1));
+    EXPECT_EQ(pixel_in_the_middle(stacked({cut, unlit({0, 1, 0})})), glm::dvec4(1, 0, 0, 1));
     cut.opacity = 0.4375F;
-    EXPECT_EQ(in_the_middle(stacked({cut, unlit({0, 1, 0})})), glm::dvec4(0, 1, 0, 1));
+    EXPECT_EQ(pixel_in_the_middle(stacked({cut, unlit({0, 1, 0})})), glm::dvec4(0, 1, 0, 1));
 }
 
 TEST(Reference, AlphaIsTheProductOfAllItsSources) {
@@ -95,29 +95,29 @@ TEST(Reference, AlphaIsTheProductOfAllItsSources) {
     scene.images = {{"diffuse", test::constant_image({1, 1, 1, 0.5F}, 4, 32, ColorSpace::linear)},
                     {"opacity", test::constant_image({0.75F, 0, 0, 0}, 3, 32, ColorSpace::data)}};
     scene.meshes[0].edit().colors.assign(4, {1, 1, 1, 0.5F});
-    EXPECT_EQ(in_the_middle(scene), glm::dvec4(1, 1, 1, 0.5 * 0.5 * 0.75 * 0.5));
+    EXPECT_EQ(pixel_in_the_middle(scene), glm::dvec4(1, 1, 1, 0.5 * 0.5 * 0.75 * 0.5));
     scene.materials[0].alpha_mode = AlphaMode::opaque;
-    EXPECT_EQ(in_the_middle(scene).a, 1.0);
+    EXPECT_EQ(pixel_in_the_middle(scene).a, 1.0);
 }
 
 TEST(Reference, DrawsBackFacesOfDoubleSidedMaterialsOnly) {
     Scene scene = stacked({unlit({1, 0, 0}), unlit({0, 1, 0})});
     for (glm::uvec3& triangle : scene.meshes[0].edit().triangles)
         std::swap(triangle.y, triangle.z);
-    EXPECT_EQ(in_the_middle(scene), glm::dvec4(0, 1, 0, 1));
+    EXPECT_EQ(pixel_in_the_middle(scene), glm::dvec4(0, 1, 0, 1));
     scene.materials[0].double_sided = true;
-    EXPECT_EQ(in_the_middle(scene), glm::dvec4(1, 0, 0, 1));
+    EXPECT_EQ(pixel_in_the_middle(scene), glm::dvec4(1, 0, 0, 1));
     EXPECT_TRUE(test::traced(scene, 3).hits[4].back);
 }
 
 TEST(Reference, ShowsTheSkyboxBehindEverything) {
     Scene scene = stacked({unlit({1, 0, 0}, AlphaMode::blend, 0.5F)});
     scene.environment = test::constant_environment({0.25F, 0.5F, 1.0F}, true);
-    EXPECT_EQ(in_the_middle(scene), glm::dvec4(0.625, 0.25, 0.5, 1));
+    EXPECT_EQ(pixel_in_the_middle(scene), glm::dvec4(0.625, 0.25, 0.5, 1));
     scene.instances.clear();
-    EXPECT_EQ(in_the_middle(scene), glm::dvec4(0.25, 0.5, 1, 1));
+    EXPECT_EQ(pixel_in_the_middle(scene), glm::dvec4(0.25, 0.5, 1, 1));
     scene.environment->skybox = false;
-    EXPECT_EQ(in_the_middle(scene), glm::dvec4(0.0));
+    EXPECT_EQ(pixel_in_the_middle(scene), glm::dvec4(0.0));
 }
 
 TEST(Reference, IsTheSameForAnyNumberOfThreads) {
@@ -166,7 +166,7 @@ TEST(Reference, IsBlackWhereAColourIsNotANumberAndTheLargestWhereItIsInfinite) {
     material.diffuse_texture->filter = TextureFilter::nearest;
     Scene scene = stacked({material});
     scene.images = {{"texture", image}};
-    const glm::dvec4 found = in_the_middle(scene);
+    const glm::dvec4 found = pixel_in_the_middle(scene);
     EXPECT_EQ(found.r, 0.0);
     EXPECT_GT(found.g, 1e38);
     EXPECT_EQ(found.b, 0.0);
@@ -175,11 +175,11 @@ TEST(Reference, IsBlackWhereAColourIsNotANumberAndTheLargestWhereItIsInfinite) {
 TEST(Reference, DrawsWhatASingularMatrixLeaves) {
     Scene scene = test::scene_of(test::sphere(32, 16), unlit({1, 1, 1}));
     scene.instances[0].world_from_object[2].z = 0.0F;
-    EXPECT_EQ(in_the_middle(scene).a, 1.0);
+    EXPECT_EQ(pixel_in_the_middle(scene).a, 1.0);
     scene.instances[0].world_from_object[1].y = 0.0F;
-    EXPECT_EQ(in_the_middle(scene).a, 0.0);
+    EXPECT_EQ(pixel_in_the_middle(scene).a, 0.0);
     scene.instances[0].world_from_object = glm::mat4(0.0F);
-    EXPECT_EQ(in_the_middle(scene).a, 0.0);
+    EXPECT_EQ(pixel_in_the_middle(scene).a, 0.0);
 }
 
 TEST(Reference, IsTheSamePictureAtEveryScaleAndPlace) {

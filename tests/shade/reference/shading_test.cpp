@@ -15,8 +15,7 @@ namespace relief {
 namespace {
 
 using std::numbers::pi;
-/// Float storage of radiance, and of the camera's field of view.
-constexpr double rounding = 2e-6;
+using test::storage_rounding;
 
 Scene square(const Material& material) {
     return test::scene_of(test::facing_square(), material);
@@ -32,7 +31,7 @@ glm::dvec3 in_the_corner(const Scene& scene) {
 
 void expect_near(const glm::dvec3& found, const glm::dvec3& expected) {
     for (int i = 0; i < 3; ++i)
-        EXPECT_NEAR(found[i], expected[i], rounding * std::max(expected[i], 1.0)) << i;
+        EXPECT_NEAR(found[i], expected[i], storage_rounding * std::max(expected[i], 1.0)) << i;
 }
 
 Image texel(const glm::vec4& color, int channels = 3) {
@@ -71,15 +70,15 @@ TEST(ReferenceShading, OfPointLightsFallsOffAsAsked) {
         scene.point_lights = {lamp};
         return in_the_middle(scene).r;
     };
-    EXPECT_NEAR(lit(), 50.0 / 25 * 0.8, rounding);
+    EXPECT_NEAR(lit(), 50.0 / 25 * 0.8, storage_rounding);
     lamp.range = 10.0F;
-    EXPECT_NEAR(lit(), (1.0 - 1.0 / 16) * 50.0 / 25 * 0.8, rounding);
+    EXPECT_NEAR(lit(), (1.0 - 1.0 / 16) * 50.0 / 25 * 0.8, storage_rounding);
     lamp.falloff = Falloff::none;
-    EXPECT_NEAR(lit(), (1.0 - 1.0 / 16) * 50.0 * 0.8, 50 * rounding);
+    EXPECT_NEAR(lit(), (1.0 - 1.0 / 16) * 50.0 * 0.8, 50 * storage_rounding);
     lamp.range = 5.0F;
     EXPECT_EQ(lit(), 0.0);
     lamp.range.reset();
-    EXPECT_NEAR(lit(), 50.0 * 0.8, 50 * rounding);
+    EXPECT_NEAR(lit(), 50.0 * 0.8, 50 * storage_rounding);
 }
 
 TEST(ReferenceShading, OfASpotLightFadesBetweenItsCones) {
@@ -91,14 +90,14 @@ TEST(ReferenceShading, OfASpotLightFadesBetweenItsCones) {
     const double outer = std::cos(1.0);
     const double share = (0.8 - outer) / (1.0 - outer);
     scene.spot_lights = {spot};
-    EXPECT_NEAR(in_the_middle(scene).r, 0.8 * share * share, rounding);
+    EXPECT_NEAR(in_the_middle(scene).r, 0.8 * share * share, storage_rounding);
     spot.outer_cone = 0.6F;  // acos(0.8) is 0.6435.
     scene.spot_lights = {spot};
     EXPECT_EQ(in_the_middle(scene).r, 0.0);
     spot.outer_cone = 1.5F;
     spot.inner_cone = 0.7F;
     scene.spot_lights = {spot};
-    EXPECT_NEAR(in_the_middle(scene).r, 0.8, rounding);
+    EXPECT_NEAR(in_the_middle(scene).r, 0.8, storage_rounding);
 }
 
 TEST(ReferenceShading, OfALampThatTouchesOrNearlyIsFinite) {

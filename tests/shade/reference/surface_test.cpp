@@ -13,8 +13,7 @@
 namespace relief {
 namespace {
 
-/// Float storage of radiance, and of the camera's field of view.
-constexpr double rounding = 2e-6;
+using test::storage_rounding;
 
 /// A white surface under red, green and blue light from +x, +y and +z: its radiance is its normal,
 /// where that is not negative.
@@ -39,7 +38,7 @@ void expect_normal(const Scene& scene, const glm::dvec3& expected) {
     const glm::dvec3 found = normal_at(scene, 3, 1, 1);
     const glm::dvec3 unit = glm::normalize(expected);
     for (int i = 0; i < 3; ++i)
-        EXPECT_NEAR(found[i], unit[i], rounding) << i;
+        EXPECT_NEAR(found[i], unit[i], storage_rounding) << i;
 }
 
 TEST(ReferenceSurface, InterpolatesNormalsAndMakesThemUnit) {
@@ -50,7 +49,7 @@ TEST(ReferenceSurface, InterpolatesNormalsAndMakesThemUnit) {
     const glm::dvec3 found = normal_at(measured(mesh), 2, 1, 0);
     const glm::dvec3 expected = glm::normalize(glm::dvec3(0.75, 0, 0.25));
     for (int i = 0; i < 3; ++i)
-        EXPECT_NEAR(found[i], expected[i], rounding);
+        EXPECT_NEAR(found[i], expected[i], storage_rounding);
 }
 
 TEST(ReferenceSurface, InterpolatesWithPerspective) {
@@ -65,11 +64,11 @@ TEST(ReferenceSurface, InterpolatesWithPerspective) {
     material.diffuse = glm::vec3(1.0F);
     Scene scene = test::scene_of(mesh, material);
     // The middle ray meets x = 0, half-way in space; on screen the edges are at -3 and 1.5.
-    EXPECT_NEAR(test::radiance_at(scene, 3, 1, 1).r, 0.5, rounding);
+    EXPECT_NEAR(test::radiance_at(scene, 3, 1, 1).r, 0.5, storage_rounding);
     // The pixel of 4 at x = 1/3 of depth... by similar triangles: x = 0.5 z / 1.5.. solved: 3/7.
     const double slope = (-2.0 + 4.0 * 2.5 / 4.0) / 3.0;  // x over depth.
     const double x = 3.0 * slope / (1.0 - slope * 0.5);   // depth = 3 + x / 2.
-    EXPECT_NEAR(test::radiance_at(scene, 4, 2, 1).r, (x + 2.0) / 4.0, rounding);
+    EXPECT_NEAR(test::radiance_at(scene, 4, 2, 1).r, (x + 2.0) / 4.0, storage_rounding);
 }
 
 TEST(ReferenceSurface, FlatUsesThePlaneAndFacesTheViewer) {

@@ -8,6 +8,9 @@
 
 namespace relief::test {
 
+/// Float storage of radiance, and of the camera's field of view.
+inline constexpr double storage_rounding = 2e-6;
+
 /// The reference of a scene, findings discarded.
 inline Reference traced(const Scene& scene, int size) {
     Report report;

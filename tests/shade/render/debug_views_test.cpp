@@ -25,17 +25,23 @@ namespace {
 
 using test::pixel;
 
-constexpr int size = 32;
+constexpr int view_size = 32;
 /// Of what a float shader computes.
 constexpr double float_tolerance = 1e-5;
 
 FrameSettings floats(DebugView view) {
-    return {
-        .width = size, .height = size, .samples = 1, .output = OutputCoding::linear, .view = view};
+    return {.width = view_size,
+            .height = view_size,
+            .samples = 1,
+            .output = OutputCoding::linear,
+            .view = view};
 }
 FrameSettings codes(DebugView view) {
-    return {
-        .width = size, .height = size, .samples = 4, .output = OutputCoding::srgb, .view = view};
+    return {.width = view_size,
+            .height = view_size,
+            .samples = 4,
+            .output = OutputCoding::srgb,
+            .view = view};
 }
 
 class DebugViewPictures : public test::DrawTest {
@@ -118,10 +124,10 @@ TEST_F(DebugViewPictures, OfTextureCoordinatesHaveAChecker) {
         uv = uv * 1.5F - glm::vec2(0.25F);
     const Image image = view(scene, DebugView::texcoords);
     for (const int y : {0, 7, 30}) {
-        for (int x = 0; x < size; ++x) {
+        for (int x = 0; x < view_size; ++x) {
             // The camera sees all of the square.
-            const double u = (x + 0.5) / size * 1.5 - 0.25;
-            const double v = (y + 0.5) / size * 1.5 - 0.25;
+            const double u = (x + 0.5) / view_size * 1.5 - 0.25;
+            const double v = (y + 0.5) / view_size * 1.5 - 0.25;
             const bool odd = static_cast<long>(std::floor(8 * u) + std::floor(8 * v)) % 2 != 0;
             expect_color(image, x, y, {u - std::floor(u), v - std::floor(v), odd ? 1.0 : 0.0, 1.0});
         }
@@ -134,12 +140,12 @@ TEST_F(DebugViewPictures, OfASphereAreItsNormals) {
     const Image geometric = view(scene, DebugView::geometric_normal);
     const Image tangents = view(scene, DebugView::tangent);
     int compared = 0;
-    for (int y = 0; y < size; ++y) {
-        for (int x = 0; x < size; ++x) {
+    for (int y = 0; y < view_size; ++y) {
+        for (int x = 0; x < view_size; ++x) {
             const double reach = 2.0 / 3.0;
             const glm::dvec3 ray =
-                glm::normalize(glm::dvec3(((x + 0.5) / size * 2.0 - 1.0) * reach,
-                                          (1.0 - (y + 0.5) / size * 2.0) * reach, -1.0));
+                glm::normalize(glm::dvec3(((x + 0.5) / view_size * 2.0 - 1.0) * reach,
+                                          (1.0 - (y + 0.5) / view_size * 2.0) * reach, -1.0));
             const double along = 3.0 * -ray.z;
             const double inside = along * along - 8.0;
             if (inside < 0.05) continue;  // Beside it, or at the rim.
@@ -183,15 +189,15 @@ TEST_F(DebugViewPictures, HatchWhatHasNothingToShow) {
     scene.instances[1].world_from_object[3] = {0.0F, 2.0F, 0.01F, 1.0F};
     const Image image = render(scene, codes(DebugView::texcoords)).image;
     int dark = 0;
-    for (int x = 0; x < size; ++x) {
+    for (int x = 0; x < view_size; ++x) {
         // Rows count from below in gl_FragCoord.
-        const double stripe = std::fmod(x + 0.5 + (size - 1 - 2 + 0.5), 16.0);
+        const double stripe = std::fmod(x + 0.5 + (view_size - 1 - 2 + 0.5), 16.0);
         const double grey = stripe < 8.0 ? 51.0 : 77.0;
         EXPECT_EQ(pixel(image, x, 2), glm::dvec4(grey, grey, grey, 255));
         dark += stripe < 8.0 ? 1 : 0;
-        EXPECT_NE(pixel(image, x, size - 2).x, pixel(image, x, size - 2).z);
+        EXPECT_NE(pixel(image, x, view_size - 2).x, pixel(image, x, view_size - 2).z);
     }
-    EXPECT_EQ(dark, size / 2);
+    EXPECT_EQ(dark, view_size / 2);
 }
 
 TEST_F(DebugViewPictures, OfOverdrawCountFragments) {
@@ -215,7 +221,7 @@ TEST_F(DebugViewPictures, OfOverdrawCountFragments) {
 
 TEST_F(DebugViewPictures, LeaveThePictureAsItWas) {
     const Scene scene = test::random_scene(3);
-    const FrameSettings picture{size, size, 4, OutputCoding::srgb};
+    const FrameSettings picture{view_size, view_size, 4, OutputCoding::srgb};
     const Image before = render(scene, picture).image;
     RenderCache cache(context());
     for (const DebugView shown : {DebugView::picture, DebugView::geometric_normal,
@@ -252,12 +258,13 @@ TEST_F(DebugViewPictures, OfShadingNormalsAgreeWithTheReference) {
         scene.directional_lights.push_back({-towards[i], channel});
     }
     Report report;
-    const Reference reference = render_reference(scene, {size, size}, report);
+    const Reference reference = render_reference(scene, {view_size, view_size}, report);
     const Image found = view(scene, DebugView::shading_normal);
     int compared = 0;
-    for (int y = 0; y < size; ++y) {
-        for (int x = 0; x < size; ++x) {
-            const bool hit = reference.hits[static_cast<std::size_t>(y * size + x)].instance == 0;
+    for (int y = 0; y < view_size; ++y) {
+        for (int x = 0; x < view_size; ++x) {
+            const bool hit =
+                reference.hits[static_cast<std::size_t>(y * view_size + x)].instance == 0;
             if (!hit || pixel(reference.edges, x, y)[0] > 0.0) continue;
             const glm::dvec3 n = 2.0 * glm::dvec3(pixel(found, x, y)) - 1.0;
             for (int i = 0; i < 3; ++i) {
@@ -288,7 +295,8 @@ TEST_F(DebugViewPictures, OfTermsAddUpToThePicture) {
     for (const std::uint64_t seed : {1U, 2U, 5U, 8U}) {
         const Scene scene = opaque_scene(seed);
         const Image whole = view(scene, DebugView::picture);
-        std::vector<glm::dvec3> sum(static_cast<std::size_t>(size * size), glm::dvec3(0.0));
+        std::vector<glm::dvec3> sum(static_cast<std::size_t>(view_size * view_size),
+                                    glm::dvec3(0.0));
         for (const DebugViewInfo& info : debug_views()) {
             if (info.kind != DebugViewKind::term) continue;
             Image term;
@@ -298,15 +306,16 @@ TEST_F(DebugViewPictures, OfTermsAddUpToThePicture) {
                 continue;
             }
             ++seen[static_cast<std::size_t>(info.view)];
-            for (int i = 0; i < size * size; ++i)
-                sum[static_cast<std::size_t>(i)] += glm::dvec3(pixel(term, i % size, i / size));
+            for (int i = 0; i < view_size * view_size; ++i)
+                sum[static_cast<std::size_t>(i)] +=
+                    glm::dvec3(pixel(term, i % view_size, i / view_size));
         }
-        for (int i = 0; i < size * size; ++i) {
-            const glm::dvec3 expected(pixel(whole, i % size, i / size));
+        for (int i = 0; i < view_size * view_size; ++i) {
+            const glm::dvec3 expected(pixel(whole, i % view_size, i / view_size));
             for (int c = 0; c < 3; ++c) {
                 EXPECT_NEAR(sum[static_cast<std::size_t>(i)][c], expected[c],
                             2e-5 * std::max(1.0, expected[c]))
-                    << "seed " << seed << " at " << i % size << ", " << i / size;
+                    << "seed " << seed << " at " << i % view_size << ", " << i / view_size;
             }
         }
     }
@@ -329,10 +338,10 @@ TEST_F(DebugViewPictures, OfDiffuseLightAgreeWithTheReferenceOfAMatteScene) {
     matte.ambient = glm::vec3(0.0F);
     matte.materials[0].specular = matte.materials[0].emission = glm::vec3(0.0F);
     Report report;
-    const Reference reference = render_reference(matte, {size, size}, report);
+    const Reference reference = render_reference(matte, {view_size, view_size}, report);
     const Image found = view(scene, DebugView::diffuse);
-    for (int y = 0; y < size; ++y) {
-        for (int x = 0; x < size; ++x) {
+    for (int y = 0; y < view_size; ++y) {
+        for (int x = 0; x < view_size; ++x) {
             if (pixel(reference.edges, x, y)[0] > 0.0) continue;
             for (int c = 0; c < 3; ++c)
                 EXPECT_NEAR(pixel(found, x, y)[c], pixel(reference.radiance, x, y)[c], 1e-3);

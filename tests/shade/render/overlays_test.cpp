@@ -18,7 +18,7 @@ namespace {
 
 using test::pixel;
 
-constexpr int size = 64;
+constexpr int overlay_size = 64;
 
 /// A square of 2 x 2 seen face on: it covers pixels 16 to 47 of 64.
 Scene small_square() {
@@ -29,7 +29,10 @@ Scene small_square() {
 }
 
 FrameSettings picture(int samples = 1) {
-    return {.width = size, .height = size, .samples = samples, .output = OutputCoding::srgb};
+    return {.width = overlay_size,
+            .height = overlay_size,
+            .samples = samples,
+            .output = OutputCoding::srgb};
 }
 
 glm::dvec4 code(const glm::vec3& srgb) {
@@ -49,8 +52,8 @@ TEST_F(Overlay, WireframeDrawsEdgesAndNothingElse) {
         settings.overlays.wireframe = true;
         const Image wired = render(scene, settings).image;
         int drawn = 0;
-        for (int y = 0; y < size; ++y) {
-            for (int x = 0; x < size; ++x) {
+        for (int y = 0; y < overlay_size; ++y) {
+            for (int x = 0; x < overlay_size; ++x) {
                 const bool is_wire = pixel(wired, x, y) == code(wireframe_color);
                 if (!is_wire) {
                     EXPECT_EQ(pixel(wired, x, y), pixel(plain, x, y)) << x << "," << y;
@@ -80,8 +83,8 @@ TEST_F(Overlay, LinesAreHiddenByOpaqueSurfacesAlone) {
     settings.overlays.vertex_frames = 0.05F;
     const auto count = [&](const Image& image, const glm::vec3& color) {
         int found = 0;
-        for (int i = 0; i < size * size; ++i)
-            found += pixel(image, i % size, i / size) == code(color) ? 1 : 0;
+        for (int i = 0; i < overlay_size * overlay_size; ++i)
+            found += pixel(image, i % overlay_size, i / overlay_size) == code(color) ? 1 : 0;
         return found;
     };
     EXPECT_EQ(count(render(scene, settings).image, tangent_color), 0);

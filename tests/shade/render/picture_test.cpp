@@ -37,7 +37,7 @@ Scene glowing(float radiance) {
 }
 
 /// Half a code for rounding, and another for half floats and llvmpipe's pow.
-constexpr double code_tolerance = 1.0;
+constexpr double finished_tolerance = 1.0;
 
 TEST_F(FinishedPicture, IsExposedAndToneMapped) {
     for (const int samples : {1, 4}) {
@@ -48,13 +48,13 @@ TEST_F(FinishedPicture, IsExposedAndToneMapped) {
             const double light = 0.5 * static_cast<double>(radiance);
             scene.exposure = 0.5F;
             EXPECT_NEAR(pixel(render(scene, settings).image, 4, 4).r, code(std::min(light, 1.0)),
-                        code_tolerance);
+                        finished_tolerance);
             scene.tone_mapping = ToneMapping::reinhard;
             EXPECT_NEAR(pixel(render(scene, settings).image, 4, 4).r, code(light / (1.0 + light)),
-                        code_tolerance);
+                        finished_tolerance);
             scene.tone_mapping = ToneMapping::aces;
             EXPECT_NEAR(pixel(render(scene, settings).image, 4, 4).r,
-                        code(std::min(aces(light), 1.0)), code_tolerance);
+                        code(std::min(aces(light), 1.0)), finished_tolerance);
         }
     }
 }
@@ -101,7 +101,7 @@ TEST_F(FinishedPicture, ToneMapsEverySampleOfAnEdge) {
     scene.tone_mapping = ToneMapping::reinhard;
     const Image image = render(scene, {16, 16, 4, OutputCoding::srgb}).image;
     // Half of white; averaging radiance first would show 500 / 501, nearly white.
-    EXPECT_NEAR(pixel(image, 8, 8).r, code(0.5), code_tolerance);
+    EXPECT_NEAR(pixel(image, 8, 8).r, code(0.5), finished_tolerance);
 }
 
 /// Two squares, one behind the other, of these colours and opacities.
@@ -129,9 +129,9 @@ TEST_F(FinishedPicture, BlendsLayersInLinearLightFarthestFirst) {
             scene.background = {0, 0, 1, 1};
             const glm::dvec4 color =
                 pixel(render(scene, {8, 8, samples, OutputCoding::srgb}).image, 4, 4);
-            EXPECT_NEAR(color.r, code(0.5), code_tolerance);
-            EXPECT_NEAR(color.g, code(0.5 * 0.25), code_tolerance);
-            EXPECT_NEAR(color.b, code(0.5 * 0.75), code_tolerance);
+            EXPECT_NEAR(color.r, code(0.5), finished_tolerance);
+            EXPECT_NEAR(color.g, code(0.5 * 0.25), finished_tolerance);
+            EXPECT_NEAR(color.b, code(0.5 * 0.75), finished_tolerance);
             EXPECT_EQ(color.a, 255.0);
         }
     }
@@ -142,9 +142,9 @@ TEST_F(FinishedPicture, BlendedOverNothingKeepsItsColourAndItsShare) {
     for (const int samples : {1, 4}) {
         const glm::dvec4 color =
             pixel(render(scene, {8, 8, samples, OutputCoding::srgb}).image, 4, 4);
-        EXPECT_NEAR(color.r, 255.0, code_tolerance);
-        EXPECT_NEAR(color.g, code(0.5), code_tolerance);
-        EXPECT_NEAR(color.a, 127.5, code_tolerance);
+        EXPECT_NEAR(color.r, 255.0, finished_tolerance);
+        EXPECT_NEAR(color.g, code(0.5), finished_tolerance);
+        EXPECT_NEAR(color.a, 127.5, finished_tolerance);
     }
 }
 

@@ -20,10 +20,10 @@ namespace {
 
 using test::pixel;
 
-constexpr int size = 96;
+constexpr int reference_size = 96;
 /// Codes: half of one by rounding, the rest for float arithmetic and vertices rounded to 1/256
 /// pixel.
-constexpr double code_tolerance = 1.0;
+constexpr double agreement_tolerance = 1.0;
 /// Codes, where 8-bit textures are sampled: llvmpipe decodes sRGB by a polynomial that is up to
 /// half a percent off, which is half a code, and filters data by weights of 8 bits.
 constexpr double coarse_tolerance = 2.0;
@@ -58,22 +58,24 @@ Worst furthest(const Image& drawn, const Image& expected, const Image& edges) {
 
 std::string effects_of(const Scene& scene) {
     std::string text;
-    for (const DrawPlan& draw : plan_effects(scene, {size, size, 1}).draws)
+    for (const DrawPlan& draw : plan_effects(scene, {reference_size, reference_size, 1}).draws)
         text += "\n    " + describe(draw.features);
     return text;
 }
 
-class Reference : public test::DrawTest {
+class AgainstReference : public test::DrawTest {
   protected:
-    void expect_agreement(const Scene& scene, double tolerance = code_tolerance) const {
+    void expect_agreement(const Scene& scene, double tolerance = agreement_tolerance) const {
         Report report;
-        const relief::Reference reference = render_reference(scene, {size, size}, report);
+        const relief::Reference reference =
+            render_reference(scene, {reference_size, reference_size}, report);
         const Image expected = reference_picture(reference.radiance, scene, OutputCoding::srgb);
-        const Image drawn = render(scene, {size, size, 1, OutputCoding::srgb}).image;
+        const Image drawn =
+            render(scene, {reference_size, reference_size, 1, OutputCoding::srgb}).image;
         const Worst worst = furthest(drawn, expected, reference.edges);
         EXPECT_LE(worst.codes, tolerance)
             << "at " << worst.x << ", " << worst.y << effects_of(scene);
-        EXPECT_GT(worst.compared, size * size / 4) << "edges nearly everywhere";
+        EXPECT_GT(worst.compared, reference_size * reference_size / 4) << "edges nearly everywhere";
     }
 };
 
@@ -87,7 +89,7 @@ Scene lit_sphere() {
 }
 
 /// One thing that a scene may have.
-struct Effect {
+struct AddedThing {
     const char* name;
     std::function<void(Scene&, test::Dice&)> add;
 };
@@ -97,7 +99,7 @@ Texture image(Scene& scene, Image texels) {
     return Texture{scene.images.size() - 1};
 }
 
-std::vector<Effect> light_effects() {
+std::vector<AddedThing> light_effects() {
     return {
         {"spot light",
          [](Scene& scene, test::Dice&) {
@@ -125,8 +127,8 @@ std::vector<Effect> light_effects() {
     };
 }
 
-std::vector<Effect> material_effects() {
-    std::vector<Effect> effects = {
+std::vector<AddedThing> material_effects() {
+    std::vector<AddedThing> effects = {
         {"nothing else", [](Scene&, test::Dice&) {}},
         {"flat", [](Scene& s, test::Dice&) { s.materials[0].interpolation = Interpolation::flat; }},
         {"unlit", [](Scene& s, test::Dice&) { s.materials[0].unlit = true; }},
@@ -171,7 +173,7 @@ std::vector<Effect> material_effects() {
     return effects;
 }
 
-std::vector<Effect> texture_effects() {
+std::vector<AddedThing> texture_effects() {
     return {
         {"diffuse texture",
          [](Scene& s, test::Dice& d) {
@@ -227,8 +229,8 @@ std::vector<Effect> texture_effects() {
 }
 
 /// Everything that bends normals, by both kinds of frame, in place and mirrored.
-std::vector<Effect> detail_effects() {
-    std::vector<Effect> effects;
+std::vector<AddedThing> detail_effects() {
+    std::vector<AddedThing> effects;
     for (const bool mirrored : {false, true}) {
         for (const TangentFrame frame : {TangentFrame::stored, TangentFrame::derivatives}) {
             const auto prepare = [=](Scene& scene) {
@@ -258,11 +260,11 @@ std::vector<Effect> detail_effects() {
     return effects;
 }
 
-std::vector<Effect> environment_effects() {
-    std::vector<Effect> effects = {{"skybox", [](Scene& s, test::Dice& d) {
-                                        s.environment = test::random_environment(d);
-                                        s.environment->skybox = true;
-                                    }}};
+std::vector<AddedThing> environment_effects() {
+    std::vector<AddedThing> effects = {{"skybox", [](Scene& s, test::Dice& d) {
+                                            s.environment = test::random_environment(d);
+                                            s.environment->skybox = true;
+                                        }}};
     for (const FresnelModel model :
          {FresnelModel::schlick, FresnelModel::dielectric, FresnelModel::conductor}) {
         for (const float transmission : {0.0F, 0.7F}) {
@@ -290,9 +292,9 @@ std::vector<Effect> environment_effects() {
     return effects;
 }
 
-class EffectOnItsOwn : public Reference {
+class EffectOnItsOwn : public AgainstReference {
   protected:
-    void expect_agreement_of_each(const std::vector<Effect>& effects) const {
+    void expect_agreement_of_each(const std::vector<AddedThing>& effects) const {
         for (std::size_t i = 0; i < effects.size(); ++i) {
             SCOPED_TRACE(testing::Message() << effects[i].name << ", number " << i);
             for (const bool on_sphere : {true, false}) {
@@ -336,7 +338,7 @@ TEST_F(EffectOnItsOwn, OfTheEnvironmentLooksAsTheReferenceSays) {
     expect_agreement_of_each(environment_effects());
 }
 
-TEST_F(Reference, AgreesWithEightBitTexturesAlmostAsWell) {
+TEST_F(AgainstReference, AgreesWithEightBitTexturesAlmostAsWell) {
     test::Dice dice(1);
     for (const ColorSpace space : {ColorSpace::srgb, ColorSpace::data}) {
         Scene scene = lit_sphere();
@@ -372,7 +374,7 @@ Scene glossy_sphere(float roughness, std::optional<float> metallic) {
     return scene;
 }
 
-TEST_F(Reference, AgreesInBlurredSurroundings) {
+TEST_F(AgainstReference, AgreesInBlurredSurroundings) {
     for (const float roughness : {0.1F, 0.15F, 0.3F, 0.5F, 0.7F, 1.0F}) {
         for (const std::optional<float> metallic :
              {std::optional<float>(), std::optional(0.0F), std::optional(1.0F)}) {
@@ -389,7 +391,7 @@ std::uint64_t random_scene_count() {
     return asked == nullptr ? 30 : std::strtoull(asked, nullptr, 10);
 }
 
-TEST_F(Reference, AgreesInRandomScenes) {
+TEST_F(AgainstReference, AgreesInRandomScenes) {
     for (std::uint64_t seed = 0; seed < random_scene_count(); ++seed) {
         SCOPED_TRACE(testing::Message() << "seed " << seed);
         expect_agreement(test::random_scene(seed));

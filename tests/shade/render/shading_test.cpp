@@ -15,9 +15,9 @@ namespace {
 
 using test::pixel;
 
-constexpr int size = 64;
+constexpr int shaded_size = 64;
 /// Codes: half a code of rounding, and what float and llvmpipe's pow and exp lose.
-constexpr double code_tolerance = 1.0;
+constexpr double shading_tolerance = 1.0;
 /// Relative, in linear float.
 constexpr double radiance_tolerance = 2e-4;
 
@@ -26,17 +26,17 @@ class Shading : public test::DrawTest {
     /// Compares every pixel away from edges with the reference, in codes and in radiance.
     void expect_formula(const Scene& scene, double tolerance = radiance_tolerance) const {
         Report report;
-        const Reference reference = render_reference(scene, {size, size}, report);
+        const Reference reference = render_reference(scene, {shaded_size, shaded_size}, report);
         const Image& expected = reference.radiance;
         const Image expected_codes = reference_picture(expected, scene, OutputCoding::srgb);
-        const Image coded = render(scene, {size, size, 1, OutputCoding::srgb}).image;
-        const Image linear = radiance(scene, size, size);
+        const Image coded = render(scene, {shaded_size, shaded_size, 1, OutputCoding::srgb}).image;
+        const Image linear = radiance(scene, shaded_size, shaded_size);
         double worst_code = 0.0;
         double worst_radiance = 0.0;
         double brightest = 0.0;
         int compared = 0;
-        for (int y = 0; y < size; ++y) {
-            for (int x = 0; x < size; ++x) {
+        for (int y = 0; y < shaded_size; ++y) {
+            for (int x = 0; x < shaded_size; ++x) {
                 if (pixel(reference.edges, x, y)[0] > 0.0) continue;
                 ++compared;
                 for (int i = 0; i < 3; ++i) {
@@ -50,10 +50,10 @@ class Shading : public test::DrawTest {
                 }
             }
         }
-        EXPECT_LE(worst_code, code_tolerance);
+        EXPECT_LE(worst_code, shading_tolerance);
         EXPECT_LE(worst_radiance, tolerance);
         EXPECT_GT(brightest, 0.05) << "the test shows nothing";
-        EXPECT_GT(compared, size * size / 2) << "edges nearly everywhere";
+        EXPECT_GT(compared, shaded_size * shaded_size / 2) << "edges nearly everywhere";
     }
 };
 
@@ -107,7 +107,7 @@ TEST_F(Shading, OfALightWithARangeEndsThere) {
     expect_formula(scene);
     scene.point_lights.pop_back();
     // The corner is 2.8 away: beyond the range, exactly nothing.
-    EXPECT_EQ(pixel(radiance(scene, size, size), 0, 0), glm::dvec4(0, 0, 0, 1));
+    EXPECT_EQ(pixel(radiance(scene, shaded_size, shaded_size), 0, 0), glm::dvec4(0, 0, 0, 1));
 }
 
 TEST_F(Shading, OfASpotLightKeepsToItsCone) {
@@ -121,7 +121,7 @@ TEST_F(Shading, OfASpotLightKeepsToItsCone) {
     spot.outer_cone = 0.6F;
     scene.spot_lights = {spot};
     expect_formula(scene);
-    EXPECT_EQ(pixel(radiance(scene, size, size), 0, 0), glm::dvec4(0, 0, 0, 1));
+    EXPECT_EQ(pixel(radiance(scene, shaded_size, shaded_size), 0, 0), glm::dvec4(0, 0, 0, 1));
 }
 
 TEST_F(Shading, OfPhongsHighlightFollowsTheFormula) {

@@ -20,7 +20,7 @@ glm::vec3 seen(const glm::vec3& codes) {
     return linear;
 }
 
-void expect_near(const glm::vec3& actual, const glm::vec3& expected) {
+void expect_same_color(const glm::vec3& actual, const glm::vec3& expected) {
     for (int i = 0; i < 3; ++i)
         EXPECT_NEAR(actual[i], expected[i], 1e-6F);
 }
@@ -28,9 +28,9 @@ void expect_near(const glm::vec3& actual, const glm::vec3& expected) {
 TEST(MaterialByName, HasTheNumbersOfTheTable) {
     const Material gold = material_by_name("gold").value();
     EXPECT_EQ(gold.name, "gold");
-    expect_near(gold.ambient, seen(glm::vec3(0.24725F, 0.1995F, 0.0745F)));
-    expect_near(gold.diffuse, seen(glm::vec3(0.75164F, 0.60648F, 0.22648F)));
-    expect_near(gold.specular, seen(glm::vec3(0.628281F, 0.555802F, 0.366065F)));
+    expect_same_color(gold.ambient, seen(glm::vec3(0.24725F, 0.1995F, 0.0745F)));
+    expect_same_color(gold.diffuse, seen(glm::vec3(0.75164F, 0.60648F, 0.22648F)));
+    expect_same_color(gold.specular, seen(glm::vec3(0.628281F, 0.555802F, 0.366065F)));
     EXPECT_NEAR(gold.shininess, 51.2F, 1e-5F);
     EXPECT_EQ(gold.specular_model, SpecularModel::phong);
     // Exponents as later tables print them.
@@ -39,7 +39,8 @@ TEST(MaterialByName, HasTheNumbersOfTheTable) {
     EXPECT_NEAR(material_by_name("pearl")->shininess, 11.264F, 1e-4F);
     EXPECT_NEAR(material_by_name("polished silver")->shininess, 89.6F, 1e-4F);
     EXPECT_EQ(material_by_name("black rubber")->shininess, 10.0F);
-    expect_near(material_by_name("yellow plastic")->diffuse, seen(glm::vec3(0.5F, 0.5F, 0.0F)));
+    expect_same_color(material_by_name("yellow plastic")->diffuse,
+                      seen(glm::vec3(0.5F, 0.5F, 0.0F)));
 }
 
 TEST(MaterialByName, CaresForNeitherCaseNorSeparators) {

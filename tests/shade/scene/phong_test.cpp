@@ -19,29 +19,29 @@ GltfMaterial surface(float metallic, float roughness) {
     return material;
 }
 
-constexpr float rounding = 1e-6F;
+constexpr float color_rounding = 1e-6F;
 
-void expect_near(const glm::vec3& a, const glm::vec3& b, float tolerance = rounding) {
+void expect_color(const glm::vec3& a, const glm::vec3& b, float tolerance = color_rounding) {
     for (int i = 0; i < 3; ++i)
         EXPECT_NEAR(a[i], b[i], tolerance) << i;
 }
 
 TEST(PhongFromMetallicRoughness, OfARoughDielectricIsDiffuse) {
     const Material phong = phong_from_metallic_roughness(surface(0, 1), {});
-    expect_near(phong.diffuse, {0.8F, 0.5F, 0.2F});
-    EXPECT_EQ(phong.shininess, 0.0F);               // 2 / 1 - 2.
-    expect_near(phong.specular, glm::vec3(0.01F));  // 0.04 * 2 / 8.
-    expect_near(phong.ambient, {0.84F, 0.54F, 0.24F});
+    expect_color(phong.diffuse, {0.8F, 0.5F, 0.2F});
+    EXPECT_EQ(phong.shininess, 0.0F);                // 2 / 1 - 2.
+    expect_color(phong.specular, glm::vec3(0.01F));  // 0.04 * 2 / 8.
+    expect_color(phong.ambient, {0.84F, 0.54F, 0.24F});
     EXPECT_LT(phong.reflectivity.x, 2e-4F);
     EXPECT_LT(phong.grazing_reflectivity.x, 0.003F);
 }
 
 TEST(PhongFromMetallicRoughness, OfASmoothMetalIsAColouredMirror) {
     const Material phong = phong_from_metallic_roughness(surface(1, 0), {});
-    expect_near(phong.diffuse, glm::vec3(0.0F));
-    expect_near(phong.reflectivity, {0.8F, 0.5F, 0.2F}, 0.002F);
+    expect_color(phong.diffuse, glm::vec3(0.0F));
+    expect_color(phong.reflectivity, {0.8F, 0.5F, 0.2F}, 0.002F);
     EXPECT_NEAR(phong.grazing_reflectivity.x, 1.0F, 0.002F);
-    expect_near(phong.ambient, {0.8F, 0.5F, 0.2F});  // It reflects what comes from everywhere.
+    expect_color(phong.ambient, {0.8F, 0.5F, 0.2F});  // It reflects what comes from everywhere.
     EXPECT_LT(phong.shininess, 1e6F);
 }
 
@@ -49,7 +49,7 @@ TEST(PhongFromMetallicRoughness, OfARoughMetalIsNoMirror) {
     const Material phong = phong_from_metallic_roughness(surface(1, 0.5F), {});
     // alpha^2 = 1/16: shininess 30, specular F0 * 4, mirror tan^2 / (tan^2 + 1/16).
     EXPECT_NEAR(phong.shininess, 30.0F, 1e-4F);
-    expect_near(phong.specular, {3.2F, 2.0F, 0.8F}, 1e-5F);
+    expect_color(phong.specular, {3.2F, 2.0F, 0.8F}, 1e-5F);
     EXPECT_NEAR(phong.grazing_reflectivity.x, 0.0421F, 1e-4F);
 }
 
@@ -89,8 +89,8 @@ TEST(PhongFromMetallicRoughness, TakesTexturesByTheirMeans) {
     const TextureMeans means{{0.5F, 0.5F, 1.0F}, 0.5F, 0.5F};
     const Material phong = phong_from_metallic_roughness(surface(1, 1), means);
     EXPECT_NEAR(phong.shininess, 30.0F, 1e-4F);
-    expect_near(phong.diffuse, {0.4F, 0.25F, 0.1F});  // The texture itself multiplies later.
-    expect_near(phong.specular / 4.0F, {0.22F, 0.145F, 0.12F}, 1e-5F);
+    expect_color(phong.diffuse, {0.4F, 0.25F, 0.1F});  // The texture itself multiplies later.
+    expect_color(phong.specular / 4.0F, {0.22F, 0.145F, 0.12F}, 1e-5F);
 }
 
 TEST(PhongFromMetallicRoughness, KeepsWhatPhongHas) {
@@ -100,11 +100,11 @@ TEST(PhongFromMetallicRoughness, KeepsWhatPhongHas) {
     material.unlit = true;
     const Material phong = phong_from_metallic_roughness(material, {});
     EXPECT_EQ(phong.name, "surface");
-    expect_near(phong.emission, {1, 2, 3});
+    expect_color(phong.emission, {1, 2, 3});
     EXPECT_TRUE(phong.double_sided);
     EXPECT_TRUE(phong.unlit);
     material.metallic = 1;  // Unlit shows the base colour, metal or not.
-    expect_near(phong_from_metallic_roughness(material, {}).diffuse, {0.8F, 0.5F, 0.2F});
+    expect_color(phong_from_metallic_roughness(material, {}).diffuse, {0.8F, 0.5F, 0.2F});
 }
 
 TEST(PhongFromMetallicRoughness, IsValidForEveryFactor) {

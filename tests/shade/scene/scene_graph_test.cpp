@@ -21,9 +21,9 @@ namespace {
 
 constexpr float pi = std::numbers::pi_v<float>;
 /// A few roundings of sines and products of order 1 to 10.
-constexpr float rounding = 2e-6F;
+constexpr float place_rounding = 2e-6F;
 
-void expect_near(const glm::vec3& a, const glm::vec3& b, float tolerance = rounding) {
+void expect_place(const glm::vec3& a, const glm::vec3& b, float tolerance = place_rounding) {
     for (int i = 0; i < 3; ++i)
         EXPECT_NEAR(a[i], b[i], tolerance) << i;
 }
@@ -59,13 +59,13 @@ TEST(Pose, PutsEverythingWhereItsNodeIs) {
     graph.nodes[0].translation = {0, 10, 0};
     pose(graph, 0.0);
     const Scene& scene = graph.scene;
-    expect_near(scene.instances[0].world_from_object[3], {0, 10, -1});
-    expect_near(scene.directional_lights[0].direction_world, {-1, 0, 0});
-    expect_near(scene.point_lights[0].position_world, {0, 10, -3});
-    expect_near(scene.spot_lights[0].point.position_world, {0, 10, -4});
-    expect_near(scene.spot_lights[0].direction_world, {-1, 0, 0});
-    expect_near(scene.camera->world_from_view[3], {0, 10, -5});
-    expect_near(scene.camera->world_from_view[2], {1, 0, 0});
+    expect_place(scene.instances[0].world_from_object[3], {0, 10, -1});
+    expect_place(scene.directional_lights[0].direction_world, {-1, 0, 0});
+    expect_place(scene.point_lights[0].position_world, {0, 10, -3});
+    expect_place(scene.spot_lights[0].point.position_world, {0, 10, -4});
+    expect_place(scene.spot_lights[0].direction_world, {-1, 0, 0});
+    expect_place(scene.camera->world_from_view[3], {0, 10, -5});
+    expect_place(scene.camera->world_from_view[2], {1, 0, 0});
     EXPECT_NO_THROW(validate(graph));
 }
 
@@ -105,7 +105,7 @@ TEST(Pose, GivesADirectionEvenAtScaleZero) {
             << scale;
         EXPECT_NO_THROW(validate(*graph.scene.camera)) << scale;
         EXPECT_NEAR(glm::determinant(glm::mat3(graph.scene.camera->world_from_view)), 1.0F,
-                    rounding);
+                    place_rounding);
     }
 }
 
@@ -143,7 +143,7 @@ TEST(KeyFrames, StepLineAndSpline) {
     const KeyChannel spline =
         keys(P::scale, KeyInterpolation::cubic_spline, {0, 2},
              {{9, 0, 0, 0}, {0, 0, 0, 0}, {1, 0, 0, 0}, {0, 0, 0, 0}, {4, 0, 0, 0}, {9, 0, 0, 0}});
-    EXPECT_NEAR(value_at(spline, 1.0).x, 2.25F, rounding);
+    EXPECT_NEAR(value_at(spline, 1.0).x, 2.25F, place_rounding);
     EXPECT_EQ(value_at(spline, 0.0).x, 0.0F);
     EXPECT_EQ(value_at(spline, 2.0).x, 4.0F);
 }
@@ -155,9 +155,9 @@ TEST(KeyFrames, TurnOnTheShortestArc) {
     const KeyChannel turn =
         keys(P::rotation, KeyInterpolation::linear, {0, 1}, {{0, 0, 0, 2}, {0, -3 * s, 0, -3 * s}});
     const glm::vec4 half = value_at(turn, 0.5);
-    EXPECT_NEAR(std::abs(half.y), std::sin(pi / 8), rounding);
-    EXPECT_NEAR(std::abs(half.w), std::cos(pi / 8), rounding);
-    EXPECT_NEAR(glm::length(value_at(turn, 2.0)), 1.0F, rounding);
+    EXPECT_NEAR(std::abs(half.y), std::sin(pi / 8), place_rounding);
+    EXPECT_NEAR(std::abs(half.w), std::cos(pi / 8), place_rounding);
+    EXPECT_NEAR(glm::length(value_at(turn, 2.0)), 1.0F, place_rounding);
     // A spline of rotations that passes through nothing keeps the key before.
     const KeyChannel through = keys(P::rotation, KeyInterpolation::cubic_spline, {0, 1},
                                     {{}, {0, 0, 0, 1}, {}, {}, {0, 0, 0, -1}, {}});
@@ -201,14 +201,14 @@ TEST(Pose, OrbitsOnSphericalCoordinates) {
     orbit.faces_center = true;
     SceneGraph graph = moving_light(orbit);
     EXPECT_NEAR(duration(graph), 2.0, 1e-6);
-    expect_near(light_at(graph, 0.0), {6, 2, 3});
-    expect_near(graph.scene.spot_lights[0].direction_world, {-1, 0, 0});
-    expect_near(light_at(graph, 0.5), {1, 2, -2});
+    expect_place(light_at(graph, 0.0), {6, 2, 3});
+    expect_place(graph.scene.spot_lights[0].direction_world, {-1, 0, 0});
+    expect_place(light_at(graph, 0.5), {1, 2, -2});
     // A day later it is where it was, but for the speed's own rounding: 43200 turns of 4e-8 each.
-    expect_near(light_at(graph, 86400.0), {6, 2, 3}, 0.05F);
+    expect_place(light_at(graph, 86400.0), {6, 2, 3}, 0.05F);
     std::get<Orbit>(graph.animations[0]).elevation = pi / 2;
-    expect_near(light_at(graph, 0.3), {1, 7, 3});
-    expect_near(graph.scene.spot_lights[0].direction_world, {0, -1, 0});
+    expect_place(light_at(graph, 0.3), {1, 7, 3});
+    expect_place(graph.scene.spot_lights[0].direction_world, {0, -1, 0});
 }
 
 TEST(Pose, TurnsTablesAboutTheirAxis) {
@@ -216,8 +216,8 @@ TEST(Pose, TurnsTablesAboutTheirAxis) {
     graph.nodes[0].translation = {10, 0, 0};
     graph.point_lights[0].node_from_object = looking_along({1, 0, 0}, {0, 0, -1});
     EXPECT_NEAR(duration(graph), 4.0, 1e-6);
-    expect_near(light_at(graph, 0.0), {10, 1, 0});
-    expect_near(light_at(graph, 1.0), {9, 0, 0});
+    expect_place(light_at(graph, 0.0), {10, 1, 0});
+    expect_place(light_at(graph, 1.0), {9, 0, 0});
     std::get<Turntable>(graph.animations[0]).speed = 0.0F;
     EXPECT_EQ(duration(graph), 0.0);
 }
@@ -226,10 +226,10 @@ TEST(LookingAlong, PutsMinusZThere) {
     for (const glm::vec3 direction :
          {glm::vec3(0, -1, 0), {0, 1, 0}, {3, 0, 0}, {1, -2, 3}, {0, 0, 1}}) {
         const glm::mat4 matrix = looking_along({1, 2, 3}, direction);
-        expect_near(-matrix[2], glm::normalize(direction));
-        EXPECT_NEAR(glm::determinant(matrix), 1.0F, rounding);
+        expect_place(-matrix[2], glm::normalize(direction));
+        EXPECT_NEAR(glm::determinant(matrix), 1.0F, place_rounding);
         EXPECT_EQ(matrix[3], glm::vec4(1, 2, 3, 1));
-        EXPECT_GE(matrix[1].y, -rounding);
+        EXPECT_GE(matrix[1].y, -place_rounding);
     }
 }
 

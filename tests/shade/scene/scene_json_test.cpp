@@ -20,7 +20,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-constexpr float rounding = 1e-6F;
+constexpr float json_rounding = 1e-6F;
 
 class SceneFile : public testing::Test {
   protected:
@@ -92,11 +92,11 @@ TEST_F(SceneFile, AsDocumentedIsRead) {
     EXPECT_EQ(scene.point_lights.size(), 2U);
     EXPECT_EQ(graph.picture_size, glm::ivec2(640, 480));
     ASSERT_TRUE(scene.camera);
-    EXPECT_NEAR(scene.camera->vertical_fov, 0.610865F, rounding);
+    EXPECT_NEAR(scene.camera->vertical_fov, 0.610865F, json_rounding);
     EXPECT_EQ(scene.ambient, glm::vec3(0.05F));
     EXPECT_NEAR(duration(graph), 8.0, 1e-5);  // The ring's turn.
     const glm::vec3 red = scene.point_lights[1].position_world;
-    EXPECT_NEAR(red.z, -1.5F, rounding);
+    EXPECT_NEAR(red.z, -1.5F, json_rounding);
     pose(graph, 0.9);  // 90 degrees backwards.
     EXPECT_NEAR(graph.scene.point_lights[1].position_world.x, 1.5F, 1e-5F);
 }
@@ -167,14 +167,14 @@ TEST_F(SceneFile, LampsHaveTheThreeColoursOfCourses) {
         {"type": "spot", "position": [0, 5, 0], "direction": [0, -1, 0], "inner_cone": 10, "outer_cone": 20,
          "range": 9}])");
     const Scene& scene = graph.scene;
-    EXPECT_NEAR(scene.ambient.x, 0.5F, rounding);  // 0.1 and 2 times 0.2.
+    EXPECT_NEAR(scene.ambient.x, 0.5F, json_rounding);  // 0.1 and 2 times 0.2.
     EXPECT_EQ(scene.point_lights[0].intensity, glm::vec3(2, 0, 0));
     EXPECT_EQ(scene.point_lights[0].highlight_intensity, glm::vec3(2.0F));
     EXPECT_EQ(scene.point_lights[0].falloff, Falloff::none);
     EXPECT_EQ(scene.point_lights[0].position_world, glm::vec3(1, 2, 3));
     EXPECT_EQ(scene.directional_lights[0].irradiance, glm::vec3(0, 1, 0));
     EXPECT_FALSE(scene.directional_lights[0].highlight_irradiance);
-    EXPECT_NEAR(scene.spot_lights[0].outer_cone, std::numbers::pi_v<float> / 9, rounding);
+    EXPECT_NEAR(scene.spot_lights[0].outer_cone, std::numbers::pi_v<float> / 9, json_rounding);
     EXPECT_EQ(scene.spot_lights[0].point.range, 9.0F);
 }
 
@@ -203,11 +203,11 @@ TEST_F(SceneFile, NodesCarryModelsShapesLightsAndCameras) {
     EXPECT_EQ(material(2).name, "one");
     EXPECT_FALSE(material(2).diffuse_texture);
     EXPECT_EQ(material(3).name, "own");
-    EXPECT_NEAR(scene.directional_lights[0].direction_world.x, -1.0F, rounding);
+    EXPECT_NEAR(scene.directional_lights[0].direction_world.x, -1.0F, json_rounding);
     EXPECT_EQ(scene.point_lights[0].position_world, glm::vec3(10, 2, 0));
     ASSERT_TRUE(scene.camera);
     EXPECT_EQ(scene.camera->world_from_view[3], glm::vec4(10, 0, 8, 1));
-    EXPECT_NEAR(scene.camera->vertical_fov, std::numbers::pi_v<float> / 3, rounding);
+    EXPECT_NEAR(scene.camera->vertical_fov, std::numbers::pi_v<float> / 3, json_rounding);
     EXPECT_GT(scene.camera->far, 8.0F);
 }
 

@@ -55,10 +55,10 @@ TEST_F(Prices, AreThoseOfAllEffectsOfTheFrame) {
     EXPECT_GT(state.costs.frame.median, 0.0);
     EXPECT_TRUE(prices_.price("diffuse"));
     EXPECT_FALSE(prices_.price("emission"));
-    const nlohmann::ordered_json json = json_of(state);
-    EXPECT_EQ(json["done"], 3);
-    EXPECT_EQ(json["size"], nlohmann::json({48, 32}));
-    EXPECT_TRUE(json["effects"].contains("directional lights"));
+    const nlohmann::ordered_json said = json_of(state);
+    EXPECT_EQ(said["done"], 3);
+    EXPECT_EQ(said["size"], nlohmann::json({48, 32}));
+    EXPECT_TRUE(said["effects"].contains("directional lights"));
 }
 
 TEST_F(Prices, HoldForTheirPlanAndSize) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "window/lamp_rows.h"
+#include "support/angle.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +9,7 @@
 namespace relief::tools {
 namespace {
 
-constexpr float half_turn = std::numbers::pi_v<float>;
+using test::half_turn;
 
 TEST(LampRowsTest, KnowALampWhateverItsKindBecomes) {
     Scene scene;

@@ -8,7 +8,7 @@
 namespace relief::tools {
 namespace {
 
-const Ball ball{{1.0F, 2.0F, 3.0F}, 2.0F};
+const Ball lit_ball{{1.0F, 2.0F, 3.0F}, 2.0F};
 
 /// What a lamp sheds on a surface in the ball's middle that faces it, as lights.h says; a spot's
 /// cone holds the middle.
@@ -18,7 +18,7 @@ glm::vec3 shed_on_middle(const Lamp& lamp) {
     const auto* spot = std::get_if<SpotLight>(&lamp);
     const PointLight& point = spot != nullptr ? spot->point : std::get<PointLight>(lamp);
     if (point.falloff == Falloff::none) return point.intensity;
-    const float distance = glm::distance(point.position_world, ball.center);
+    const float distance = glm::distance(point.position_world, lit_ball.center);
     return point.intensity / (distance * distance);
 }
 
@@ -28,7 +28,7 @@ glm::vec3 way_through_middle(const Lamp& lamp) {
         return glm::normalize(directional->direction_world);
     const auto* spot = std::get_if<SpotLight>(&lamp);
     const PointLight& point = spot != nullptr ? spot->point : std::get<PointLight>(lamp);
-    return glm::normalize(ball.center - point.position_world);
+    return glm::normalize(lit_ball.center - point.position_world);
 }
 
 TEST(Lamps, BecomeAnyOtherKindAndLightTheMiddleAlike) {
@@ -46,7 +46,7 @@ TEST(Lamps, BecomeAnyOtherKindAndLightTheMiddleAlike) {
     for (const Lamp& lamp : {Lamp(far), Lamp(near), Lamp(even), Lamp(spot)}) {
         for (const LampKind kind : {LampKind::directional, LampKind::point, LampKind::spot}) {
             SCOPED_TRACE(testing::Message() << name_of(kind_of(lamp)) << " to " << name_of(kind));
-            const Lamp other = as_kind(lamp, kind, ball);
+            const Lamp other = as_kind(lamp, kind, lit_ball);
             EXPECT_EQ(kind_of(other), kind);
             EXPECT_LT(glm::distance(shed_on_middle(other), shed_on_middle(lamp)),
                       1e-5F * glm::length(shed_on_middle(lamp)));
@@ -63,32 +63,32 @@ TEST(Lamps, BecomeAnyOtherKindAndLightTheMiddleAlike) {
 
 TEST(Lamps, GetAPlaceOutsideOfTheModel) {
     for (const LampKind kind : {LampKind::point, LampKind::spot}) {
-        const Lamp lamp = as_kind(DirectionalLight{}, kind, ball);
+        const Lamp lamp = as_kind(DirectionalLight{}, kind, lit_ball);
         const auto* spot = std::get_if<SpotLight>(&lamp);
         const PointLight& point = spot != nullptr ? spot->point : std::get<PointLight>(lamp);
-        EXPECT_GT(glm::distance(point.position_world, ball.center), ball.radius);
+        EXPECT_GT(glm::distance(point.position_world, lit_ball.center), lit_ball.radius);
     }
 }
 
 TEST(Lamps, KeepTheColourOfTheirHighlights) {
     DirectionalLight far;
     far.highlight_irradiance = glm::vec3(0.25F);
-    const Lamp point = as_kind(far, LampKind::point, ball);
-    const Lamp again = as_kind(point, LampKind::directional, ball);
+    const Lamp point = as_kind(far, LampKind::point, lit_ball);
+    const Lamp again = as_kind(point, LampKind::directional, lit_ball);
     ASSERT_TRUE(std::get<DirectionalLight>(again).highlight_irradiance);
     EXPECT_NEAR(std::get<DirectionalLight>(again).highlight_irradiance->x, 0.25F, 1e-6F);
 }
 
 TEST(Lamps, InTheModelsMiddleOrOfNoDirectionStayFinite) {
     PointLight inside;
-    inside.position_world = ball.center;
+    inside.position_world = lit_ball.center;
     DirectionalLight nowhere;
     nowhere.direction_world = glm::vec3(0.0F);
     for (const Lamp& lamp : {Lamp(inside), Lamp(nowhere)}) {
         for (const LampKind kind : {LampKind::directional, LampKind::point, LampKind::spot}) {
             if (kind == kind_of(lamp)) continue;
             Scene scene;
-            set_lamps(scene, {as_kind(lamp, kind, ball)});
+            set_lamps(scene, {as_kind(lamp, kind, lit_ball)});
             EXPECT_NO_THROW(validate_places(scene));
         }
     }
@@ -117,11 +117,11 @@ TEST(Lamps, AreListedByKindAndPutBack) {
 TEST(Lamps, TurnAboutThePlaceWithTheirDirections) {
     const glm::mat3 half(glm::rotate(glm::mat4(1.0F), glm::radians(180.0F), {0.0F, 1.0F, 0.0F}));
     Lamp spot = SpotLight{};
-    std::get<SpotLight>(spot).point.position_world = ball.center + glm::vec3(1.0F, 2.0F, 0.0F);
+    std::get<SpotLight>(spot).point.position_world = lit_ball.center + glm::vec3(1.0F, 2.0F, 0.0F);
     std::get<SpotLight>(spot).direction_world = {-1.0F, -2.0F, 0.0F};
-    turn(spot, half, ball.center);
+    turn(spot, half, lit_ball.center);
     EXPECT_LT(glm::distance(std::get<SpotLight>(spot).point.position_world,
-                            ball.center + glm::vec3(-1.0F, 2.0F, 0.0F)),
+                            lit_ball.center + glm::vec3(-1.0F, 2.0F, 0.0F)),
               1e-5F);
     EXPECT_LT(glm::distance(std::get<SpotLight>(spot).direction_world, {1.0F, -2.0F, 0.0F}), 1e-5F);
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "window/orbit_camera.h"
+#include "support/angle.h"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +12,7 @@
 namespace relief::tools {
 namespace {
 
-constexpr float half_turn = std::numbers::pi_v<float>;
+using test::half_turn;
 const Ball unit_ball{{0.0F, 0.0F, 0.0F}, 1.0F};
 
 glm::vec3 eye_of(const OrbitCamera& orbit) {

@@ -276,12 +276,12 @@ TEST_F(State, EditsOfTheDefaultMaterialSurviveReadingAgain) {
 TEST_F(State, SaysItselfAsJson) {
     show("square.obj");
     state().camera().azimuth = glm::radians(40.0F);
-    const nlohmann::ordered_json json = state().json(DrawnPicture{});
-    EXPECT_NEAR(json["camera"]["azimuth"].get<double>(), 40.0, 1e-5);
-    EXPECT_EQ(json["view"], nlohmann::json({400, 300}));
-    EXPECT_EQ(json["triangles"], 2);
-    EXPECT_EQ(json["drawn"]["frames"], 0);
-    EXPECT_EQ(json["error"], "");
+    const nlohmann::ordered_json said = state().json(DrawnPicture{});
+    EXPECT_NEAR(said["camera"]["azimuth"].get<double>(), 40.0, 1e-5);
+    EXPECT_EQ(said["view"], nlohmann::json({400, 300}));
+    EXPECT_EQ(said["triangles"], 2);
+    EXPECT_EQ(said["drawn"]["frames"], 0);
+    EXPECT_EQ(said["error"], "");
 }
 
 }  // namespace

@@ -25,7 +25,7 @@ using testing::IsEmpty;
 constexpr double angle_tolerance = 1e-4;
 
 /// The same triangles over vertices of their own, in another order and begun at other corners.
-Mesh shuffled(const Mesh& mesh, unsigned seed) {
+Mesh shuffled_mesh(const Mesh& mesh, unsigned seed) {
     std::mt19937 random(seed);
     std::vector<std::size_t> order(mesh.triangles.size());
     for (std::size_t i = 0; i < order.size(); ++i)
@@ -85,7 +85,7 @@ TEST(Compare, AMeshWithItself) {
 TEST(Compare, NeitherOrderNorSplitsNorTurnsMatter) {
     const Mesh torus = with_tangents(make_torus());
     for (const unsigned seed : {1U, 2U}) {
-        const Mesh other = shuffled(torus, seed);
+        const Mesh other = shuffled_mesh(torus, seed);
         const CornerMatch match = match_corners(torus, other);
         EXPECT_EQ(match.exact, torus.triangles.size());
         for (std::size_t corner = 0; corner < match.corners.size(); ++corner) {
@@ -106,7 +106,7 @@ TEST(Compare, AnglesAndSignsAreThoseMade) {
         other.normals[v] = about_y(other.normals[v], 3.0);
         other.tangents[v] = glm::vec4(about_y(glm::vec3(other.tangents[v]), 60.0), -1.0F);
     }
-    const FrameComparison result = comparison(quad, shuffled(other, 3));
+    const FrameComparison result = comparison(quad, shuffled_mesh(other, 3));
     EXPECT_EQ(result.corners, 24U);
     EXPECT_NEAR(result.normals.rms, 3.0, angle_tolerance);
     EXPECT_NEAR(result.normals.median, 3.0, angle_tolerance);
@@ -168,7 +168,7 @@ TEST(Compare, TextureCoordinatesTellTrianglesAtOnePlaceApart) {
     for (const glm::uvec3& triangle : once.triangles)
         twice.triangles.push_back(triangle + 4U);
     twice.material_ranges.clear();
-    const Mesh other = shuffled(twice, 5);
+    const Mesh other = shuffled_mesh(twice, 5);
     const CornerMatch match = match_corners(twice, other);
     EXPECT_EQ(match.exact, 4U);
     EXPECT_EQ(match.ambiguous, 0U);
@@ -207,7 +207,7 @@ TEST(Compare, RangesOfTheSameNumberGoTogether) {
 
 TEST(Compare, NearCornersMatchWithinTheTolerances) {
     const Mesh torus = make_torus();
-    Mesh moved = shuffled(torus, 7);
+    Mesh moved = shuffled_mesh(torus, 7);
     std::mt19937 random(8);
     std::uniform_real_distribution<float> by(-1.0F, 1.0F);
     for (std::size_t v = 0; v < moved.positions.size(); ++v) {
@@ -233,7 +233,7 @@ TEST(Compare, NearCornersMatchWithinTheTolerances) {
 /// A tolerance far beyond the size of triangles: everything is a candidate for everything.
 TEST(Compare, WideTolerancesFindTheNearestToo) {
     const Mesh torus = make_torus();
-    Mesh moved = shuffled(torus, 7);
+    Mesh moved = shuffled_mesh(torus, 7);
     std::mt19937 random(8);
     std::uniform_real_distribution<float> by(-1e-4F, 1e-4F);
     for (glm::vec3& position : moved.positions)
@@ -258,7 +258,7 @@ TEST(Compare, RepeatedTrianglesWithUndefinedNormalsMeetTheirEquals) {
         repeated.normals.insert(repeated.normals.end(), 3, glm::vec3(x, 0.0F, 100.0F));
         repeated.triangles.emplace_back(3 * i, 3 * i + 1, 3 * i + 2);
     }
-    const FrameComparison result = comparison(repeated, shuffled(repeated, 4));
+    const FrameComparison result = comparison(repeated, shuffled_mesh(repeated, 4));
     EXPECT_EQ(result.normals.undefined, 3U * 67U);
     EXPECT_EQ(result.normals.max, 0.0);
 }
@@ -301,7 +301,7 @@ TEST(Compare, CollapsedTrianglesMatchOnceEach) {
     Mesh points;
     points.positions = {{0, 0, 0}, {1, 0, 0}};
     points.triangles = {{0, 0, 0}, {0, 0, 1}, {0, 1, 0}, {1, 0, 0}};
-    const CornerMatch match = match_corners(points, shuffled(points, 9));
+    const CornerMatch match = match_corners(points, shuffled_mesh(points, 9));
     EXPECT_EQ(match.exact, 4U);
     EXPECT_EQ(match.ambiguous, 3U) << "three are the same triangle, begun elsewhere";
 }

@@ -15,24 +15,19 @@
 #include "relief/mesh/error.h"
 #include "relief/mesh/shapes.h"
 #include "relief/mesh/threads.h"
+#include "support/no_numbers.h"
+#include "support/shapes.h"
 
 namespace relief {
 namespace {
 
+using test::mesh_from;
+using test::not_a_number;
 using test::shuffled;
 using test::with_triangle_order;
 using testing::ElementsAre;
 using testing::IsEmpty;
 using testing::Pair;
-
-constexpr float nan = std::numeric_limits<float>::quiet_NaN();
-
-Mesh mesh_of(std::vector<glm::vec3> positions, std::vector<glm::uvec3> triangles) {
-    Mesh mesh;
-    mesh.positions = std::move(positions);
-    mesh.triangles = std::move(triangles);
-    return mesh;
-}
 
 /// Condition and count, in the order of the enumeration.
 std::map<MeshCondition, std::size_t> counts_of(const Mesh& mesh,
@@ -51,9 +46,9 @@ std::vector<std::size_t> first_of(const Mesh& mesh, MeshCondition condition) {
 }
 
 const glm::vec3 o(0, 0, 0);
-const glm::vec3 x(1, 0, 0);
-const glm::vec3 y(0, 1, 0);
-const glm::vec3 z(0, 0, 1);
+const glm::vec3 x_axis(1, 0, 0);
+const glm::vec3 y_axis(0, 1, 0);
+const glm::vec3 z_axis(0, 0, 1);
 
 TEST(Diagnose, ClosedShapesHaveNothing) {
     EXPECT_THAT(counts_of(make_cube()), ElementsAre(Pair(MeshCondition::texture_overlapping, 12)))
@@ -63,15 +58,21 @@ TEST(Diagnose, ClosedShapesHaveNothing) {
 }
 
 TEST(Diagnose, DegenerateTrianglesByKind) {
-    const Mesh mesh =
-        mesh_of({o, x, y, 2.0F * x, {0.5F, 5e-5F, 0}, {0.5F, 2e-4F, 0}, {nan, 0, 0}, o},
-                {{0, 1, 2},    // sound
-                 {0, 1, 1},    // an index twice
-                 {0, 1, 7},    // two vertices at one place
-                 {0, 1, 3},    // on a line
-                 {0, 1, 4},    // narrower than 1e-4 of its length
-                 {0, 1, 5},    // wider
-                 {0, 1, 6}});  // nowhere
+    const Mesh mesh = mesh_from({o,
+                                 x_axis,
+                                 y_axis,
+                                 2.0F * x_axis,
+                                 {0.5F, 5e-5F, 0},
+                                 {0.5F, 2e-4F, 0},
+                                 {not_a_number, 0, 0},
+                                 o},
+                                {{0, 1, 2},    // sound
+                                 {0, 1, 1},    // an index twice
+                                 {0, 1, 7},    // two vertices at one place
+                                 {0, 1, 3},    // on a line
+                                 {0, 1, 4},    // narrower than 1e-4 of its length
+                                 {0, 1, 5},    // wider
+                                 {0, 1, 6}});  // nowhere
     EXPECT_THAT(
         counts_of(mesh, {.edges = false, .near_duplicates = false}),
         ElementsAre(
@@ -83,28 +84,30 @@ TEST(Diagnose, DegenerateTrianglesByKind) {
 }
 
 TEST(Diagnose, RepeatedTrianglesCountBeyondTheFirstWhicheverCornerTheyBeginWith) {
-    const Mesh mesh = mesh_of({o, x, y, o}, {{0, 1, 2}, {1, 2, 0}, {3, 1, 2}});
+    const Mesh mesh = mesh_from({o, x_axis, y_axis, o}, {{0, 1, 2}, {1, 2, 0}, {3, 1, 2}});
     EXPECT_THAT(counts_of(mesh), ElementsAre(Pair(MeshCondition::triangle_repeated, 2),
                                              Pair(MeshCondition::edge_boundary, 3)));
     EXPECT_THAT(first_of(mesh, MeshCondition::triangle_repeated), ElementsAre(1, 2));
 }
 
 TEST(Diagnose, ASheetWithABackIsNeitherRepeatedNorNonManifold) {
-    const Mesh mesh = mesh_of({o, x, x + y, y}, {{0, 1, 2}, {0, 2, 3}, {2, 1, 0}, {3, 2, 0}});
+    const Mesh mesh = mesh_from({o, x_axis, x_axis + y_axis, y_axis},
+                                {{0, 1, 2}, {0, 2, 3}, {2, 1, 0}, {3, 2, 0}});
     EXPECT_THAT(counts_of(mesh), ElementsAre(Pair(MeshCondition::triangle_backed, 4)));
 }
 
 TEST(Diagnose, EdgesByTheTrianglesOnThem) {
     // Three triangles on the edge from 0 to 1; the two beside it are on one edge each.
-    const Mesh fin = mesh_of({o, x, y, -y, z}, {{0, 1, 2}, {1, 0, 3}, {0, 1, 4}});
+    const Mesh fin =
+        mesh_from({o, x_axis, y_axis, -y_axis, z_axis}, {{0, 1, 2}, {1, 0, 3}, {0, 1, 4}});
     EXPECT_THAT(counts_of(fin), ElementsAre(Pair(MeshCondition::edge_non_manifold, 1),
                                             Pair(MeshCondition::edge_boundary, 6)));
     // Two triangles that both run from 0 to 1.
-    const Mesh flipped = mesh_of({o, x, y, -y}, {{0, 1, 2}, {0, 1, 3}});
+    const Mesh flipped = mesh_from({o, x_axis, y_axis, -y_axis}, {{0, 1, 2}, {0, 1, 3}});
     EXPECT_THAT(counts_of(flipped), ElementsAre(Pair(MeshCondition::edge_flipped, 1),
                                                 Pair(MeshCondition::edge_boundary, 4)));
     // The second is folded back over the first.
-    const Mesh folded = mesh_of({o, x, y, {0.2F, 0.7F, 0}}, {{0, 1, 2}, {1, 0, 3}});
+    const Mesh folded = mesh_from({o, x_axis, y_axis, {0.2F, 0.7F, 0}}, {{0, 1, 2}, {1, 0, 3}});
     EXPECT_THAT(counts_of(folded), ElementsAre(Pair(MeshCondition::edge_folded, 1),
                                                Pair(MeshCondition::edge_boundary, 4)));
     EXPECT_THAT(first_of(folded, MeshCondition::edge_boundary), ElementsAre(0, 1))
@@ -112,12 +115,13 @@ TEST(Diagnose, EdgesByTheTrianglesOnThem) {
 }
 
 TEST(Diagnose, EdgesAreJoinedByPlaceNotByIndex) {
-    const Mesh seam = mesh_of({o, x, y, x, o, -y}, {{0, 1, 2}, {3, 4, 5}});
+    const Mesh seam = mesh_from({o, x_axis, y_axis, x_axis, o, -y_axis}, {{0, 1, 2}, {3, 4, 5}});
     EXPECT_THAT(counts_of(seam), ElementsAre(Pair(MeshCondition::edge_boundary, 4)));
 }
 
 TEST(Diagnose, VerticesThatTrianglesMissOrMeetTwice) {
-    const Mesh bow_tie = mesh_of({o, x, y, -x, -y, z, o}, {{0, 1, 2}, {0, 3, 4}});
+    const Mesh bow_tie =
+        mesh_from({o, x_axis, y_axis, -x_axis, -y_axis, z_axis, o}, {{0, 1, 2}, {0, 3, 4}});
     EXPECT_THAT(counts_of(bow_tie), ElementsAre(Pair(MeshCondition::edge_boundary, 6),
                                                 Pair(MeshCondition::vertex_isolated, 1),
                                                 Pair(MeshCondition::vertex_bow_tie, 1)));
@@ -129,7 +133,7 @@ TEST(Diagnose, NearDuplicatesAreAFewUnitsInTheLastPlaceApart) {
     constexpr float ulp = 0x1p-23F;  // Of numbers from 1 to 2.
     const auto near = [](const glm::vec3& a, const glm::vec3& b) {
         const auto counts =
-            counts_of(mesh_of({a, b, {9, 0, 0}, {9, 1, 0}}, {{0, 2, 3}, {1, 3, 2}}));
+            counts_of(mesh_from({a, b, {9, 0, 0}, {9, 1, 0}}, {{0, 2, 3}, {1, 3, 2}}));
         const auto found = counts.find(MeshCondition::vertex_near_duplicate);
         return found == counts.end() ? 0 : found->second;
     };
@@ -184,14 +188,14 @@ TEST(Diagnose, NearDuplicatesMatchEveryPairLookedAt) {
 
 /// A square of two triangles facing +z with the given normals.
 Mesh square_with_normals(const std::vector<glm::vec3>& normals) {
-    Mesh mesh = mesh_of({o, x, x + y, y}, {{0, 1, 2}, {0, 2, 3}});
+    Mesh mesh = mesh_from({o, x_axis, x_axis + y_axis, y_axis}, {{0, 1, 2}, {0, 2, 3}});
     mesh.normals = normals;
     return mesh;
 }
 
 TEST(Diagnose, NormalsThatAreNone) {
     const Mesh mesh =
-        square_with_normals({{0, 0, nan}, {0, 0, 0}, {0, 0, 1.0071F}, {0, 0, 1.0069F}});
+        square_with_normals({{0, 0, not_a_number}, {0, 0, 0}, {0, 0, 1.0071F}, {0, 0, 1.0069F}});
     EXPECT_THAT(counts_of(mesh), ElementsAre(Pair(MeshCondition::edge_boundary, 4),
                                              Pair(MeshCondition::normal_not_finite, 1),
                                              Pair(MeshCondition::normal_zero, 1),
@@ -199,7 +203,7 @@ TEST(Diagnose, NormalsThatAreNone) {
 }
 
 TEST(Diagnose, NormalsAgainstTheirTriangles) {
-    Mesh mesh = square_with_normals({z, z, -z, x});
+    Mesh mesh = square_with_normals({z_axis, z_axis, -z_axis, x_axis});
     EXPECT_THAT(counts_of(mesh), ElementsAre(Pair(MeshCondition::edge_boundary, 4),
                                              Pair(MeshCondition::normal_opposed, 1),
                                              Pair(MeshCondition::normal_divided, 1)));
@@ -210,12 +214,12 @@ TEST(Diagnose, NormalsAgainstTheirTriangles) {
 }
 
 TEST(Diagnose, TangentsThatSpanNoFrame) {
-    Mesh mesh = square_with_normals({z, z, z, z});
-    mesh.positions.push_back(2.0F * x);
+    Mesh mesh = square_with_normals({z_axis, z_axis, z_axis, z_axis});
+    mesh.positions.push_back(2.0F * x_axis);
     mesh.triangles.push_back({1, 4, 2});
-    mesh.normals.push_back(z);
+    mesh.normals.push_back(z_axis);
     mesh.tangents = {
-        {1, 0, 0, 1}, {nan, 0, 0, 1}, {2, 0, 0, 0.5F}, {0, 0, 1, -1}, {1, 0, 0.021F, 1}};
+        {1, 0, 0, 1}, {not_a_number, 0, 0, 1}, {2, 0, 0, 0.5F}, {0, 0, 1, -1}, {1, 0, 0.021F, 1}};
     EXPECT_THAT(counts_of(mesh, {.edges = false}),
                 ElementsAre(Pair(MeshCondition::tangent_not_finite, 1),
                             Pair(MeshCondition::tangent_not_unit, 1),
@@ -225,27 +229,29 @@ TEST(Diagnose, TangentsThatSpanNoFrame) {
 }
 
 TEST(Diagnose, TextureCoordinates) {
-    Mesh mesh = mesh_of({o, x, y, {2, 0, 0}, {3, 0, 0}, {2, 1, 0}}, {{0, 1, 2}, {3, 4, 5}});
+    Mesh mesh =
+        mesh_from({o, x_axis, y_axis, {2, 0, 0}, {3, 0, 0}, {2, 1, 0}}, {{0, 1, 2}, {3, 4, 5}});
     // v is down: (0,1) is below (0,0), so the first triangle is upright and the second mirrored.
     mesh.texcoords = {{0, 1}, {1, 1}, {0, 0}, {2, 0}, {3, 0}, {2, 1}};
     EXPECT_THAT(counts_of(mesh), ElementsAre(Pair(MeshCondition::edge_boundary, 6),
                                              Pair(MeshCondition::texture_mirrored, 1)));
     EXPECT_THAT(first_of(mesh, MeshCondition::texture_mirrored), ElementsAre(1));
     mesh.texcoords[5] = {4, 0};
-    mesh.texcoords[0] = {nan, 1};
+    mesh.texcoords[0] = {not_a_number, 1};
     EXPECT_THAT(counts_of(mesh), ElementsAre(Pair(MeshCondition::edge_boundary, 6),
                                              Pair(MeshCondition::texture_not_finite, 1),
                                              Pair(MeshCondition::texture_degenerate, 1)));
 }
 
 TEST(Diagnose, OverlapIsOfTrianglesWithAnAreaInSpace) {
-    Mesh mesh = mesh_of({o, x, y, o, x, y + z, o, x, x}, {{0, 1, 2}, {3, 4, 5}, {6, 7, 8}});
+    Mesh mesh = mesh_from({o, x_axis, y_axis, o, x_axis, y_axis + z_axis, o, x_axis, x_axis},
+                          {{0, 1, 2}, {3, 4, 5}, {6, 7, 8}});
     mesh.texcoords = {{0, 0}, {1, 0}, {0, 1}, {1, 0}, {0, 1}, {1, 1}, {0, 0}, {1, 0}, {1, 1}};
     const Diagnosis diagnosis = diagnose(mesh);
     EXPECT_EQ(diagnosis.count(MeshCondition::texture_overlapping), 0U);
     EXPECT_EQ(diagnosis.overlap_raster, 1024);
     EXPECT_EQ(diagnose(mesh, {.texture_overlap = false}).overlap_raster, 0);
-    mesh.positions[8] = z;  // Now the third covers half of both others.
+    mesh.positions[8] = z_axis;  // Now the third covers half of both others.
     EXPECT_EQ(diagnose(mesh).count(MeshCondition::texture_overlapping), 3U);
 }
 
@@ -305,7 +311,8 @@ TEST(Diagnose, CountsDoNotDependOnTheOrderOfTrianglesOrOnThreads) {
 }
 
 TEST(Diagnose, AskingForLessFindsTheRestTheSame) {
-    const Mesh mesh = mesh_of({o, x, y, -y, z}, {{0, 1, 2}, {1, 0, 3}, {0, 1, 4}, {0, 1, 1}});
+    const Mesh mesh = mesh_from({o, x_axis, y_axis, -y_axis, z_axis},
+                                {{0, 1, 2}, {1, 0, 3}, {0, 1, 4}, {0, 1, 1}});
     EXPECT_THAT(counts_of(mesh, {.edges = false}),
                 ElementsAre(Pair(MeshCondition::triangle_collapsed, 1)));
 }
@@ -313,8 +320,8 @@ TEST(Diagnose, AskingForLessFindsTheRestTheSame) {
 // A hundred thousand triangles in shapes for which looking at pairs would take hours.
 TEST(Diagnose, CrowdedShapesAreCountedToo) {
     constexpr std::uint32_t count = 100'000;
-    Mesh fan = mesh_of({o}, {});
-    Mesh book = mesh_of({o, z}, {});
+    Mesh fan = mesh_from({o}, {});
+    Mesh book = mesh_from({o, z_axis}, {});
     for (std::uint32_t i = 0; i <= count; ++i) {
         const double angle = 2.0 * std::numbers::pi * i / (count + 1);
         fan.positions.emplace_back(std::cos(angle), std::sin(angle), 0.0);
@@ -332,16 +339,17 @@ TEST(Diagnose, CrowdedShapesAreCountedToo) {
     EXPECT_EQ(book_counts.at(MeshCondition::edge_boundary), 2 * count);
     EXPECT_EQ(book_counts.at(MeshCondition::vertex_isolated), 1U);
 
-    const Mesh point = mesh_of(std::vector<glm::vec3>(count, x),
-                               std::vector<glm::uvec3>(count, glm::uvec3(0, 1, 2)));
+    const Mesh point = mesh_from(std::vector<glm::vec3>(count, x_axis),
+                                 std::vector<glm::uvec3>(count, glm::uvec3(0, 1, 2)));
     EXPECT_THAT(counts_of(point), ElementsAre(Pair(MeshCondition::triangle_collapsed, count),
                                               Pair(MeshCondition::vertex_voiceless, count)));
-    const Mesh same = mesh_of({o, x, y}, std::vector<glm::uvec3>(count, glm::uvec3(0, 1, 2)));
+    const Mesh same =
+        mesh_from({o, x_axis, y_axis}, std::vector<glm::uvec3>(count, glm::uvec3(0, 1, 2)));
     EXPECT_EQ(counts_of(same).at(MeshCondition::triangle_repeated), count - 1);
 }
 
 TEST(Diagnose, RefusesAnIndexThatIsNoVertex) {
-    EXPECT_THROW(diagnose(mesh_of({o, x, y}, {{0, 1, 3}})), InvalidInput);
+    EXPECT_THROW(diagnose(mesh_from({o, x_axis, y_axis}, {{0, 1, 3}})), InvalidInput);
 }
 
 TEST(DiagnoseWords, AreOneEach) {
@@ -354,8 +362,8 @@ TEST(DiagnoseWords, AreOneEach) {
 }
 
 TEST(DiagnoseWords, FindingsCarryThemAndTheirSeverity) {
-    const Diagnosis diagnosis =
-        diagnose(mesh_of({o, x, y, -y, z}, {{0, 1, 2}, {1, 0, 3}, {0, 1, 4}, {0, 1, 1}}));
+    const Diagnosis diagnosis = diagnose(mesh_from({o, x_axis, y_axis, -y_axis, z_axis},
+                                                   {{0, 1, 2}, {1, 0, 3}, {0, 1, 4}, {0, 1, 1}}));
     EXPECT_TRUE(diagnosis.has_trouble());
     EXPECT_EQ(to_report(diagnosis).findings().size(), 3U);
     const Report remarks = to_report(diagnosis, Severity::remark);
@@ -364,7 +372,7 @@ TEST(DiagnoseWords, FindingsCarryThemAndTheirSeverity) {
               "6 x boundary edge (edge of triangle 0, 1, 2, ...): has one triangle: the surface is "
               "open there");
     EXPECT_EQ(to_report(diagnosis, Severity::trouble).count("non-manifold edge"), 1U);
-    EXPECT_FALSE(diagnose(mesh_of({o, x, y}, {{0, 1, 2}})).has_trouble());
+    EXPECT_FALSE(diagnose(mesh_from({o, x_axis, y_axis}, {{0, 1, 2}})).has_trouble());
 }
 
 }  // namespace

@@ -15,8 +15,8 @@ namespace {
 
 using test::bumpy_ball;
 using test::degrees_between;
+using test::facing_up;
 using test::normals_of;
-using test::up;
 
 TEST(ChosenNormals, AreMaxWhereNothingFoldsOver) {
     const Mesh mesh = bumpy_ball();
@@ -38,8 +38,10 @@ TEST(ChosenNormals, AreAreaAroundAFoldAndMaxElsewhere) {
     const auto by_area = normals_of(mesh, NormalWeight::area);
     double worst_by_max = 0.0;
     for (std::size_t i = 0; i < by_max.size(); ++i) {
-        EXPECT_LE(degrees_between(chosen.normals[i], up), degrees_between(by_area[i], up)) << i;
-        worst_by_max = std::max(worst_by_max, degrees_between(by_max[i], up));
+        EXPECT_LE(degrees_between(chosen.normals[i], facing_up),
+                  degrees_between(by_area[i], facing_up))
+            << i;
+        worst_by_max = std::max(worst_by_max, degrees_between(by_max[i], facing_up));
     }
     EXPECT_GT(worst_by_max, 90.0);
     EXPECT_GT(chosen.by_area, 0U);

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "hard_meshes.h"
+#include "normals/normal_samples.h"
 #include "relief/mesh/error.h"
 #include "relief/mesh/normals.h"
 #include "relief/mesh/split.h"
@@ -18,8 +19,8 @@ namespace relief {
 namespace {
 
 using test::degrees_between;
+using test::facing_up;
 
-constexpr glm::vec3 up(0.0F, 0.0F, 1.0F);
 constexpr double degree = std::numbers::pi / 180.0;
 
 CornerNormals corners_of(const Mesh& mesh, const HardEdges& hard_edges, Report& report,
@@ -59,10 +60,10 @@ TEST(CornerNormals, AnEdgeAtTheLimitIsSmoothWhateverRoundingDid) {
         for (const double scale : {1e-20, 0.37, 1.0, 1e20}) {
             const Mesh sheet = folded_sheet(angle, scale);
             const auto smooth = creased(sheet, angle);
-            EXPECT_NE(smooth[1], up) << angle << " at " << scale;
+            EXPECT_NE(smooth[1], facing_up) << angle << " at " << scale;
             EXPECT_EQ(smooth[1], smooth[6]) << angle << " at " << scale;
             const auto hard = creased(sheet, angle - 0.01);
-            EXPECT_EQ(hard[1], up) << angle << " at " << scale;
+            EXPECT_EQ(hard[1], facing_up) << angle << " at " << scale;
         }
     }
 }
@@ -74,7 +75,7 @@ TEST(CornerNormals, TriangleThatOnlyTouchAreApart) {
     mesh.triangles = {{0, 1, 2}, {0, 3, 4}};
     Report report;
     const auto normals = corners_of(mesh, {std::numbers::pi, {}}, report).normals;
-    EXPECT_EQ(normals[0], up);
+    EXPECT_EQ(normals[0], facing_up);
     EXPECT_EQ(normals[3], glm::vec3(0, 1, 0));
     EXPECT_TRUE(report.empty());
     // Without hard edges one vertex has one normal.
@@ -97,8 +98,8 @@ TEST(CornerNormals, AnEdgeOfThreeTrianglesJoinsThoseWithinTheAngle) {
         for (std::size_t t = 0; t < 3; ++t)
             at[mesh.triangles[t].z] = normals[3 * t];
         EXPECT_EQ(at[2], at[3]);
-        EXPECT_NEAR(degrees_between(at[2], up), 10.0, 1e-4);
-        EXPECT_NEAR(degrees_between(at[4], up), 90.0, 1e-4);
+        EXPECT_NEAR(degrees_between(at[2], facing_up), 10.0, 1e-4);
+        EXPECT_NEAR(degrees_between(at[4], facing_up), 90.0, 1e-4);
         std::rotate(mesh.triangles.begin(), mesh.triangles.begin() + 1, mesh.triangles.end());
     }
     // 70 degrees lie between the second and the third: then all three are one.
@@ -112,8 +113,8 @@ TEST(CornerNormals, NeighboursWoundInOppositeWaysAreAHardEdge) {
     sheet.triangles[2] = {1, 5, 2};
     sheet.triangles[3] = {1, 4, 5};
     const auto normals = creased(sheet, 60.0);
-    EXPECT_EQ(normals[0], up);
-    EXPECT_EQ(normals[6], -up);
+    EXPECT_EQ(normals[0], facing_up);
+    EXPECT_EQ(normals[6], -facing_up);
 }
 
 TEST(CornerNormals, ASliverWithoutAreaIsLookedThrough) {
@@ -128,7 +129,7 @@ TEST(CornerNormals, ASliverWithoutAreaIsLookedThrough) {
         const bool smooth = normals[1] == normals[6];
         EXPECT_EQ(smooth, angle < 40.0);
         if (!smooth) {
-            EXPECT_EQ(normals[1], up);
+            EXPECT_EQ(normals[1], facing_up);
         }
     }
 }
@@ -141,12 +142,12 @@ TEST(CornerNormals, SmoothingGroupsKeepToThemselvesAndOffIsFlat) {
         return corners_of(sheet, {crease, groups}, report).normals;
     };
     EXPECT_EQ(with_groups({1, 1, 1, 1})[1], with_groups({1, 1, 1, 1})[6]);
-    EXPECT_EQ(with_groups({1, 1, 2, 2})[1], up);
-    EXPECT_NEAR(degrees_between(with_groups({1, 1, 2, 2})[6], up), 40.0, 1e-4);
-    EXPECT_EQ(with_groups({7, 7, 7, 7}, 30.0 * degree)[1], up);
+    EXPECT_EQ(with_groups({1, 1, 2, 2})[1], facing_up);
+    EXPECT_NEAR(degrees_between(with_groups({1, 1, 2, 2})[6], facing_up), 40.0, 1e-4);
+    EXPECT_EQ(with_groups({7, 7, 7, 7}, 30.0 * degree)[1], facing_up);
     const auto off = with_groups({0, 0, 0, 0});
-    EXPECT_EQ(off[1], up);
-    EXPECT_NEAR(degrees_between(off[6], up), 40.0, 1e-4);
+    EXPECT_EQ(off[1], facing_up);
+    EXPECT_NEAR(degrees_between(off[6], facing_up), 40.0, 1e-4);
     EXPECT_TRUE(report.empty());
 }
 

@@ -12,7 +12,7 @@
 
 namespace relief::test {
 
-inline constexpr glm::vec3 up(0.0F, 0.0F, 1.0F);
+inline constexpr glm::vec3 facing_up(0.0F, 0.0F, 1.0F);
 inline constexpr NormalWeight all_weights[] = {
     NormalWeight::uniform, NormalWeight::area,        NormalWeight::angle,     NormalWeight::sine,
     NormalWeight::max,     NormalWeight::angle_edges, NormalWeight::area_angle};

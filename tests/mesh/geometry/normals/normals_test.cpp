@@ -22,9 +22,9 @@ namespace {
 
 using test::all_weights;
 using test::degrees_between;
+using test::facing_up;
 using test::float_degrees;
 using test::normals_of;
-using test::up;
 
 void expect_unit(const std::vector<glm::vec3>& normals) {
     for (std::size_t i = 0; i < normals.size(); ++i) {
@@ -57,7 +57,7 @@ Mesh welded_cube(unsigned splits) {
 TEST(VertexNormals, AFlatGridPointsUpExactly) {
     for (const NormalWeight weight : all_weights) {
         for (const glm::vec3& normal : normals_of(test::grid(4), weight))
-            EXPECT_EQ(normal, up);
+            EXPECT_EQ(normal, facing_up);
     }
 }
 
@@ -68,7 +68,7 @@ TEST(VertexNormals, AreaWeightsFollowTheAreas) {
     Report report;
     const auto normals = vertex_normals(positions, triangles, NormalWeight::area, report);
     EXPECT_LE(degrees_between(normals[0], glm::dvec3(1, 0, 4)), float_degrees);
-    EXPECT_EQ(normals[2], up);
+    EXPECT_EQ(normals[2], facing_up);
     EXPECT_EQ(normals[3], glm::vec3(1, 0, 0));
     EXPECT_TRUE(report.empty());
 }
@@ -134,11 +134,11 @@ TEST(VertexNormals, VerticesWithinTheToleranceShareTheirNormal) {
         options.weld_tolerance = tolerance;
         return vertex_normals(positions, triangles, options, report);
     };
-    EXPECT_EQ(with(0.0)[1], up);
-    EXPECT_EQ(with(0.9e-4)[1], up);
+    EXPECT_EQ(with(0.0)[1], facing_up);
+    EXPECT_EQ(with(0.9e-4)[1], facing_up);
     EXPECT_LE(degrees_between(with(1.1e-4)[1], glm::dvec3(1, 0, 1)), float_degrees);
     EXPECT_EQ(with(1.1e-4)[1], with(1.1e-4)[3]);
-    EXPECT_EQ(with(1.1e-4)[0], up);
+    EXPECT_EQ(with(1.1e-4)[0], facing_up);
     EXPECT_TRUE(report.empty());
     EXPECT_THROW(with(-1.0), InvalidInput);
     EXPECT_THROW(with(std::numeric_limits<double>::quiet_NaN()), InvalidInput);
@@ -175,7 +175,7 @@ TEST(VertexNormals, AnIsolatedVertexPointsUpAndIsCounted) {
     Report report;
     const auto normals =
         vertex_normals(mesh.positions, mesh.triangles, NormalWeight::angle, report);
-    EXPECT_EQ(normals.back(), up);
+    EXPECT_EQ(normals.back(), facing_up);
     ASSERT_EQ(report.findings().size(), 1U);
     EXPECT_EQ(report.findings()[0],
               (Finding{"isolated vertex", "vertex", "gets the normal (0,0,1)", 1, {4}}));
@@ -198,8 +198,8 @@ TEST(VertexNormals, DegenerateTrianglesHaveNoSayAndAreCounted) {
     const auto normals = vertex_normals(positions, triangles, NormalWeight::angle, report);
     for (std::size_t i = 0; i < 3; ++i)
         EXPECT_EQ(normals[i], glm::vec3(1, 0, 0));
-    EXPECT_EQ(normals[3], up);
-    EXPECT_EQ(normals[4], up);
+    EXPECT_EQ(normals[3], facing_up);
+    EXPECT_EQ(normals[4], facing_up);
     EXPECT_EQ(report.count("degenerate triangle"), 3U);
     EXPECT_EQ(report.count("vertex with only degenerate triangles"), 2U);
     EXPECT_EQ(report.findings().size(), 2U);
@@ -214,7 +214,7 @@ TEST(VertexNormals, ASheetWithTwoFacesCancelsPointsUpAndIsCounted) {
         Report report;
         const auto normals = vertex_normals(positions, triangles, weight, report);
         for (const glm::vec3& normal : normals)
-            EXPECT_EQ(normal, up);
+            EXPECT_EQ(normal, facing_up);
         EXPECT_EQ(report.count("cancelling normals"), 3U);
         EXPECT_EQ(report.findings().size(), 1U);
     }
@@ -241,7 +241,7 @@ TEST(VertexNormals, ANonFiniteVertexDisturbsOnlyItsOwnTriangles) {
         const auto normals =
             vertex_normals(mesh.positions, mesh.triangles, NormalWeight::angle, report);
         for (const glm::vec3& normal : normals)
-            EXPECT_EQ(normal, up);
+            EXPECT_EQ(normal, facing_up);
         EXPECT_EQ(report.count("non-finite position"), 1U);
         EXPECT_EQ(report.count("triangle with a non-finite corner"), 6U);
         EXPECT_EQ(report.findings().size(), 2U);
@@ -344,8 +344,8 @@ TEST(VertexNormals, AFanOfAMillionTrianglesIsSummedExactly) {
     }
     Report report;
     const auto normals = vertex_normals(positions, triangles, NormalWeight::angle, report);
-    EXPECT_EQ(normals[0], up);
-    EXPECT_EQ(normals[count / 2], up);
+    EXPECT_EQ(normals[0], facing_up);
+    EXPECT_EQ(normals[count / 2], facing_up);
     EXPECT_TRUE(report.empty());
 }
 
@@ -368,8 +368,8 @@ TEST(TriangleNormals, FollowTheRightHand) {
     Report report;
     const auto normals = triangle_normals(
         positions, std::vector<glm::uvec3>{{0, 1, 2}, {0, 2, 1}, {0, 2, 3}, {1, 2, 3}}, report);
-    EXPECT_EQ(normals[0], up);
-    EXPECT_EQ(normals[1], -up + 0.0F);
+    EXPECT_EQ(normals[0], facing_up);
+    EXPECT_EQ(normals[1], -facing_up + 0.0F);
     EXPECT_EQ(normals[2], glm::vec3(1, 0, 0));
     EXPECT_LE(degrees_between(normals[3], glm::dvec3(6, 4, 3)), float_degrees);
     EXPECT_TRUE(report.empty());
@@ -382,7 +382,7 @@ TEST(TriangleNormals, WithoutAreaOrFiniteCornersPointUpAndAreCounted) {
     const auto normals = triangle_normals(
         positions, std::vector<glm::uvec3>{{0, 1, 2}, {1, 1, 2}, {0, 1, 3}}, report);
     for (const glm::vec3& normal : normals)
-        EXPECT_EQ(normal, up);
+        EXPECT_EQ(normal, facing_up);
     EXPECT_EQ(report.count("degenerate triangle"), 2U);
     EXPECT_EQ(report.count("triangle with a non-finite corner"), 1U);
 }

@@ -11,9 +11,9 @@ namespace relief {
 namespace {
 
 using testing::ElementsAre;
-constexpr Gradient up = Gradient::upright;
-constexpr Gradient down = Gradient::mirrored;
-constexpr Gradient none = Gradient::none;
+constexpr Gradient upright = Gradient::upright;
+constexpr Gradient mirrored = Gradient::mirrored;
+constexpr Gradient no_gradient = Gradient::none;
 
 /// The linker's answers at every vertex, as corners and triangles of the whole mesh.
 struct Links {
@@ -55,7 +55,7 @@ int neighbour(const Links& links, std::uint32_t t, std::uint32_t i) {
 
 TEST(CornerLinks, TwoTrianglesOfAQuadMeetAtTheDiagonal) {
     const std::vector<glm::uvec3> triangles = {{0, 1, 2}, {0, 2, 3}};
-    const Links links = links_of(triangles, {up, up});
+    const Links links = links_of(triangles, {upright, upright});
     // Triangle 0 leaves vertex 2 towards 0; triangle 1 stands at vertex 2 with its corner 1.
     EXPECT_THAT(links.across, ElementsAre(no_corner, no_corner, 4, 0, no_corner, no_corner));
     EXPECT_THAT(links.across_previous,
@@ -63,7 +63,7 @@ TEST(CornerLinks, TwoTrianglesOfAQuadMeetAtTheDiagonal) {
 }
 
 TEST(CornerLinks, TrianglesThatRunAlongAnEdgeTheSameWayAreNoNeighbours) {
-    const Links links = links_of({{0, 1, 2}, {0, 1, 3}}, {up, up});
+    const Links links = links_of({{0, 1, 2}, {0, 1, 3}}, {upright, upright});
     for (const Corner corner : links.across)
         EXPECT_EQ(corner, no_corner);
 }
@@ -71,7 +71,7 @@ TEST(CornerLinks, TrianglesThatRunAlongAnEdgeTheSameWayAreNoNeighbours) {
 TEST(CornerLinks, AtACrowdedEdgeTrianglesOfOneHandednessPairFirst) {
     // Edge 0-1: two leave vertex 0 (up, down), two arrive (down, up).
     const std::vector<glm::uvec3> triangles = {{0, 1, 2}, {0, 1, 3}, {1, 0, 4}, {1, 0, 5}};
-    const Links links = links_of(triangles, {up, down, down, up});
+    const Links links = links_of(triangles, {upright, mirrored, mirrored, upright});
     EXPECT_EQ(neighbour(links, 0, 0), 3);
     EXPECT_EQ(neighbour(links, 1, 0), 2);
     EXPECT_EQ(neighbour(links, 2, 0), 1);
@@ -80,20 +80,20 @@ TEST(CornerLinks, AtACrowdedEdgeTrianglesOfOneHandednessPairFirst) {
 
 TEST(CornerLinks, AmongEqualsTheSmallerThirdVerticesPairWhateverTheOrder) {
     const std::vector<glm::uvec3> triangles = {{0, 1, 3}, {0, 1, 2}, {1, 0, 5}, {1, 0, 4}};
-    const Links links = links_of(triangles, {up, up, up, up});
+    const Links links = links_of(triangles, {upright, upright, upright, upright});
     EXPECT_EQ(neighbour(links, 1, 0), 3);
     EXPECT_EQ(neighbour(links, 0, 0), 2);
 }
 
 TEST(CornerLinks, ATriangleWithoutGradientTakesWhatIsLeft) {
     const std::vector<glm::uvec3> triangles = {{0, 1, 2}, {1, 0, 3}, {1, 0, 4}, {0, 1, 5}};
-    const Links links = links_of(triangles, {up, up, none, down});
+    const Links links = links_of(triangles, {upright, upright, no_gradient, mirrored});
     EXPECT_EQ(neighbour(links, 0, 0), 1);
     EXPECT_EQ(neighbour(links, 2, 0), 3);
 }
 
 TEST(CornerLinks, TheThirdTriangleOnAnEdgeIsLeftAlone) {
-    const Links links = links_of({{0, 1, 2}, {1, 0, 3}, {0, 1, 4}}, {up, up, up});
+    const Links links = links_of({{0, 1, 2}, {1, 0, 3}, {0, 1, 4}}, {upright, upright, upright});
     EXPECT_EQ(neighbour(links, 0, 0), 1);
     EXPECT_EQ(neighbour(links, 2, 0), -1);
 }
@@ -101,7 +101,7 @@ TEST(CornerLinks, TheThirdTriangleOnAnEdgeIsLeftAlone) {
 TEST(CornerLinks, ARepeatedTriangleIsKnownByItsTwinInAnyRotation) {
     const std::vector<glm::uvec3> triangles = {
         {1, 2, 0}, {0, 1, 2}, {2, 0, 1}, {1, 0, 3}, {2, 1, 0}};
-    const Links links = links_of(triangles, {up, up, up, up, down});
+    const Links links = links_of(triangles, {upright, upright, upright, upright, mirrored});
     // The one that starts at its smallest vertex counts, wherever it stands.
     EXPECT_THAT(links.twin, ElementsAre(1, 1, 1, 3, 4));
     EXPECT_EQ(neighbour(links, 1, 0), 3);
@@ -120,7 +120,8 @@ TEST(CornerLinks, BothEndsOfEveryEdgeAgreeHoweverCrowdedItIs) {
                 continue;
             triangles.push_back(triangle);
             // Repeated triangles are of one kind.
-            kinds.push_back(std::array{up, down, none}[(triangle.x + triangle.y + triangle.z) % 3]);
+            kinds.push_back(std::array{upright, mirrored,
+                                       no_gradient}[(triangle.x + triangle.y + triangle.z) % 3]);
         }
         const Links links = links_of(triangles, kinds);
         int neighbours = 0;
@@ -142,7 +143,7 @@ bool is_walked_whole(const std::vector<std::uint32_t>& next,
         around.push_back(static_cast<Corner>(3 * i));
         triangles.emplace_back(100, next[i], previous[i]);
     }
-    const std::vector<Gradient> kinds(next.size(), up);
+    const std::vector<Gradient> kinds(next.size(), upright);
     CornerLinker linker(triangles, kinds);
     linker.link(around);
     for (CornerLinker::Place i = 0; i < next.size(); ++i) {

@@ -117,8 +117,8 @@ Golden read_golden(const std::filesystem::path& path) {
             indices.push_back(known->second);
             if (!is_new) continue;
             golden.mesh.positions.push_back(obj.positions[corner[0]]);
-            const glm::vec2 up = obj.texcoords[corner[1]];
-            golden.mesh.texcoords.emplace_back(up.x, 1.0F - up.y);
+            const glm::vec2 texcoord = obj.texcoords[corner[1]];
+            golden.mesh.texcoords.emplace_back(texcoord.x, 1.0F - texcoord.y);
             golden.mesh.normals.push_back(obj.normals[corner[2]]);
         }
         for (const std::array<std::size_t, 3>& triangle : cut(obj, face)) {

@@ -10,7 +10,7 @@
 namespace relief {
 namespace {
 
-constexpr glm::dvec3 up(0.0, 0.0, 1.0);
+constexpr glm::dvec3 along_z(0.0, 0.0, 1.0);
 
 /// What a vote of length 1 comes to in sums.
 constexpr double unit = 1 << 20;
@@ -28,7 +28,7 @@ SidedTerm member(const glm::vec3& u, double weight = 1.0) {
 TEST(OppositeTangents, AnOppositeMemberIsLeftOutOfEachOthersSum) {
     const std::vector<SidedTerm> members = {member({1, 0, 0}), member({-1, 0, 0}, 0.5),
                                             member({0, 1, 0}, 0.25)};
-    const std::vector<VoteSum> sums = sums_without_opposites(members, up);
+    const std::vector<VoteSum> sums = sums_without_opposites(members, along_z);
     EXPECT_EQ(sums[0].vector(), unit * glm::dvec3(1.0, 0.25, 0.0));
     EXPECT_EQ(sums[1].vector(), unit * glm::dvec3(-0.5, 0.25, 0.0));
     EXPECT_EQ(sums[2].vector(), unit * glm::dvec3(0.5, 0.25, 0.0));
@@ -37,13 +37,13 @@ TEST(OppositeTangents, AnOppositeMemberIsLeftOutOfEachOthersSum) {
 TEST(OppositeTangents, OppositeInVAloneIsEnough) {
     std::vector<SidedTerm> members = {member({1, 0, 0}), member({1, 0, 0})};
     members[1].along_v = -members[0].along_v;
-    for (const VoteSum& sum : sums_without_opposites(members, up))
+    for (const VoteSum& sum : sums_without_opposites(members, along_z))
         EXPECT_EQ(sum.vector(), unit * glm::dvec3(1.0, 0.0, 0.0));
 }
 
 TEST(OppositeTangents, AMemberWithoutDirectionOpposesNothing) {
     const std::vector<SidedTerm> members = {member({1, 0, 0}), member({0, 0, 0})};
-    for (const VoteSum& sum : sums_without_opposites(members, up))
+    for (const VoteSum& sum : sums_without_opposites(members, along_z))
         EXPECT_EQ(sum.vector(), unit * glm::dvec3(1.0, 0.0, 0.0));
 }
 
@@ -56,7 +56,7 @@ TEST(OppositeTangents, ManyMembersGiveTheSameAsFew) {
         members.push_back(member({std::cos(angle), std::sin(angle), 0.0}, 1.0 + i % 8));
         all += members.back().term;
     }
-    const std::vector<VoteSum> sums = sums_without_opposites(members, up);
+    const std::vector<VoteSum> sums = sums_without_opposites(members, along_z);
     for (std::size_t i = 0; i < 200; ++i) {
         VoteSum expected = all;
         for (int opposite = 0; opposite < 25; ++opposite)
@@ -71,9 +71,9 @@ TEST(OppositeTangents, TheOrderOfMembersChangesNoBit) {
         const double angle = 2.0 * std::numbers::pi * i / 300.0;
         members.push_back(member({std::cos(angle), std::sin(angle), 0.0}, 1.0 / (1.0 + i)));
     }
-    const std::vector<VoteSum> forward = sums_without_opposites(members, up);
+    const std::vector<VoteSum> forward = sums_without_opposites(members, along_z);
     std::reverse(members.begin(), members.end());
-    const std::vector<VoteSum> backward = sums_without_opposites(members, up);
+    const std::vector<VoteSum> backward = sums_without_opposites(members, along_z);
     for (std::size_t i = 0; i < 300; ++i)
         EXPECT_EQ(forward[i], backward[299 - i]);
 }

@@ -16,8 +16,8 @@
 namespace relief {
 namespace {
 
-constexpr std::array all_weights = {TangentWeight::angle, TangentWeight::area,
-                                    TangentWeight::stretch};
+constexpr std::array all_tangent_weights = {TangentWeight::angle, TangentWeight::area,
+                                            TangentWeight::stretch};
 
 TangentInput input_of(const Mesh& mesh) {
     return {mesh.positions, mesh.normals, mesh.texcoords, mesh.triangles};
@@ -52,7 +52,7 @@ Mesh right_angle() {
 TEST(TangentVotes, AreAsLongAsTheirWeights) {
     const Mesh mesh = right_angle();
     const double quarter = std::numbers::pi / 4.0;
-    for (const TangentWeight weight : all_weights) {
+    for (const TangentWeight weight : all_tangent_weights) {
         const AllVotes votes = votes_of(mesh, weight);
         EXPECT_EQ(votes.kinds[0], Gradient::upright);
         for (Corner corner = 0; corner < 3; ++corner) {
@@ -101,7 +101,7 @@ TEST(TangentVotes, AreTheSameOneByOneAndManyAtOnce) {
     meshes.push_back({"sphere", test::sphere(40, 20)});
     for (const test::NamedMesh& hard : meshes) {
         SCOPED_TRACE(hard.name);
-        for (const TangentWeight weight : all_weights) {
+        for (const TangentWeight weight : all_tangent_weights) {
             const AllVotes votes = votes_of(hard.mesh, weight);
             for (std::size_t t = 0; t < hard.mesh.triangles.size(); ++t) {
                 const auto careful =
@@ -123,7 +123,7 @@ TEST(TangentVotes, AreTheSameOneByOneAndManyAtOnce) {
 
 TEST(TangentVotes, AreTheSameBitsWithEverySetOfInstructions) {
     const Mesh sphere = test::sphere(60, 30);
-    for (const TangentWeight weight : all_weights) {
+    for (const TangentWeight weight : all_tangent_weights) {
         const AllVotes widest = votes_of(sphere, weight);
         for (const char* bits : {"128", "256"}) {
             setenv("RELIEF_VECTOR_BITS", bits, 1);

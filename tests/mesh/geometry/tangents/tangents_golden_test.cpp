@@ -15,7 +15,7 @@ namespace {
 // What the reference's own answers for other face orders are held to.
 constexpr double conforming_degrees = 0.01;
 
-std::vector<glm::vec4> tangents_of(const Mesh& mesh) {
+std::vector<glm::vec4> golden_tangents_of(const Mesh& mesh) {
     Report report;
     return mikktspace_tangents(mesh.positions, mesh.normals, mesh.texcoords, mesh.triangles,
                                report);
@@ -61,7 +61,7 @@ TEST(GoldenTangents, EveryStableCornerAgreesInSignAndWithinAHundredthOfADegree) 
     for (const std::filesystem::path& file : files) {
         SCOPED_TRACE(file.filename());
         const Golden golden = read_golden(file);
-        const Comparison result = compare(golden, tangents_of(golden.mesh));
+        const Comparison result = compare(golden, golden_tangents_of(golden.mesh));
         EXPECT_EQ(result.other_sign, 0U);
         EXPECT_EQ(result.too_far, 0U) << "worst: " << result.worst_degrees << " degrees";
         // Only in the mesh made of bad triangles has the reference corners without an answer.
@@ -77,7 +77,7 @@ TEST(GoldenTangents, KeepTheInvariantsWhereTheReferenceBreaksThem) {
     for (const std::filesystem::path& file : golden_files(folder)) {
         SCOPED_TRACE(file.filename());
         const Mesh mesh = read_golden(file).mesh;
-        expect_tangent_invariants(mesh, tangents_of(mesh));
+        expect_tangent_invariants(mesh, golden_tangents_of(mesh));
     }
 }
 
@@ -87,8 +87,8 @@ TEST(GoldenTangents, PermutingTrianglesChangesNoBit) {
         SCOPED_TRACE(file.filename());
         const Mesh mesh = read_golden(file).mesh;
         const auto order = shuffled(mesh.triangles.size());
-        const auto expected = tangents_of(mesh);
-        const auto permuted = tangents_of(with_triangle_order(mesh, order));
+        const auto expected = golden_tangents_of(mesh);
+        const auto permuted = golden_tangents_of(with_triangle_order(mesh, order));
         EXPECT_TRUE(same_bits(permuted, corners_in_order(expected, order)));
     }
 }

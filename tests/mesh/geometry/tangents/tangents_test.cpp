@@ -11,6 +11,7 @@
 #include <numbers>
 
 #include "hard_meshes.h"
+#include "normals/normal_samples.h"
 #include "relief/mesh/error.h"
 #include "relief/mesh/mesh.h"
 #include "relief/mesh/threads.h"
@@ -21,12 +22,10 @@ namespace relief {
 namespace {
 
 using test::degrees_between;
+using test::float_degrees;
 using testing::Each;
 
 constexpr glm::vec4 along_x(1.0F, 0.0F, 0.0F, 1.0F);
-
-// A unit vector in floats is off by up to 6e-8 in all, or 3.4e-6 degrees.
-constexpr double float_degrees = 4e-6;
 
 using Method = decltype(&mikktspace_tangents);
 

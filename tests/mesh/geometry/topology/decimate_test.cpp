@@ -19,26 +19,17 @@
 #include "support/message_of.h"
 #include "support/shapes.h"
 #include "support/shared_data.h"
+#include "topology/boundary_edges.h"
 
 namespace relief {
 namespace {
 
+using test::boundary_edges;
 using test::message_of;
 
 Mesh decimated_to(const Mesh& mesh, std::size_t triangles, Report& report,
                   NormalMode normals = NormalMode::keep) {
     return decimated(mesh, {triangles, {}, {.normals = normals}}, report).mesh;
-}
-
-Topology surface_of(const Mesh& mesh) {
-    Report report;
-    return topology_of(mesh, weld_positions(mesh.positions), report);
-}
-
-std::size_t boundary_edges(const Mesh& mesh) {
-    const Topology surface = surface_of(mesh);
-    return static_cast<std::size_t>(
-        std::count(surface.opposite.begin(), surface.opposite.end(), no_corner));
 }
 
 glm::dvec3 normal_of(const Mesh& mesh, const glm::uvec3& t) {
@@ -74,7 +65,7 @@ void for_each_sample(const Mesh& mesh, const Visit& visit) {
 
 /// The point of the unit sphere of tests/support/shapes.h at a texture coordinate.
 glm::dvec3 on_sphere(const glm::dvec2& uv) {
-    const double pi = std::numbers::pi;
+    using std::numbers::pi;
     const double ring = std::sin(uv.y * pi);
     return {ring * std::sin(uv.x * 2.0 * pi), std::cos(uv.y * pi),
             ring * std::cos(uv.x * 2.0 * pi)};

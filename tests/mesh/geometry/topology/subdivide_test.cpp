@@ -16,20 +16,15 @@
 #include "support/angle.h"
 #include "support/message_of.h"
 #include "support/shapes.h"
+#include "topology/boundary_edges.h"
 
 namespace relief {
 namespace {
 
+using test::boundary_edges;
 using test::message_of;
 
-constexpr double rounding = 1e-6;
-
-std::size_t boundary_edges(const Mesh& mesh) {
-    Report report;
-    const Topology surface = topology_of(mesh, weld_positions(mesh.positions), report);
-    return static_cast<std::size_t>(
-        std::count(surface.opposite.begin(), surface.opposite.end(), no_corner));
-}
+constexpr double subdivide_rounding = 1e-6;
 
 TEST(Subdivide, ATetrahedronByHand) {
     Mesh tetrahedron;
@@ -42,7 +37,8 @@ TEST(Subdivide, ATetrahedronByHand) {
     EXPECT_TRUE(fine.normals.empty()) << "there were none";
     // Three neighbours weigh 3/16 each; their sum is minus the vertex: 7/16 - 3/16.
     for (int v = 0; v < 4; ++v)
-        EXPECT_LT(glm::length(fine.positions[v] - tetrahedron.positions[v] * 0.25F), rounding);
+        EXPECT_LT(glm::length(fine.positions[v] - tetrahedron.positions[v] * 0.25F),
+                  subdivide_rounding);
     // 3/8 of both ends, 1/8 of the two others, whose sum is minus theirs: 1/4 of the ends' sum.
     EXPECT_EQ(boundary_edges(fine), 0U);
     std::size_t found = 0;
@@ -51,7 +47,7 @@ TEST(Subdivide, ATetrahedronByHand) {
             for (int b = 0; b < a; ++b) {
                 const glm::vec3 middle =
                     (tetrahedron.positions[a] + tetrahedron.positions[b]) * 0.25F;
-                found += glm::length(fine.positions[v] - middle) < rounding ? 1 : 0;
+                found += glm::length(fine.positions[v] - middle) < subdivide_rounding ? 1 : 0;
             }
         }
     }
@@ -154,8 +150,8 @@ TEST(Subdivide, AHubOfManySpokesReadsNoWeightsBeyondTheTable) {
     const Mesh fine = subdivided(hub, 1, {}, report);
     // alpha = (40 - (3 + 2 cos(2 pi / n))^2) / 64, n neighbours at height 0 around the axis.
     const double turn = 3.0 + 2.0 * std::cos(2.0 * std::numbers::pi / spokes);
-    EXPECT_NEAR(fine.positions[0].y, 1.0 - (40.0 - turn * turn) / 64.0, rounding);
-    EXPECT_NEAR(fine.positions[0].x, 0.0, rounding);
+    EXPECT_NEAR(fine.positions[0].y, 1.0 - (40.0 - turn * turn) / 64.0, subdivide_rounding);
+    EXPECT_NEAR(fine.positions[0].x, 0.0, subdivide_rounding);
 }
 
 TEST(Subdivide, SheetsThatMeetInAnEdgeStayTogether) {
@@ -230,7 +226,7 @@ TEST(Subdivide, EmptyAndOneTriangle) {
     const Mesh fine = subdivided(one, 1, {}, report);
     EXPECT_EQ(fine.triangles.size(), 4U);
     // The boundary's rule: 1/8, 6/8, 1/8.
-    EXPECT_LT(glm::length(fine.positions[0] - glm::vec3(0.125F, 0.125F, 0.0F)), rounding);
+    EXPECT_LT(glm::length(fine.positions[0] - glm::vec3(0.125F, 0.125F, 0.0F)), subdivide_rounding);
     EXPECT_TRUE(report.empty());
 }
 

@@ -16,18 +16,13 @@
 namespace relief {
 namespace {
 
-Mesh mesh_of(std::vector<glm::vec3> positions, std::vector<glm::uvec3> triangles) {
-    Mesh mesh;
-    mesh.positions = std::move(positions);
-    mesh.triangles = std::move(triangles);
-    return mesh;
-}
+using test::mesh_from;
 
 Topology topology(const Mesh& mesh, Report& report) {
     return topology_of(mesh, weld_positions(mesh.positions), report);
 }
 
-std::size_t boundary_edges(const Topology& topology) {
+std::size_t open_corners(const Topology& topology) {
     std::size_t count = 0;
     for (const Corner beyond : topology.opposite)
         count += beyond == no_corner ? 1 : 0;
@@ -66,7 +61,7 @@ TEST(Topology, WeldsASeamAndClosesASphere) {
     const Mesh sphere = test::sphere(12, 6);
     Report report;
     const Topology surface = topology(sphere, report);
-    EXPECT_EQ(boundary_edges(surface), 0U);
+    EXPECT_EQ(open_corners(surface), 0U);
     // Euler: V - E + F = 2.
     EXPECT_EQ(surface.position_vertex.size(),
               3 * surface.triangles.size() / 2 - surface.triangles.size() + 2);
@@ -75,8 +70,8 @@ TEST(Topology, WeldsASeamAndClosesASphere) {
 
 TEST(Topology, LeavesOutCollapsedTrianglesAndSetsNonFiniteOnesAside) {
     const float nan = std::numeric_limits<float>::quiet_NaN();
-    const Mesh mesh = mesh_of({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 0, 0}, {nan, 0, 0}},
-                              {{0, 1, 2}, {1, 3, 2}, {2, 2, 0}, {0, 4, 1}});
+    const Mesh mesh = mesh_from({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 0, 0}, {nan, 0, 0}},
+                                {{0, 1, 2}, {1, 3, 2}, {2, 2, 0}, {0, 4, 1}});
     Report report;
     const Topology surface = topology(mesh, report);
     EXPECT_EQ(surface.source_triangle, std::vector<std::uint32_t>{0});
@@ -86,13 +81,13 @@ TEST(Topology, LeavesOutCollapsedTrianglesAndSetsNonFiniteOnesAside) {
 }
 
 TEST(Topology, CutsThreeSheetsAtTheirEdgeApart) {
-    const Mesh mesh = mesh_of({{0, 0, 0}, {0, 0, 1}, {1, 0, 0}, {-1, 0, 0}, {0, 1, 0}},
-                              {{0, 1, 2}, {1, 0, 3}, {0, 1, 4}});
+    const Mesh mesh = mesh_from({{0, 0, 0}, {0, 0, 1}, {1, 0, 0}, {-1, 0, 0}, {0, 1, 0}},
+                                {{0, 1, 2}, {1, 0, 3}, {0, 1, 4}});
     Report report;
     const Topology surface = topology(mesh, report);
     EXPECT_EQ(report.count("non-manifold edge"), 1U);
     EXPECT_EQ(surface.position_vertex.size(), 9U) << "each triangle by itself";
-    EXPECT_EQ(boundary_edges(surface), 9U);
+    EXPECT_EQ(open_corners(surface), 9U);
     for (std::size_t v = 0; v < 9; ++v)
         EXPECT_EQ(surface.is_cut[v], surface.position_vertex[v] < 2);
     expect_manifold(surface);
@@ -101,17 +96,18 @@ TEST(Topology, CutsThreeSheetsAtTheirEdgeApart) {
 TEST(Topology, CutsNeighboursThatFaceOppositeWaysApart) {
     Report report;
     const Topology surface = topology(
-        mesh_of({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}}, {{0, 1, 2}, {1, 2, 3}}), report);
+        mesh_from({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}}, {{0, 1, 2}, {1, 2, 3}}), report);
     // Both run from vertex 1 to 2.
     EXPECT_EQ(report.count("non-manifold edge"), 1U);
-    EXPECT_EQ(boundary_edges(surface), 6U);
+    EXPECT_EQ(open_corners(surface), 6U);
 }
 
 TEST(Topology, CutsABowTieAtItsVertex) {
     Report report;
-    const Topology surface = topology(
-        mesh_of({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {-1, 0, 0}, {-1, -1, 0}}, {{0, 1, 2}, {0, 3, 4}}),
-        report);
+    const Topology surface =
+        topology(mesh_from({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {-1, 0, 0}, {-1, -1, 0}},
+                           {{0, 1, 2}, {0, 3, 4}}),
+                 report);
     EXPECT_TRUE(report.empty()) << "no edge is at fault";
     EXPECT_EQ(surface.position_vertex.size(), 6U);
     EXPECT_EQ(std::count(surface.is_cut.begin(), surface.is_cut.end(), true), 2);

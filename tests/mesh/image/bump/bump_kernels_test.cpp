@@ -18,15 +18,15 @@
 namespace relief {
 namespace {
 
+using test::all_wraps;
 using test::heights_of;
 using test::rough;
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 constexpr Kernel all_kernels[] = {
     Kernel::forward, Kernel::central3, Kernel::prewitt3, Kernel::sobel3,   Kernel::scharr3,
     Kernel::sobel5,  Kernel::scharr5,  Kernel::central5, Kernel::central7, Kernel::gaussian};
-constexpr Wrap all_wraps[] = {Wrap::repeat, Wrap::clamp, Wrap::mirror};
 
 BumpOptions options_of(Kernel kernel, Wraps wrap, double strength = 1.0) {
     BumpOptions options{kernel, wrap, strength};
@@ -46,7 +46,7 @@ Image slopes_of(const Image& height, const BumpOptions& options) {
     return slopes;
 }
 
-Image normals_of(const Image& height, const BumpOptions& options) {
+Image normals_from(const Image& height, const BumpOptions& options) {
     Report report;
     return normals_from_height(height, options, report);
 }
@@ -196,7 +196,7 @@ TEST(BumpKernels, ConstantMapsAreFlatToTheBitInEveryKernelAndArithmetic) {
                 BumpOptions options = options_of(kernel, wrap, -1e9);
                 options.arithmetic = arithmetic;
                 const Image normals =
-                    normals_of(heights_of(9, 6, [](int, int) { return 0.3; }), options);
+                    normals_from(heights_of(9, 6, [](int, int) { return 0.3; }), options);
                 for (std::size_t i = 0; i < normals.sample_count(); ++i) {
                     const std::uint32_t expected =
                         std::bit_cast<std::uint32_t>(i % 3 == 2 ? 1.0F : 0.0F);
@@ -289,10 +289,10 @@ constexpr int margin = 4;
 double wave_error(Kernel kernel, double wavelength, int bits) {
     const AnalyticHeights field = oblique_wave(wavelength, wavelength < 64.0 ? 40 : 520);
     BumpOptions options{kernel, Wrap::clamp, 1.0};
-    if (bits == 32) return normal_error(normals_of(field.heights, options), field, margin).rms;
+    if (bits == 32) return normal_error(normals_from(field.heights, options), field, margin).rms;
     const CodedHeights coded = coded_heights(field.heights, bits);
     options.strength = coded.strength;
-    return normal_error(normals_of(coded.codes, options), field, margin).rms;
+    return normal_error(normals_from(coded.codes, options), field, margin).rms;
 }
 
 struct WaveErrors {
@@ -362,7 +362,7 @@ TEST(BumpAccuracy, SumsOfTilingWavesTileAndTheHighOrderKernelIsBest) {
     const std::vector<HeightWave> waves = tiling_waves(128, 96, 24, 16.0, 0.4, 3);
     const AnalyticHeights field = wave_heights(128, 96, waves);
     const auto error = [&](Kernel kernel) {
-        return normal_error(normals_of(field.heights, {kernel, Wrap::repeat, 1.0}), field);
+        return normal_error(normals_from(field.heights, {kernel, Wrap::repeat, 1.0}), field);
     };
     // No margin: the border is as good as the middle.
     EXPECT_LT(error(Kernel::central7).max, 0.01);
@@ -401,7 +401,7 @@ TEST(BumpCodes, AreThoseOfTheNormalsInEveryFormat) {
         for (const FlatCode flat : {FlatCode::middle, FlatCode::half}) {
             for (const Green green : {Green::up, Green::down}) {
                 BumpOptions options = options_of(Kernel::sobel3, Wrap::mirror, 4.0);
-                const Image normals = normals_of(image, options);
+                const Image normals = normals_from(image, options);
                 options.arithmetic = arithmetic;
                 Report report;
                 const auto wide = format_of(16, flat, green);
@@ -520,12 +520,12 @@ TEST(BumpBits, AreTheSameForEveryWidthOfRegistersAndNumberOfThreads) {
                 setenv("RELIEF_VECTOR_BITS", "128", 1);
                 set_thread_limit(1);
                 const Image map = map_of(*image, options, {});
-                const Image normals = normals_of(*image, options);
+                const Image normals = normals_from(*image, options);
                 for (const char* bits : {"256", "512"}) {
                     setenv("RELIEF_VECTOR_BITS", bits, 1);
                     set_thread_limit(3);
                     EXPECT_TRUE(map_of(*image, options, {}).samples == map.samples) << bits;
-                    EXPECT_TRUE(normals_of(*image, options).samples == normals.samples) << bits;
+                    EXPECT_TRUE(normals_from(*image, options).samples == normals.samples) << bits;
                 }
                 set_thread_limit(0);
                 unsetenv("RELIEF_VECTOR_BITS");

@@ -15,12 +15,16 @@
 #include "relief/mesh/threads.h"
 #include "support/angle.h"
 #include "support/height_fields.h"
+#include "support/no_numbers.h"
 #include "support/samples.h"
 
 namespace relief {
 namespace {
 
+using test::all_wraps;
 using test::heights_of;
+using test::infinite;
+using test::not_a_number;
 using test::rough;
 using test::samples_of;
 using testing::ElementsAre;
@@ -28,12 +32,9 @@ using testing::ElementsAreArray;
 using testing::HasSubstr;
 
 // The symmetric ones; Kernel::forward is in bump_kernels_test.cpp.
-constexpr Kernel all_kernels[] = {Kernel::central3, Kernel::prewitt3, Kernel::sobel3,
-                                  Kernel::scharr3,  Kernel::sobel5,   Kernel::scharr5,
-                                  Kernel::central5, Kernel::central7, Kernel::gaussian};
-constexpr Wrap all_wraps[] = {Wrap::repeat, Wrap::clamp, Wrap::mirror};
-constexpr float nan = std::numeric_limits<float>::quiet_NaN();
-constexpr float infinity = std::numeric_limits<float>::infinity();
+constexpr Kernel symmetric_kernels[] = {Kernel::central3, Kernel::prewitt3, Kernel::sobel3,
+                                        Kernel::scharr3,  Kernel::sobel5,   Kernel::scharr5,
+                                        Kernel::central5, Kernel::central7, Kernel::gaussian};
 
 Image heights_of(int width, std::vector<float> samples) {
     const int height = static_cast<int>(samples.size()) / width;
@@ -91,7 +92,7 @@ std::vector<std::uint32_t> bits_of(const Image& image) {
 // ---------------------------------------------------------------------------------------------
 
 TEST(Bump, AConstantFieldIsExactlyFlatToTheBit) {
-    for (const Kernel kernel : all_kernels) {
+    for (const Kernel kernel : symmetric_kernels) {
         for (const Wrap wrap : all_wraps) {
             for (const double strength : {16.0, -16.0, 0.0}) {
                 const Image normals = normals_of(heights_of(5, 4, [](int, int) { return 0.3; }),
@@ -110,7 +111,7 @@ TEST(Bump, APlaneHasItsOwnSlopeUnderEveryKernelUpToTheBorder) {
     // with clamping, border and corners are no exception.
     const Image plane = heights_of(6, 5, [](int x, int y) { return (3.0 * x - 2.0 * y) / 64.0; });
     const glm::vec3 expected(glm::normalize(glm::dvec3(-0.375, -0.25, 1.0)));
-    for (const Kernel kernel : all_kernels) {
+    for (const Kernel kernel : symmetric_kernels) {
         const Image normals = normals_of(plane, {kernel, Wrap::clamp, 8.0});
         for (int row = 0; row < 5; ++row) {
             for (int column = 0; column < 6; ++column) {
@@ -151,7 +152,7 @@ TEST(Bump, RepeatReadsTheOppositeEdgeAndClampTakesOneSidedDifferences) {
 }
 
 TEST(Bump, OneTexelIsFlatAndOneRowHasNoSlopeAcross) {
-    for (const Kernel kernel : all_kernels) {
+    for (const Kernel kernel : symmetric_kernels) {
         for (const Wrap wrap : all_wraps) {
             const Image one = normals_of(heights_of(1, {0.7F}), {kernel, wrap, 9.0});
             EXPECT_EQ(normal_at(one, 0, 0), glm::vec3(0, 0, 1));
@@ -169,7 +170,7 @@ TEST(Bump, OneTexelIsFlatAndOneRowHasNoSlopeAcross) {
 
 TEST(Bump, StrengthScalesTheSlopeAndItsSignTurnsBumpsIntoDents) {
     const Image height = rough(9, 7);
-    for (const Kernel kernel : all_kernels) {
+    for (const Kernel kernel : symmetric_kernels) {
         const Image once = normals_of(height, {kernel, Wrap::repeat, 3.0});
         const Image twice = normals_of(height, {kernel, Wrap::repeat, 6.0});
         const Image dents = normals_of(height, {kernel, Wrap::repeat, -3.0});
@@ -189,7 +190,7 @@ TEST(Bump, AMirroredMapGivesMirroredNormalsBitForBit) {
     const Image height = rough(17, 13);
     const auto across = [](glm::ivec2 at) { return glm::ivec2(16 - at.x, at.y); };
     const auto along = [](glm::ivec2 at) { return glm::ivec2(at.x, 12 - at.y); };
-    for (const Kernel kernel : all_kernels) {
+    for (const Kernel kernel : symmetric_kernels) {
         for (const Wrap wrap : all_wraps) {
             const BumpOptions options{kernel, wrap, 5.0};
             const Image normals = normals_of(height, options);
@@ -204,7 +205,7 @@ TEST(Bump, AMirroredMapGivesMirroredNormalsBitForBit) {
 TEST(Bump, ShiftingATilingMapShiftsItsNormalsBitForBit) {
     const Image height = rough(16, 11);
     const auto shift = [](glm::ivec2 at) { return glm::ivec2((at.x + 5) % 16, (at.y + 7) % 11); };
-    for (const Kernel kernel : all_kernels) {
+    for (const Kernel kernel : symmetric_kernels) {
         const BumpOptions options{kernel, Wrap::repeat, 12.0};
         EXPECT_EQ(bits_of(normals_of(rearranged(height, shift), options)),
                   bits_of(rearranged(normals_of(height, options), shift)));
@@ -213,7 +214,7 @@ TEST(Bump, ShiftingATilingMapShiftsItsNormalsBitForBit) {
 
 TEST(Bump, TheNumberOfThreadsChangesNoBit) {
     Image height = rough(700, 500);
-    height.as<float>()[12345] = nan;
+    height.as<float>()[12345] = not_a_number;
     const auto normals = [&](unsigned threads) {
         set_thread_limit(threads);
         Report report;
@@ -268,33 +269,34 @@ void expect_filled(const Image& with_holes, const Image& filled, Wrap wrap,
 
 TEST(BumpHoles, AHoleIsReadAsTheMeanAroundIt) {
     // Row by row; the hole in the middle has 8 finite neighbours with the sum 8 * 0.5.
-    expect_filled(heights_of(3, {0.0F, 1.0F, 0.0F, 1.0F, nan, 1.0F, 0.0F, 1.0F, 0.0F}),
+    expect_filled(heights_of(3, {0.0F, 1.0F, 0.0F, 1.0F, not_a_number, 1.0F, 0.0F, 1.0F, 0.0F}),
                   heights_of(3, {0.0F, 1.0F, 0.0F, 1.0F, 0.5F, 1.0F, 0.0F, 1.0F, 0.0F}),
                   Wrap::clamp, {4});
 }
 
 TEST(BumpHoles, InfinitiesAreHolesAndHolesDoNotFillEachOther) {
     // Both holes see only the finite ones around them: 0.25 and 0.75 below, then 0.75 alone.
-    expect_filled(heights_of(3, {infinity, -infinity, 0.75F, 0.25F, 0.25F, 0.25F}),
+    expect_filled(heights_of(3, {infinite, -infinite, 0.75F, 0.25F, 0.25F, 0.25F}),
                   heights_of(3, {0.25F, 0.375F, 0.75F, 0.25F, 0.25F, 0.25F}), Wrap::clamp, {0, 1});
 }
 
 TEST(BumpHoles, TheSquareGrowsUntilItHoldsAFiniteHeight) {
     // From the left end the nearest finite height is 3 away; from its neighbour 2, and so on.
-    expect_filled(heights_of(6, {nan, nan, nan, 0.25F, 0.5F, 0.75F}),
+    expect_filled(heights_of(6, {not_a_number, not_a_number, not_a_number, 0.25F, 0.5F, 0.75F}),
                   heights_of(6, {0.25F, 0.25F, 0.25F, 0.25F, 0.5F, 0.75F}), Wrap::clamp, {0, 1, 2});
 }
 
 TEST(BumpHoles, ATilingMapFillsItsHolesAcrossTheSeam) {
     // Neighbours of the first texel are 0.5 and, across the seam, 1.0; each counts thrice, since a
     // single row repeats above and below.
-    expect_filled(heights_of(4, {nan, 0.5F, 0.0F, 1.0F}), heights_of(4, {0.75F, 0.5F, 0.0F, 1.0F}),
-                  Wrap::repeat, {0});
+    expect_filled(heights_of(4, {not_a_number, 0.5F, 0.0F, 1.0F}),
+                  heights_of(4, {0.75F, 0.5F, 0.0F, 1.0F}), Wrap::repeat, {0});
 }
 
 TEST(BumpHoles, AFieldWithoutAnyFiniteHeightIsFlat) {
     for (const Wrap wrap : all_wraps) {
-        expect_filled(heights_of(3, {nan, infinity, nan, nan, nan, nan}),
+        expect_filled(heights_of(3, {not_a_number, infinite, not_a_number, not_a_number,
+                                     not_a_number, not_a_number}),
                       heights_of(3, {0.0F, 0.0F, 0.0F, 0.0F, 0.0F, 0.0F}), wrap,
                       {0, 1, 2, 3, 4, 5});
     }

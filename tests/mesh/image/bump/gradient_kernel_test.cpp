@@ -13,7 +13,7 @@
 namespace relief {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 struct Known {
     Kernel kernel;

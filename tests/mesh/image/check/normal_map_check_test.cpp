@@ -32,7 +32,7 @@ class Random {
 };
 
 /// Hills without any symmetry, 6 texels and longer.
-Image hills(int width, int height, double rms_slope, std::uint32_t seed = 7) {
+Image hilly_normals(int width, int height, double rms_slope, std::uint32_t seed = 7) {
     return wave_heights(width, height, tiling_waves(width, height, 12, 6.0, rms_slope, seed))
         .heights;
 }
@@ -60,7 +60,7 @@ Image changed(const Image& map, const Change& change) {
 }
 
 TEST(NormalMapCheck, FindsNothingWrongWithASoundMap) {
-    const NormalMapCheck check = check_normal_map(map_of(hills(128, 96, 0.5)));
+    const NormalMapCheck check = check_normal_map(map_of(hilly_normals(128, 96, 0.5)));
     EXPECT_EQ(check.content, MapContent::tangent_normals);
     EXPECT_EQ(check.green.green, Green::up);
     EXPECT_GT(check.green.correlation, 0.99);
@@ -80,8 +80,9 @@ TEST(NormalMapCheck, TellsGreenThroughNoiseBitsAndStrength) {
                     SCOPED_TRACE(fmt::format("slope {} noise {} bits {} green {}", slope, noise,
                                              bits, green == Green::up ? "up" : "down"));
                     Report report;
-                    Image normals = normals_from_height(
-                        hills(128, 128, slope), {Kernel::sobel3, Wrap::repeat, 1.0}, report);
+                    Image normals =
+                        normals_from_height(hilly_normals(128, 128, slope),
+                                            {Kernel::sobel3, Wrap::repeat, 1.0}, report);
                     Random random(5);
                     for (float& component : normals.as<float>())
                         component += static_cast<float>(noise * (2.0 * random.unit() - 1.0));
@@ -132,7 +133,7 @@ TEST(NormalMapCheck, DoesNotGuessWhatAMapCannotTell) {
 }
 
 TEST(NormalMapCheck, SeesBothDirectionsOfTheSrgbCurve) {
-    const Image map = map_of(hills(128, 128, 0.3));
+    const Image map = map_of(hilly_normals(128, 128, 0.3));
     const NormalMapCheck bright = check_normal_map(changed(map, srgb_from_linear));
     EXPECT_EQ(bright.curve, StoredCurve::srgb_encoded);
     EXPECT_GT(bright.lengths.rms_deviation, 0.15);
@@ -166,7 +167,7 @@ TEST(NormalMapCheck, TellsObjectSpaceXyGreyAndColours) {
     EXPECT_EQ(check_normal_map(sphere).content, MapContent::object_normals);
     EXPECT_TRUE(check_normal_map(sphere).has(object_space));
 
-    Image xy = map_of(hills(64, 64, 1.0));
+    Image xy = map_of(hilly_normals(64, 64, 1.0));
     for (std::size_t i = 2; i < xy.sample_count(); i += 3)
         xy.as<std::uint8_t>()[i] = 0;
     EXPECT_EQ(check_normal_map(xy).content, MapContent::xy_normals);
@@ -182,7 +183,7 @@ TEST(NormalMapCheck, TellsObjectSpaceXyGreyAndColours) {
 }
 
 TEST(NormalMapCheck, CountsTexelsThatAreNoNormals) {
-    Image map = map_of(hills(64, 64, 0.3));
+    Image map = map_of(hilly_normals(64, 64, 0.3));
     const auto samples = map.as<std::uint8_t>();
     const auto set = [&](std::size_t texel, int r, int g, int b) {
         samples[texel * 3] = static_cast<std::uint8_t>(r);
@@ -201,7 +202,7 @@ TEST(NormalMapCheck, CountsTexelsThatAreNoNormals) {
     EXPECT_EQ(check.found[1].first, (std::vector<std::size_t>{9, 4000}));
     EXPECT_EQ(check.found[2].count, 1U);
 
-    Image floats = map_of(hills(64, 64, 0.3), {.bits = 32});
+    Image floats = map_of(hilly_normals(64, 64, 0.3), {.bits = 32});
     floats.as<float>()[30] = std::numeric_limits<float>::quiet_NaN();
     floats.as<float>()[61] = std::numeric_limits<float>::infinity();
     const NormalMapCheck holes = check_normal_map(floats);
@@ -211,7 +212,8 @@ TEST(NormalMapCheck, CountsTexelsThatAreNoNormals) {
 }
 
 TEST(NormalMapCheck, ComparesWithWhatTheFileSays) {
-    const Image map = map_of(hills(64, 64, 0.5), {.bits = 16, .green = Green::down, .flat = {}});
+    const Image map =
+        map_of(hilly_normals(64, 64, 0.5), {.bits = 16, .green = Green::down, .flat = {}});
     EXPECT_THAT(conditions_of(check_normal_map(map, {{"relief:green", "down"}})),
                 testing::ElementsAre(green_down));
     EXPECT_THAT(conditions_of(check_normal_map(map, {{"relief:green", "up"}})),
@@ -224,7 +226,7 @@ TEST(NormalMapCheck, ComparesWithWhatTheFileSays) {
 }
 
 TEST(NormalMapCheck, LooksAtChannelsAndBorders) {
-    const Image heights = hills(64, 64, 0.5);
+    const Image heights = hilly_normals(64, 64, 0.5);
     const Image map = map_of(heights);
     Image four = make_image(64, 64, 4, 8, ColorSpace::data);
     const CodedHeights coded = coded_heights(heights, 8);
@@ -254,7 +256,7 @@ TEST(NormalMapCheck, LooksAtChannelsAndBorders) {
 }
 
 TEST(NormalMapCheck, IsTheSameForAnyNumberOfThreads) {
-    const Image map = map_of(hills(300, 200, 0.3), {.bits = 16});
+    const Image map = map_of(hilly_normals(300, 200, 0.3), {.bits = 16});
     set_thread_limit(1);
     const NormalMapCheck one = check_normal_map(map);
     set_thread_limit(0);
@@ -269,7 +271,7 @@ TEST(NormalMapCheck, TakesTheSmallestImagesAndRefusesNone) {
               "an empty image holds no normals");
     for (const auto& [width, height] : {std::pair{1, 1}, {1, 9}, {9, 1}, {3, 2}}) {
         const NormalMapCheck check =
-            check_normal_map(map_of(hills(width == 1 ? 8 : width, 8, 0.1)));
+            check_normal_map(map_of(hilly_normals(width == 1 ? 8 : width, 8, 0.1)));
         EXPECT_EQ(check.content, MapContent::tangent_normals);
         Image flat = make_image(width, height, 3, 8, ColorSpace::data);
         for (std::size_t i = 0; i < flat.sample_count(); ++i)

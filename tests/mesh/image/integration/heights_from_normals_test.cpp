@@ -24,7 +24,8 @@ AnalyticHeights hills(int width, int height, double shortest = 8.0) {
     return wave_heights(width, height, tiling_waves(width, height, 12, shortest, 0.5, 3));
 }
 
-Image normals_of(const Image& heights, Kernel kernel, Wraps wrap, glm::dvec2 texel = {1.0, 1.0}) {
+Image normals_of_heights(const Image& heights, Kernel kernel, Wraps wrap,
+                         glm::dvec2 texel = {1.0, 1.0}) {
     BumpOptions bump{kernel, wrap, 1.0, texel};
     bump.arithmetic = Arithmetic::float64;
     Report report;
@@ -68,7 +69,7 @@ TEST(HeightsFromNormals, GiveTheNormalsBackByTheSameKernel) {
                                      static_cast<int>(wrap.x), static_cast<int>(wrap.y)));
             for (const auto& [width, height] : {std::pair{64, 48}, {61, 37}}) {
                 const Image heights = hills(width, height).heights;
-                const Image normals = normals_of(heights, kernel, wrap);
+                const Image normals = normals_of_heights(heights, kernel, wrap);
                 Report report;
                 IntegrationOptions options;
                 options.kernel = kernel;
@@ -78,7 +79,7 @@ TEST(HeightsFromNormals, GiveTheNormalsBackByTheSameKernel) {
                 // 16-bit codes of a normal are 0.003 degrees apart.
                 EXPECT_LT(result.residual.max, is_clamped ? 8e-3 : 3e-3);
                 EXPECT_LT(result.residual.rms, is_clamped ? 5e-4 : 4e-4);
-                EXPECT_LT(largest_angle(normals_of(result.heights, kernel, wrap), normals),
+                EXPECT_LT(largest_angle(normals_of_heights(result.heights, kernel, wrap), normals),
                           result.residual.max + 2e-4);
                 EXPECT_LT(height_error(result.heights, heights), 1e-3);
             }
@@ -109,18 +110,18 @@ TEST(HeightsFromNormals, KeepAPlaneWhereBordersAreClamped) {
     Report report;
     IntegrationOptions options;
     options.wrap = Wrap::clamp;
-    const IntegratedHeights result =
-        heights_from_normals(normals_of(plane, Kernel::central7, Wrap::clamp), options, report);
+    const IntegratedHeights result = heights_from_normals(
+        normals_of_heights(plane, Kernel::central7, Wrap::clamp), options, report);
     EXPECT_LT(height_error(result.heights, plane), 1e-3);
     EXPECT_NEAR(result.highest, 0.25 * 32 + 0.5 * 19, 2e-3);
     EXPECT_NEAR(result.rms_slope, std::hypot(0.25, 0.5), 1e-6);
     EXPECT_NEAR(result.mean_slope.x, 0.25, 1e-6);
     EXPECT_NEAR(result.mean_slope.y, 0.5, 1e-6);
     options.level = true;
-    EXPECT_LT(
-        heights_from_normals(normals_of(plane, Kernel::central7, Wrap::clamp), options, report)
-            .highest,
-        1e-5);
+    EXPECT_LT(heights_from_normals(normals_of_heights(plane, Kernel::central7, Wrap::clamp),
+                                   options, report)
+                  .highest,
+              1e-5);
 }
 
 TEST(HeightsFromNormals, LeaveOverWhatIsNoSurface) {
@@ -128,7 +129,7 @@ TEST(HeightsFromNormals, LeaveOverWhatIsNoSurface) {
     constexpr int side = 64;
     constexpr double turn = 2.0 * 3.14159265358979 / side;
     const Image heights = hills(side, side).heights;
-    const Image plain = normals_of(heights, Kernel::central7, Wrap::repeat);
+    const Image plain = normals_of_heights(heights, Kernel::central7, Wrap::repeat);
     Image normals = plain;
     for (int row = 0; row < side; ++row) {
         for (int column = 0; column < side; ++column) {
@@ -147,7 +148,7 @@ TEST(HeightsFromNormals, LeaveOverWhatIsNoSurface) {
 }
 
 TEST(HeightsFromNormals, CountWhatIsNoSlope) {
-    Image normals = normals_of(hills(16, 16).heights, Kernel::central7, Wrap::repeat);
+    Image normals = normals_of_heights(hills(16, 16).heights, Kernel::central7, Wrap::repeat);
     const std::span<float> n = normals.as<float>();
     n[5 * 3] = std::numeric_limits<float>::quiet_NaN();
     n[7 * 3] = n[7 * 3 + 1] = n[7 * 3 + 2] = 0.0F;
@@ -172,7 +173,7 @@ TEST(HeightsFromNormals, KnowTexelsThatAreNotSquare) {
     IntegrationOptions options;
     options.texel = texel;
     const IntegratedHeights result = heights_from_normals(
-        normals_of(heights, Kernel::central7, Wrap::repeat, texel), options, report);
+        normals_of_heights(heights, Kernel::central7, Wrap::repeat, texel), options, report);
     EXPECT_LT(height_error(result.heights, heights), 1e-4);
 }
 
@@ -191,7 +192,7 @@ TEST(HeightsFromNormals, TakeAnySizeAndAreTheSameForAnyNumberOfThreads) {
             EXPECT_EQ(result.residual.max, 0.0);
         }
     }
-    const Image normals = normals_of(test::rough(150, 70), Kernel::sobel3, Wrap::clamp);
+    const Image normals = normals_of_heights(test::rough(150, 70), Kernel::sobel3, Wrap::clamp);
     IntegrationOptions options;
     options.wrap = Wraps(Wrap::clamp, Wrap::repeat);
     Report report;

@@ -10,6 +10,7 @@
 #include <cmath>
 #include <limits>
 
+#include "mesh/image/normals/flat_codes.h"
 #include "relief/mesh/direction_error.h"
 #include "relief/mesh/error.h"
 #include "relief/mesh/normal_map.h"
@@ -24,7 +25,7 @@ using test::samples_of;
 using testing::ElementsAre;
 using testing::FloatEq;
 
-constexpr FlatCode both_codes[] = {FlatCode::middle, FlatCode::half};
+using test::both_codes;
 
 template <typename Sample>
 Image image_of(int channels, std::vector<Sample> samples) {

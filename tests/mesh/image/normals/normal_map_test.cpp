@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 
+#include "mesh/image/normals/flat_codes.h"
 #include "relief/mesh/error.h"
 #include "support/angle.h"
 #include "support/samples.h"
@@ -20,9 +21,9 @@ using testing::ElementsAre;
 using testing::Pair;
 using testing::UnorderedElementsAre;
 
-constexpr FlatCode both_codes[] = {FlatCode::middle, FlatCode::half};
+using test::both_codes;
 
-Image normals_of(std::vector<float> samples) {
+Image map_of(std::vector<float> samples) {
     Image image = make_image(static_cast<int>(samples.size() / 3), 1, 3, 32, ColorSpace::data);
     image.samples = std::move(samples);
     return image;
@@ -40,7 +41,7 @@ Image hemisphere() {
                 samples.push_back(static_cast<float>(part));
         }
     }
-    return normals_of(std::move(samples));
+    return map_of(std::move(samples));
 }
 
 template <typename Code>
@@ -71,7 +72,7 @@ double largest_error(const NormalMapFormat& format) {
 }
 
 TEST(NormalMap, FlatAndTheAxesHaveTheKnownCodes) {
-    const Image axes = normals_of({0, 0, 1, 1, 0, 0, -1, 0, 0, 0, 1, 0, 0, -1, 0});
+    const Image axes = map_of({0, 0, 1, 1, 0, 0, -1, 0, 0, 0, 1, 0, 0, -1, 0});
     Report report;
     EXPECT_THAT(
         samples_of<std::uint8_t>(encode_normal_map(axes, {8, Green::up, FlatCode::middle}, report)),
@@ -105,7 +106,7 @@ TEST(NormalMap, MiddleCodesDecodeFlatToExactlyFlatAndHalfCodesDoNot) {
 
 TEST(NormalMap, FloatMapsHoldHalfThePlusOneAndFlatIsExact) {
     Report report;
-    const Image map = encode_normal_map(normals_of({0.6F, 0, 0.8F, 0, 0, 1}), {32}, report);
+    const Image map = encode_normal_map(map_of({0.6F, 0, 0.8F, 0, 0, 1}), {32}, report);
     EXPECT_THAT(map.as<float>(), ElementsAre(0.8F, 0.5F, 0.9F, 0.5F, 0.5F, 1.0F));
     const Image back = decode_normal_map(map, Green::up, FlatCode::half, report);
     EXPECT_THAT(back.as<float>().subspan(3), ElementsAre(0.0F, 0.0F, 1.0F));
@@ -170,7 +171,7 @@ TEST(NormalMap, WhatIsNoDirectionIsFlatAndCounted) {
     const float infinity = std::numeric_limits<float>::infinity();
     Report stored;
     const Image map =
-        encode_normal_map(normals_of({0, 0, 0, nan, 0, 1, 0, 0, 1, infinity, 0, 1}), {8}, stored);
+        encode_normal_map(map_of({0, 0, 0, nan, 0, 1, 0, 0, 1, infinity, 0, 1}), {8}, stored);
     EXPECT_THAT(map.as<std::uint8_t>(),
                 ElementsAre(128, 128, 255, 128, 128, 255, 128, 128, 255, 128, 128, 255));
     ASSERT_EQ(stored.findings().size(), 1U);
@@ -187,7 +188,7 @@ TEST(NormalMap, OnlyTheDirectionCounts) {
     Report report;
     for (const float length : {1e-30F, 0.5F, 2.0F, 1e30F}) {
         const Image map =
-            encode_normal_map(normals_of({0.6F * length, 0, 0.8F * length}), {16}, report);
+            encode_normal_map(map_of({0.6F * length, 0, 0.8F * length}), {16}, report);
         EXPECT_THAT(map.as<std::uint16_t>(), ElementsAre(32768 + 19660, 32768, 32768 + 26214));
     }
     EXPECT_TRUE(report.empty());
@@ -198,7 +199,7 @@ TEST(NormalMap, WrongImagesAndDepthsAreRefused) {
     EXPECT_THROW(encode_normal_map(Image{}, {}, report), InvalidInput);
     EXPECT_THROW(encode_normal_map(make_image(1, 1, 3, 8, ColorSpace::data), {}, report),
                  InvalidInput);
-    EXPECT_THROW(encode_normal_map(normals_of({0, 0, 1}), {12}, report), InvalidInput);
+    EXPECT_THROW(encode_normal_map(map_of({0, 0, 1}), {12}, report), InvalidInput);
     const Image grey = make_image(1, 1, 2, 8, ColorSpace::data);
     EXPECT_THROW(decode_normal_map(grey, Green::up, FlatCode::half, report), InvalidInput);
     EXPECT_THROW(detect_flat_code(grey), InvalidInput);

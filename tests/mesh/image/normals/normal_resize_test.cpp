@@ -35,7 +35,7 @@ constexpr ResizeFilter all_filters[] = {ResizeFilter::box, ResizeFilter::triangl
 constexpr ResizeDomain both_domains[] = {ResizeDomain::slopes, ResizeDomain::vectors};
 
 /// A row of normals with slopes along x.
-Image normals_of(const std::vector<double>& slopes) {
+Image normals_of_slopes(const std::vector<double>& slopes) {
     Image image = make_image(static_cast<int>(slopes.size()), 1, 2, 32, ColorSpace::data);
     for (std::size_t i = 0; i < slopes.size(); ++i)
         image.as<float>()[2 * i] = static_cast<float>(slopes[i]);
@@ -60,7 +60,7 @@ Image resized(const Image& normals, int width, int height, const ResizeOptions& 
 }
 
 TEST(ResizeNormals, AConstantMapStaysAsItIs) {
-    const Image normals = normals_of(std::vector<double>(7, 0.75));
+    const Image normals = normals_of_slopes(std::vector<double>(7, 0.75));
     for (const ResizeFilter filter : all_filters) {
         for (const ResizeDomain domain : both_domains) {
             for (const Wrap wrap : {Wrap::repeat, Wrap::clamp, Wrap::mirror}) {
@@ -75,7 +75,7 @@ TEST(ResizeNormals, AConstantMapStaysAsItIs) {
 }
 
 TEST(ResizeNormals, SlopesHaveTheMeanThatTheFilteredSurfaceHas) {
-    const Image normals = normals_of({0.0, 1.0, 3.0, -1.0});
+    const Image normals = normals_of_slopes({0.0, 1.0, 3.0, -1.0});
     const ResizeOptions box{ResizeFilter::box, ResizeDomain::slopes, Wrap::repeat, {1.0, 1.0}};
     EXPECT_THAT(slopes_of(resized(normals, 2, 1, box)), Pointwise(FloatNear(1e-6F), {0.5F, 1.0F}));
     EXPECT_THAT(slopes_of(resized(normals, 1, 1, box)), Pointwise(FloatNear(1e-6F), {0.75F}));
@@ -96,7 +96,7 @@ TEST(ResizeNormals, SlopesHaveTheMeanThatTheFilteredSurfaceHas) {
 
 TEST(ResizeNormals, VectorsHaveTheDirectionOfTheirSum) {
     ResizeOptions options{ResizeFilter::box, ResizeDomain::vectors, Wrap::repeat, {1.0, 1.0}};
-    const Image result = resized(normals_of({0.0, -0.75}), 1, 1, options);
+    const Image result = resized(normals_of_slopes({0.0, -0.75}), 1, 1, options);
     EXPECT_LT(degrees_between({result.as<float>()[0], result.as<float>()[1], result.as<float>()[2]},
                               {0.6, 0.0, 1.8}),
               1e-5);
@@ -179,7 +179,7 @@ TEST(ResizeNormals, NormalsThatCancelAreFlatAndCounted) {
 TEST(ResizeNormals, ASteepTexelIsAveragedAsAVectorAndSpoilsNothing) {
     std::vector<double> slopes(32, 0.0);
     slopes[16] = 1000.0;
-    const Image normals = normals_of(slopes);
+    const Image normals = normals_of_slopes(slopes);
     for (const ResizeDomain domain : both_domains) {
         Report report;
         const Image result = resize_normals(
@@ -192,7 +192,7 @@ TEST(ResizeNormals, ASteepTexelIsAveragedAsAVectorAndSpoilsNothing) {
                   domain == ResizeDomain::slopes ? 1U : 0U);
     }
     slopes[16] = 15.0;
-    EXPECT_GT(slopes_of(resized(normals_of(slopes), 16, 1, {}))[8], 6.0F);
+    EXPECT_GT(slopes_of(resized(normals_of_slopes(slopes), 16, 1, {}))[8], 6.0F);
 }
 
 TEST(ResizeNormals, TheSameBitsForAnyNumberOfThreads) {
@@ -207,7 +207,7 @@ TEST(ResizeNormals, TheSameBitsForAnyNumberOfThreads) {
 }
 
 TEST(ResizeNormals, RefusesSizesThatAreNone) {
-    const Image normals = normals_of({0.0});
+    const Image normals = normals_of_slopes({0.0});
     Report report;
     EXPECT_EQ(message_of<InvalidInput>([&] { resize_normals(normals, 0, 4, {}, report); }),
               "there is no image of 0 x 4 texels");

@@ -273,14 +273,14 @@ TEST_F(GltfDocumentTest, FilesWithWrongBytesAreRefusedOrCanBeWorkedWith) {
 }
 
 /// A place in the JSON, a wrong value, and what the error says about it.
-struct Fault {
+struct DocumentFault {
     const char* pointer;
     json value;
     const char* message;
 };
 
 TEST_F(GltfDocumentTest, EveryFaultIsNamedWithPlaceValueAndLimit) {
-    const std::vector<Fault> faults = {
+    const std::vector<DocumentFault> faults = {
         {"/asset/version", "1.0", "asset.version is 1.0, but only 2 is read"},
         {"/asset/minVersion", "2.1", "asset.minVersion is 2.1"},
         {"/asset/version", 2, "asset.version is not a string"},
@@ -326,7 +326,7 @@ TEST_F(GltfDocumentTest, EveryFaultIsNamedWithPlaceValueAndLimit) {
         {"/extensionsRequired", {"FOO_bar"}, "requires the extension FOO_bar"},
         {"/images", {{{"uri", "data:image/png;base64,A"}}}, "images[0].uri: base64 data ends"},
     };
-    for (const Fault& fault : faults) {
+    for (const DocumentFault& fault : faults) {
         json root = triangle_json();
         root[json::json_pointer(fault.pointer)] = fault.value;
         EXPECT_THAT(error_of(root, triangle_bytes()), HasSubstr(fault.message))

@@ -140,12 +140,12 @@ std::map<std::string, std::string> corner_values(const GltfContents& contents,
         for (const auto& [name, accessor] : attributes.items()) {
             if (name == "NORMAL" || name == "TANGENT") continue;
             const auto number = accessor.get<std::size_t>();
-            const Json& json = contents.root["accessors"][number];
+            const Json& accessor_json = contents.root["accessors"][number];
             const std::string all = raw_elements(contents, number);
-            const std::size_t size = element_layout(json).size;
-            std::string& at_corners =
-                values[fmt::format("{}{} {} {} {}", prefix, name, json["type"].get<std::string>(),
-                                   json["componentType"].get<int>(), bool_in(json, "normalized"))];
+            const std::size_t size = element_layout(accessor_json).size;
+            std::string& at_corners = values[fmt::format(
+                "{}{} {} {} {}", prefix, name, accessor_json["type"].get<std::string>(),
+                accessor_json["componentType"].get<int>(), bool_in(accessor_json, "normalized"))];
             for (const std::uint32_t vertex : corners)
                 at_corners += all.substr(vertex * size, size);
         }

@@ -9,6 +9,7 @@
 #include <string>
 #include <string_view>
 
+#include "module_reference.h"
 #include "relief/mesh/error.h"
 #include "support/message_of.h"
 
@@ -16,6 +17,7 @@ namespace relief {
 namespace {
 
 using namespace std::string_literals;
+using test::big32;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::Pair;
@@ -33,26 +35,21 @@ std::string stripped(const std::string& bytes) {
     return {reinterpret_cast<const char*>(container.stripped.data()), container.stripped.size()};
 }
 
-std::string big32(std::uint32_t value) {
-    return {static_cast<char>(value >> 24), static_cast<char>(value >> 16),
-            static_cast<char>(value >> 8), static_cast<char>(value)};
-}
-
 std::string big16(std::uint32_t value) {
     return big32(value).substr(2);
 }
 
 /// A chunk with a checksum of zeros: nobody looks at it here.
-std::string chunk(const std::string& type, const std::string& data) {
+std::string unchecked_chunk(const std::string& type, const std::string& data) {
     return big32(static_cast<std::uint32_t>(data.size())) + type + data + big32(0);
 }
 
 std::string png_header(std::uint32_t width, std::uint32_t height, char bits = 8, char type = 0) {
-    return chunk("IHDR", big32(width) + big32(height) + std::string{bits, type, 0, 0, 0});
+    return unchecked_chunk("IHDR", big32(width) + big32(height) + std::string{bits, type, 0, 0, 0});
 }
 
 const std::string png_start = "\x89PNG\r\n\x1A\n";
-const std::string png_end = chunk("IEND", "");
+const std::string png_end = unchecked_chunk("IEND", "");
 
 std::string jpeg_segment(char marker, const std::string& data) {
     return "\xFF"s + marker + big16(static_cast<std::uint32_t>(data.size() + 2)) + data;
@@ -77,24 +74,28 @@ TEST(ImageContainer, TheFirstBytesDecideTheFormat) {
 }
 
 TEST(ImageContainer, PngKeepsOnlyWhatDefinesItsSamples) {
-    const std::string kept = png_header(1, 1) + chunk("PLTE", "abc");
-    const std::string data = chunk("tRNS", "a") + chunk("IDAT", "12345") + png_end;
-    const std::string file = png_start + kept + chunk("gAMA", "1234") + chunk("iCCP", "profile") +
-                             chunk("eXIf", "II*") + data + "rest";
+    const std::string kept = png_header(1, 1) + unchecked_chunk("PLTE", "abc");
+    const std::string data =
+        unchecked_chunk("tRNS", "a") + unchecked_chunk("IDAT", "12345") + png_end;
+    const std::string file = png_start + kept + unchecked_chunk("gAMA", "1234") +
+                             unchecked_chunk("iCCP", "profile") + unchecked_chunk("eXIf", "II*") +
+                             data + "rest";
     EXPECT_EQ(stripped(file), png_start + kept + data);
 }
 
 TEST(ImageContainer, PngTextIsKeptWhereItIsPlain) {
-    const ImageContainer container = examine(
-        png_start + png_header(1, 1) + chunk("tEXt", "relief:green\0up"s) +
-        chunk("iTXt", "Titel\0\0\0de\0Titel\0Vase"s) + chunk("iTXt", "packed\0\1\0\0\0xyz"s) +
-        chunk("tEXt", "no zero") + chunk("tEXt", "\0no key"s) + chunk("iTXt", "cut\0\0"s) +
-        chunk("IDAT", "12345") + png_end);
+    const ImageContainer container =
+        examine(png_start + png_header(1, 1) + unchecked_chunk("tEXt", "relief:green\0up"s) +
+                unchecked_chunk("iTXt", "Titel\0\0\0de\0Titel\0Vase"s) +
+                unchecked_chunk("iTXt", "packed\0\1\0\0\0xyz"s) +
+                unchecked_chunk("tEXt", "no zero") + unchecked_chunk("tEXt", "\0no key"s) +
+                unchecked_chunk("iTXt", "cut\0\0"s) + unchecked_chunk("IDAT", "12345") + png_end);
     EXPECT_THAT(container.text, ElementsAre(Pair("Titel", "Vase"), Pair("relief:green", "up")));
 }
 
 TEST(ImageContainer, ACutPngIsRefusedWithThePlaceOfTheCut) {
-    const std::string file = png_start + png_header(1, 1) + chunk("IDAT", "12345") + png_end;
+    const std::string file =
+        png_start + png_header(1, 1) + unchecked_chunk("IDAT", "12345") + png_end;
     EXPECT_EQ(complaint_about(file), "no error");
     for (std::size_t size = png_start.size(); size < file.size(); ++size)
         EXPECT_THAT(complaint_about(file.substr(0, size)), HasSubstr("is cut short")) << size;
@@ -107,7 +108,7 @@ TEST(ImageContainer, ACutPngIsRefusedWithThePlaceOfTheCut) {
 TEST(ImageContainer, APngThatAnnouncesMoreThanItHoldsIsRefused) {
     const auto announcing = [](std::uint32_t width, std::uint32_t height, char bits, char type) {
         return complaint_about(png_start + png_header(width, height, bits, type) +
-                               chunk("IDAT", std::string(100, 'x')) + png_end);
+                               unchecked_chunk("IDAT", std::string(100, 'x')) + png_end);
     };
     // 100 bytes of deflate hold at most 103,200; a row of 1000 grey samples takes 1000.
     EXPECT_EQ(announcing(1000, 100, 8, 0), "no error");
@@ -117,7 +118,7 @@ TEST(ImageContainer, APngThatAnnouncesMoreThanItHoldsIsRefused) {
     EXPECT_THAT(announcing(0xFFFFFFFF, 0xFFFFFFFF, 16, 6), HasSubstr("cannot hold"));
     EXPECT_THAT(announcing(0, 5, 8, 0), HasSubstr("is empty: 0 x 5 texels"));
     EXPECT_THAT(announcing(5, 5, 8, 1), HasSubstr("PNG has no colour type 1"));
-    EXPECT_THAT(complaint_about(png_start + chunk("IDAT", "12345") + png_end),
+    EXPECT_THAT(complaint_about(png_start + unchecked_chunk("IDAT", "12345") + png_end),
                 HasSubstr("has no IHDR chunk"));
 }
 

@@ -117,14 +117,14 @@ TEST(ImageFileReal, HdrOfTheUsualCodingsIsRead) {
 // ---------------------------------------------------------------------------------------------
 
 /// What became of a file. A crash would end the test program, and that is a failure as well.
-struct Outcome {
+struct FileOutcome {
     bool error = false;   ///< A FileError; otherwise an image.
     std::string printed;  ///< What somebody wrote to stdout or stderr.
     double seconds = 0.0;
 };
 
-Outcome outcome_of(const std::filesystem::path& file) {
-    Outcome outcome;
+FileOutcome outcome_of(const std::filesystem::path& file) {
+    FileOutcome outcome;
     testing::internal::CaptureStdout();
     testing::internal::CaptureStderr();
     const auto start = std::chrono::steady_clock::now();
@@ -147,7 +147,7 @@ TEST(ImageFileBroken, EveryHostileFileEndsInAnErrorOrAnImage) {
     std::vector<std::string> images;
     for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
         if (!entry.is_regular_file()) continue;
-        const Outcome outcome = outcome_of(entry.path());
+        const FileOutcome outcome = outcome_of(entry.path());
         EXPECT_EQ(outcome.printed, "") << entry.path();
         EXPECT_LT(outcome.seconds, 5.0) << entry.path();
         EXPECT_LT(test::peak_megabytes() - peak_before, 100.0) << entry.path();

@@ -45,7 +45,7 @@ Image read_back(const std::filesystem::path& file, ImageUse use = ImageUse::data
     return read_image(file, use);
 }
 
-void expect_same(const Image& found, const Image& expected) {
+void expect_same_image(const Image& found, const Image& expected) {
     EXPECT_EQ(found.width, expected.width);
     EXPECT_EQ(found.height, expected.height);
     EXPECT_EQ(found.channels, expected.channels);
@@ -68,10 +68,10 @@ TEST(ImageFile, PngKeepsEvery8And16BitSampleOfEveryChannelCount) {
     for (int channels = 1; channels <= 4; ++channels) {
         const Image bytes = pattern<std::uint8_t>(31, 17, channels, ColorSpace::data);
         write_image(folder / "a.png", bytes);
-        expect_same(read_back(folder / "a.png"), bytes);
+        expect_same_image(read_back(folder / "a.png"), bytes);
         const Image words = pattern<std::uint16_t>(17, 31, channels, ColorSpace::data);
         write_image(folder / "a.png", words);
-        expect_same(read_back(folder / "a.png"), words);
+        expect_same_image(read_back(folder / "a.png"), words);
     }
 }
 
@@ -80,13 +80,13 @@ TEST(ImageFile, TiffKeepsEverySampleOf8And16BitsAndFloat) {
     for (int channels = 1; channels <= 4; ++channels) {
         const Image bytes = pattern<std::uint8_t>(31, 17, channels, ColorSpace::data);
         write_image(folder / "a.tif", bytes);
-        expect_same(read_back(folder / "a.tif"), bytes);
+        expect_same_image(read_back(folder / "a.tif"), bytes);
         const Image words = pattern<std::uint16_t>(17, 31, channels, ColorSpace::data);
         write_image(folder / "a.tiff", words);
-        expect_same(read_back(folder / "a.tiff"), words);
+        expect_same_image(read_back(folder / "a.tiff"), words);
         const Image floats = pattern<float>(17, 31, channels, ColorSpace::data);
         write_image(folder / "f.TIF", floats);
-        expect_same(read_back(folder / "f.TIF"), floats);
+        expect_same_image(read_back(folder / "f.TIF"), floats);
     }
 }
 
@@ -98,7 +98,7 @@ TEST(ImageFile, ExrKeepsEveryFloatOfEveryChannelCountInItsPlace) {
         floats.as<float>()[2] = 1e-42F;
         floats.as<float>()[3] = -0.0F;
         write_image(folder / "a.exr", floats);
-        expect_same(read_back(folder / "a.exr"), floats);
+        expect_same_image(read_back(folder / "a.exr"), floats);
     }
 }
 
@@ -134,12 +134,12 @@ TEST(ImageFile, TheUseDecidesTheColourSpaceNotTheFile) {
     const TemporaryDirectory folder;
     Image srgb = pattern<std::uint8_t>(4, 4, 3, ColorSpace::srgb);
     write_image(folder / "a.png", srgb);
-    expect_same(read_back(folder / "a.png", ImageUse::color), srgb);
+    expect_same_image(read_back(folder / "a.png", ImageUse::color), srgb);
     srgb.color_space = ColorSpace::data;
-    expect_same(read_back(folder / "a.png", ImageUse::data), srgb);
+    expect_same_image(read_back(folder / "a.png", ImageUse::data), srgb);
     const Image linear = pattern<float>(4, 4, 3, ColorSpace::linear);
     write_image(folder / "a.exr", linear);
-    expect_same(read_back(folder / "a.exr", ImageUse::color), linear);
+    expect_same_image(read_back(folder / "a.exr", ImageUse::color), linear);
 }
 
 TEST(ImageFile, TransparentTexelsKeepTheirColour) {
@@ -148,7 +148,7 @@ TEST(ImageFile, TransparentTexelsKeepTheirColour) {
     image.samples = std::vector<std::uint8_t>{200, 100, 50, 64, 10, 20, 30, 0};
     for (const char* name : {"a.png", "a.tif"}) {
         write_image(folder / name, image);
-        expect_same(read_back(folder / name), image);
+        expect_same_image(read_back(folder / name), image);
     }
 }
 
@@ -157,7 +157,7 @@ TEST(ImageFile, LargeImagesArriveWholeThoughReadInSteps) {
     const TemporaryDirectory folder;
     const Image words = pattern<std::uint16_t>(1500, 2000, 4, ColorSpace::data);
     write_image(folder / "a.tif", words);
-    expect_same(read_back(folder / "a.tif"), words);
+    expect_same_image(read_back(folder / "a.tif"), words);
 }
 
 TEST(ImageFile, BytesInMemoryReadLikeTheirFile) {
@@ -165,8 +165,8 @@ TEST(ImageFile, BytesInMemoryReadLikeTheirFile) {
     const Image image = pattern<std::uint16_t>(9, 5, 3, ColorSpace::data);
     write_image(folder / "a.png", image);
     const std::string bytes = bytes_of(folder / "a.png");
-    expect_same(read_image(std::as_bytes(std::span(bytes)), "image 3 of a.glb", ImageUse::data),
-                image);
+    expect_same_image(
+        read_image(std::as_bytes(std::span(bytes)), "image 3 of a.glb", ImageUse::data), image);
     try {
         read_image(std::as_bytes(std::span(bytes).first(40)), "image 3 of a.glb", ImageUse::data);
         FAIL() << "half a file was read";

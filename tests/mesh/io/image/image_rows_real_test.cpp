@@ -19,13 +19,13 @@ namespace {
 using test::contents_of;
 
 /// An image's samples, or why there are none.
-struct Outcome {
+struct ReadRows {
     std::string error;
     std::string shape;
     std::vector<std::byte> samples;
     int rows_read = 0;
 
-    friend bool operator==(const Outcome& a, const Outcome& b) {
+    friend bool operator==(const ReadRows& a, const ReadRows& b) {
         return a.error == b.error && a.shape == b.shape && a.samples == b.samples;
     }
 };
@@ -35,8 +35,8 @@ std::string shape_of(int width, int height, int channels, int bits) {
            std::to_string(channels) + ", " + std::to_string(bits);
 }
 
-Outcome read_whole(const std::filesystem::path& file) {
-    Outcome outcome;
+ReadRows read_whole(const std::filesystem::path& file) {
+    ReadRows outcome;
     try {
         const std::string bytes = contents_of(file);
         const Image image =
@@ -54,8 +54,8 @@ Outcome read_whole(const std::filesystem::path& file) {
     return outcome;
 }
 
-Outcome read_by_rows(const std::filesystem::path& file) {
-    Outcome outcome;
+ReadRows read_by_rows(const std::filesystem::path& file) {
+    ReadRows outcome;
     try {
         ImageRowReader reader(file);
         const ImageInfo& info = reader.info();
@@ -78,8 +78,8 @@ int compare_all(const std::filesystem::path& folder) {
     int images = 0;
     for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
         if (!entry.is_regular_file()) continue;
-        const Outcome whole = read_whole(entry.path());
-        const Outcome by_rows = read_by_rows(entry.path());
+        const ReadRows whole = read_whole(entry.path());
+        const ReadRows by_rows = read_by_rows(entry.path());
         EXPECT_EQ(by_rows.error, whole.error);
         EXPECT_TRUE(by_rows == whole) << entry.path();
         if (whole.error.empty()) ++images;
@@ -124,7 +124,7 @@ TEST(ImageRowsDamaged, AWrongBitOrAMissingEndIsTheSameErrorAfterTheRowsBeforeIt)
     std::string changed = whole;
     changed[whole.size() * 3 / 4] ^= 1;
     replace(file, changed);
-    const Outcome outcome = read_by_rows(file);
+    const ReadRows outcome = read_by_rows(file);
     EXPECT_EQ(outcome.error, read_whole(file).error);
     EXPECT_THAT(outcome.error, testing::HasSubstr("damaged"));
     EXPECT_GT(outcome.rows_read, 100) << "rows before the damage are good";
@@ -165,8 +165,8 @@ TEST(ImageRowsDamaged, AStreamThatIsTooShortTooLongOrHasAWrongSumIsJudgedAlike) 
                                    ""};
     for (const std::string& stream : streams) {
         replace(file, png_of(100, 50, stream));
-        const Outcome whole = read_whole(file);
-        const Outcome by_rows = read_by_rows(file);
+        const ReadRows whole = read_whole(file);
+        const ReadRows by_rows = read_by_rows(file);
         EXPECT_EQ(by_rows.error, whole.error);
         EXPECT_TRUE(by_rows == whole) << "stream " << &stream - streams;
     }
@@ -187,7 +187,7 @@ TEST(ImageRowsDamaged, CutTiffAndExrFilesFailByRowsAsTheyDoWhole) {
         const std::string whole = contents_of(folder / name);
         for (const std::size_t tenths : {1U, 5U, 9U}) {
             replace(folder / name, whole.substr(0, whole.size() * tenths / 10));
-            const Outcome outcome = read_by_rows(folder / name);
+            const ReadRows outcome = read_by_rows(folder / name);
             EXPECT_NE(outcome.error, "") << name;
             EXPECT_EQ(outcome.error, read_whole(folder / name).error);
         }

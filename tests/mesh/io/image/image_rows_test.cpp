@@ -45,7 +45,7 @@ Bytes pattern(const ImageShape& shape) {
     return bytes;
 }
 
-Bytes samples_of(const Image& image) {
+Bytes bytes_of_samples(const Image& image) {
     return std::visit(
         [](const auto& all) {
             const auto bytes = std::as_bytes(std::span(all));
@@ -96,7 +96,8 @@ TEST(ImageRows, EverySampleArrivesHoweverTheRowsAreCut) {
                 const ImageShape shape{width, height, channels, kind.bits, ColorSpace::data};
                 const Bytes samples = pattern(shape);
                 write_in_pieces(folder / kind.name, shape, samples);
-                EXPECT_TRUE(samples_of(read_image(folder / kind.name, ImageUse::data)) == samples);
+                EXPECT_TRUE(bytes_of_samples(read_image(folder / kind.name, ImageUse::data)) ==
+                            samples);
                 for (const int rows : {1, 7, 1000})
                     EXPECT_TRUE(read_in_pieces(folder / kind.name, rows) == samples) << kind.name;
                 EXPECT_EQ(ImageRowReader(folder / kind.name).info().metadata.at("relief:content"),
@@ -151,7 +152,7 @@ TEST(ImageRows, TheNumberOfThreadsChangesNoByteAndLibpngReadsThemAll) {
         set_thread_limit(0);
         const std::optional<Image> by_libpng = test::by_module(first);
         ASSERT_TRUE(by_libpng);
-        EXPECT_TRUE(samples_of(*by_libpng) == samples);
+        EXPECT_TRUE(bytes_of_samples(*by_libpng) == samples);
     }
 }
 
@@ -162,7 +163,7 @@ TEST(ImageRows, MoreEffortMakesSmallerPngAndTiffFilesOfTheSameSamples) {
     for (const char* name : {"a.png", "a.tif"}) {
         const auto size = [&](WriteEffort effort) {
             write_in_pieces(folder / name, shape, samples, {.effort = effort});
-            EXPECT_TRUE(samples_of(read_image(folder / name, ImageUse::data)) == samples);
+            EXPECT_TRUE(bytes_of_samples(read_image(folder / name, ImageUse::data)) == samples);
             return std::filesystem::file_size(folder / name);
         };
         const auto fast = size(WriteEffort::fast);

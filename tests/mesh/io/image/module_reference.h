@@ -3,6 +3,7 @@
 /// The image module as an independent decoder to compare our own with.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -16,6 +17,12 @@ std::string contents_of(const std::filesystem::path& file);
 
 /// A zlib stream of these bytes.
 std::string zlib_stream(const std::string& bytes);
+
+/// Four bytes, the highest first.
+inline std::string big32(std::uint32_t value) {
+    return {static_cast<char>(value >> 24), static_cast<char>(value >> 16),
+            static_cast<char>(value >> 8), static_cast<char>(value)};
+}
 
 /// What relief's own decoders make of it; nothing where they leave it to the module.
 /// \throws FileError where it is refused before any decoder sees it

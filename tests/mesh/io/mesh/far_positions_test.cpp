@@ -29,14 +29,14 @@ class FarPositions : public test::MeshTextTest {
 /// A roof of 1 by 1, its ridge 0.25 high, as far from 0 as `far` in every coordinate.
 const std::vector<glm::dvec3> roof = {{0, 0, 0.001}, {0.5, 0, 0.25}, {0.5, 1, 0.25},
                                       {0, 1, 0.002}, {1, 0, 0.003},  {1, 1, 0.004}};
-const std::vector<glm::uvec3> faces = {{0, 1, 2}, {0, 2, 3}, {1, 4, 5}, {1, 5, 2}};
+const std::vector<glm::uvec3> far_faces = {{0, 1, 2}, {0, 2, 3}, {1, 4, 5}, {1, 5, 2}};
 
 std::string obj_text(double far, double scale = 1.0) {
     std::string text;
     for (const glm::dvec3& p : roof)
         text +=
             fmt::format("v {} {} {}\n", far + scale * p.x, far + scale * p.y, far + scale * p.z);
-    for (const glm::uvec3& f : faces)
+    for (const glm::uvec3& f : far_faces)
         text += fmt::format("f {} {} {}\n", f.x + 1, f.y + 1, f.z + 1);
     return text;
 }
@@ -45,7 +45,7 @@ std::string off_text(double far) {
     std::string text = "OFF\n6 4 0\n";
     for (const glm::dvec3& p : roof)
         text += fmt::format("{} {} {}\n", far + p.x, far + p.y, far + p.z);
-    for (const glm::uvec3& f : faces)
+    for (const glm::uvec3& f : far_faces)
         text += fmt::format("3 {} {} {}\n", f.x, f.y, f.z);
     return text;
 }
@@ -56,14 +56,14 @@ std::string ply_text(double far) {
         "property double z\nelement face 4\nproperty list uchar int vertex_indices\nend_header\n";
     for (const glm::dvec3& p : roof)
         text += fmt::format("{} {} {}\n", far + p.x, far + p.y, far + p.z);
-    for (const glm::uvec3& f : faces)
+    for (const glm::uvec3& f : far_faces)
         text += fmt::format("3 {} {} {}\n", f.x, f.y, f.z);
     return text;
 }
 
 std::string stl_text(double far) {
     std::string text = "solid a\n";
-    for (const glm::uvec3& f : faces) {
+    for (const glm::uvec3& f : far_faces) {
         text += "facet normal 0 0 0\nouter loop\n";
         for (int i = 0; i < 3; ++i) {
             const glm::dvec3& p = roof[f[i]];

@@ -16,15 +16,15 @@
 namespace relief {
 namespace {
 
-using Bytes = std::vector<std::uint8_t>;
+using ByteValues = std::vector<std::uint8_t>;
 
 constexpr WriteEffort efforts[] = {WriteEffort::fast, WriteEffort::normal, WriteEffort::small};
 
 /// A zlib stream of pieces that end at these places.
-std::string packed(const Bytes& bytes, std::vector<std::size_t> ends, WriteEffort effort,
+std::string packed(const ByteValues& bytes, std::vector<std::size_t> ends, WriteEffort effort,
                    Repetitions repetitions) {
     ends.push_back(bytes.size());
-    Bytes stream;
+    ByteValues stream;
     std::size_t begin = 0;
     for (const std::size_t end : ends) {
         const std::size_t known = std::min(begin, deflate_window);
@@ -39,15 +39,15 @@ std::string packed(const Bytes& bytes, std::vector<std::size_t> ends, WriteEffor
 }
 
 /// What libdeflate makes of it, which is known to work.
-Bytes unpacked(const std::string& stream, std::size_t size) {
-    Bytes bytes(size);
+ByteValues unpacked(const std::string& stream, std::size_t size) {
+    ByteValues bytes(size);
     EXPECT_TRUE(
         inflate(std::as_bytes(std::span(stream)), std::as_writable_bytes(std::span(bytes))));
     return bytes;
 }
 
-Bytes noise(std::size_t size, unsigned values) {
-    Bytes bytes(size);
+ByteValues noise(std::size_t size, unsigned values) {
+    ByteValues bytes(size);
     std::mt19937 random(5);
     for (std::uint8_t& byte : bytes)
         byte = static_cast<std::uint8_t>(random() % values);
@@ -55,8 +55,8 @@ Bytes noise(std::size_t size, unsigned values) {
 }
 
 /// Runs, noise, and what came before again.
-Bytes mixture(std::size_t size) {
-    Bytes bytes;
+ByteValues mixture(std::size_t size) {
+    ByteValues bytes;
     std::mt19937 random(9);
     while (bytes.size() < size) {
         const std::size_t count = 1 + random() % 700;
@@ -80,18 +80,18 @@ Bytes mixture(std::size_t size) {
 }
 
 TEST(DeflatePiece, ComesBackByteForByte) {
-    std::vector<Bytes> all{{},
-                           {7},
-                           Bytes(100000, 0),
-                           noise(200000, 256),
-                           noise(200000, 2),
-                           noise(65535, 256),
-                           noise(65536, 17),
-                           mixture(300000)};
-    Bytes ramp(70000);
+    std::vector<ByteValues> all{{},
+                                {7},
+                                ByteValues(100000, 0),
+                                noise(200000, 256),
+                                noise(200000, 2),
+                                noise(65535, 256),
+                                noise(65536, 17),
+                                mixture(300000)};
+    ByteValues ramp(70000);
     std::iota(ramp.begin(), ramp.end(), std::uint8_t{0});
     all.push_back(ramp);
-    for (const Bytes& bytes : all) {
+    for (const ByteValues& bytes : all) {
         for (const WriteEffort effort : efforts) {
             for (const Repetitions repetitions : {Repetitions::sought, Repetitions::ignored}) {
                 EXPECT_EQ(unpacked(packed(bytes, {}, effort, repetitions), bytes.size()), bytes);
@@ -108,8 +108,8 @@ TEST(DeflatePiece, ComesBackByteForByte) {
 
 TEST(DeflatePiece, EveryLengthAndDistanceIsSaid) {
     // A word of its own, noise up to the distance, and the word's first bytes again.
-    const Bytes word = noise(300, 256);
-    Bytes bytes = word;
+    const ByteValues word = noise(300, 256);
+    ByteValues bytes = word;
     std::mt19937 random(3);
     for (std::size_t i = 0; i < 700; ++i) {
         const std::size_t length = 4 + i % 255;
@@ -126,11 +126,11 @@ TEST(DeflatePiece, EveryLengthAndDistanceIsSaid) {
 
 TEST(DeflatePiece, NoiseTakesHardlyMoreThanItselfAndRunsNextToNothing) {
     for (const WriteEffort effort : efforts) {
-        const Bytes random = noise(1 << 20, 256);
+        const ByteValues random = noise(1 << 20, 256);
         // 17 stored blocks have 5 bytes before them; 2 + 4 bytes are zlib's.
         EXPECT_LE(packed(random, {}, effort, Repetitions::sought).size(),
                   random.size() + 17 * 5 + 12);
-        const Bytes run(1 << 20, 9);
+        const ByteValues run(1 << 20, 9);
         EXPECT_LT(packed(run, {}, effort, Repetitions::sought).size(), 4096U);
     }
 }
@@ -138,7 +138,7 @@ TEST(DeflatePiece, NoiseTakesHardlyMoreThanItselfAndRunsNextToNothing) {
 TEST(DeflatePiece, WithoutRepetitionsBytesTakeTheirEntropy) {
     // 16 values alike: 4 bits a byte, but 5 for one of them, from which the end of a block takes
     // its code; a header of some 40 bytes for each of 17 blocks.
-    const Bytes bytes = noise(1 << 20, 16);
+    const ByteValues bytes = noise(1 << 20, 16);
     const std::size_t size = packed(bytes, {}, WriteEffort::fast, Repetitions::ignored).size();
     const std::size_t least = bytes.size() * (4 * 16 + 1) / 16 / 8;
     EXPECT_GT(size, least);
@@ -149,7 +149,7 @@ TEST(DeflatePiece, WithoutRepetitionsBytesTakeTheirEntropy) {
 }
 
 TEST(DeflatePiece, WhatWentBeforeIsPointedBackTo) {
-    Bytes bytes = noise(20000, 256);
+    ByteValues bytes = noise(20000, 256);
     bytes.insert(bytes.end(), bytes.begin(), bytes.end());
     const std::string one = packed(bytes, {20000}, WriteEffort::normal, Repetitions::sought);
     EXPECT_LT(one.size(), 20600U);
@@ -157,7 +157,7 @@ TEST(DeflatePiece, WhatWentBeforeIsPointedBackTo) {
 }
 
 TEST(DeflatePiece, MoreEffortIsNoLarger) {
-    const Bytes bytes = mixture(1 << 20);
+    const ByteValues bytes = mixture(1 << 20);
     const auto size = [&](WriteEffort effort) {
         return packed(bytes, {}, effort, Repetitions::sought).size();
     };
@@ -206,7 +206,7 @@ TEST(HuffmanCode, AlwaysHasTwoSymbols) {
 }
 
 TEST(Adler32, OfTwoPartsIsThatOfTheWhole) {
-    const Bytes bytes = noise(300000, 256);
+    const ByteValues bytes = noise(300000, 256);
     const auto all = std::as_bytes(std::span(bytes));
     for (const std::size_t cut :
          {std::size_t{0}, std::size_t{1}, std::size_t{65521}, std::size_t{299999}, bytes.size()}) {

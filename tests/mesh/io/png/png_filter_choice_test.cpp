@@ -11,7 +11,7 @@ namespace relief {
 namespace {
 
 constexpr std::size_t size = 3000;  // 500 texels of three 16-bit samples.
-constexpr std::size_t step = 6;
+constexpr std::size_t filter_step = 6;
 
 /// 30 rows and the one above, from `value(row, byte)`.
 template <typename Value>
@@ -28,7 +28,7 @@ TEST(FilterChoice, NoiseIsLeftAloneAndNotSearched) {
     std::mt19937 random(1);
     const auto rows = rows_of([&](std::size_t, std::size_t) { return random(); });
     for (const WriteEffort effort : {WriteEffort::fast, WriteEffort::normal, WriteEffort::small})
-        EXPECT_EQ(choose_filter(rows, size, step, effort).repetitions, Repetitions::ignored);
+        EXPECT_EQ(choose_filter(rows, size, filter_step, effort).repetitions, Repetitions::ignored);
 }
 
 TEST(FilterChoice, WhatChangesBySmallNoiseFromAboveIsPredictedFromAbove) {
@@ -37,33 +37,33 @@ TEST(FilterChoice, WhatChangesBySmallNoiseFromAboveIsPredictedFromAbove) {
     for (std::size_t& value : above)
         value = random();
     const auto rows = rows_of([&](std::size_t, std::size_t i) { return above[i] += random() % 8; });
-    const FilterChoice choice = choose_filter(rows, size, step, WriteEffort::normal);
+    const FilterChoice choice = choose_filter(rows, size, filter_step, WriteEffort::normal);
     EXPECT_EQ(choice.filter, 2);
 }
 
 TEST(FilterChoice, WhatChangesBySmallNoiseFromTheLeftIsPredictedFromTheLeft) {
     std::mt19937 random(3);
-    std::vector<std::size_t> last(step);
+    std::vector<std::size_t> last(filter_step);
     const auto rows = rows_of([&](std::size_t, std::size_t i) {
-        if (i < step) last[i] = random();
-        return last[i % step] += random() % 8;
+        if (i < filter_step) last[i] = random();
+        return last[i % filter_step] += random() % 8;
     });
-    const FilterChoice choice = choose_filter(rows, size, step, WriteEffort::normal);
+    const FilterChoice choice = choose_filter(rows, size, filter_step, WriteEffort::normal);
     EXPECT_EQ(choice.filter, 1);
 }
 
 TEST(FilterChoice, FewTexelsInAnyOrderStayAsTheyAre) {
     // Every texel is one of 16 of six random bytes: repetitions, which differences would break up.
     std::mt19937 random(4);
-    std::vector<std::size_t> texels(16 * step);
+    std::vector<std::size_t> texels(16 * filter_step);
     for (std::size_t& value : texels)
         value = random();
     std::size_t texel = 0;
     const auto rows = rows_of([&](std::size_t, std::size_t i) {
-        if (i % step == 0) texel = random() % 16;
-        return texels[texel * step + i % step];
+        if (i % filter_step == 0) texel = random() % 16;
+        return texels[texel * filter_step + i % filter_step];
     });
-    const FilterChoice choice = choose_filter(rows, size, step, WriteEffort::normal);
+    const FilterChoice choice = choose_filter(rows, size, filter_step, WriteEffort::normal);
     EXPECT_EQ(choice.filter, 0);
     EXPECT_EQ(choice.repetitions, Repetitions::sought);
 }

@@ -21,6 +21,7 @@ namespace relief {
 namespace {
 
 using namespace std::string_literals;
+using test::big32;
 using test::by_module;
 using test::directly;
 using test::expect_same;
@@ -28,11 +29,6 @@ using testing::HasSubstr;
 
 std::span<const std::byte> bytes_of(const std::string& text) {
     return std::as_bytes(std::span(text));
-}
-
-std::string big32(std::uint32_t value) {
-    return {static_cast<char>(value >> 24), static_cast<char>(value >> 16),
-            static_cast<char>(value >> 8), static_cast<char>(value)};
 }
 
 std::string chunk(const std::string& type, const std::string& data) {
