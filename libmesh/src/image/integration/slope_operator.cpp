@@ -14,7 +14,7 @@
 namespace relief {
 namespace {
 
-constexpr int rows_per_piece = 32;
+constexpr int rows_at_once = 32;
 
 using Beyond = LineOperator::Beyond;
 
@@ -154,11 +154,11 @@ void SlopeOperator::slopes(const double* heights, int row, double* along_x, doub
 }
 
 void SlopeOperator::transpose(const SlopeRows& slopes, double* heights) const {
-    const auto bands = static_cast<std::size_t>((height_ + rows_per_piece - 1) / rows_per_piece);
+    const auto bands = static_cast<std::size_t>((height_ + rows_at_once - 1) / rows_at_once);
     parallel_for(bands, 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t band = begin; band < end; ++band) {
-            const int first = static_cast<int>(band) * rows_per_piece;
-            transpose_band(slopes, heights, first, std::min(height_, first + rows_per_piece));
+            const int first = static_cast<int>(band) * rows_at_once;
+            transpose_band(slopes, heights, first, std::min(height_, first + rows_at_once));
         }
     });
 }
