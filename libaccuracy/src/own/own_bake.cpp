@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::size_t texels_looked_at = std::size_t{1} << 16;
 
-std::string words_of(const BakeWay& way) {
+std::string samples_words(const BakeWay& way) {
     return way.sample_degrees ? fmt::format("auto {:g}", *way.sample_degrees)
                               : fmt::format("{}", way.samples);
 }
@@ -22,16 +22,16 @@ OwnMethod method_of(const BakeWay& way, const NormalMapFormat& format, int size,
     const bool is_dithered = format.dither != Dither::none;
     const std::string depth = fmt::format("{} bit", format.bits);
     OwnMethod method;
-    method.measured.name =
-        fmt::format("{} {}, {}{}", words_of(way), words_of(way) == "1" ? "sample" : "samples",
-                    depth, is_dithered ? ", dithered" : "");
-    method.measured.choices = {{"samples", words_of(way)},
+    method.measured.name = fmt::format("{} {}, {}{}", samples_words(way),
+                                       samples_words(way) == "1" ? "sample" : "samples", depth,
+                                       is_dithered ? ", dithered" : "");
+    method.measured.choices = {{"samples", samples_words(way)},
                                {"depth", depth},
                                {"dither", is_dithered ? "blue-noise" : "none"}};
     method.measured.stored_bytes = 3.0 * format.bits / 8.0;
     method.command = fmt::format(
         "relief-bake mesh {} OUT.{} --size {} --samples {}{}{}{}", options.arguments,
-        format.bits == 32 ? "exr" : "png", size, way.sample_degrees ? "auto" : words_of(way),
+        format.bits == 32 ? "exr" : "png", size, way.sample_degrees ? "auto" : samples_words(way),
         way.sample_degrees ? fmt::format(" --sample-angle {:g}", *way.sample_degrees) : "",
         format.bits == 32 ? "" : fmt::format(" --bits {}", format.bits),
         is_dithered ? " --dither blue-noise" : "");

@@ -25,15 +25,15 @@ Scene cube_and_ring() {
 
 std::vector<DrawnMethod> edge_methods() {
     const Scene scene = cube_and_ring();
-    const auto choices = [](const char* way, const char* samples) {
+    const auto averaged_by = [](const char* way, const char* samples) {
         return std::vector<std::pair<std::string, std::string>>{{"averaged", way},
                                                                 {"samples a pixel", samples}};
     };
-    return {{"1 sample", choices("nothing", "1"), scene, 1, 1},
-            {"MSAA, 4 samples", choices("coverage", "4"), scene, 4, 1},
-            {"2 x 2 pixels", choices("pixels", "4"), scene, 1, 2},
-            {"2 x 2 pixels, MSAA", choices("coverage and pixels", "16"), scene, 4, 2},
-            {"4 x 4 pixels", choices("pixels", "16"), scene, 1, 4}};
+    return {{"1 sample", averaged_by("nothing", "1"), scene, 1, 1},
+            {"MSAA, 4 samples", averaged_by("coverage", "4"), scene, 4, 1},
+            {"2 x 2 pixels", averaged_by("pixels", "4"), scene, 1, 2},
+            {"2 x 2 pixels, MSAA", averaged_by("coverage and pixels", "16"), scene, 4, 2},
+            {"4 x 4 pixels", averaged_by("pixels", "16"), scene, 1, 4}};
 }
 
 }  // namespace

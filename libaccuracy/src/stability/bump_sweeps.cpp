@@ -8,7 +8,6 @@
 #include "analytic_words.h"
 #include "bump/bump_methods.h"
 #include "map_errors.h"
-#include "measured_methods.h"
 #include "stability/plain_code.h"
 #include "stability/stability_plan.h"
 #include "stability/sweep.h"
@@ -16,8 +15,7 @@
 namespace relief {
 namespace {
 
-constexpr double bound = 1.0;
-constexpr double wavelength = 32.0;
+constexpr double swept_wavelength = 32.0;
 
 /// One way from heights to unit normals.
 struct SlopeMethod {
@@ -29,7 +27,7 @@ struct SlopeMethod {
 SlopeMethod by_kernel(Kernel kernel, Arithmetic arithmetic) {
     const std::string name = name_of(kernel, 0);
     return {fmt::format("{}, {}", name, word_of(arithmetic)),
-            {{"kernel", name}, {"arithmetic", word_of(arithmetic)}, {"guarded", "yes"}},
+            {{"kernel", name}, {"arithmetic", word_of(arithmetic)}},
             [=](const WaveMap& wave) {
                 BumpOptions options = wave.options;
                 options.kernel = kernel;
@@ -39,14 +37,14 @@ SlopeMethod by_kernel(Kernel kernel, Arithmetic arithmetic) {
             }};
 }
 
-std::vector<SlopeMethod> all_methods() {
+std::vector<SlopeMethod> swept_slope_methods() {
     std::vector<SlopeMethod> methods;
     for (const Kernel kernel : {Kernel::sobel3, Kernel::central7}) {
         for (const Arithmetic arithmetic : {Arithmetic::float64, Arithmetic::float32})
             methods.push_back(by_kernel(kernel, arithmetic));
     }
     methods.push_back({"plain sobel3",
-                       {{"kernel", "sobel3"}, {"arithmetic", "float32"}, {"guarded", "no"}},
+                       {{"kernel", "sobel3"}, {"arithmetic", "float32"}},
                        [](const WaveMap& wave) {
                            return plain_sobel_normals(wave.heights,
                                                       static_cast<float>(wave.options.strength));
@@ -54,18 +52,11 @@ std::vector<SlopeMethod> all_methods() {
     return methods;
 }
 
-std::vector<std::string> names_of(const std::vector<SlopeMethod>& methods) {
-    std::vector<std::string> names;
-    for (const SlopeMethod& method : methods)
-        names.push_back(method.name);
-    return names;
-}
-
-int side_of(const RunOptions& options) {
+int map_side(const RunOptions& options) {
     return (options.is_quick ? 64 : 192) + 2 * wave_margin;
 }
 
-std::vector<float> degrees_of(const SlopeMethod& method, const WaveMap& wave) {
+std::vector<float> slope_degrees(const SlopeMethod& method, const WaveMap& wave) {
     return inner_angles(method.normals(wave), wave.normals, wave_margin);
 }
 
@@ -80,44 +71,37 @@ WaveMap steeper(WaveMap wave, double times) {
 /// The same heights over another zero; added in double, and then rounded to float as any file
 /// would.
 WaveMap higher(WaveMap wave, double by) {
-    for (float& height : wave.heights.as<float>())
-        height = static_cast<float>(double{height} + by);
+    for (float& texel : wave.heights.as<float>())
+        texel = static_cast<float>(double{texel} + by);
     return wave;
 }
 
-/// What both have in common, and a measurement of each method: errors of the sweeps, time on
-/// `wave`.
-void measure(const std::vector<SlopeMethod>& methods, const Sweeps& sweeps, const WaveMap& wave,
-             const RunOptions& options, Experiment& experiment) {
-    experiment.error_unit = "degrees";
+/// A measurement of each method: errors of the sweeps, time on `wave`.
+void measure_slopes(const std::vector<SlopeMethod>& methods, const Sweeps& sweeps,
+                    const WaveMap& wave, const RunOptions& options, Experiment& experiment) {
+    std::vector<MeasuredMethod> measured;
+    for (const SlopeMethod& method : methods) {
+        measured.push_back({.name = method.name,
+                            .choices = method.choices,
+                            .error = {},
+                            .work = [&wave, normals = method.normals] { normals(wave); }});
+    }
     experiment.item = "texel";
     experiment.items = static_cast<double>(wave.normals.size());
-    std::vector<MeasuredMethod> measured;
-    for (std::size_t i = 0; i < methods.size(); ++i) {
-        const bool is_plain = methods[i].name.starts_with("plain");
-        measured.push_back(
-            {.name = methods[i].name,
-             .choices = methods[i].choices,
-             .error = sweeps.figures(i),
-             .work = [&wave, normals = methods[i].normals] { normals(wave); },
-             .note = is_plain ? "Not of relief: what plain code does, for contrast." : ""});
-    }
-    measure_methods(measured, options, {.all_threads = false, .memory = false}, experiment);
-    experiment.charts = sweeps.charts();
-    experiment.finding = fmt::format("Beyond {} degree: {}", bound, sweeps.breaks());
+    measure_swept(std::move(measured), sweeps, options, experiment);
 }
 
 }  // namespace
 
 Experiment bump_by_steepness(const RunOptions& options) {
-    const WaveMap wave = oblique_wave(side_of(options), wavelength, 32);
-    const std::vector<SlopeMethod> methods = all_methods();
-    Sweeps sweeps(names_of(methods), bound);
+    const WaveMap wave = oblique_wave(map_side(options), swept_wavelength, 32);
+    const std::vector<SlopeMethod> methods = swept_slope_methods();
+    Sweeps sweeps(names_of(methods), broken_degrees);
     sweeps.add("steeper", "Steeper", "slope", 30, 2, [&](std::size_t method, double value) {
-        return degrees_of(methods[method], steeper(wave, value));
+        return slope_degrees(methods[method], steeper(wave, value));
     });
     sweeps.add("flatter", "Flatter", "1 / slope", 30, 2, [&](std::size_t method, double value) {
-        return degrees_of(methods[method], steeper(wave, 1.0 / value));
+        return slope_degrees(methods[method], steeper(wave, 1.0 / value));
     });
     Experiment experiment{
         .id = "stability/bump-steepness",
@@ -127,18 +111,18 @@ Experiment bump_by_steepness(const RunOptions& options) {
             "numerically as well",
         .input = fmt::format("{0} x {0} texels of a wave {1} texels long, at 31 slopes from 1e-30 "
                              "to 1e30; errors of all together, times at slope 1",
-                             side_of(options), wavelength)};
-    measure(methods, sweeps, wave, options, experiment);
+                             map_side(options), swept_wavelength)};
+    measure_slopes(methods, sweeps, wave, options, experiment);
     return experiment;
 }
 
 Experiment bump_by_offset(const RunOptions& options) {
-    const WaveMap wave = oblique_wave(side_of(options), wavelength, 32);
-    const std::vector<SlopeMethod> methods = all_methods();
-    Sweeps sweeps(names_of(methods), bound);
+    const WaveMap wave = oblique_wave(map_side(options), swept_wavelength, 32);
+    const std::vector<SlopeMethod> methods = swept_slope_methods();
+    Sweeps sweeps(names_of(methods), broken_degrees);
     sweeps.add("offset", "Higher", "height above zero, texels", 8, 1,
                [&](std::size_t method, double value) {
-                   return degrees_of(methods[method], higher(wave, value));
+                   return slope_degrees(methods[method], higher(wave, value));
                });
     Experiment experiment{
         .id = "stability/bump-offset",
@@ -149,8 +133,8 @@ Experiment bump_by_offset(const RunOptions& options) {
         .input =
             fmt::format("{0} x {0} texels of a wave {1} texels long and 10 high, slope 1, at 9 "
                         "heights from 1 to 1e8; errors of all together, times at 0",
-                        side_of(options), wavelength)};
-    measure(methods, sweeps, wave, options, experiment);
+                        map_side(options), swept_wavelength)};
+    measure_slopes(methods, sweeps, wave, options, experiment);
     experiment.finding +=
         " What double errs is what rounding these heights to float has done, which no method can "
         "undo: store heights from their own zero.";

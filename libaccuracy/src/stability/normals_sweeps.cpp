@@ -5,7 +5,6 @@
 
 #include <array>
 
-#include "measured_methods.h"
 #include "normals/normal_methods.h"
 #include "relief/mesh/direction_error.h"
 #include "stability/needles.h"
@@ -35,7 +34,7 @@ std::vector<NormalMethod> swept_normal_methods() {
     return methods;
 }
 
-std::vector<std::string> names_of(const std::vector<NormalMethod>& methods) {
+std::vector<std::string> normal_names(const std::vector<NormalMethod>& methods) {
     std::vector<std::string> names;
     for (const NormalMethod& method : methods)
         names.push_back(method.name());
@@ -62,26 +61,19 @@ Mesh changed(Mesh mesh, double scale, double offset) {
     return mesh;
 }
 
-/// What all have in common, and a measurement of each method: errors of the sweeps, time on `mesh`.
-void measure(const std::vector<NormalMethod>& methods, const Sweeps& sweeps, const Mesh& mesh,
-             const RunOptions& options, Experiment& experiment) {
-    experiment.error_unit = "degrees";
+/// A measurement of each method: errors of the sweeps, time on `mesh`.
+void measure_normals(const std::vector<NormalMethod>& methods, const Sweeps& sweeps,
+                     const Mesh& mesh, const RunOptions& options, Experiment& experiment) {
+    std::vector<MeasuredMethod> measured;
+    for (const NormalMethod& method : methods) {
+        measured.push_back({.name = method.name(),
+                            .choices = method.choices(),
+                            .error = {},
+                            .work = [&mesh, normals = method.normals] { normals(mesh); }});
+    }
     experiment.item = "triangle";
     experiment.items = static_cast<double>(mesh.triangles.size());
-    std::vector<MeasuredMethod> measured;
-    for (std::size_t i = 0; i < methods.size(); ++i) {
-        const bool is_plain = methods[i].weighting.starts_with("plain");
-        measured.push_back(
-            {.name = methods[i].name(),
-             .choices = methods[i].choices(),
-             .error = sweeps.figures(i),
-             .work = [&mesh, normals = methods[i].normals] { normals(mesh); },
-             .note = is_plain ? "Not of relief: what plain code does, for contrast." : ""});
-        measured.back().choices.emplace_back("guarded", is_plain ? "no" : "yes");
-    }
-    measure_methods(measured, options, {.all_threads = false, .memory = false}, experiment);
-    experiment.charts = sweeps.charts();
-    experiment.finding = fmt::format("Beyond {} degree: {}", broken_degrees, sweeps.breaks());
+    measure_swept(std::move(measured), sweeps, options, experiment);
 }
 
 constexpr const char* torus_truth =
@@ -93,7 +85,7 @@ constexpr const char* torus_truth =
 Experiment normals_by_scale(const RunOptions& options) {
     const AnalyticMesh truth = analytic_torus(options);
     const std::vector<NormalMethod> methods = swept_normal_methods();
-    Sweeps sweeps(names_of(methods), broken_degrees);
+    Sweeps sweeps(normal_names(methods), broken_degrees);
     const auto scaled = [&](bool is_larger) {
         return [&, is_larger](std::size_t method, double value) {
             const Mesh mesh = changed(truth.mesh, is_larger ? value : 1.0 / value, 0.0);
@@ -109,14 +101,14 @@ Experiment normals_by_scale(const RunOptions& options) {
         .input = fmt::format("torus of {} triangles at 31 scales from 1e-30 to 1e30; errors of all "
                              "together, times at scale 1",
                              truth.mesh.triangles.size())};
-    measure(methods, sweeps, truth.mesh, options, experiment);
+    measure_normals(methods, sweeps, truth.mesh, options, experiment);
     return experiment;
 }
 
 Experiment normals_by_offset(const RunOptions& options) {
     const AnalyticMesh truth = analytic_torus(options);
     const std::vector<NormalMethod> methods = swept_normal_methods();
-    Sweeps sweeps(names_of(methods), broken_degrees);
+    Sweeps sweeps(normal_names(methods), broken_degrees);
     sweeps.add("offset", "Farther away", "distance along each axis, in radii of the torus", 8, 1,
                [&](std::size_t method, double value) {
                    const Mesh mesh = changed(truth.mesh, 1.0, value);
@@ -129,7 +121,7 @@ Experiment normals_by_offset(const RunOptions& options) {
         .input = fmt::format("torus of {} triangles at 9 distances from 1 to 1e8; errors of all "
                              "together, times without one",
                              truth.mesh.triangles.size())};
-    measure(methods, sweeps, truth.mesh, options, experiment);
+    measure_normals(methods, sweeps, truth.mesh, options, experiment);
     experiment.finding +=
         " float64 is exact for the positions that it is given: what it errs is what rounding these "
         "to float has done, which no method can undo. Move meshes to the origin before they are "
@@ -140,7 +132,7 @@ Experiment normals_by_offset(const RunOptions& options) {
 Experiment normals_of_needles(const RunOptions& options) {
     const std::size_t count = options.is_quick ? 1000 : 4000;
     const std::vector<NormalMethod> methods = swept_normal_methods();
-    Sweeps sweeps(names_of(methods), broken_degrees);
+    Sweeps sweeps(normal_names(methods), broken_degrees);
     sweeps.add("width", "Narrower", "length over width", 12, 1,
                [&](std::size_t method, double value) {
                    const Needles needles = make_needles(count, 1.0 / value, sweep_seed);
@@ -156,7 +148,7 @@ Experiment normals_of_needles(const RunOptions& options) {
         .input = fmt::format("{} single triangles at 13 widths from 1 to 1e-12 of their length; "
                              "errors of all together, times at width 1",
                              count)};
-    measure(methods, sweeps, wide.mesh, options, experiment);
+    measure_normals(methods, sweeps, wide.mesh, options, experiment);
     return experiment;
 }
 

@@ -75,4 +75,19 @@ std::string Sweeps::breaks() const {
     return text + ".";
 }
 
+void measure_swept(std::vector<MeasuredMethod> methods, const Sweeps& sweeps,
+                   const RunOptions& options, Experiment& experiment) {
+    for (std::size_t i = 0; i < methods.size(); ++i) {
+        MeasuredMethod& method = methods[i];
+        const bool is_plain = method.name.starts_with("plain");
+        method.error = sweeps.figures(i);
+        method.choices.emplace_back("guarded", is_plain ? "no" : "yes");
+        if (is_plain) method.note = "Not of relief: what plain code does, for contrast.";
+    }
+    experiment.error_unit = "degrees";
+    measure_methods(methods, options, {.all_threads = false, .memory = false}, experiment);
+    experiment.charts = sweeps.charts();
+    experiment.finding = fmt::format("Beyond {} degree: {}", broken_degrees, sweeps.breaks());
+}
+
 }  // namespace relief

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "relief/accuracy/experiment.h"
+#include "measured_methods.h"
 
 namespace relief {
 
@@ -41,5 +41,22 @@ class Sweeps {
     std::vector<Chart> charts_;
     std::vector<std::vector<float>> degrees_;  ///< By method, all there are.
 };
+
+/// The names of methods that have a `name`.
+template <typename Method>
+std::vector<std::string> names_of(const std::vector<Method>& methods) {
+    std::vector<std::string> names;
+    for (const Method& method : methods)
+        names.push_back(method.name);
+    return names;
+}
+
+/// What experiments by sweeps end with: a measurement of each method, with its errors of all sweeps
+/// and its time on one thread, the charts, and where each method breaks.
+///
+/// \param methods  in the order of the sweeps; whose name begins with "plain" are not relief's, and
+///                 it is said of them
+void measure_swept(std::vector<MeasuredMethod> methods, const Sweeps& sweeps,
+                   const RunOptions& options, Experiment& experiment);
 
 }  // namespace relief

@@ -3,7 +3,6 @@
 // tests/accuracy/stability_experiments_test.cpp.
 #include <fmt/format.h>
 
-#include "measured_methods.h"
 #include "relief/mesh/direction_error.h"
 #include "stability/plain_code.h"
 #include "stability/stability_plan.h"
@@ -19,13 +18,6 @@ std::vector<TangentMethod> swept_tangent_methods() {
     std::erase_if(methods, [](const TangentMethod& method) { return !method.tangents; });
     methods.push_back({"plain", plain_tangents});
     return methods;
-}
-
-std::vector<std::string> names_of(const std::vector<TangentMethod>& methods) {
-    std::vector<std::string> names;
-    for (const TangentMethod& method : methods)
-        names.push_back(method.name);
-    return names;
 }
 
 TexturedMesh textured_torus(const RunOptions& options) {
@@ -66,27 +58,23 @@ std::vector<float> degrees_of(const TangentMethod& method, const TexturedMesh& t
     return degrees;
 }
 
-void measure(const std::vector<TangentMethod>& methods, const Sweeps& sweeps,
-             const TexturedMesh& truth, const RunOptions& options, Experiment& experiment) {
+void measure_tangents(const std::vector<TangentMethod>& methods, const Sweeps& sweeps,
+                      const TexturedMesh& truth, const RunOptions& options,
+                      Experiment& experiment) {
     experiment.truth =
         "the directions along which the image lies on the torus, in closed form, which neither "
         "scale nor place change; tests differentiate the surface numerically as well";
-    experiment.error_unit = "degrees";
+    std::vector<MeasuredMethod> measured;
+    for (const TangentMethod& method : methods) {
+        measured.push_back(
+            {.name = method.name,
+             .choices = {{"frames", method.name}},
+             .error = {},
+             .work = [&truth, tangents = method.tangents] { tangents(truth.mesh); }});
+    }
     experiment.item = "triangle";
     experiment.items = static_cast<double>(truth.mesh.triangles.size());
-    std::vector<MeasuredMethod> measured;
-    for (std::size_t i = 0; i < methods.size(); ++i) {
-        const bool is_plain = methods[i].name == "plain";
-        measured.push_back(
-            {.name = methods[i].name,
-             .choices = {{"frames", methods[i].name}, {"guarded", is_plain ? "no" : "yes"}},
-             .error = sweeps.figures(i),
-             .work = [&truth, tangents = methods[i].tangents] { tangents(truth.mesh); },
-             .note = is_plain ? "Not of relief: what plain code does, for contrast." : ""});
-    }
-    measure_methods(measured, options, {.all_threads = false, .memory = false}, experiment);
-    experiment.charts = sweeps.charts();
-    experiment.finding = fmt::format("Beyond {} degree: {}", broken_degrees, sweeps.breaks());
+    measure_swept(std::move(measured), sweeps, options, experiment);
 }
 
 }  // namespace
@@ -117,7 +105,7 @@ Experiment tangents_by_scale(const RunOptions& options) {
                              "31 scales each from 1e-30 to 1e30; errors of all together, times at "
                              "scale 1",
                              truth.mesh.triangles.size())};
-    measure(methods, sweeps, truth, options, experiment);
+    measure_tangents(methods, sweeps, truth, options, experiment);
     return experiment;
 }
 
@@ -142,7 +130,7 @@ Experiment tangents_by_offset(const RunOptions& options) {
                              "9 distances each from 1 to 1e8; errors of all together, times "
                              "without one",
                              truth.mesh.triangles.size())};
-    measure(methods, sweeps, truth, options, experiment);
+    measure_tangents(methods, sweeps, truth, options, experiment);
     return experiment;
 }
 

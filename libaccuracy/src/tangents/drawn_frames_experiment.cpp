@@ -9,6 +9,7 @@
 
 #include "drawn/lit_scene.h"
 #include "drawn/many_samples.h"
+#include "drawn/refined_torus.h"
 #include "measured_methods.h"
 #include "relief/mesh/analytic_heights.h"
 #include "relief/mesh/bump.h"
@@ -18,29 +19,19 @@
 namespace relief {
 namespace {
 
-/// Around the tube's circle; half as many around the tube.
-constexpr std::array slices = {24, 96, 384};
-constexpr int middle = 96;
-constexpr int true_slices = 768;
+constexpr std::array drawn_slices = {24, 96, 384};
+constexpr int middle_slices = 96;
 
-struct Choice {
+struct FrameChoice {
     const char* frames;
     TangentFrame frame;
     double stored_bytes;  ///< Of a vertex: normal, tangent and w, as floats; or the normal alone.
 };
-constexpr std::array choices = {Choice{"stored", TangentFrame::stored, 28.0},
-                                Choice{"derived", TangentFrame::derivatives, 12.0}};
-
-std::size_t triangles_of(int around) {
-    return static_cast<std::size_t>(around) * static_cast<std::size_t>(around);
-}
-
-std::string name_of(const char* frames, int around) {
-    return fmt::format("{}, {} triangles", frames, triangles_of(around));
-}
+constexpr std::array frame_choices = {FrameChoice{"stored", TangentFrame::stored, 28.0},
+                                      FrameChoice{"derived", TangentFrame::derivatives, 12.0}};
 
 /// Waves of no less than a quarter of the map: nothing that smaller levels of it would lose.
-Image waves() {
+Image wavy_normals() {
     constexpr int side = 64;
     const AnalyticHeights field =
         wave_heights(side, side, tiling_waves(side, side, 12, side / 4.0, 0.5, 1));
@@ -52,7 +43,7 @@ Image waves() {
 }
 
 /// Repeated so that its texels are as wide as high where the tube is halfway out.
-Mesh torus(int around, TangentFrame frame) {
+Mesh repeating_torus(int around, TangentFrame frame) {
     Mesh mesh = make_torus(0.4F, around, around / 2);
     for (glm::vec2& texcoord : mesh.texcoords)
         texcoord *= glm::vec2(5.0F, 2.0F);
@@ -64,69 +55,50 @@ Mesh torus(int around, TangentFrame frame) {
 Scene bumpy_torus(int around, TangentFrame frame) {
     Material material = glossy_plastic();
     material.tangent_frame = frame;
-    Scene scene = bumpy_scene(torus(around, frame), material, waves());
-    // The camera is that of the smooth one: coarse ones are a little smaller.
-    scene.camera = lit_scene(make_torus(), {}).camera;
+    Scene scene = bumpy_scene(repeating_torus(around, frame), material, wavy_normals());
+    scene.camera = torus_camera();
     return scene;
 }
 
-std::vector<DrawnMethod> methods() {
+std::vector<DrawnMethod> frame_methods() {
     std::vector<DrawnMethod> all;
-    for (const Choice& choice : choices) {
-        for (const int around : slices) {
-            all.push_back({name_of(choice.frames, around),
+    for (const FrameChoice& choice : frame_choices) {
+        for (const int around : drawn_slices) {
+            all.push_back({name_on_torus(choice.frames, around),
                            {{"frames", choice.frames},
-                            {"triangles", fmt::format("{}", triangles_of(around))}},
+                            {"triangles", fmt::format("{}", torus_triangles(around))}},
                            bumpy_torus(around, choice.frame),
                            1,
                            1,
                            choice.stored_bytes});
         }
     }
-    DrawnMethod smooth{name_of("no normal map", middle),
-                       {{"frames", "none"}, {"triangles", fmt::format("{}", triangles_of(middle))}},
-                       bumpy_torus(middle, TangentFrame::derivatives),
-                       1,
-                       1,
-                       12.0,
-                       "What a frame takes before there is a map to read."};
+    DrawnMethod smooth{
+        name_on_torus("no normal map", middle_slices),
+        {{"frames", "none"}, {"triangles", fmt::format("{}", torus_triangles(middle_slices))}},
+        bumpy_torus(middle_slices, TangentFrame::derivatives),
+        1,
+        1,
+        12.0,
+        "What a frame takes before there is a map to read."};
     smooth.scene.materials.front().normal_map.reset();
     all.push_back(std::move(smooth));
     return all;
 }
 
-Chart chart_of(const Experiment& experiment) {
-    Chart chart{.id = "triangles",
-                .title = "Error by triangles",
-                .x_label = "triangles",
-                .y_label = "FLIP"};
-    for (const Choice& choice : choices) {
-        Curve curve{.method = choice.frames};
-        for (const int around : slices) {
-            curve.points.push_back(
-                {static_cast<double>(triangles_of(around)),
-                 method_in(experiment, name_of(choice.frames, around)).error.rms});
-        }
-        curve.order = fitted_order(curve.points);
-        chart.curves.push_back(std::move(curve));
-    }
-    return chart;
-}
-
-std::string finding_of(const Experiment& experiment) {
+std::string frames_finding(const Experiment& experiment) {
     const auto at = [&](const char* frames, int around) -> const Measurement& {
-        return method_in(experiment, name_of(frames, around));
+        return method_in(experiment, name_on_torus(frames, around));
     };
     return fmt::format(
         "With {} triangles pictures are off by FLIP {:.3f} (RMS) with stored frames and {:.3f} "
-        "with "
-        "derived ones, with {} by {:.3f} and {:.3f}; frames of {} triangles took {} and {}, and {} "
-        "without a normal map.",
-        triangles_of(slices[0]), at("stored", slices[0]).error.rms,
-        at("derived", slices[0]).error.rms, triangles_of(slices[2]),
-        at("stored", slices[2]).error.rms, at("derived", slices[2]).error.rms, triangles_of(middle),
-        frame_words(at("stored", middle)), frame_words(at("derived", middle)),
-        frame_words(at("no normal map", middle)));
+        "with derived ones, with {} by {:.3f} and {:.3f}; frames of {} triangles took {} and {}, "
+        "and {} without a normal map.",
+        torus_triangles(drawn_slices[0]), at("stored", drawn_slices[0]).error.rms,
+        at("derived", drawn_slices[0]).error.rms, torus_triangles(drawn_slices[2]),
+        at("stored", drawn_slices[2]).error.rms, at("derived", drawn_slices[2]).error.rms,
+        torus_triangles(middle_slices), frame_words(at("stored", middle_slices)),
+        frame_words(at("derived", middle_slices)), frame_words(at("no normal map", middle_slices)));
 }
 
 }  // namespace
@@ -140,24 +112,28 @@ Experiment drawn_frames_experiment(const Drawing& drawing, const RunOptions& opt
         .truth = fmt::format(
             "the reference shader in double on a torus of {} triangles with MikkTSpace's tangents, "
             "one ray through the centre of each pixel; tests hold that shader to closed forms",
-            triangles_of(true_slices)),
+            torus_triangles(smooth_torus_slices)),
         .input = fmt::format("torus with a normal map of waves, {0} x {0} pixels", size),
         .error_unit = "FLIP",
         .item = "pixel",
         .items = static_cast<double>(size) * size};
     if (!drawing.is_possible_for(experiment)) return experiment;
-    const Image truth = many_samples(bumpy_torus(true_slices, TangentFrame::stored), size, 1);
-    const std::vector<DrawnMethod> all = methods();
+    const Image truth =
+        many_samples(bumpy_torus(smooth_torus_slices, TangentFrame::stored), size, 1);
+    const std::vector<DrawnMethod> all = frame_methods();
     const std::vector<DrawnPicture> pictures =
         measure_drawn(drawing, all, truth, options, experiment);
-    experiment.charts = {chart_of(experiment)};
-    for (std::size_t i = 0; i < all.size(); i += slices.size()) {
+    std::vector<std::string> ways;
+    for (const FrameChoice& choice : frame_choices)
+        ways.emplace_back(choice.frames);
+    experiment.charts = {torus_chart(experiment, ways, drawn_slices)};
+    for (std::size_t i = 0; i < all.size(); i += drawn_slices.size()) {
         experiment.pictures.push_back(
             pair_of("A normal map on few triangles", all[i].name, pictures[i].picture, truth));
         experiment.heat_maps.push_back({"Where it is seen", all[i].name, pictures[i].errors, 0.5});
     }
     mark_efficient(experiment);
-    experiment.finding = finding_of(experiment);
+    experiment.finding = frames_finding(experiment);
     return experiment;
 }
 
