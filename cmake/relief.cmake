@@ -14,13 +14,15 @@ endif()
 # soon. (Where both hold an inline function that was not inlined, the linker takes either.)
 set(is_test $<PATH:IS_PREFIX,${PROJECT_SOURCE_DIR}/tests,$<TARGET_PROPERTY:SOURCE_DIR>>)
 target_compile_options(relief_flags INTERFACE $<$<AND:$<CONFIG:Release>,${is_test}>:-O1>)
+set(is_tool $<PATH:IS_PREFIX,${PROJECT_SOURCE_DIR}/tools,$<TARGET_PROPERTY:SOURCE_DIR>>)
 if(RELIEF_SANITIZE)
     # Instrumented code is slow to compile, and two thirds of it was the tests' own: there,
-    # AddressSanitizer alone is asked for, and neither optimising nor line numbers. Instrumented,
-    # GCC 12 takes parts of std::regex for uninitialised; other builds keep the warning.
+    # AddressSanitizer alone is asked for, and neither optimising nor line numbers. Tools, which are thin,
+    # are not optimised either. Instrumented, GCC 12 takes parts of std::regex for uninitialised;
+    # other builds keep the warning.
     target_compile_options(
         relief_flags INTERFACE -fsanitize=address "$<IF:${is_test},-O0;-g0,-fsanitize=undefined>"
-                               -fno-sanitize-recover=all -fno-omit-frame-pointer
+                               "$<${is_tool}:-O0>" -fno-sanitize-recover=all -fno-omit-frame-pointer
                                -Wno-maybe-uninitialized)
     target_link_options(relief_flags INTERFACE -fsanitize=address,undefined)
 endif()

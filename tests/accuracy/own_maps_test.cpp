@@ -59,7 +59,7 @@ TEST(OwnHeights, OfFewBitsAreAlsoSmoothed) {
 
 TEST(OwnHeights, AreTriedInTheBitsAskedForAlone) {
     const BumpField field = waves(FieldCoding::bits8);
-    OwnOptions options = untimed();
+    OwnOptions options = untimed_map();
     options.map_bits = {16};
     options.smooths_steps = false;
     const OwnExperiment own = measure_own_heights(field.heights, field.options, options);

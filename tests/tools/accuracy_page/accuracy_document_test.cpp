@@ -6,11 +6,13 @@
 
 #include <fstream>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "relief/accuracy/experiment.h"
 #include "report/html_text.h"
 #include "support/shared_data.h"
+#include "tools/workplace.h"
 
 namespace relief::tools {
 namespace {
@@ -61,6 +63,44 @@ TEST(AccuracyDocument, HoldsTheErrorsThatAreMeasured) {
         }
     }
     EXPECT_GE(compared, 20U) << "the page's experiments were not found";
+}
+
+/// The commands of which the page says that they recommend something.
+std::vector<std::string> commands_of_the_page() {
+    std::ifstream file(test::source_directory() / "docs/accuracy.md");
+    std::vector<std::string> commands;
+    for (std::string line; std::getline(file, line);) {
+        const std::size_t end = line.find("` recommends ");
+        if (line.starts_with("`relief-accuracy own ") && end != std::string::npos)
+            commands.push_back(line.substr(1, end - 1));
+    }
+    return commands;
+}
+
+TEST(AccuracyDocument, HoldsTheErrorsOfTheSamplesInData) {
+    const Page page = numbers_of_the_page();
+    const test::Workplace workplace;
+    const std::vector<std::string> commands = commands_of_the_page();
+    EXPECT_EQ(commands.size(), 2U);
+    for (const std::string& command : commands) {
+        const test::ProgramResult result = workplace.run(command + " --no-times --json");
+        ASSERT_EQ(result.exit_code, 0) << command << ": " << result.error;
+        const auto report = nlohmann::ordered_json::parse(result.out);
+        std::size_t compared = 0;
+        for (const auto& one : report["experiments"]) {
+            const auto shown = page.find("`" + one["id"].get<std::string>() + "`, " +
+                                         one["input"].get<std::string>());
+            ASSERT_NE(shown, page.end()) << one["id"];
+            for (const auto& measurement : one["measurements"]) {
+                const auto row = shown->second.find(measurement["method"].get<std::string>());
+                if (row == shown->second.end()) continue;
+                EXPECT_EQ(row->second, number_text(measurement["error"]["rms"].get<double>()))
+                    << command << ": " << measurement["method"];
+                ++compared;
+            }
+        }
+        EXPECT_GE(compared, 4U) << command;
+    }
 }
 
 }  // namespace
