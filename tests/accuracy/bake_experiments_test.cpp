@@ -115,8 +115,14 @@ TEST(BakeTruth, OfManyRaysIsThatOfTheFormula) {
     EXPECT_GT(rms_of(many, all, &test::TexelTruth::mesh, -1.0), 20.0);
 }
 
+/// Run once for all tests of a process.
+const std::vector<Experiment>& quick_experiments() {
+    static const std::vector<Experiment> all = bake_experiments(test::quick_untimed());
+    return all;
+}
+
 TEST(BakeExperiments, FindFewerDegreesForMoreRays) {
-    const std::vector<Experiment> all = bake_experiments(test::quick_untimed());
+    const std::vector<Experiment>& all = quick_experiments();
     test::expect_whole(all, Subject::bake);
     const Experiment& samples = all.front();
     ASSERT_EQ(samples.id, "bake/samples");
@@ -149,7 +155,7 @@ double rms_of(const Image& map) {
 }
 
 TEST(BakeExperiments, ShowWhereMapsErrAndWhatTheyLookLike) {
-    const std::vector<Experiment> all = bake_experiments(test::quick_untimed());
+    const std::vector<Experiment>& all = quick_experiments();
     for (const Experiment& one : all) {
         ASSERT_EQ(one.heat_maps.size(), 3U) << one.id;
         for (const HeatMap& map : one.heat_maps) {
@@ -168,7 +174,7 @@ TEST(BakeExperiments, ShowWhereMapsErrAndWhatTheyLookLike) {
 }
 
 TEST(BakeExperiments, FindThatRaysPayWhereTheFirstDiffer) {
-    const std::vector<Experiment> all = bake_experiments(test::quick_untimed());
+    const std::vector<Experiment>& all = quick_experiments();
     const Experiment& adaptive = all.back();
     ASSERT_EQ(adaptive.id, "bake/adaptive");
     const std::vector<CurvePoint>& points =

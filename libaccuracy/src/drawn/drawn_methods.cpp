@@ -24,10 +24,19 @@ Image drawn(Renderer& renderer, const DrawnMethod& method) {
     return to_srgb(averaged(to_linear(picture), method.pixels_a_side), 8);
 }
 
-Timing in_seconds(std::vector<double> milliseconds) {
-    for (double& time : milliseconds)
-        time *= 1e-3;
-    return {std::move(milliseconds)};
+/// Single frames take less than a slice of the scheduler's (measure.cpp).
+constexpr std::size_t frames_in_a_round = 4;
+
+/// Means of as many neighbouring frames.
+Timing rounds_of(const std::vector<double>& milliseconds) {
+    Timing timing;
+    for (std::size_t i = 0; i + frames_in_a_round <= milliseconds.size(); i += frames_in_a_round) {
+        double sum = 0.0;
+        for (std::size_t k = 0; k < frames_in_a_round; ++k)
+            sum += milliseconds[i + k];
+        timing.rounds.push_back(1e-3 * sum / static_cast<double>(frames_in_a_round));
+    }
+    return timing;
 }
 
 /// All methods' frames in turns.
@@ -37,8 +46,9 @@ std::vector<Timing> timings(std::span<const std::unique_ptr<Renderer>> renderers
     for (const std::unique_ptr<Renderer>& renderer : renderers)
         pointers.push_back(renderer.get());
     std::vector<Timing> result;
-    for (FrameSeries& series : time_frames(pointers, camera, repeats))
-        result.push_back(in_seconds(std::move(series.draw)));
+    const Repeats frames{frames_in_a_round * repeats.counted, repeats.warm_up};
+    for (const FrameSeries& series : time_frames(pointers, camera, frames))
+        result.push_back(rounds_of(series.draw));
     return result;
 }
 

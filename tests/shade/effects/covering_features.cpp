@@ -18,20 +18,45 @@ FeatureField field(const char* name) {
 
 constexpr unsigned most_values = 4;
 
-/// A pair of fields with their values as a number.
-std::vector<std::size_t> pairs(const Features& f) {
-    const auto& fields = feature_fields();
-    std::vector<std::size_t> result;
-    for (std::size_t i = 0; i < fields.size(); ++i) {
-        const unsigned a = fields[i].get(f);
-        for (std::size_t j = i + 1; j < fields.size(); ++j) {
-            const unsigned b = fields[j].get(f);
-            result.push_back((i * fields.size() + j) * most_values * most_values + a * most_values +
-                             b);
+/// One set, and how many pairs it would bring at the most: what it would have brought when that was
+/// counted last, since pairs only become fewer.
+struct Candidate {
+    const Features* features;
+    std::vector<unsigned char> values;  ///< Of each field.
+    std::size_t bound = static_cast<std::size_t>(-1);
+};
+
+/// Which pairs of fields have met with which values.
+class CoveredPairs {
+  public:
+    explicit CoveredPairs(std::size_t fields)
+        : fields_(fields), met_(fields * fields * most_values * most_values, 0) {}
+
+    [[nodiscard]] std::size_t fresh_in(const std::vector<unsigned char>& values) const {
+        std::size_t fresh = 0;
+        const unsigned char* const met = met_.data();
+        for (std::size_t i = 0; i < fields_; ++i) {
+            for (std::size_t j = i + 1; j < fields_; ++j)
+                fresh += met[place(i, j, values[i], values[j])] == 0 ? 1U : 0U;
+        }
+        return fresh;
+    }
+    void add(const std::vector<unsigned char>& values) {
+        for (std::size_t i = 0; i < fields_; ++i) {
+            for (std::size_t j = i + 1; j < fields_; ++j)
+                met_[place(i, j, values[i], values[j])] = 1;
         }
     }
-    return result;
-}
+
+  private:
+    [[nodiscard]] std::size_t place(std::size_t i, std::size_t j, std::size_t a,
+                                    std::size_t b) const {
+        return ((i * fields_ + j) * most_values + a) * most_values + b;
+    }
+
+    std::size_t fields_;
+    std::vector<unsigned char> met_;
+};
 
 }  // namespace
 
@@ -92,19 +117,24 @@ void for_random_features(std::size_t count, const std::function<void(const Featu
 std::vector<Features> covering_features() {
     std::set<Features> canonical_sets;
     for_random_features(40000, [&](const Features& f) { canonical_sets.insert(canonical(f)); });
-    const std::size_t fields = feature_fields().size();
-    std::vector<bool> covered(fields * fields * most_values * most_values, false);
+    std::vector<Candidate> candidates;
+    for (const Features& f : canonical_sets) {
+        Candidate candidate{&f, {}};
+        for (const FeatureField& field : feature_fields())
+            candidate.values.push_back(static_cast<unsigned char>(field.get(f)));
+        candidates.push_back(std::move(candidate));
+    }
+    CoveredPairs covered(feature_fields().size());
     std::vector<Features> chosen;
     // Passes with a falling bar: cheaper than the true greedy choice, and nearly as small.
     for (std::size_t bar = 400; bar > 0; bar = bar > 8 ? bar * 3 / 4 : bar - 1) {
-        for (const Features& f : canonical_sets) {
-            const std::vector<std::size_t> all = pairs(f);
-            const auto fresh = static_cast<std::size_t>(std::count_if(
-                all.begin(), all.end(), [&](std::size_t pair) { return !covered[pair]; }));
-            if (fresh < bar) continue;
-            for (const std::size_t pair : all)
-                covered[pair] = true;
-            chosen.push_back(f);
+        for (Candidate& candidate : candidates) {
+            if (candidate.bound < bar) continue;
+            candidate.bound = covered.fresh_in(candidate.values);
+            if (candidate.bound < bar) continue;
+            covered.add(candidate.values);
+            chosen.push_back(*candidate.features);
+            candidate.bound = 0;
         }
     }
     return chosen;

@@ -256,10 +256,12 @@ TEST_F(SceneFile, SettingsOfThePicture) {
 
 TEST_F(SceneFile, NestsNodesTwoHundredDeepAndNoMore) {
     const auto nested = [](int levels) {
-        std::string text = "\"nodes\": [{}]";
+        std::string text = "\"nodes\": ";
         for (int i = 1; i < levels; ++i)
-            text =
-                "\"nodes\": [{\"translation\": [1, 0, 0], \"children\": " + text.substr(9) + "}]";
+            text += "[{\"translation\": [1, 0, 0], \"children\": ";
+        text += "[{}]";
+        for (int i = 1; i < levels; ++i)
+            text += "}]";
         return text;
     };
     EXPECT_EQ(load(nested(200)).nodes.size(), 200U);

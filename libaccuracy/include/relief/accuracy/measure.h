@@ -24,9 +24,8 @@ struct CostChoice {
 ///
 /// \param works    each does its whole job once and lets its result go; results must not depend on
 ///                 how often it was run
-/// \param repeats  of those that count; a work of less than a millisecond is repeated within a
-/// round
-///                 until it takes that, and the time is divided
+/// \param options  its repeats are those that count; a work of less than 4 milliseconds is repeated
+///                 within a round until it takes that, and the time is divided
 /// \return in the order of the works; nothing measured where options.is_timed is false
 ///
 /// The thread limit is options.threads afterwards. Memory is what the process held
