@@ -87,8 +87,12 @@ relief_precompile(relief_precompiled)
 # hook by which it follows thread-local storage: that is off. Two kinds of environment, because
 # gtest_discover_tests takes lists apart.
 set(leak_options suppressions=${PROJECT_SOURCE_DIR}/tests/support/lsan.supp:print_suppressions=0)
+set(test_seconds 300)
+if(RELIEF_SANITIZE)
+    set(test_seconds 900)
+endif()
 set(RELIEF_TEST_PROPERTIES
-    TIMEOUT 300 ENVIRONMENT MESA_SHADER_CACHE_DISABLE=true ENVIRONMENT_MODIFICATION
+    TIMEOUT ${test_seconds} ENVIRONMENT MESA_SHADER_CACHE_DISABLE=true ENVIRONMENT_MODIFICATION
     LSAN_OPTIONS=set:intercept_tls_get_addr=0:${leak_options})
 
 # relief_add_tests(NAME sources... [LIBRARIES ...]): one GoogleTest program; each test
