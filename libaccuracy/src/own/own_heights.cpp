@@ -55,7 +55,8 @@ std::vector<BumpMethod> methods_for(const KernelChoice& choice, const OwnOptions
     constexpr int most_bits_with_steps = 12;
     const int radius = best_gaussian_radius(choice);
     const std::array as_is = {false};
-    std::vector<BumpMethod> methods = bump_methods(radius, options.map_bits, arithmetics_tried, as_is);
+    std::vector<BumpMethod> methods =
+        bump_methods(radius, options.map_bits, arithmetics_tried, as_is);
     const bool has_steps = choice.depth.bits > 0 && choice.depth.bits <= most_bits_with_steps;
     if (!has_steps || !options.smooths_steps) return methods;
     const std::array smooth = {true};

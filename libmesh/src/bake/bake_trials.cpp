@@ -13,7 +13,6 @@
 namespace relief {
 namespace {
 
-
 /// Some rows whose truth is known.
 struct Band {
     BakeRowRange rows;
