@@ -3,7 +3,6 @@
 /// Things that are timed in turns, so that a machine's drift hits all alike.
 #pragma once
 
-#include <chrono>
 #include <cstddef>
 #include <functional>
 #include <string>
@@ -23,11 +22,8 @@ struct Contender {
 /// Runs all in turn, so many rounds after `warm_up`, and keeps what each took.
 inline void measure(std::vector<Contender>& all, std::size_t rounds, std::size_t warm_up = 2) {
     interleave(all.size(), {rounds, warm_up}, [&](std::size_t i, bool counted) {
-        const auto begin = std::chrono::steady_clock::now();
-        all[i].run();
-        const std::chrono::duration<double, std::nano> taken =
-            std::chrono::steady_clock::now() - begin;
-        if (counted) all[i].nanoseconds.push_back(taken.count());
+        const double taken = seconds_of(all[i].run);
+        if (counted) all[i].nanoseconds.push_back(1e9 * taken);
     });
 }
 

@@ -6,7 +6,6 @@
 #include <tiny_gltf.h>
 #include <tiny_obj_loader.h>
 
-#include <chrono>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -90,10 +89,10 @@ int run(int argc, char** argv) {
     const Mesh mesh = bumpy_sphere(triangles);
     std::vector<Reading> all = readings(folder, mesh);
     interleave(all.size(), {rounds, 1}, [&](std::size_t i, bool counted) {
-        const auto begin = std::chrono::steady_clock::now();
+        const Stopwatch stopwatch;
         if (all[i].run() == 0) std::abort();
-        const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin;
-        if (counted) all[i].seconds.push_back(taken.count());
+        const double taken = stopwatch.seconds();
+        if (counted) all[i].seconds.push_back(taken);
     });
     fmt::print(
         "{} triangles with normals and texture coordinates; median of {} rounds in turns\n\n",

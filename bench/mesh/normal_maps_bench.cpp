@@ -3,7 +3,6 @@
 // all alike: nanoseconds a texel, files left out. The figures of docs/normal-maps.md.
 #include <fmt/format.h>
 
-#include <chrono>
 #include <functional>
 #include <string>
 #include <vector>
@@ -89,11 +88,8 @@ int main(int argc, char** argv) {
     std::vector<std::vector<double>> times(things.size());
     interleave(things.size(), {}, [&](std::size_t thing, bool counted) {
         things[thing].prepare();
-        const auto start = std::chrono::steady_clock::now();
-        things[thing].once();
-        const std::chrono::duration<double, std::nano> taken =
-            std::chrono::steady_clock::now() - start;
-        if (counted) times[thing].push_back(taken.count() / (double{side} * side));
+        const double taken = seconds_of(things[thing].once);
+        if (counted) times[thing].push_back(1e9 * taken / (double{side} * side));
     });
     for (std::size_t i = 0; i < things.size(); ++i) {
         const Spread spread = spread_of(times[i]);

@@ -4,7 +4,6 @@
 // shapes` what crowded shapes take.
 #include <fmt/format.h>
 
-#include <chrono>
 #include <cstdlib>
 #include <fstream>
 #include <functional>
@@ -69,13 +68,6 @@ Contender ours(const Mesh& mesh, const std::string& name, Method method, unsigne
                 set_thread_limit(0);
             },
             {}};
-}
-
-double timed(const std::function<void()>& work) {
-    const auto begin = std::chrono::steady_clock::now();
-    work();
-    return std::chrono::duration<double, std::nano>(std::chrono::steady_clock::now() - begin)
-        .count();
 }
 
 /// A line of /proc/self/status, in MiB; 0 where there is none.
@@ -148,7 +140,7 @@ void print_shapes() {
         const auto seconds = [&](Method method, unsigned threads) {
             Contender contender = ours(shape.mesh, "", method, threads);
             for (int round = 0; round < 5; ++round)
-                contender.nanoseconds.push_back(timed(contender.run));
+                contender.nanoseconds.push_back(1e9 * seconds_of(contender.run));
             return spread_of(contender.nanoseconds).median * 1e-9;
         };
         fmt::print("| {} | {:.3f} | {:.3f} | {:.3f} |\n", shape.name,

@@ -96,6 +96,18 @@ TEST_F(BakeAccuracy, RefusesWhatNothingKeepsAndStopsWhereCodesAloneAreWorse) {
     EXPECT_EQ(workplace.outputs(), "");
 }
 
+TEST_F(BakeAccuracy, ErrorsOfNoTexelKeepNoBound) {
+    // Beside the low square, so that no ray meets it.
+    workplace.write("high.obj", "v 50 0 0\nv 51 0 0\nv 50 1 0\nf 1 2 3\n");
+    for (const char* option : {"--max-error 5", "--compare"}) {
+        const ProgramResult result = workplace.run(
+            std::string("relief-bake mesh high.obj low.obj out/map.png --size 32 ") + option);
+        EXPECT_EQ(result.exit_code, 1);
+        EXPECT_THAT(result.error, HasSubstr("no texel that was looked at has a normal"));
+        EXPECT_EQ(workplace.outputs(), "");
+    }
+}
+
 TEST_F(BakeAccuracy, ComparesEverySampleCountAndDepth) {
     const json report = baked("--compare");
     const json& all = report["comparison"];

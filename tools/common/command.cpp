@@ -193,7 +193,7 @@ void Stages::clear_progress() const {
 }
 
 Stages::Running::Running(Stages& stages, const std::string& name, const std::string& shown)
-    : stages_(stages), index_(stages.index_of(name)), start_(std::chrono::steady_clock::now()) {
+    : stages_(stages), index_(stages.index_of(name)) {
     if (stages.show_) {
         fmt::print(stderr, "\r\033[K{} ...", shown);
         std::fflush(stderr);
@@ -201,9 +201,7 @@ Stages::Running::Running(Stages& stages, const std::string& name, const std::str
 }
 
 Stages::Running::~Running() {
-    const std::chrono::duration<double, std::milli> spent =
-        std::chrono::steady_clock::now() - start_;
-    stages_.finished_[index_].milliseconds += spent.count();
+    stages_.finished_[index_].milliseconds += 1e3 * stopwatch_.seconds();
     stages_.clear_progress();
 }
 

@@ -7,7 +7,6 @@
 /// the data or the command line is at fault. Tests: tests/tools/command_test.cpp.
 #pragma once
 
-#include <chrono>
 #include <filesystem>
 #include <functional>
 #include <stdexcept>
@@ -17,6 +16,7 @@
 #include <vector>
 
 #include "relief/mesh/error.h"
+#include "relief/mesh/timing.h"
 
 /// The parser of command lines: a heavy header, for the few files that call it.
 namespace CLI {
@@ -117,7 +117,7 @@ class Stages {
       private:
         Stages& stages_;
         std::size_t index_;
-        std::chrono::steady_clock::time_point start_;
+        Stopwatch stopwatch_;
     };
 
     std::size_t index_of(const std::string& name);

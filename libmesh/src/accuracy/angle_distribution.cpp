@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "accuracy/angle_sum.h"
+
 namespace relief {
 namespace {
 
@@ -33,17 +35,15 @@ AngleDistribution angle_distribution(std::vector<float> degrees) {
     result.count = degrees.size();
     result.undefined = all - degrees.size();
     if (degrees.empty()) return result;
-    double squares = 0.0;
+    AngleMoments moments;
     for (const float angle : degrees) {
         const auto value = static_cast<double>(angle);
-        squares += value * value;
-        result.mean += value;
-        result.max = std::max(result.max, value);
+        moments.add(value);
         ++result.histogram[bin_of(value)];
     }
-    const auto count = static_cast<double>(result.count);
-    result.rms = std::sqrt(squares / count);
-    result.mean /= count;
+    result.rms = moments.rms();
+    result.mean = moments.mean();
+    result.max = moments.max();
     result.median = percentile(degrees, 50);
     result.p90 = percentile(degrees, 90);
     result.p99 = percentile(degrees, 99);

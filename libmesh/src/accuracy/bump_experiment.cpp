@@ -32,7 +32,6 @@ struct Trial {
     std::vector<std::vector<glm::dvec3>> truth;
     BumpOptions bump;
     int margin = 0;  ///< Texels along the border that are not compared: there, parts are no maps.
-    double smoothing_seconds = 0.0;
 
     [[nodiscard]] std::int64_t texels() const {
         std::int64_t sum = 0;
@@ -49,11 +48,16 @@ BumpOptions options_of(const BumpMethod& method, BumpOptions bump) {
     return bump;
 }
 
-void smooth(Trial& trial) {
-    trial.smoothing_seconds = seconds_of([&] {
-        for (const Image& part : trial.heights)
-            trial.smooth.push_back(destaircase(part, {.wrap = trial.bump.wrap}).heights);
-    });
+bool is_any_destaircased(std::span<const BumpMethod> methods) {
+    return std::any_of(methods.begin(), methods.end(),
+                       [](const BumpMethod& method) { return method.destaircased; });
+}
+
+std::vector<Image> smoothed_heights(const Trial& trial) {
+    std::vector<Image> smooth;
+    for (const Image& part : trial.heights)
+        smooth.push_back(destaircase(part, {.wrap = trial.bump.wrap}).heights);
+    return smooth;
 }
 
 std::vector<glm::dvec3> vectors_of(const Image& normals) {
@@ -127,49 +131,68 @@ void mark_efficient(std::vector<BumpMeasurement>& all) {
         all[i].is_efficient = marks[i];
 }
 
-/// Runs all methods on a trial that has its truth.
-std::vector<BumpMeasurement> measured(std::span<const BumpMethod> methods, const Trial& trial,
-                                      const BumpExperimentOptions& options) {
-    std::vector<BumpMeasurement> results(methods.size());
+NormalMapFormat format_of(const BumpMethod& method, NormalMapFormat format) {
+    format.bits = method.bits;
+    return format;
+}
+
+void convert_parts(const Trial& trial, const BumpMethod& method, const NormalMapFormat& format,
+                   std::vector<Image>& maps) {
+    const std::vector<Image>& heights = method.destaircased ? trial.smooth : trial.heights;
+    maps.resize(heights.size());
+    Report ignored;
+    for (std::size_t part = 0; part < heights.size(); ++part)
+        normal_map_from_height(heights[part], options_of(method, trial.bump),
+                               format_of(method, format), maps[part], ignored);
+}
+
+/// Adds the times of so many rounds. In each, steps are smoothed away first, once for all methods
+/// that want it: their times then drift with the machine as those of the others do.
+void take_times(std::span<const BumpMethod> methods, const Trial& trial,
+                const BumpExperimentOptions& options, BumpExperiment& experiment) {
+    const std::size_t smoothings = is_any_destaircased(methods) ? 1 : 0;
+    std::vector<double> smoothing;
     std::vector<std::vector<double>> times(methods.size());
+    std::vector<Image> maps;
+    interleave(smoothings + methods.size(), options.repeats, [&](std::size_t turn, bool counted) {
+        if (turn < smoothings) {
+            const double seconds = seconds_of([&] { smoothed_heights(trial); });
+            if (counted) smoothing.push_back(seconds);
+            return;
+        }
+        const std::size_t i = turn - smoothings;
+        // Whatever shape the memory had last, it fits from here on.
+        convert_parts(trial, methods[i], options.format, maps);
+        const double seconds =
+            seconds_of([&] { convert_parts(trial, methods[i], options.format, maps); });
+        if (counted)
+            times[i].push_back(seconds + (methods[i].destaircased ? smoothing.back() : 0.0));
+    });
+    experiment.smoothing = spread_of(smoothing);
     const auto texels = static_cast<double>(trial.texels());
-    const auto convert = [&](std::size_t i, std::vector<Image>& maps) {
-        const BumpMethod& method = methods[i];
-        NormalMapFormat format = options.format;
-        format.bits = method.bits;
-        const std::vector<Image>& heights = method.destaircased ? trial.smooth : trial.heights;
-        maps.resize(heights.size());
-        Report ignored;
-        for (std::size_t part = 0; part < heights.size(); ++part)
-            normal_map_from_height(heights[part], options_of(method, trial.bump), format,
-                                   maps[part], ignored);
-    };
+    for (std::size_t i = 0; i < methods.size(); ++i) {
+        BumpMeasurement& one = experiment.measurements[i];
+        one.seconds = spread_of(times[i]);
+        if (one.seconds.median > 0.0) one.megapixels_per_second = texels / one.seconds.median / 1e6;
+    }
+}
+
+/// Runs all methods on a trial that has its truth.
+void measure_methods(std::span<const BumpMethod> methods, const Trial& trial,
+                     const BumpExperimentOptions& options, BumpExperiment& experiment) {
+    experiment.measurements.resize(methods.size());
     std::vector<Image> maps;
     for (std::size_t i = 0; i < methods.size(); ++i) {
-        convert(i, maps);
-        NormalMapFormat format = options.format;
-        format.bits = methods[i].bits;
+        convert_parts(trial, methods[i], options.format, maps);
         std::vector<float> angles;
         for (std::size_t part = 0; part < maps.size(); ++part)
-            add_angles(maps[part], format, trial.truth[part], trial.margin, angles);
-        results[i].method = methods[i];
-        results[i].error = angle_distribution(std::move(angles));
+            add_angles(maps[part], format_of(methods[i], options.format), trial.truth[part],
+                       trial.margin, angles);
+        experiment.measurements[i].method = methods[i];
+        experiment.measurements[i].error = angle_distribution(std::move(angles));
     }
-    if (options.repeats.counted > 0) {
-        interleave(methods.size(), options.repeats, [&](std::size_t i, bool counted) {
-            convert(i, maps);  // Whatever shape the memory had last, it fits from here on.
-            const double seconds = seconds_of([&] { convert(i, maps); });
-            if (!counted) return;
-            times[i].push_back(seconds + (methods[i].destaircased ? trial.smoothing_seconds : 0));
-        });
-    }
-    for (std::size_t i = 0; i < methods.size(); ++i) {
-        results[i].seconds = spread_of(times[i]);
-        if (results[i].seconds.median > 0.0)
-            results[i].megapixels_per_second = texels / results[i].seconds.median / 1e6;
-    }
-    mark_efficient(results);
-    return results;
+    if (options.repeats.counted > 0) take_times(methods, trial, options, experiment);
+    mark_efficient(experiment.measurements);
 }
 
 double error_of(const BumpMeasurement& measurement, ErrorKind kind) {
@@ -267,14 +290,12 @@ BumpExperiment measure_bump(const BumpSample& sample, std::span<const BumpMethod
         const Image& part = sample.measured.front();
         trial.margin = std::min({16, (part.width - 1) / 2, (part.height - 1) / 2});
     }
-    const auto is_destaircased = [](const BumpMethod& method) { return method.destaircased; };
-    if (is_destaircased(*experiment.reference.method) ||
-        std::any_of(methods.begin(), methods.end(), is_destaircased))
-        smooth(trial);
+    if (experiment.reference.method->destaircased || is_any_destaircased(methods))
+        trial.smooth = smoothed_heights(trial);
     take_reference(experiment.reference, trial);
     experiment.texels = trial.texels();
     experiment.is_whole = sample.is_whole;
-    experiment.measurements = measured(methods, trial, options);
+    measure_methods(methods, trial, options, experiment);
     return experiment;
 }
 
@@ -287,10 +308,10 @@ BumpExperiment measure_bump(const BumpField& field, std::span<const BumpMethod> 
     Trial trial;
     trial.bump = options.bump;
     trial.heights.push_back(field.heights);
-    smooth(trial);
+    if (is_any_destaircased(methods)) trial.smooth = smoothed_heights(trial);
     trial.truth.push_back(field.normals);
     experiment.texels = trial.texels();
-    experiment.measurements = measured(methods, trial, options);
+    measure_methods(methods, trial, options, experiment);
     return experiment;
 }
 

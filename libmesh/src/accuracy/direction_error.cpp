@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+// Angles by atan2 in double, and their sums, in degrees. Unlike angle_distribution(), which counts
+// what is no angle apart, one NaN makes all three sums NaN: there is no place here to tell of it.
 // Tests: tests/mesh/accuracy/direction_error_test.cpp.
 #include "relief/mesh/direction_error.h"
 
@@ -8,6 +10,7 @@
 #include <limits>
 #include <numbers>
 
+#include "accuracy/angle_sum.h"
 #include "relief/mesh/error.h"
 
 namespace relief {
@@ -28,21 +31,12 @@ DirectionError direction_error(std::span<const glm::vec3> directions,
         throw InvalidInput(fmt::format("{} directions cannot be compared with {}",
                                        directions.size(), truth.size()));
     }
-    DirectionError error;
-    double squares = 0.0;
+    AngleMoments angles;
     for (std::size_t i = 0; i < directions.size(); ++i) {
         if (!counts.empty() && counts[i] == 0) continue;
-        const double degrees = degrees_between(glm::dvec3(directions[i]), truth[i]);
-        squares += degrees * degrees;
-        error.mean += degrees;
-        // Written so that NaN stays.
-        if (!(degrees <= error.max)) error.max = degrees;
-        ++error.count;
+        angles.add(degrees_between(glm::dvec3(directions[i]), truth[i]));
     }
-    if (error.count == 0) return error;
-    const auto count = static_cast<double>(error.count);
-    error.rms = std::sqrt(squares / count);
-    error.mean /= count;
+    DirectionError error{angles.rms(), angles.mean(), angles.max(), angles.count()};
     if (std::isnan(error.mean)) error.max = error.mean;
     return error;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A clock; order statistics of repeated measurements, in whatever unit they come, and the order in
+// Seconds; order statistics of repeated measurements, in whatever unit they come, and the order in
 // which they are taken. Series of different lengths throw InvalidInput.
 // Tests: tests/mesh/accuracy/timing_test.cpp.
 #include "relief/mesh/timing.h"
@@ -7,7 +7,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 
 #include "relief/mesh/error.h"
@@ -33,9 +32,9 @@ Spread spread_of(std::vector<double> values) {
 }
 
 double seconds_of(const std::function<void()>& work) {
-    const auto begin = std::chrono::steady_clock::now();
+    const Stopwatch stopwatch;
     work();
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    return stopwatch.seconds();
 }
 
 void interleave(std::size_t things, const Repeats& repeats,

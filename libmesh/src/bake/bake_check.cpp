@@ -75,6 +75,7 @@ void summarise(const CheckSums& sums, BakeCheck& check) {
         static_cast<double>(sums.stages[index(BakeStage::quantisation)].summary().count);
     const double more = sums.object_squares - sums.tangent_squares;
     if (!(more > 0.0)) return;
+    // No mean of angles: what one mean square has more than another.
     basis.rms = std::sqrt(more / texels);
     basis.share = codes.share * more / sums.object_squares;
     codes.share -= basis.share;

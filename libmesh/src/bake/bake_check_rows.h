@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "bake/angle_sum.h"
+#include "accuracy/angle_sum.h"
 #include "relief/mesh/bake_check.h"
 
 namespace relief {

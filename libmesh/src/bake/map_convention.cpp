@@ -8,6 +8,7 @@
 #include <cmath>
 #include <map>
 
+#include "accuracy/angle_sum.h"
 #include "geometry/direction.h"
 #include "parallel.h"
 #include "relief/mesh/direction_error.h"
@@ -110,10 +111,10 @@ class Readings {
         std::sort(degrees.begin(), degrees.end());
         const auto count =
             static_cast<std::size_t>(std::ceil(kept_share * static_cast<double>(degrees.size())));
-        double squares = 0.0;
+        AngleMoments kept;
         for (std::size_t i = 0; i < count; ++i)
-            squares += degrees[i] * degrees[i];
-        return count > 0 ? std::sqrt(squares / static_cast<double>(count)) : 0.0;
+            kept.add(degrees[i]);
+        return kept.rms();
     }
 
     const Corners& tangents_by(MapBasis basis) {

@@ -4,13 +4,13 @@
 // Tests: tests/shade/compare/angle_difference_test.cpp.
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 #include <glm/glm.hpp>
-#include <numbers>
 #include <span>
 
 #include "parallel.h"
+#include "relief/mesh/angle_distribution.h"
+#include "relief/mesh/direction_error.h"
 #include "relief/mesh/error.h"
 #include "relief/shade/image_compare.h"
 
@@ -28,10 +28,6 @@ glm::dvec3 direction(std::span<const float> samples, std::size_t texel) {
 bool has_direction(const glm::dvec3& vector) {
     const double squared = glm::dot(vector, vector);
     return std::isfinite(squared) && squared > 0.0;
-}
-
-double degrees(const glm::dvec3& a, const glm::dvec3& b) {
-    return std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b)) * 180.0 / std::numbers::pi;
 }
 
 void check(const Image& a, const Image& b) {
@@ -66,25 +62,20 @@ AngleDifference angle_difference(const Image& a, const Image& b) {
             const glm::dvec3 e = direction(to, i);
             const bool one = has_direction(d);
             const bool other = has_direction(e);
-            const double angle = one && other ? degrees(d, e) : (one == other ? 0.0 : 180.0);
+            const double angle =
+                one && other ? degrees_between(d, e) : (one == other ? 0.0 : 180.0);
             map[i] = static_cast<float>(angle);
         }
     });
 
-    double sum = 0.0;
     for (std::size_t i = 0; i < map.size(); ++i) {
-        sum += static_cast<double>(map[i]);
         if (!has_direction(direction(from, i)) || !has_direction(direction(to, i)))
             ++result.undefined;
     }
-    result.mean = sum / static_cast<double>(map.size());
-    std::vector<float> sorted(map.begin(), map.end());
-    // The smallest angle that at least 99 of 100 texels do not exceed.
-    const std::size_t rank = (sorted.size() * 99 + 99) / 100 - 1;
-    const auto at = sorted.begin() + static_cast<std::ptrdiff_t>(rank);
-    std::ranges::nth_element(sorted, at);
-    result.p99 = static_cast<double>(*at);
-    result.max = static_cast<double>(*std::max_element(at, sorted.end()));
+    const AngleDistribution angles = angle_distribution({map.begin(), map.end()});
+    result.mean = angles.mean;
+    result.p99 = angles.p99;
+    result.max = angles.max;
     return result;
 }
 

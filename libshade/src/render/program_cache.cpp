@@ -11,8 +11,8 @@
 #include <utility>
 
 #include "effects/surface_program.h"
+#include "relief/mesh/timing.h"
 #include "relief/shade/error.h"
-#include "render/stopwatch.h"
 
 namespace relief {
 
@@ -76,14 +76,14 @@ std::shared_ptr<const DrawProgram> ProgramCache::get(const Features& features) {
     if (const auto known = programs_.find(features); known != programs_.end())
         entry = known->second;
     if (!entry) {
-        Stopwatch stopwatch;
+        const Stopwatch stopwatch;
         const SurfaceProgram source = surface_program(features);
         entry = std::make_shared<const DrawProgram>(
             DrawProgram{link(*api_, fmt::format("surface ({})", describe(features)), source.vertex,
                              source.fragment),
                         planned_interface(features)});
         programs_.emplace(features, entry);
-        milliseconds_ += stopwatch.lap();
+        milliseconds_ += 1e3 * stopwatch.seconds();
     }
     return entry;
 }

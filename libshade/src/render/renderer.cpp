@@ -15,6 +15,7 @@
 
 #include "progress_stage.h"
 #include "relief/mesh/error.h"
+#include "relief/mesh/timing.h"
 #include "render/draw_values.h"
 #include "render/gpu_cache.h"
 #include "render/light_storage.h"
@@ -23,7 +24,6 @@
 #include "render/picture.h"
 #include "render/scene_textures.h"
 #include "render/sorted_triangles.h"
-#include "render/stopwatch.h"
 
 namespace relief {
 
@@ -140,12 +140,12 @@ Renderer::Implementation::Implementation(const Context& context, const Scene& sc
       counts_fragments(settings.view == DebugView::overdraw) {
     report_missing_texcoords(scene, plan, report);
 
-    Stopwatch stopwatch;
+    Stopwatch stopwatch;  // Not OpenGL's timer queries: they are wrong on llvmpipe.
     want_planned(textures, scene, plan);
     textures.decode(scene.images);
     const bool shows_environment = plan.environment_map && scene.environment.has_value();
     if (shows_environment) cache.environments.decode(*scene.environment);
-    times.decode_images = stopwatch.lap();
+    times.decode_images = 1e3 * stopwatch.lap();
 
     const double linked_before = cache.programs.milliseconds();
     prepare_meshes(scene, report);
@@ -165,7 +165,7 @@ Renderer::Implementation::Implementation(const Context& context, const Scene& sc
     api->Finish();
     api.check("preparing the scene");
     times.link = cache.programs.milliseconds() - linked_before;
-    times.prepare = stopwatch.lap();
+    times.prepare = 1e3 * stopwatch.lap();
 }
 
 void Renderer::Implementation::prepare_meshes(const Scene& scene, Report& report) {
@@ -443,9 +443,9 @@ const gl::RenderTarget& Renderer::target() const {
 DrawnFrame Renderer::draw_only(const Camera& camera) {
     validate(camera);
     Implementation& self = *implementation_;
-    Stopwatch stopwatch;
+    const Stopwatch stopwatch;
     self.draw_frame(camera);
-    self.times.draw = stopwatch.lap();
+    self.times.draw = 1e3 * stopwatch.seconds();
     self.times.read_back = 0;
     return {self.picture.target().color().name(), self.times, self.programs.size(),
             self.textures.size() + self.environment->texture_count()};
@@ -454,9 +454,9 @@ DrawnFrame Renderer::draw_only(const Camera& camera) {
 Frame Renderer::draw(const Camera& camera) {
     const DrawnFrame drawn = draw_only(camera);
     Frame frame{{}, drawn.times, drawn.programs, drawn.textures};
-    Stopwatch stopwatch;
+    const Stopwatch stopwatch;
     frame.image = implementation_->picture.read();
-    frame.times.read_back = stopwatch.lap();
+    frame.times.read_back = 1e3 * stopwatch.seconds();
     return frame;
 }
 

@@ -139,6 +139,33 @@ TEST(BumpExperiment, TimesAreTakenInTurnsAndTheEfficientOnesAreMarked) {
     EXPECT_LT(efficient, 20);
 }
 
+TEST(BumpExperiment, SmoothingIsTimedInEachRoundAndPartOfThoseThatWantIt) {
+    const BumpField field = field_of(FieldCoding::bits8);
+    BumpExperimentOptions options = untimed(field);
+    options.repeats = {3, 1};
+    const std::array methods = {BumpMethod{Kernel::sobel3, 2, Arithmetic::float32, 16, false},
+                                BumpMethod{Kernel::sobel3, 2, Arithmetic::float32, 16, true},
+                                BumpMethod{Kernel::central5, 2, Arithmetic::float64, 16, true}};
+    const BumpExperiment known = measure_bump(field, methods, options);
+    const BumpExperiment sampled = measure_bump(sample_of(field.heights), methods, options);
+    for (const BumpExperiment* experiment : {&known, &sampled}) {
+        const Spread& smoothing = experiment->smoothing;
+        EXPECT_EQ(smoothing.count, 3U) << "once a round, not once a method; none while warming up";
+        EXPECT_GT(smoothing.p10, 0.0);
+        for (const BumpMeasurement& one : experiment->measurements) {
+            EXPECT_EQ(one.seconds.count, 3U);
+            if (!one.method.destaircased) continue;
+            // What is longer in every round is so at every rank.
+            EXPECT_GT(one.seconds.p10, smoothing.p10);
+            EXPECT_GT(one.seconds.median, smoothing.median);
+            EXPECT_GT(one.seconds.p90, smoothing.p90);
+        }
+    }
+    const BumpExperiment plain = measure_bump(field, std::span(methods).first(1), options);
+    EXPECT_EQ(plain.smoothing.count, 0U) << "nobody wants it";
+    EXPECT_EQ(plain.measurements[0].seconds.count, 3U);
+}
+
 TEST(BumpExperiment, ALargeMapIsMeasuredOnPartsOfIt) {
     const BumpField field =
         make_bump_field({"", FieldShape::waves, 24.0, 0.3, FieldCoding::bits16, 0.0, 5}, 256, 256);

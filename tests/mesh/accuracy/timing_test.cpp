@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Medians and spreads by hand, and the order of repeated work.
+// Medians and spreads by hand, the order of repeated work, and what clocks cannot help but show.
 #include "relief/mesh/timing.h"
 
 #include <gmock/gmock.h>
@@ -13,6 +13,8 @@ namespace {
 
 using testing::ElementsAre;
 using testing::Pair;
+
+constexpr double clock_rounding = 1e-12;  // Ticks are whole; their sums in seconds are rounded.
 
 TEST(Spread, IsTakenBetweenMeasurements) {
     const Spread odd = spread_of({5, 1, 3, 2, 4, 11, 8, 7, 6, 10, 9});  // 1 to 11.
@@ -32,6 +34,26 @@ TEST(Spread, OfOneIsThatOneAndOfNoneNothing) {
     EXPECT_EQ(spread_of({7}).p90, 7.0);
     EXPECT_EQ(spread_of({}).count, 0U);
     EXPECT_EQ(spread_of({}).median, 0.0);
+}
+
+TEST(Stopwatch, LapsAddUpToTheWhole) {
+    const Stopwatch whole;
+    Stopwatch parts;
+    const double first = parts.lap();
+    const double second = parts.lap();
+    EXPECT_GE(first, 0.0);
+    EXPECT_GE(second, 0.0);
+    EXPECT_GE(parts.seconds(), 0.0);
+    EXPECT_LE(first + second, whole.seconds() + clock_rounding);
+}
+
+TEST(SecondsOf, IsTheTimeOfTheWorkWhichIsDoneOnce) {
+    int done = 0;
+    const Stopwatch around;
+    const double seconds = seconds_of([&] { ++done; });
+    EXPECT_EQ(done, 1);
+    EXPECT_GE(seconds, 0.0);
+    EXPECT_LE(seconds, around.seconds());
 }
 
 TEST(Interleave, TakesTurnsAndWarmsUpFirst) {

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "mesh/bake/bake_support.h"
+#include "relief/mesh/angle_distribution.h"
 #include "relief/mesh/shapes.h"
 
 namespace relief {
@@ -83,18 +84,12 @@ TEST(BakeTrials, ErrorMapsHoldTheErrorsOfEachTexel) {
         const Image map = trials.error_map({4}, all.formats[0]);
         EXPECT_EQ(map.width, 64);
         EXPECT_EQ(static_cast<std::size_t>(map.height), trials.texels() / 64);
-        double squares = 0.0;
-        double most = 0.0;
-        std::size_t count = 0;
-        for (const float degrees : map.as<float>()) {
-            if (std::isnan(degrees)) continue;
-            squares += double{degrees} * double{degrees};
-            most = std::max(most, double{degrees});
-            ++count;
-        }
-        EXPECT_EQ(count, trial.errors[0].count);
-        EXPECT_NEAR(std::sqrt(squares / static_cast<double>(count)), trial.errors[0].rms, 1e-6);
-        EXPECT_NEAR(most, trial.errors[0].max, 1e-6);
+        const std::span<const float> texel_errors = map.as<float>();
+        const AngleDistribution all_errors =
+            angle_distribution({texel_errors.begin(), texel_errors.end()});
+        EXPECT_EQ(all_errors.count, trial.errors[0].count);
+        EXPECT_NEAR(all_errors.rms, trial.errors[0].rms, 1e-6);
+        EXPECT_NEAR(all_errors.max, trial.errors[0].max, 1e-6);
     }
 }
 

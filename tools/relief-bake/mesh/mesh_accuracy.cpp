@@ -66,6 +66,14 @@ std::vector<SampleChoice> open_samples(const MeshBakeRequest& request) {
                     bound_words(bound), bounded(least->error, bound), method_words(*least)));
 }
 
+/// Errors of no texel would keep any bound.
+void require_errors(const AngleSummary& error) {
+    if (error.count == 0)
+        throw InvalidInput(
+            "no texel that was looked at has a normal from the high model, so that no error can be "
+            "measured");
+}
+
 void keep_within(const BakeTrials& trials, MeshBakeRequest& request, NormalMapFormat& format,
                  MeshAccuracy& found) {
     const ErrorBound& bound = request.accuracy.bound;
@@ -74,6 +82,7 @@ void keep_within(const BakeTrials& trials, MeshBakeRequest& request, NormalMapFo
         std::vector<AngleSummary> codes;
         for (MeasuredBake& one :
              measure(trials, samples, angle_of(request, samples), formats, &codes)) {
+            require_errors(one.error);
             const bool keeps = bounded(one.error, bound) <= *bound.degrees;
             if (keeps && !found.kept) found.kept = one;
             found.measured.push_back(std::move(one));
@@ -98,6 +107,7 @@ void compare(const BakeTrials& trials, const NormalMapFormat& format, MeshAccura
     const std::span<const BakeWay> ways = usual_bake_ways();
     const std::vector<NormalMapFormat> formats = usual_map_formats(format);
     const std::vector<TimedBakeTrial> trial = measured_in_turns(trials, ways, formats, {rounds, 0});
+    require_errors(trial.front().trial.errors.front());
     for (std::size_t way = 0; way < ways.size(); ++way) {
         for (std::size_t f = 0; f < formats.size(); ++f) {
             found.measured.push_back({samples_of(ways[way]), ways[way].sample_degrees, formats[f],

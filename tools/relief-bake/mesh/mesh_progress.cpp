@@ -29,9 +29,8 @@ std::function<void(const BakeProgress&)> MapProgress::next_map(int height) {
         const double part = (static_cast<double>(index) +
                              static_cast<double>(progress.rows) / static_cast<double>(height)) /
                             static_cast<double>(maps_);
-        const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start_;
         stages_.show_progress("bake", part,
-                              progress_words(part, spent.count(), rays_before_ + rays_));
+                              progress_words(part, stopwatch_.seconds(), rays_before_ + rays_));
     };
 }
 

@@ -4,12 +4,12 @@
 /// Tests: tests/tools/mesh_progress_test.cpp.
 #pragma once
 
-#include <chrono>
 #include <functional>
 #include <string>
 
 #include "common/command.h"
 #include "relief/mesh/bake.h"
+#include "relief/mesh/timing.h"
 
 namespace relief::tools {
 
@@ -31,7 +31,7 @@ class MapProgress {
     std::size_t begun_ = 0;
     std::size_t rays_before_ = 0;  ///< Of the maps that are done.
     std::size_t rays_ = 0;         ///< Of the one being baked.
-    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+    Stopwatch stopwatch_;
 };
 
 }  // namespace relief::tools

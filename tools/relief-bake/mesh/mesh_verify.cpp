@@ -4,13 +4,13 @@
 
 #include <fmt/format.h>
 
-#include <chrono>
 #include <cmath>
 
 #include "common/options.h"
 #include "common/text.h"
 #include "mesh/convention_words.h"
 #include "mesh/error_map.h"
+#include "relief/mesh/timing.h"
 
 namespace relief::tools {
 namespace {
@@ -52,7 +52,7 @@ void judge(VerifiedMap& map, const MeshBakeRequest& bake) {
 
 VerifiedMap verify_map(const Baker& baker, const BakeModels& models, const MeshBakeRequest& bake,
                        BakeMapOptions map, const VerifyRequest& request, Report& report) {
-    const auto start = std::chrono::steady_clock::now();
+    const Stopwatch stopwatch;
     VerifiedMap verified;
     verified.request = request;
     InputMap input = read_normal_map(request.map, request.input);
@@ -77,8 +77,7 @@ VerifiedMap verify_map(const Baker& baker, const BakeModels& models, const MeshB
     });
     if (request.error_map) verified.brightest = errors.write(*request.error_map, verified.check);
     judge(verified, bake);
-    verified.milliseconds =
-        std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+    verified.milliseconds = 1e3 * stopwatch.seconds();
     return verified;
 }
 

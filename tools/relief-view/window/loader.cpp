@@ -2,14 +2,15 @@
 // Tests: tests/tools/window/loader_test.cpp.
 #include "window/loader.h"
 
-#include <chrono>
 #include <utility>
+
+#include "relief/mesh/timing.h"
 
 namespace relief::tools {
 namespace {
 
 Loaded load(ViewOptions options, const Progress& progress) {
-    const auto begin = std::chrono::steady_clock::now();
+    const Stopwatch stopwatch;
     Loaded loaded;
     try {
         Stages silent(true);
@@ -21,8 +22,7 @@ Loaded load(ViewOptions options, const Progress& progress) {
     }
     loaded.options = std::move(options);
     loaded.files = progress.files();
-    loaded.seconds =
-        std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    loaded.seconds = stopwatch.seconds();
     return loaded;
 }
 

@@ -5,7 +5,6 @@
 /// Tests: tests/tools/window/newest_job_test.cpp.
 #pragma once
 
-#include <chrono>
 #include <functional>
 #include <list>
 #include <memory>
@@ -15,6 +14,7 @@
 #include <utility>
 
 #include "relief/mesh/progress.h"
+#include "relief/mesh/timing.h"
 
 namespace relief::tools {
 
@@ -42,7 +42,7 @@ class NewestJob {
         join_ended();
         const std::lock_guard lock(mutex_);
         forget();
-        begun_ = Clock::now();
+        since_begun_ = {};
         newest_ = &jobs_.emplace_back();
         newest_->thread =
             std::thread([this, job = newest_, task = std::move(work)] { run(*job, task); });
@@ -67,7 +67,7 @@ class NewestJob {
     }
     [[nodiscard]] double seconds_so_far() const {
         const std::lock_guard lock(mutex_);
-        return newest_ ? std::chrono::duration<double>(Clock::now() - begun_).count() : 0.0;
+        return newest_ ? since_begun_.seconds() : 0.0;
     }
     [[nodiscard]] Progress::State progress() const {
         const std::lock_guard lock(mutex_);
@@ -75,8 +75,6 @@ class NewestJob {
     }
 
   private:
-    using Clock = std::chrono::steady_clock;
-
     struct Job {
         Progress progress;
         std::thread thread;
@@ -124,7 +122,7 @@ class NewestJob {
     mutable std::mutex mutex_;
     std::list<Job> jobs_;    ///< Going on, or not joined yet.
     Job* newest_ = nullptr;  ///< Nothing, where nothing is wanted.
-    Clock::time_point begun_;
+    Stopwatch since_begun_;
     std::optional<Result> result_;
 };
 

@@ -28,6 +28,16 @@ struct AngleDistribution {
     friend bool operator==(const AngleDistribution&, const AngleDistribution&) = default;
 };
 
+/// The same in short, where there are too many angles to keep them (libmesh/src/accuracy/
+/// angle_sum.h); all zeros where there are none.
+struct AngleSummary {
+    std::size_t count = 0;
+    double rms = 0.0;  ///< Root of the mean square.
+    double mean = 0.0;
+    double p99 = 0.0;  ///< 99 of 100 are no larger: to within 1 part in 64, upwards.
+    double max = 0.0;
+};
+
 /// \param degrees  in any order, which but for the last bits of rms and mean does not matter; NaN
 ///                 where there is none, which is counted as undefined and left out
 AngleDistribution angle_distribution(std::vector<float> degrees);

@@ -11,20 +11,12 @@
 #include <span>
 #include <vector>
 
+#include "relief/mesh/angle_distribution.h"
 #include "relief/mesh/bake.h"
 #include "relief/mesh/map_convention.h"
 #include "relief/mesh/normal_map.h"
 
 namespace relief {
-
-/// Of many angles, in degrees; all zeros where there are none.
-struct AngleSummary {
-    std::size_t count = 0;
-    double rms = 0.0;  ///< Root of the mean square.
-    double mean = 0.0;
-    double p99 = 0.0;  ///< 99 of 100 are no larger: to within 1% of it, upwards.
-    double max = 0.0;
-};
 
 /// What parts a map from the surface, in the order in which a bake does it.
 enum class BakeStage {

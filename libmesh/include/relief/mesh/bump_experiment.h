@@ -38,7 +38,9 @@ double cost_of(const BumpMethod& method);
 struct BumpMeasurement {
     BumpMethod method;
     AngleDistribution error;  ///< Of the stored normals from the reference, in degrees.
-    Spread seconds;           ///< Of a conversion in memory; zeros if none was timed.
+    /// Of a conversion in memory, smoothing included (BumpExperiment::smoothing); zeros if none
+    /// was timed.
+    Spread seconds;
     double megapixels_per_second = 0.0;
     bool is_efficient = false;  ///< None measured has both less RMS error and less time.
 };
@@ -56,9 +58,12 @@ struct BumpReference {
 struct BumpExperiment {
     BumpReference reference;
     std::vector<BumpMeasurement> measurements;  ///< In the order of the methods.
-    KernelChoice choice;                        ///< For the map as it is.
-    std::int64_t texels = 0;                    ///< That were looked at.
-    bool is_whole = true;                       ///< False: parts of a large map.
+    /// Seconds of smoothing the steps away: once in each round, part of the time of all methods
+    /// that want it, in that round. Zeros if none does, or none was timed.
+    Spread smoothing;
+    KernelChoice choice;      ///< For the map as it is.
+    std::int64_t texels = 0;  ///< That were looked at.
+    bool is_whole = true;     ///< False: parts of a large map.
 };
 
 struct BumpExperimentOptions {

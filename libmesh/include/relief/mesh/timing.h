@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// Repeated measurements: run in turns so that a machine's drift hits all alike, the first ones
-/// dropped, told by median and spread. The one home of clocks, repeats and medians.
+/// dropped, told by median and spread. The one home of measured time, repeats and medians: clocks
+/// are asked elsewhere only for when to wait, to stop or to draw the next frame.
 /// Tests: tests/mesh/accuracy/timing_test.cpp.
 #pragma once
 
+#include <chrono>
 #include <cstddef>
 #include <functional>
+#include <utility>
 #include <vector>
 
 namespace relief {
@@ -29,7 +32,27 @@ struct Spread {
 /// \return between two measurements, linearly interpolated; of none, all zeros
 Spread spread_of(std::vector<double> values);
 
-/// The wall-clock time that something takes.
+/// Seconds by the wall clock.
+class Stopwatch {
+  public:
+    /// Since it was made, or since the last lap.
+    [[nodiscard]] double seconds() const {
+        return std::chrono::duration<double>(Clock::now() - begin_).count();
+    }
+    /// The same, and begins another lap: nothing between two laps is lost.
+    double lap() {
+        const Clock::time_point now = Clock::now();
+        const std::chrono::duration<double> taken = now - std::exchange(begin_, now);
+        return taken.count();
+    }
+
+  private:
+    using Clock = std::chrono::steady_clock;
+
+    Clock::time_point begin_ = Clock::now();
+};
+
+/// The wall-clock time that something takes, in seconds.
 double seconds_of(const std::function<void()>& work);
 
 /// Does several things in turn, A B C A B C ..., and then counts rounds.

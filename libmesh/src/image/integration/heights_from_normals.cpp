@@ -11,6 +11,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "accuracy/angle_sum.h"
 #include "image/integration/frequency_solver.h"
 #include "image/integration/slope_operator.h"
 #include "parallel.h"
@@ -163,7 +164,8 @@ int refine(const SlopeOperator& slopes, const FrequencySolver& solver, Field& ri
 void measure_residual(const SlopeOperator& slopes, const SlopeOperator::SlopeRows& wanted,
                       const Field& heights, IntegratedHeights& result) {
     struct Row {
-        double slope = 0.0, rest = 0.0, squared_angle = 0.0, angle = 0.0, largest = 0.0;
+        double slope = 0.0, rest = 0.0;  // Squares of slopes, which are no angles.
+        AngleMoments angles;
     };
     const auto width = static_cast<std::size_t>(slopes.width());
     std::vector<Row> rows(static_cast<std::size_t>(slopes.height()));
@@ -174,13 +176,10 @@ void measure_residual(const SlopeOperator& slopes, const SlopeOperator::SlopeRow
             wanted(static_cast<int>(row), true_x.data(), true_y.data());
             for (std::size_t i = 0; i < width; ++i) {
                 const double dx = x[i] - true_x[i], dy = y[i] - true_y[i];
-                const double angle =
-                    degrees_between({-x[i], -y[i], 1.0}, {-true_x[i], -true_y[i], 1.0});
                 rows[row].slope += true_x[i] * true_x[i] + true_y[i] * true_y[i];
                 rows[row].rest += dx * dx + dy * dy;
-                rows[row].squared_angle += angle * angle;
-                rows[row].angle += angle;
-                rows[row].largest = std::max(rows[row].largest, angle);
+                rows[row].angles.add(
+                    degrees_between({-x[i], -y[i], 1.0}, {-true_x[i], -true_y[i], 1.0}));
             }
         }
     });
@@ -188,15 +187,12 @@ void measure_residual(const SlopeOperator& slopes, const SlopeOperator::SlopeRow
     for (const Row& row : rows) {
         all.slope += row.slope;
         all.rest += row.rest;
-        all.squared_angle += row.squared_angle;
-        all.angle += row.angle;
-        all.largest = std::max(all.largest, row.largest);
+        all.angles.add(row.angles);
     }
     const auto count = static_cast<double>(heights.size());
     result.rms_slope = std::sqrt(all.slope / count);
     result.residual_slope = std::sqrt(all.rest / count);
-    result.residual = {std::sqrt(all.squared_angle / count), all.angle / count, all.largest,
-                       heights.size()};
+    result.residual = {all.angles.rms(), all.angles.mean(), all.angles.max(), all.angles.count()};
 }
 
 /// Floats above the lowest.

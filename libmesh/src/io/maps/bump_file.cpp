@@ -8,7 +8,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <utility>
 
@@ -17,27 +16,14 @@
 #include "io/maps/height_window.h"
 #include "parallel.h"
 #include "relief/mesh/error.h"
+#include "relief/mesh/timing.h"
 
 namespace relief {
 namespace {
 
-/// Adds the time that it lives to a number of milliseconds.
-class Stopwatch {
-  public:
-    explicit Stopwatch(double& milliseconds)
-        : milliseconds_(milliseconds), start_(std::chrono::steady_clock::now()) {}
-    ~Stopwatch() {
-        const std::chrono::duration<double, std::milli> spent =
-            std::chrono::steady_clock::now() - start_;
-        milliseconds_ += spent.count();
-    }
-    Stopwatch(const Stopwatch&) = delete;
-    Stopwatch& operator=(const Stopwatch&) = delete;
-
-  private:
-    double& milliseconds_;
-    std::chrono::steady_clock::time_point start_;
-};
+double milliseconds_of(const std::function<void()>& work) {
+    return 1e3 * seconds_of(work);
+}
 
 int radius_of(const BumpOptions& options) {
     return gradient_kernel(options.kernel, options.gaussian_radius).radius;
@@ -172,17 +158,12 @@ BumpFileTimes write_bands(BandSource& bands, const HeightMapFile& source,
         const int last = std::min(first + band_rows, height);
         const std::span<std::byte> band =
             std::span(rows).first(writer.row_bytes() * static_cast<std::size_t>(last - first));
-        {
-            const Stopwatch convert(times.convert);
-            make_band(bands, options, format, first, last, band, report);
-        }
-        const auto write = [&] {
-            const Stopwatch stopwatch(times.write);
-            writer.write(band);
-        };
+        times.convert +=
+            milliseconds_of([&] { make_band(bands, options, format, first, last, band, report); });
+        const auto write = [&] { times.write += milliseconds_of([&] { writer.write(band); }); };
         const auto read_ahead = [&] {
-            const Stopwatch stopwatch(times.read);
-            bands.read_ahead(std::min(last + band_rows, height));
+            times.read +=
+                milliseconds_of([&] { bands.read_ahead(std::min(last + band_rows, height)); });
         };
         parallel_tasks({write, read_ahead}, false);
         if (progress) progress(static_cast<double>(last) / height);
@@ -201,18 +182,15 @@ BumpFileTimes write_bump_file(const HeightMapFile& source, const BumpOptions& op
     ImageRowWriter writer(file, shape_of(format, info.width, info.height), metadata_of(format),
                           format.write);
     std::unique_ptr<BandSource> bands;
-    double opening = 0.0;
-    {
-        const Stopwatch stopwatch(opening);
+    const double opening = milliseconds_of([&] {
         if (source.is_streamed())
             bands = std::make_unique<FileSource>(source, options);
         else
             bands = std::make_unique<MemorySource>(source.map(), options, report);
-    }
+    });
     BumpFileTimes times = write_bands(*bands, source, options, format, writer, report, progress);
     times.read += opening;
-    const Stopwatch stopwatch(times.write);
-    writer.finish(report);
+    times.write += milliseconds_of([&] { writer.finish(report); });
     return times;
 }
 

@@ -1,45 +1,75 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Angles added up as they come, in constant memory: what AngleSummary says of them. In degrees.
-/// Tests: tests/mesh/bake/bake_check_test.cpp.
+/// Angles added up as they come, in constant memory, in double, in degrees: the one place where
+/// their mean, root of the mean square and greatest are formed, and AngleSummary for those who
+/// cannot keep all of them. Of none, all zeros. Tests: tests/mesh/accuracy/angle_sum_test.cpp.
 #pragma once
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
+#include <cstddef>
 #include <vector>
 
-#include "relief/mesh/bake_check.h"
+#include "relief/mesh/angle_distribution.h"
 
 namespace relief {
 
-class AngleSum {
+/// What takes no more than sums.
+class AngleMoments {
   public:
-    /// \param degrees  a number; 0 to 180
+    /// \param degrees  NaN makes rms() and mean() NaN, and is no greatest: whoever may meet one
+    /// says
+    ///                 what becomes of it
     void add(double degrees) {
         ++count_;
         sum_ += degrees;
         squares_ += degrees * degrees;
         max_ = std::max(max_, degrees);
-        if (bins_.empty()) bins_.resize(bin_count, 0);
-        ++bins_[bin_of(degrees)];
     }
 
     /// What another saw after this. The last bits depend on the order in which sums are added.
-    void add(const AngleSum& other) {
+    void add(const AngleMoments& other) {
         count_ += other.count_;
         sum_ += other.sum_;
         squares_ += other.squares_;
         max_ = std::max(max_, other.max_);
+    }
+
+    [[nodiscard]] std::size_t count() const { return count_; }
+    [[nodiscard]] double rms() const {
+        return count_ > 0 ? std::sqrt(squares_ / static_cast<double>(count_)) : 0.0;
+    }
+    [[nodiscard]] double mean() const {
+        return count_ > 0 ? sum_ / static_cast<double>(count_) : 0.0;
+    }
+    [[nodiscard]] double max() const { return max_; }
+
+  private:
+    std::size_t count_ = 0;
+    double sum_ = 0.0, squares_ = 0.0, max_ = 0.0;
+};
+
+/// Those, and the 99th percentile, to within a bin.
+class AngleSum {
+  public:
+    /// \param degrees  a number; 0 to 180
+    void add(double degrees) {
+        moments_.add(degrees);
+        if (bins_.empty()) bins_.resize(bin_count, 0);
+        ++bins_[bin_of(degrees)];
+    }
+
+    /// What another saw after this.
+    void add(const AngleSum& other) {
+        moments_.add(other.moments_);
         if (bins_.empty()) bins_.resize(bin_count, 0);
         for (std::size_t i = 0; i < other.bins_.size(); ++i)
             bins_[i] += other.bins_[i];
     }
 
     [[nodiscard]] AngleSummary summary() const {
-        if (count_ == 0) return {};
-        const auto count = static_cast<double>(count_);
-        return {count_, std::sqrt(squares_ / count), sum_ / count, percentile_99(), max_};
+        if (moments_.count() == 0) return {};
+        return {moments_.count(), moments_.rms(), moments_.mean(), percentile_99(), moments_.max()};
     }
 
   private:
@@ -63,17 +93,16 @@ class AngleSum {
         return std::ldexp(mantissa, index / steps + lowest + 1);
     }
     [[nodiscard]] double percentile_99() const {
-        const std::size_t wanted = count_ - count_ / 100;
+        const std::size_t wanted = moments_.count() - moments_.count() / 100;
         std::size_t seen = 0;
         for (std::size_t i = 0; i < bins_.size(); ++i) {
             seen += bins_[i];
-            if (seen >= wanted) return std::min(upper_end(i), max_);
+            if (seen >= wanted) return std::min(upper_end(i), moments_.max());
         }
-        return max_;
+        return moments_.max();
     }
 
-    std::size_t count_ = 0;
-    double sum_ = 0.0, squares_ = 0.0, max_ = 0.0;
+    AngleMoments moments_;
     std::vector<std::size_t> bins_;
 };
 
