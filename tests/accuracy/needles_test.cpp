@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Needles and their normals, once more in integers.
+// Needles and their normals, once more in integers, and where those are too small, without any
+// difference of positions.
 #include "stability/needles.h"
 
 #include <gtest/gtest.h>
@@ -7,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
 #include "relief/mesh/direction_error.h"
 
@@ -42,6 +44,47 @@ TEST(Needles, HaveTheNormalsThatIntegersGive) {
             EXPECT_LT(degrees_between(normal, needles.normals[t.x]), 1e-4) << width;
         }
     }
+}
+
+using LongVector = glm::vec<3, long double>;
+
+/// (b - a) x (c - a) multiplied out: positions are never subtracted, products are, of which each
+/// has 11 bits more than a double's.
+LongVector multiplied_out(const LongVector& a, const LongVector& b, const LongVector& c) {
+    return glm::cross(a, b) + glm::cross(b, c) + glm::cross(c, a);
+}
+
+TEST(Needles, HaveTheNormalsOfAnotherFormulaDownToTheNarrowest) {
+    for (const double width : {1.0, 1e-3, 1e-6, 1e-9, 1e-12}) {
+        const Needles needles = make_needles(300, width, 7);
+        double furthest = 0.0;
+        for (const glm::uvec3& t : needles.mesh.triangles) {
+            const auto corner = [&](int i) { return LongVector(needles.mesh.positions[t[i]]); };
+            const LongVector normal = multiplied_out(corner(0), corner(1), corner(2));
+            const long double length = glm::length(normal);
+            // Short sides lie across long ones, which end within `width` of where they would for 1.
+            if (width < 1.0) {
+                EXPECT_NEAR(static_cast<double>(length) / width, 1.0, width + 1e-6);
+            }
+            for (int i = 0; i < 3; ++i) {
+                furthest = std::max(
+                    furthest, degrees_between(glm::dvec3(normal / length), needles.normals[t[i]]));
+            }
+        }
+        // Doubles are 2^-53 apart, 6e-15 degrees; a cross product has some of them.
+        EXPECT_LT(furthest, 1e-13) << width;
+    }
+}
+
+TEST(Needles, OfANormalThatIsAHairOffAreFoundToBe) {
+    const Needles needles = make_needles(1, 1e-12, 7);
+    const glm::uvec3 t = needles.mesh.triangles.front();
+    const auto corner = [&](int i) { return LongVector(needles.mesh.positions[t[i]]); };
+    const glm::dvec3 along = glm::normalize(glm::dvec3(corner(1)) - glm::dvec3(corner(0)));
+    const LongVector normal = multiplied_out(corner(0), corner(1), corner(2));
+    const glm::dvec3 leaning = needles.normals[t.x] + 1e-9 * along;
+    EXPECT_NEAR(degrees_between(glm::dvec3(normal / glm::length(normal)), leaning),
+                1e-9 * 180.0 / std::numbers::pi, 1e-12);
 }
 
 TEST(Needles, AreAsNarrowAsAsked) {
