@@ -19,6 +19,11 @@ inline constexpr std::array all_triangulations = {Triangulation::regular, Triang
                                                   Triangulation::folded};
 inline constexpr std::array both_arithmetics = {Arithmetic::float64, Arithmetic::float32};
 
+/// Of what maps are stored in: "16 bit", "float".
+inline std::string depth_words(int bits) {
+    return bits == 32 ? "float" : std::to_string(bits) + " bit";
+}
+
 inline std::string word_of(AnalyticSurface surface) {
     constexpr std::array words = {"sphere", "torus", "ellipsoid", "saddle", "cubic"};
     return words.at(static_cast<std::size_t>(surface));

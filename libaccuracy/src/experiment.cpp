@@ -6,46 +6,60 @@
 #include <cmath>
 #include <limits>
 
-#include "relief/mesh/bake_check.h"
 #include "relief/mesh/frontier.h"
 
 namespace relief {
 namespace {
 
+constexpr double not_known = std::numeric_limits<double>::quiet_NaN();
+
+/// \param angles  what an AngleDistribution and an AngleSummary have in common; of no angle both
+///                say 0, which would be exactly right
+template <typename Angles>
+ErrorFigures figures_of_summary(const Angles& angles, std::size_t undefined) {
+    if (angles.count == 0)
+        return {.undefined = undefined,
+                .rms = not_known,
+                .mean = not_known,
+                .p99 = not_known,
+                .max = not_known};
+    return {.count = angles.count,
+            .undefined = undefined,
+            .rms = angles.rms,
+            .mean = angles.mean,
+            .p99 = angles.p99,
+            .max = angles.max};
+}
+
 double time_of(const Measurement& measurement) {
     const Cost& cost = measurement.cost;
     if (cost.one_thread) return cost.one_thread->spread().median;
     if (cost.all_threads) return cost.all_threads->spread().median;
-    return std::numeric_limits<double>::quiet_NaN();
+    return not_known;
 }
 
 }  // namespace
 
 ErrorFigures figures_of(const AngleDistribution& angles) {
-    return {.count = angles.count,
-            .undefined = angles.undefined,
-            .rms = angles.rms,
-            .mean = angles.mean,
-            .p99 = angles.p99,
-            .max = angles.max,
-            .psnr = {}};
+    return figures_of_summary(angles, angles.undefined);
 }
 
 ErrorFigures figures_of(const AngleSummary& angles) {
-    return {.count = angles.count,
-            .undefined = 0,
-            .rms = angles.rms,
-            .mean = angles.mean,
-            .p99 = angles.p99,
-            .max = angles.max,
-            .psnr = {}};
+    return figures_of_summary(angles, 0);
+}
+
+double curve_error(const ErrorFigures& error) {
+    return error.undefined > 0 ? not_known : error.rms;
+}
+
+double curve_error(const AngleDistribution& angles) {
+    return curve_error(figures_of(angles));
 }
 
 void mark_efficient(Experiment& experiment) {
-    constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
     std::vector<Price> prices;
     for (const Measurement& one : experiment.measurements)
-        prices.push_back({one.error.undefined > 0 ? unknown : one.error.rms, time_of(one)});
+        prices.push_back({curve_error(one.error), time_of(one)});
     const std::vector<bool> marks = efficient(prices);
     for (std::size_t i = 0; i < marks.size(); ++i)
         experiment.measurements[i].is_efficient = marks[i];

@@ -11,6 +11,7 @@
 #include <string>
 
 #include "progress_stage.h"
+#include "relief/accuracy/passes.h"
 #include "relief/mesh/threads.h"
 
 namespace relief {
@@ -29,36 +30,32 @@ std::size_t times_in_a_round(const std::function<void()>& work) {
 }
 
 /// The limit of all threads on the way out, by an exception too.
-class ThreadLimit {
+class OneThread {
   public:
-    ThreadLimit(unsigned now, unsigned afterwards) : afterwards_(afterwards) {
-        set_thread_limit(now);
-    }
-    ~ThreadLimit() { set_thread_limit(afterwards_); }
-    ThreadLimit(const ThreadLimit&) = delete;
-    ThreadLimit& operator=(const ThreadLimit&) = delete;
+    explicit OneThread(unsigned afterwards) : afterwards_(afterwards) { set_thread_limit(1); }
+    ~OneThread() { set_thread_limit(afterwards_); }
+    OneThread(const OneThread&) = delete;
+    OneThread& operator=(const OneThread&) = delete;
 
   private:
     unsigned afterwards_;
 };
 
-std::vector<Timing> timings(std::span<const std::function<void()>> works, const Repeats& repeats) {
+std::vector<Timing> timings(std::span<const std::function<void()>> works,
+                            const RunOptions& options) {
     std::vector<std::size_t> times;
     for (const std::function<void()>& work : works) {
         check_cancelled();
         work();  // The first time of all fills caches, and takes longer.
         times.push_back(times_in_a_round(work));
     }
-    std::vector<Timing> result(works.size());
-    interleave(works.size(), repeats, [&](std::size_t i, bool counted) {
-        check_cancelled();
+    return rounds_in_turns(works.size(), options, [&](std::size_t i) {
         const double seconds = seconds_of([&] {
             for (std::size_t repeat = 0; repeat < times[i]; ++repeat)
                 works[i]();
         });
-        if (counted) result[i].rounds.push_back(seconds / static_cast<double>(times[i]));
+        return seconds / static_cast<double>(times[i]);
     });
-    return result;
 }
 
 /// A line "VmHWM:   12345 kB" of what Linux tells of this process, in bytes.
@@ -72,6 +69,28 @@ std::optional<std::uint64_t> status_bytes(const std::string& name) {
 }
 
 }  // namespace
+
+std::vector<Timing> on_one_thread(const RunOptions& options,
+                                  const std::function<std::vector<Timing>()>& measured) {
+    const OneThread limit(options.threads);
+    return measured();
+}
+
+std::vector<Timing> rounds_in_turns(
+    std::size_t things, const RunOptions& options,
+    const std::function<double(std::size_t thing)>& seconds_of_round) {
+    std::vector<Timing> of_one_pass(things);
+    std::vector<Timing>& timings =
+        options.earlier ? options.earlier->next_group(things) : of_one_pass;
+    Repeats repeats = options.repeats;
+    if (options.earlier) repeats.counted = options.earlier->share_of(repeats.counted);
+    interleave(things, repeats, [&](std::size_t thing, bool counted) {
+        check_cancelled();
+        const double seconds = seconds_of_round(thing);
+        if (counted) timings[thing].rounds.push_back(seconds);
+    });
+    return timings;
+}
 
 std::optional<std::uint64_t> peak_bytes_of(const std::function<void()>& work) {
     ::malloc_trim(0);  // Or work would be done in memory that was held before.
@@ -90,14 +109,14 @@ std::vector<Cost> measure_costs(std::span<const std::function<void()>> works,
     std::vector<Cost> costs(works.size());
     if (!options.is_timed) return costs;
     if (choice.one_thread) {
-        const ThreadLimit one(1, options.threads);
-        const std::vector<Timing> found = timings(works, options.repeats);
+        const std::vector<Timing> found =
+            on_one_thread(options, [&] { return timings(works, options); });
         for (std::size_t i = 0; i < works.size(); ++i)
             costs[i].one_thread = found[i];
     }
     set_thread_limit(options.threads);
     if (choice.all_threads) {
-        const std::vector<Timing> found = timings(works, options.repeats);
+        const std::vector<Timing> found = timings(works, options);
         for (std::size_t i = 0; i < works.size(); ++i)
             costs[i].all_threads = found[i];
     }

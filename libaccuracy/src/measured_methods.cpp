@@ -2,6 +2,7 @@
 // Tests: tests/accuracy/measured_methods_test.cpp.
 #include "measured_methods.h"
 
+#include <cmath>
 #include <limits>
 #include <stdexcept>
 
@@ -31,7 +32,7 @@ void measure_methods(std::span<const MeasuredMethod> methods, const RunOptions& 
 const Measurement* truest(const Experiment& experiment) {
     const Measurement* least = nullptr;
     for (const Measurement& one : experiment.measurements) {
-        if (one.error.undefined > 0) continue;
+        if (std::isnan(curve_error(one.error))) continue;
         if (least == nullptr || one.error.rms < least->error.rms) least = &one;
     }
     return least;

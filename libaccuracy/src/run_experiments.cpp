@@ -22,16 +22,17 @@ namespace {
 struct SubjectEntry {
     Subject subject;
     std::vector<Experiment> (*run)(const RunOptions&);
+    bool is_drawn = false;
 };
 
 /// In the order of reports.
 constexpr std::array subject_entries = {
     SubjectEntry{Subject::normals, normals_experiments},
-    SubjectEntry{Subject::tangents, tangents_experiments},
+    SubjectEntry{Subject::tangents, tangents_experiments, true},
     SubjectEntry{Subject::bump, bump_experiments},
     SubjectEntry{Subject::storage, storage_experiments},
     SubjectEntry{Subject::bake, bake_experiments},
-    SubjectEntry{Subject::shading, shading_experiments},
+    SubjectEntry{Subject::shading, shading_experiments, true},
     SubjectEntry{Subject::stability, stability_experiments},
 };
 
@@ -54,6 +55,12 @@ std::vector<Subject> subjects_with_experiments() {
     for (const SubjectEntry& entry : subject_entries)
         subjects.push_back(entry.subject);
     return subjects;
+}
+
+bool is_drawn(Subject subject) {
+    return std::any_of(
+        subject_entries.begin(), subject_entries.end(),
+        [&](const SubjectEntry& one) { return one.subject == subject && one.is_drawn; });
 }
 
 std::string_view word_of(Subject subject) {

@@ -7,6 +7,8 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <span>
+#include <vector>
 
 #include "analytic_words.h"
 #include "relief/mesh/analytic_surfaces.h"
@@ -46,11 +48,12 @@ std::array<Real, terms> powers(Real x, Real y) {
     return {1, x, y, x * x, x * y, y * y, x * x * x, x * x * y, x * y * y, y * y * y};
 }
 
-/// The cubic's coefficients are drawn at random: found again from the mesh, by least squares.
-Formula cubic_through(const TexturedMesh& truth) {
+/// A cubic's coefficients are drawn at random: found again from points on it, by least squares.
+/// x and y are -reach to reach where s and t are 0 to 1.
+Formula cubic_through(std::span<const glm::vec3> points, Real reach) {
     std::array<std::array<Real, terms + 1>, terms> rows{};
-    for (const glm::vec3& p : truth.mesh.positions) {
-        const auto row = powers(static_cast<Real>(p.x), static_cast<Real>(p.y));
+    for (const glm::vec3& p : points) {
+        const auto row = powers(static_cast<Real>(p.x) / reach, static_cast<Real>(p.y) / reach);
         for (std::size_t i = 0; i < terms; ++i) {
             for (std::size_t j = 0; j < terms; ++j)
                 rows[i][j] += row[i] * row[j];
@@ -71,12 +74,12 @@ Formula cubic_through(const TexturedMesh& truth) {
     std::array<Real, terms> coefficients{};
     for (std::size_t i = 0; i < terms; ++i)
         coefficients[i] = rows[i][terms] / rows[i][i];
-    return [coefficients](Real s, Real t) {
+    return [coefficients, reach](Real s, Real t) {
         const auto row = powers(2 * s - 1, 2 * t - 1);
         Real z = 0;
         for (std::size_t i = 0; i < terms; ++i)
             z += coefficients[i] * row[i];
-        return Point(2 * s - 1, 2 * t - 1, z);
+        return Point(reach * (2 * s - 1), reach * (2 * t - 1), z);
     };
 }
 
@@ -91,7 +94,7 @@ Formula formula_of(AnalyticSurface surface, const TexturedMesh& truth) {
         case AnalyticSurface::saddle:
             return on_saddle;
         default:
-            return cubic_through(truth);
+            return cubic_through(truth.mesh.positions, 1);
     }
 }
 
@@ -174,6 +177,58 @@ TEST(AnalyticTruth, VertexNormalsAreThoseOfTheFrames) {
             EXPECT_GE(found, 1U) << word_of(surface) << " " << v;
         }
     }
+}
+
+/// Fans of one seed lie on one cubic, whatever their valence: enough points to know it by, all of
+/// them within 0.2 of the origin, and that itself.
+std::vector<glm::vec3> points_of_fans(std::uint32_t seed) {
+    std::vector<glm::vec3> points;
+    for (int valence = 3; valence <= 18; ++valence) {
+        const Mesh fan = cubic_fan(valence, seed);
+        points.insert(points.end(), fan.positions.begin(), fan.positions.end());
+    }
+    return points;
+}
+
+constexpr Real fan_reach = 0.2L;
+
+/// Of the fitted surface at the origin, by numeric derivatives; up.
+glm::dvec3 normal_at_origin(const Formula& surface) {
+    return glm::dvec3(
+        glm::cross(derivative(surface, 0.5L, 0.5L, 1, 0), derivative(surface, 0.5L, 0.5L, 0, 1)));
+}
+
+TEST(AnalyticTruth, FansLieOnACubicWhoseNormalAtTheOriginIsUp) {
+    // Heights, below 1/16, are rounded by 2^-29, and x and y by 2^-27, where the surface rises by
+    // half of that; 0.05 away and more, heights are 2e-6 degrees for one point, and for all less.
+    constexpr double height_rounding = 1e-8;
+    constexpr double normal_rounding = 2e-6;
+    const glm::dvec3 up(0.0, 0.0, 1.0);
+    double furthest_bend = 0.0;
+    for (std::uint32_t seed = 0; seed < 100; ++seed) {
+        const std::vector<glm::vec3> points = points_of_fans(seed);
+        EXPECT_EQ(points.front(), glm::vec3(0.0F)) << "the vertex that is judged";
+        const Formula surface = cubic_through(points, fan_reach);
+        for (const glm::vec3& p : points) {
+            const Point expected = surface(static_cast<Real>(p.x) / fan_reach / 2 + 0.5L,
+                                           static_cast<Real>(p.y) / fan_reach / 2 + 0.5L);
+            EXPECT_NEAR(static_cast<double>(expected.z), static_cast<double>(p.z), height_rounding)
+                << seed;
+            furthest_bend = std::max(furthest_bend, static_cast<double>(std::abs(p.z)));
+        }
+        EXPECT_LE(degrees_between(normal_at_origin(surface), up), normal_rounding) << seed;
+    }
+    EXPECT_GT(furthest_bend, 0.03) << "fans that were flat would show nothing";
+}
+
+TEST(AnalyticTruth, FansThatLeanAreFoundToLean) {
+    constexpr double lean = 1e-3;  // Of z, along x: 0.0573 degrees.
+    std::vector<glm::vec3> points = points_of_fans(1);
+    for (glm::vec3& p : points)
+        p.z += static_cast<float>(lean) * p.x;
+    EXPECT_NEAR(degrees_between(normal_at_origin(cubic_through(points, fan_reach)),
+                                glm::dvec3(0.0, 0.0, 1.0)),
+                std::atan(lean) * 180.0 / std::numbers::pi, 1e-5);
 }
 
 }  // namespace

@@ -142,18 +142,6 @@ TEST(BakeExperiments, FindFewerDegreesForMoreRays) {
     EXPECT_NEAR(samples.charts.front().curves.back().order.value(), -1.0, 0.35);
 }
 
-/// Root of the mean square of what is a number.
-double rms_of(const Image& map) {
-    double squares = 0.0;
-    double count = 0.0;
-    for (const float degrees : map.as<float>()) {
-        if (std::isnan(degrees)) continue;
-        squares += double{degrees} * double{degrees};
-        count += 1.0;
-    }
-    return std::sqrt(squares / count);
-}
-
 TEST(BakeExperiments, ShowWhereMapsErrAndWhatTheyLookLike) {
     const std::vector<Experiment>& all = quick_experiments();
     for (const Experiment& one : all) {
@@ -162,7 +150,9 @@ TEST(BakeExperiments, ShowWhereMapsErrAndWhatTheyLookLike) {
             EXPECT_EQ(map.errors.width, 128);
             EXPECT_EQ(map.errors.height, 128);
             const double rms = test::measurement_of(one, map.method).error.rms;
-            EXPECT_NEAR(rms_of(map.errors), rms, 1e-4 * rms) << map.method;
+            const std::span<const float> errors = map.errors.as<float>();
+            EXPECT_NEAR(angle_distribution({errors.begin(), errors.end()}).rms, rms, 1e-4 * rms)
+                << map.method;
         }
     }
     ASSERT_EQ(all.front().pictures.size(), 2U);

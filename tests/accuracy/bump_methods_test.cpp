@@ -5,10 +5,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
 #include <set>
+#include <vector>
 
 #include "relief/mesh/bump_experiment.h"
 #include "relief/mesh/error.h"
@@ -188,6 +190,42 @@ TEST(NamedKernels, AreAllThereAndGoByOneNameEach) {
     EXPECT_EQ(name_of(Kernel::gaussian, 7), "gaussian 7");
     EXPECT_STREQ(recipe_named("domes of 44, 8 bit").name, "domes of 44, 8 bit");
     EXPECT_THROW(recipe_named("no such field"), InvalidInput);
+}
+
+/// surface_at()'s height in long double: the waves of the coarsest map, in its texels, enlarged
+/// alike along all three axes.
+Real enlarged_height_at(Real x, Real y, Real scale) {
+    static const std::vector<HeightWave> waves = tiling_waves(64, 64, 8, 8.0, 0.3, 5);
+    Real sum = 0;
+    for (const HeightWave& wave : waves) {
+        const Real along_x = static_cast<Real>(wave.frequency.x) * (x / scale);
+        const Real along_y = static_cast<Real>(wave.frequency.y) * (y / scale);
+        sum += static_cast<Real>(wave.amplitude) *
+               std::sin(along_x + along_y + static_cast<Real>(wave.phase));
+    }
+    return scale * sum;
+}
+
+TEST(SurfaceAt, HasTheNormalsOfNumericDerivatives) {
+    for (const int texels : {64, 128, 256}) {
+        const WaveMap surface = surface_at(texels);
+        const Real scale = static_cast<Real>(texels) / 64;
+        double steepest = 0.0;
+        // All of it at the coarsest; of finer ones, a texel of some, off any common raster.
+        for (std::size_t i = 0; i < surface.normals.size(); i += texels == 64 ? 1 : 97) {
+            const Real x = static_cast<Real>(i % static_cast<std::size_t>(texels));
+            const Real y = static_cast<Real>(i / static_cast<std::size_t>(texels));
+            const Real dx = derivative([&](Real h) { return enlarged_height_at(x + h, y, scale); });
+            const Real dy = derivative([&](Real h) { return enlarged_height_at(x, y + h, scale); });
+            const glm::dvec3 expected(static_cast<double>(-dx), static_cast<double>(dy), 1.0);
+            // Of the shortest waves, 8 texels, what is left of h^6 is 1e-13 degrees.
+            ASSERT_LE(degrees_between(surface.normals[i], expected), 1e-10) << texels << " " << i;
+            ASSERT_FLOAT_EQ(surface.heights.as<float>()[i],
+                            static_cast<float>(enlarged_height_at(x, y, scale)));
+            steepest = std::max(steepest, degrees(std::acos(surface.normals[i].z)));
+        }
+        EXPECT_GT(steepest, 20.0) << "slopes of 0.3 (RMS), as in every size";
+    }
 }
 
 TEST(SurfaceAt, IsTheSameSurfaceInFinerTexels) {

@@ -233,6 +233,21 @@ TEST(CompareReports, PointsOfACurveAreToldApartByTheirPlaceAlone) {
     EXPECT_EQ(result.errors[0].figures[0].figure, "at 0");
 }
 
+TEST(CompareReports, CurvesAndPointsWithoutAPartnerAreListed) {
+    Experiment before = one_measurement({});
+    before.charts.push_back({"scale", "", "", "", true, {}, {{"naive", {}, {}, {}, {}}}});
+    before.charts[0].curves[0].points = {{1.0, 0.1}, {10.0, 0.2}};
+    before.charts.push_back({"offset", "", "", "", true, {}, {{"naive", {}, {}, {}, {}}}});
+    Experiment after = before;
+    after.charts.pop_back();
+    after.charts[0].curves[0].points = {{1.0, 0.1}, {100.0, 0.3}};
+    const ReportComparison result = compare_reports({before}, {after}, true);
+    EXPECT_THAT(result.gone, ElementsAre("bump/waves, chart scale: naive at 10",
+                                         "bump/waves, chart offset: naive"));
+    EXPECT_THAT(result.added, ElementsAre("bump/waves, chart scale: naive at 100"));
+    EXPECT_THAT(result.errors, IsEmpty());
+}
+
 TEST(CompareReports, ListsWhatHasNoPartner) {
     Experiment before = one_measurement({});
     Experiment after = before;

@@ -8,6 +8,7 @@
 
 #include "drawn/lit_scene.h"
 #include "drawn/many_samples.h"
+#include "drawn/one_processor.h"
 #include "experiment_checks.h"
 #include "relief/mesh/shapes.h"
 #include "shading/shading_plan.h"
@@ -70,7 +71,12 @@ TEST(DrawnMethods, AreTimedInTurnsInSeconds) {
         EXPECT_EQ(one.cost.all_threads->rounds.size(), 3U);
         EXPECT_GT(one.cost.all_threads->spread().median, 0.0);
         EXPECT_LT(one.cost.all_threads->spread().median, 10.0);
-        EXPECT_FALSE(one.cost.one_thread);
+        // A software driver's threads can be kept on one processor, where the system lets them.
+        const OneProcessor kept;
+        ASSERT_EQ(one.cost.one_thread.has_value(),
+                  kept.is_kept() && drawing.context().is_software());
+        if (!one.cost.one_thread) continue;
+        EXPECT_EQ(one.cost.one_thread->rounds.size(), 3U);
     }
 }
 

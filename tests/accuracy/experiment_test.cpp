@@ -55,5 +55,32 @@ TEST(FittedOrder, NeedsTwoPlaces) {
     EXPECT_FALSE(fitted_order({{8.0, 1.0}, {8.0, 2.0}}));
 }
 
+TEST(FiguresOf, NothingAreNoneNotExactlyRight) {
+    const ErrorFigures none = figures_of(angle_distribution({}));
+    EXPECT_EQ(none.count, 0U);
+    for (const double figure : {none.rms, none.mean, none.p99, none.max})
+        EXPECT_TRUE(std::isnan(figure));
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    const ErrorFigures undefined = figures_of(angle_distribution({nan, nan}));
+    EXPECT_EQ(undefined.undefined, 2U);
+    EXPECT_TRUE(std::isnan(undefined.rms));
+    Experiment experiment;
+    for (const ErrorFigures& error : {none, figures_of(angle_distribution({0.5F}))}) {
+        experiment.measurements.emplace_back().error = error;
+        experiment.measurements.back().cost.one_thread = Timing{{1.0}};
+    }
+    experiment.measurements[0].cost.one_thread = Timing{{0.1}};
+    mark_efficient(experiment);
+    EXPECT_FALSE(experiment.measurements[0].is_efficient) << "nothing was measured";
+    EXPECT_TRUE(experiment.measurements[1].is_efficient);
+}
+
+TEST(CurveError, HasNoNumberWhereASingleResultHasNone) {
+    EXPECT_EQ(curve_error(angle_distribution({3.0F, 4.0F, 0.0F, 0.0F})), 2.5);
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    EXPECT_TRUE(std::isnan(curve_error(angle_distribution({3.0F, nan}))));
+    EXPECT_TRUE(std::isnan(curve_error(angle_distribution({}))));
+}
+
 }  // namespace
 }  // namespace relief

@@ -48,7 +48,7 @@ TEST(MeasureCosts, RepeatsShortWorkWithinARound) {
         works, rounds(2), {.one_thread = true, .all_threads = false, .memory = false});
     EXPECT_GT(calls, 2U + 3U * 10U);     // More than ten in a round,
     EXPECT_LE(calls, 2U + 3U * 40000U);  // and no more than a sane clock asks for.
-    EXPECT_LT(costs[0].one_thread.value().spread().p10, 4e-3);  // The time is that of one.
+    EXPECT_LT(costs[0].one_thread.value().spread().p10, 1e-3);  // The time is that of one.
 }
 
 TEST(MeasureCosts, WithoutTimesMeasuresNothing) {

@@ -7,9 +7,13 @@
 
 #include <cmath>
 #include <numbers>
+#include <span>
+#include <vector>
 
 #include "experiment_checks.h"
 #include "map_errors.h"
+#include "relief/mesh/analytic_heights.h"
+#include "relief/mesh/direction_error.h"
 #include "relief/mesh/error.h"
 #include "storage/frame_codes.h"
 #include "storage/storage_experiments.h"
@@ -59,6 +63,79 @@ TEST(NormalCodes, FlatComesBackFlatUnlessZeroHasNoCode) {
         else
             EXPECT_EQ(error, 0.0) << code.name;
     }
+}
+
+using LongReal = long double;
+
+/// smooth_surface()'s height, by a formula of this file.
+LongReal smooth_height_at(std::span<const HeightWave> waves, LongReal x, LongReal y) {
+    LongReal sum = 0;
+    for (const HeightWave& wave : waves) {
+        sum += static_cast<LongReal>(wave.amplitude) *
+               std::sin(static_cast<LongReal>(wave.frequency.x) * x +
+                        static_cast<LongReal>(wave.frequency.y) * y +
+                        static_cast<LongReal>(wave.phase));
+    }
+    return sum;
+}
+
+/// Central differences of two widths, extrapolated; errors of h^4.
+template <typename Function>
+LongReal slope_of(const Function& function) {
+    const auto central = [&](LongReal h) { return (function(h) - function(-h)) / (2 * h); };
+    return (4 * central(0.05L) - central(0.1L)) / 3;
+}
+
+TEST(SmoothSurface, HasTheNormalsOfNumericDerivatives) {
+    constexpr int map_side = 256;  // As the experiment has it.
+    const std::vector<HeightWave> waves = tiling_waves(map_side, map_side, 5, 128.0, 0.2, 41);
+    const std::vector<glm::dvec3> normals = smooth_surface(map_side);
+    ASSERT_EQ(normals.size(), 256U * 256U);
+    double squared_slopes = 0.0;
+    for (std::size_t i = 0; i < normals.size(); ++i) {
+        squared_slopes += 1.0 / (normals[i].z * normals[i].z) - 1.0;
+        if (i % 31 != 0) continue;
+        const LongReal x = static_cast<LongReal>(i % map_side);
+        const LongReal y = static_cast<LongReal>(i / map_side);
+        const LongReal dx = slope_of([&](LongReal h) { return smooth_height_at(waves, x + h, y); });
+        const LongReal dy = slope_of([&](LongReal h) { return smooth_height_at(waves, x, y + h); });
+        // Rows run downwards, the normal's y upwards.
+        const glm::dvec3 expected(static_cast<double>(-dx), static_cast<double>(dy), 1.0);
+        // Waves of 128 texels and more change so slowly that h^4 leaves 1e-11 degrees.
+        ASSERT_LE(degrees_between(normals[i], expected), 1e-10) << i;
+    }
+    EXPECT_GT(std::sqrt(squared_slopes / 65536.0), 0.1) << "codes of 8 bits change with the slope";
+}
+
+/// The mean and the root of the mean square of the angle that evenly spread directions, half of
+/// them, are off if x loses its sign: twice the arc sine of |x|, which is spread evenly too.
+TEST(NormalCodes, ThatLoseASignAreAsFarOffAsTheyMustBe) {
+    std::vector<glm::dvec3> directions = even_directions(2 * 128 * 128);
+    directions.resize(directions.size() / 2);
+    const Image normals = image_of_normals(directions, 128);
+    const NormalCode right = code_named("xyz 16 bit");
+    NormalCode broken = right;
+    broken.decode = [right](const Image& codes) {
+        Image decoded = right.decode(codes);
+        for (std::size_t i = 0; i < decoded.sample_count(); i += 3)
+            decoded.as<float>()[i] = std::abs(decoded.as<float>()[i]);
+        return decoded;
+    };
+    EXPECT_LT(map_errors(right.stored(normals), directions).max, 0.002);
+    const AngleDistribution errors = map_errors(broken.stored(normals), directions);
+    constexpr double half_turn_degrees = 180.0;
+    // The integrals of 2 asin(x) and its square over 0 to 1, halved; 16384 directions are the
+    // integral to some thousandths.
+    const double mean = (std::numbers::pi / 2.0 - 1.0) / std::numbers::pi * half_turn_degrees;
+    const double square = std::numbers::pi * std::numbers::pi / 2.0 - 4.0;
+    EXPECT_NEAR(errors.mean, mean, 0.01);
+    EXPECT_NEAR(errors.rms, std::sqrt(square) / std::numbers::pi * half_turn_degrees, 0.01);
+    EXPECT_GT(errors.max, 175.0);
+    EXPECT_NEAR(errors.median, 0.0, 0.1) << "half of all are right";
+    EXPECT_EQ(errors.undefined, 0U);
+    // Means of patches show it as well.
+    EXPECT_GT(patch_errors(broken.stored(normals), normals, 8).rms, 20.0);
+    EXPECT_LT(patch_errors(right.stored(normals), normals, 8).rms, 0.001);
 }
 
 struct Published {

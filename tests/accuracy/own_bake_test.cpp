@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdint>
 
 #include "experiment_checks.h"
 #include "relief/accuracy/own.h"
@@ -65,6 +66,52 @@ TEST(OwnBake, OfAFlatSurfaceIsExactWithOneSample) {
     EXPECT_THAT(found(own, "1 sample, 8 bit").cost.all_threads.value().rounds, SizeIs(2));
     EXPECT_FALSE(found(own, "1 sample, 8 bit").cost.one_thread);
     EXPECT_TRUE(own.recommendation.method.has_value());
+}
+
+constexpr int striped_texels = 32;
+
+/// The unit square, flat, whose normals lean right by so many degrees in the middle of each column
+/// of texels and left beside that, half and half; the stripes are a 64th of a texel off its
+/// quarters, so that no sample lies on a border.
+Mesh striped(double degrees) {
+    constexpr double texel = 1.0 / striped_texels;
+    const double lean = glm::radians(degrees);
+    Mesh mesh;
+    const auto add_stripe = [&](double begin, double end, double side) {
+        const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+        for (const glm::dvec2& corner :
+             {glm::dvec2(begin, 0.0), {end, 0.0}, {end, 1.0}, {begin, 1.0}}) {
+            mesh.positions.emplace_back(corner.x, corner.y, 0.0);
+            mesh.normals.emplace_back(side * std::sin(lean), 0.0, std::cos(lean));
+        }
+        mesh.triangles.emplace_back(first, first + 1, first + 2);
+        mesh.triangles.emplace_back(first, first + 2, first + 3);
+    };
+    for (int column = 0; column < striped_texels; ++column) {
+        constexpr double aside = 1.0 / 64.0;
+        add_stripe(column * texel, (column + 0.25 - aside) * texel, -1.0);
+        add_stripe((column + 0.25 - aside) * texel, (column + 0.75 - aside) * texel, 1.0);
+        add_stripe((column + 0.75 - aside) * texel, (column + 1.0) * texel, -1.0);
+    }
+    return mesh;
+}
+
+TEST(OwnBake, OfSamplesThatAreADegreeOffIsADegreeOff) {
+    // One sample, in the middle, sees the normals that lean right; the mean of 256 sees both, and
+    // so does that of 4, two on either side of a stripe: straight up.
+    for (const double degrees : {1.0, 5.0}) {
+        const OwnExperiment own = measured(striped(degrees), false);
+        // 16 bits tell apart 2^-15: 0.0017 degrees.
+        constexpr double code = 0.0017;
+        const ErrorFigures& one = found(own, "1 sample, 16 bit").error;
+        EXPECT_NEAR(one.rms, degrees, code);
+        EXPECT_NEAR(one.mean, degrees, code);
+        EXPECT_NEAR(one.p99, degrees, code + degrees / 64.0) << "binned";
+        EXPECT_NEAR(one.max, degrees, code);
+        EXPECT_EQ(one.count, static_cast<std::size_t>(striped_texels) * striped_texels);
+        for (const char* both : {"4 samples, 16 bit", "64 samples, 16 bit"})
+            EXPECT_LE(found(own, both).error.max, code) << both;
+    }
 }
 
 }  // namespace

@@ -3,11 +3,18 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <numbers>
+#include <vector>
+
 #include "bump/bump_words.h"
 #include "experiment_checks.h"
 #include "relief/accuracy/own.h"
+#include "relief/mesh/analytic_heights.h"
 #include "relief/mesh/bump_fields.h"
+#include "relief/mesh/direction_error.h"
 #include "relief/mesh/error.h"
+#include "storage/normal_codes.h"
 
 namespace relief {
 namespace {
@@ -75,6 +82,44 @@ TEST(OwnHeights, OfLargeMapsAreMeasuredOnParts) {
     EXPECT_EQ(own.experiment.input, "2304 texels in nine parts of 96 x 96");
 }
 
+/// How far slopes taken from each texel to the next one are from a wave's own, in degrees: the
+/// difference of two sines, half a texel further on. Root of the mean square.
+double error_half_a_texel_off(const HeightWave& wave, int side) {
+    double squares = 0.0;
+    for (int y = 0; y < side; ++y) {
+        for (int x = 0; x < side; ++x) {
+            const double angle = glm::dot(wave.frequency, glm::dvec2(x, y)) + wave.phase;
+            const glm::dvec2 true_slope = wave.amplitude * wave.frequency * std::cos(angle);
+            const glm::dvec2 half = wave.frequency / 2.0;
+            const glm::dvec2 found(
+                2.0 * wave.amplitude * std::sin(half.x) * std::cos(angle + half.x),
+                2.0 * wave.amplitude * std::sin(half.y) * std::cos(angle + half.y));
+            squares += std::pow(
+                degrees_between({-true_slope.x, true_slope.y, 1.0}, {-found.x, found.y, 1.0}), 2.0);
+        }
+    }
+    return std::sqrt(squares / (side * side));
+}
+
+TEST(OwnHeights, OfAKernelHalfATexelOffAreThatFarOff) {
+    constexpr int side = 128;
+    const double turn = 2.0 * std::numbers::pi / side;
+    const HeightWave wave{2.0, {4.0 * turn, -2.0 * turn}, 0.7};  // 29 texels long, slope 0.4.
+    BumpOptions options;
+    options.strength = 1.0;
+    options.wrap = Wrap::repeat;
+    const OwnExperiment own =
+        measure_own_heights(wave_heights(side, side, {&wave, 1}).heights, options, untimed_map());
+    const double expected = error_half_a_texel_off(wave, side);
+    EXPECT_GT(expected, 1.0);
+    for (const char* arithmetic : {"float32", "float64"}) {
+        // The map's own best, central7, stands for the truth: a thousandth of that off.
+        EXPECT_NEAR(found(own, std::string("forward, ") + arithmetic + ", 32 bit").error.rms,
+                    expected, 1e-3 * expected);
+    }
+    EXPECT_LT(found(own, "central5, float64, 32 bit").error.rms, 0.01 * expected);
+}
+
 TEST(OwnHeights, AreTimedWhereThatIsWished) {
     const BumpField field = waves(FieldCoding::bits8);
     OwnOptions options = untimed_map();
@@ -119,6 +164,29 @@ TEST(OwnNormalMaps, AreOffByWhatTheirBitsHold) {
     EXPECT_GT(eight, 0.1);
     EXPECT_GT(found(own, "xyz 8 bit, blue-noise").error.rms, eight);
     EXPECT_EQ(found(own, "xy 16 bit").cost.stored_bytes, 4.0);
+}
+
+TEST(OwnNormalMaps, OfCodesThatCannotHoldThemAreAsFarOffAsTheyMustBe) {
+    // Normals that point 10 degrees below the surface, all around: without z's sign, 10 above it.
+    constexpr double below = 10.0;
+    std::vector<glm::dvec3> directions;
+    for (int i = 0; i < 32 * 32; ++i) {
+        const double around = 0.37 * i;
+        directions.emplace_back(std::cos(glm::radians(below)) * std::cos(around),
+                                std::cos(glm::radians(below)) * std::sin(around),
+                                -std::sin(glm::radians(below)));
+    }
+    const OwnExperiment own =
+        measure_own_normals(image_of_normals(directions, 32), 32, untimed_map());
+    // What 16 bits keep of x and y, 2^-16, says little about a z that is what remains: 0.01 degrees
+    // so near to the horizon.
+    const ErrorFigures lost = found(own, "xy 16 bit").error;
+    EXPECT_NEAR(lost.rms, 2.0 * below, 0.01);
+    EXPECT_NEAR(lost.mean, 2.0 * below, 0.01);
+    EXPECT_NEAR(lost.max, 2.0 * below, 0.02);
+    for (const char* whole : {"xyz 16 bit", "octahedral 2 x 16 bit", "xyz float"})
+        EXPECT_LT(found(own, whole).error.max, 0.01) << whole;
+    EXPECT_THAT(own.recommendation.words, Not(HasSubstr("xy 16 bit")));
 }
 
 TEST(BumpWords, AreThoseOfTheTools) {

@@ -4,6 +4,7 @@
 
 #include "experiment_checks.h"
 #include "measured_methods.h"
+#include "shading/shading_experiments.h"
 #include "shading/shading_plan.h"
 
 namespace relief {
@@ -53,6 +54,48 @@ TEST_F(DrawnExperiment, OnEdgesRanksSamples) {
     const Experiment experiment = edge_experiment(drawing(), untimed);
     EXPECT_LT(rms(experiment, "MSAA, 4 samples"), 0.6 * rms(experiment, "1 sample"));
     EXPECT_LT(rms(experiment, "4 x 4 pixels"), 0.6 * rms(experiment, "2 x 2 pixels"));
+}
+
+TEST_F(DrawnExperiment, OnSmallHighlightsFindsThatWideningThemHelps) {
+    const Experiment experiment = specular_aliasing_experiment(drawing(), untimed);
+    ASSERT_EQ(experiment.measurements.size(), 6U);
+    EXPECT_LT(rms(experiment, "Toksvig"), 0.5 * rms(experiment, "averaged normals"));
+    EXPECT_LT(rms(experiment, "Toksvig, 2 x 2 pixels"), rms(experiment, "Toksvig"));
+    EXPECT_LT(rms(experiment, "averaged normals, 2 x 2 pixels"),
+              0.6 * rms(experiment, "averaged normals"));
+    EXPECT_LT(rms(experiment, "averaged normals, 4 x 4 pixels"), 0.5 * rms(experiment, "Toksvig"));
+    // Multisampling shades once a pixel: only edges, of which there are none, get better.
+    EXPECT_NEAR(rms(experiment, "averaged normals, MSAA"), rms(experiment, "averaged normals"),
+                0.01);
+    const Chart& chart = experiment.charts.front();
+    const Curve& sharp = test::curve_of(chart, "averaged normals");
+    const Curve& widened = test::curve_of(chart, "Toksvig");
+    ASSERT_EQ(sharp.points.size(), 6U);
+    // A texel to a pixel: nothing was averaged that could be widened.
+    EXPECT_NEAR(widened.points[1].error, sharp.points[1].error, 1e-3);
+    for (std::size_t i = 2; i < sharp.points.size(); ++i)
+        EXPECT_LT(widened.points[i].error, sharp.points[i].error) << sharp.points[i].x;
+    // The farther away, the more: an error that grows, and one that does not.
+    EXPECT_GT(sharp.points[5].error, 2.0 * sharp.points[2].error);
+    EXPECT_LT(widened.points[5].error, 1.3 * widened.points[2].error);
+}
+
+TEST(ShadingExperiments, AreWhole) {
+    if (!Drawing().is_there()) GTEST_SKIP() << "no OpenGL";
+    const std::vector<Experiment> all = shading_experiments(untimed);
+    EXPECT_EQ(all.size(), 9U);
+    test::expect_whole(all, Subject::shading);
+    for (const Experiment& one : all) {
+        SCOPED_TRACE(one.id);
+        EXPECT_TRUE(one.id.starts_with("shading/"));
+        // Pictures are of as many pixels as the experiment says, as are heat maps.
+        for (const PicturePair& pair : one.pictures) {
+            for (const Image& image : {pair.before, pair.after})
+                EXPECT_EQ(static_cast<double>(image.width) * image.height, one.items);
+        }
+        for (const HeatMap& map : one.heat_maps)
+            EXPECT_EQ(static_cast<double>(map.errors.width) * map.errors.height, one.items);
+    }
 }
 
 }  // namespace

@@ -16,5 +16,11 @@ TEST(Subjects, HaveWordsThatLeadBackToThem) {
     EXPECT_THROW(subject_from("colour"), InvalidInput);
 }
 
+TEST(Subjects, ThatDrawAreKnown) {
+    EXPECT_TRUE(is_drawn(Subject::shading));
+    EXPECT_TRUE(is_drawn(Subject::tangents));
+    EXPECT_FALSE(is_drawn(Subject::bump));
+}
+
 }  // namespace
 }  // namespace relief

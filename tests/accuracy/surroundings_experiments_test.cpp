@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// Mirrors of surroundings in closed form, sharp and rough.
+// Mirrors of surroundings in closed form, sharp and rough; and what the experiments on them find.
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
 #include "drawn/many_samples.h"
+#include "experiment_checks.h"
 #include "relief/mesh/image.h"
 #include "relief/shade/image_compare.h"
+#include "shading/shading_plan.h"
 #include "shading/surroundings.h"
 
 namespace relief {
@@ -73,6 +75,111 @@ TEST(RoughMirror, OfASlopeIsFlatterAsTheClosedFormSays) {
         EXPECT_LT(left, 1.0);
     }
     EXPECT_LT(left_of_slope(0.9), 0.8) << "rough enough to tell";
+}
+
+TEST(CubeMapSize, LargerMapsErrLessUntilTexelsAreFinerThanPixels) {
+    const Drawing drawing;
+    if (!drawing.is_there()) GTEST_SKIP() << "no OpenGL";
+    const Experiment experiment = reflection_experiment(drawing, test::quick_untimed());
+    ASSERT_EQ(experiment.measurements.size(), 5U);
+    const std::vector<CurvePoint>& by_size = experiment.charts.front().curves.front().points;
+    ASSERT_EQ(by_size.size(), 5U);
+    EXPECT_EQ(by_size.front().x, 16.0);
+    EXPECT_EQ(by_size.back().x, 256.0);
+    EXPECT_LT(by_size[1].error, 0.65 * by_size[0].error);
+    EXPECT_LT(by_size[2].error, 0.6 * by_size[1].error);
+    EXPECT_LT(by_size[3].error, 0.9 * by_size[2].error);
+    // What is left is that of one sample a pixel, at whatever size.
+    EXPECT_NEAR(by_size[4].error, by_size[3].error, 0.1 * by_size[3].error);
+    for (std::size_t i = 0; i < by_size.size(); ++i) {
+        const Measurement& one = experiment.measurements[i];
+        EXPECT_EQ(one.error.rms, by_size[i].error);
+        // A face's texels four times as many; 6 faces of 256 texels of 8 bytes, and a third more.
+        EXPECT_NEAR(one.cost.stored_bytes, 16384.0 * std::pow(4.0, static_cast<double>(i)), 1e-6);
+    }
+}
+
+TEST(CubeMapSize, WithMoreSamplesAPixelTheLargestMapsDiffer) {
+    const Drawing drawing;
+    if (!drawing.is_there()) GTEST_SKIP() << "no OpenGL";
+    constexpr int ball_side = 160;
+    const Image truth = true_mirror(waves_and_lamps, ball_side, 4);
+    const auto error_with = [&](const Surroundings& shown, int map_side) {
+        return drawn_error(drawing, {"", {}, mirror_ball(cube_map_of(shown, map_side), 0.0), 1, 4},
+                           truth);
+    };
+    const double of_large = error_with(waves_and_lamps, 256);
+    EXPECT_LT(of_large, 0.02);
+    EXPECT_LT(of_large, 0.7 * error_with(waves_and_lamps, 128));
+    // Surroundings that are mirrored, or a tenth too dark, are seen at once.
+    EXPECT_GT(error_with(
+                  [](const glm::dvec3& d) {
+                      return waves_and_lamps({-d.x, d.y, d.z});
+                  },
+                  64),
+              10.0 * of_large);
+    EXPECT_GT(error_with([](const glm::dvec3& d) { return 0.9 * waves_and_lamps(d); }, 256),
+              4.0 * of_large);
+}
+
+double error_at(const Curve& curve, double roughness) {
+    for (const CurvePoint& point : curve.points) {
+        if (point.x == roughness) return point.error;
+    }
+    throw std::runtime_error("no such roughness");
+}
+
+double sum_of_errors(const Curve& curve) {
+    double sum = 0.0;
+    for (const CurvePoint& point : curve.points)
+        sum += point.error;
+    return sum;
+}
+
+TEST(GlossyLevels, MoreOfThemErrLessAndEachIsRightWhereItLies) {
+    const Drawing drawing;
+    if (!drawing.is_there()) GTEST_SKIP() << "no OpenGL";
+    const Experiment experiment = glossy_experiment(drawing, test::quick_untimed());
+    ASSERT_EQ(experiment.measurements.size(), 3U);
+    const double sharp = test::measurement_of(experiment, "not blurred").error.rms;
+    for (const char* levels : {"5 levels, 128 texels", "6 levels, 256 texels"})
+        EXPECT_LT(test::measurement_of(experiment, levels).error.rms, 0.3 * sharp) << levels;
+    const Chart& chart = experiment.charts.front();
+    const Curve& none = test::curve_of(chart, "not blurred");
+    const Curve& five = test::curve_of(chart, "5 levels, 128 texels");
+    const Curve& six = test::curve_of(chart, "6 levels, 256 texels");
+    EXPECT_LT(sum_of_errors(six), 0.95 * sum_of_errors(five));
+    // Of six, one is of roughness 1/5, of five, one of 1/2: there nothing is mixed, between them
+    // two are, of which the rougher is far too rough.
+    EXPECT_LT(error_at(six, 0.2), 0.012);
+    EXPECT_LT(error_at(five, 0.5), 0.012);
+    EXPECT_LT(error_at(six, 0.2), 0.4 * error_at(five, 0.2));
+    EXPECT_LT(error_at(five, 0.5), 0.7 * error_at(six, 0.5));
+    // The last level of both is of roughness 1, from which a sharp mirror is far.
+    EXPECT_NEAR(error_at(six, 1.0), error_at(five, 1.0), 1e-3);
+    EXPECT_GT(error_at(none, 1.0), 10.0 * error_at(six, 1.0));
+    for (std::size_t i = 1; i < none.points.size(); ++i)
+        EXPECT_GT(none.points[i].error, none.points[i - 1].error) << none.points[i].x;
+}
+
+TEST(GlossyLevels, OfAnotherRoughnessOrOtherSurroundingsAreFarOff) {
+    const Drawing drawing;
+    if (!drawing.is_there()) GTEST_SKIP() << "no OpenGL";
+    constexpr int ball_side = 32;
+    constexpr double roughness = 0.5;  // Of the middle one of five levels: nothing is mixed.
+    constexpr int map_side = 128;
+    const Environment right = cube_map_of(waves_and_lamps, map_side);
+    const Image truth = many_samples(mirror_ball(right, roughness), ball_side, 1);
+    const auto error_of = [&](const Environment& shown, double drawn_roughness) {
+        return drawn_error(drawing, {"", {}, mirror_ball(shown, drawn_roughness)}, truth);
+    };
+    EXPECT_LT(error_of(right, roughness), 0.012);
+    EXPECT_GT(error_of(right, 0.75), 0.05);
+    EXPECT_GT(error_of(right, 0.25), 0.05);
+    const auto dimmed = [](const glm::dvec3& d) { return 0.9 * waves_and_lamps(d); };
+    EXPECT_GT(error_of(cube_map_of(dimmed, map_side), roughness), 0.05);
+    const auto turned = [](const glm::dvec3& d) { return waves_and_lamps({-d.x, d.y, d.z}); };
+    EXPECT_GT(error_of(cube_map_of(turned, map_side), roughness), 0.05);
 }
 
 }  // namespace

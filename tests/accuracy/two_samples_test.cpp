@@ -23,6 +23,18 @@ TEST(MannWhitney, CountsTheWaysToOrder) {
     EXPECT_DOUBLE_EQ(mann_whitney_p({}, {1}), 1.0);
 }
 
+TEST(MannWhitney, TenRoundsCanFindOneChangeAmong4600) {
+    // All ten of one above all ten of the other: 2 of the 184756 ways to choose ten of twenty.
+    EXPECT_DOUBLE_EQ(least_mann_whitney_p(10, 10), 2.0 / 184756.0);
+    const auto finds_it_among = [](std::size_t times) -> bool {
+        std::vector<double> p(times, 1.0);
+        p[0] = least_mann_whitney_p(10, 10);
+        return discoveries(p, 0.05)[0];
+    };
+    EXPECT_TRUE(finds_it_among(4600));
+    EXPECT_FALSE(finds_it_among(4700));
+}
+
 TEST(MannWhitney, TiesShareTheirRanks) {
     EXPECT_DOUBLE_EQ(mann_whitney_p({7, 7}, {7, 7}), 1.0);
     // Ranks 1.5 1.5 3.5 3.5: of 6 pairs one sums to 3, four to 5, one to 7.

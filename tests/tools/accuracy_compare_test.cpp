@@ -110,6 +110,119 @@ TEST(AccuracyCompare, AMachineThatIsSlowerAllInAllIsToldAsSuch) {
                           "          times are judged relative to the middle of all alone\n"));
 }
 
+TEST(AccuracyCompare, WhatFewRoundsCannotTellDoesNotKeepABound) {
+    const Workplace workplace;
+    AccuracyReport before = steady_report();
+    for (Measurement& one : before.experiments[0].measurements)
+        one.cost.one_thread->rounds.resize(3);
+    AccuracyReport after = before;
+    slow_down(after, 3, 10.0);
+    const ProgramResult result = compared(workplace, before, after, "--max-slower 20");
+    EXPECT_EQ(result.exit_code, 1);
+    EXPECT_THAT(result.out, HasSubstr("unsure    storage/sample: method 3: 10.00 times ("));
+    EXPECT_EQ(result.error,
+              "relief-accuracy: error: new.json: storage/sample: method 3: 900.0 % slower on one "
+              "thread (at most 20 %), as far as so few rounds tell (run both with more "
+              "--repeats)\n");
+    slow_down(after, 3, 0.1);
+    EXPECT_EQ(compared(workplace, before, after, "--max-slower 20").exit_code, 0);
+}
+
+TEST(AccuracyCompare, OtherThreadsAreAnotherMachine) {
+    const Workplace workplace;
+    AccuracyReport after = steady_report();
+    after.settings.threads = 1;
+    for (std::size_t i = 0; i < 12; ++i)
+        slow_down(after, i, 3.0);
+    const ProgramResult result = compared(workplace, steady_report(), after, "--max-slower 20");
+    EXPECT_EQ(result.exit_code, 0) << result.error;
+    EXPECT_THAT(result.out,
+                HasSubstr("machine   threads: 2, then 1\n"
+                          "          times are judged relative to the middle of all alone\n"));
+}
+
+TEST(AccuracyCompare, AnotherRendererMayDrawOtherBits) {
+    const Workplace workplace;
+    AccuracyReport after = steady_report();
+    after.machine.opengl = "Another renderer";
+    const ProgramResult result = compared(workplace, steady_report(), after);
+    EXPECT_THAT(result.out, HasSubstr("OpenGL: A renderer, then Another renderer\n"));
+    EXPECT_THAT(result.out, HasSubstr("pictures drawn by OpenGL may differ in their last bits"));
+}
+
+TEST(AccuracyCompare, MemoryThatHardlyDiffersIsTheSameMachine) {
+    const Workplace workplace;
+    AccuracyReport after = steady_report();
+    after.machine.memory_bytes = after.machine.memory_bytes * 101 / 100;
+    EXPECT_THAT(compared(workplace, steady_report(), after).out, Not(HasSubstr("machine")));
+    after.machine.memory_bytes *= 2;
+    EXPECT_THAT(compared(workplace, steady_report(), after).out,
+                HasSubstr("machine   memory: 1.0 MB, then 2.0 MB\n"));
+}
+
+TEST(AccuracyCompare, OfManyFiguresThoseThatGrewMostAreTold) {
+    const Workplace workplace;
+    AccuracyReport before = steady_report();
+    AccuracyReport after = before;
+    for (int i = 1; i <= 8; ++i) {
+        before.experiments[0].charts[0].curves[0].points.push_back({10.0 * i, 1.0});
+        after.experiments[0].charts[0].curves[0].points.push_back({10.0 * i, 1.0 + 0.1 * i});
+    }
+    EXPECT_THAT(compared(workplace, before, after).out,
+                HasSubstr("worse     storage/sample, chart scale: near: at 80 1 then 1.8, at 70 1 "
+                          "then 1.7, at 60 1 then 1.6, at 50 1 then 1.5, at 40 1 then 1.4 and 3 "
+                          "more\n"));
+}
+
+TEST(AccuracyCompare, MemoryIsToldAndHeldAgainstItsBound) {
+    const Workplace workplace;
+    AccuracyReport before = steady_report();
+    before.experiments[0].measurements[2].cost.peak_bytes = 20'000'000;
+    before.experiments[0].measurements[5].cost.peak_bytes = 20'000'000;
+    AccuracyReport after = before;
+    after.experiments[0].measurements[2].cost.peak_bytes = 30'000'000;
+    after.experiments[0].measurements[5].cost.peak_bytes = 21'900'000;  // Less than a tenth.
+    after.experiments[0].measurements[7].cost.peak_bytes = 900'000;     // Less than a megabyte.
+    const ProgramResult same = compared(workplace, before, before, "--max-memory-growth 0");
+    EXPECT_EQ(same.exit_code, 0) << same.error;
+    EXPECT_THAT(same.out,
+                HasSubstr("memory    the same within a tenth or a megabyte, of 12 methods\n"));
+    const ProgramResult within = compared(workplace, before, after, "--max-memory-growth 50");
+    EXPECT_EQ(within.exit_code, 0) << within.error;
+    EXPECT_THAT(within.out, HasSubstr("more      storage/sample: method 2: 20 MB then 30 MB\n"
+                                      "          memory at the most\n"));
+    const ProgramResult beyond = compared(workplace, before, after, "--max-memory-growth 49");
+    EXPECT_EQ(beyond.exit_code, 1);
+    EXPECT_EQ(beyond.error,
+              "relief-accuracy: error: new.json: storage/sample: method 2: 20 MB then 30 MB (at "
+              "most 49 % more)\n");
+    EXPECT_THAT(compared(workplace, after, before).out,
+                HasSubstr("less      storage/sample: method 2: 30 MB then 20 MB\n"));
+    for (Measurement& one : before.experiments[0].measurements)
+        one.cost.peak_bytes.reset();
+    const ProgramResult unknown = compared(workplace, before, after, "--max-memory-growth 49");
+    EXPECT_EQ(unknown.exit_code, 1);
+    EXPECT_THAT(unknown.error, HasSubstr("so that --max-memory-growth says nothing"));
+}
+
+TEST(AccuracyCompare, WhatIsGoneKeepsNoBound) {
+    const Workplace workplace;
+    AccuracyReport after = steady_report();
+    after.experiments[0].measurements.pop_back();
+    after.experiments[0].charts[0].curves[0].points.pop_back();
+    const ProgramResult told = compared(workplace, steady_report(), after);
+    EXPECT_EQ(told.exit_code, 0) << told.error;
+    EXPECT_THAT(told.out, HasSubstr("gone      storage/sample: method 11\n"
+                                    "          storage/sample, chart scale: near at 1\n"));
+    for (const char* bound : {"--max-slower 50", "--max-error-growth 50"}) {
+        const ProgramResult bounded = compared(workplace, steady_report(), after, bound);
+        EXPECT_EQ(bounded.exit_code, 1);
+        EXPECT_EQ(bounded.error,
+                  "relief-accuracy: error: new.json: storage/sample: method 11: is gone, and 1 "
+                  "more beyond bounds\n");
+    }
+}
+
 TEST(AccuracyCompare, ErrorsThatGrewAreHeldAgainstTheirBound) {
     const Workplace workplace;
     AccuracyReport after = steady_report();
@@ -150,6 +263,7 @@ TEST(AccuracyCompare, ItsJsonIsWhatThePageDescribes) {
     slow_down(after, 3, 1.2);
     after.experiments[0].measurements[0].error.rms = 1.0;
     after.experiments[0].measurements[5].method = "new";
+    after.experiments[0].measurements[6].cost.peak_bytes = 50'000'000;
     Experiment other = before.experiments[0];
     other.id = "storage/other";
     before.experiments.push_back(other);
@@ -165,7 +279,7 @@ TEST(AccuracyCompare, ItsJsonIsWhatThePageDescribes) {
         return fault.starts_with("all_threads.") && fault.ends_with("never occurs");
     });
     EXPECT_THAT(faults, IsEmpty());
-    EXPECT_EQ(found["beyond"].size(), 2U);
+    EXPECT_EQ(found["beyond"].size(), 3U);  // Slower, more of an error, and a method that is gone.
     EXPECT_EQ(found["times"][3]["verdict"], "slower");
     EXPECT_NEAR(found["times"][3]["counted"].get<double>(), 1.2, 1e-6);
     EXPECT_EQ(found["times"][2]["verdict"], "unchanged");

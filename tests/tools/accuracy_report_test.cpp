@@ -113,8 +113,9 @@ INSTANTIATE_TEST_SUITE_P(
                "/experiments/0/measurements/1/error/rms: is of type string, not number"},
         Broken{"/experiments/0/measurements/1/error/count", -1,
                "/experiments/0/measurements/1/error/count: is not a whole number of 0 or more"},
-        Broken{"/experiments/0/measurements/1/cost/one_thread/rounds/2", -1e-3,
-               "/experiments/0/measurements/1/cost/one_thread/rounds/2: is less than 0 seconds"},
+        Broken{
+            "/experiments/0/measurements/1/cost/one_thread/rounds/2", -1e-3,
+            "/experiments/0/measurements/1/cost/one_thread/rounds/2: is not more than 0 seconds"},
         Broken{"/experiments/0/charts/0/curves/0/points/1", json::array({1}),
                "/experiments/0/charts/0/curves/0/points/1: has 1 numbers, not 2"},
         Broken{"/machine", nullptr, "/machine: is of type null, not object"}));

@@ -20,7 +20,8 @@ inline constexpr int report_version = 1;
 struct RunSettings {
     bool quick = false;
     bool timed = true;
-    std::size_t repeats = 0;
+    std::size_t repeats = 0;  ///< Of all passes together.
+    std::size_t passes = 1;
     unsigned threads = 0;  ///< That "all threads" were.
 };
 

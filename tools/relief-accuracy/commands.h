@@ -10,5 +10,6 @@ namespace relief::tools {
 Command add_run_command(CLI::App& tool);
 Command add_own_command(CLI::App& tool);
 Command add_report_compare_command(CLI::App& tool);
+Command add_page_command(CLI::App& tool);
 
 }  // namespace relief::tools

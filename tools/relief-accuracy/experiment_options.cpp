@@ -29,14 +29,15 @@ void add_experiment_options(CLI::App& app, ExperimentOptions& options) {
     add_switch(app, "--json", options.json,
                "Print the report as JSON instead of tables; docs/accuracy-schema.md describes it.");
     const char* group = "Effort";
-    add_switch(app, "--quick", options.quick,
-               "Small inputs and fewer repeats: all subjects in a minute or two.")
+    add_switch(app, "--quick", options.quick, "Small inputs: all subjects in a few minutes.")
         .group(group);
-    add_switch(app, "--no-times", options.no_times, "Errors alone, which are the same in each run.")
+    add_switch(app, "--no-times", options.no_times,
+               "Errors alone, which are the same in each run; of what OpenGL draws, with the same "
+               "renderer.")
         .group(group);
     add_value(app, "--repeats", "N",
               "How often each time is taken, in turns with the other methods of its experiment, 3 "
-              "to 1000. Default: 9, which is what `compare` needs among many methods.",
+              "to 1000. Default: 10, by which `compare` can tell a change among 4600 times.",
               [&options](const std::string& subject, const std::string& text) {
                   options.repeats = parse_integer(subject, text, 3, most_repeats);
               })
@@ -58,8 +59,6 @@ RunOptions run_options(const ExperimentOptions& options) {
     run.is_quick = options.quick;
     run.is_timed = !options.no_times;
     run.threads = options.general.threads;
-    // Fewer would be faster, but could not be compared: see compare_reports.h.
-    if (options.quick) run.repeats.warm_up = 1;
     if (options.repeats) run.repeats.counted = static_cast<std::size_t>(*options.repeats);
     return run;
 }
@@ -89,6 +88,7 @@ void hand_over(const ExperimentOptions& options, AccuracyReport report, bool dra
     report.settings = {.quick = options.quick,
                        .timed = run.is_timed,
                        .repeats = run.is_timed ? run.repeats.counted : 0,
+                       .passes = report.settings.passes,
                        .threads = static_cast<unsigned>(thread_count())};
     std::vector<std::string> written;
     if (options.output) {

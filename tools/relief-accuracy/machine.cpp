@@ -7,10 +7,12 @@
 #include <sys/utsname.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <fstream>
 #include <thread>
 #include <vector>
 
+#include "common/text.h"
 #include "relief/shade/context.h"
 #include "relief/shade/error.h"
 
@@ -69,6 +71,13 @@ std::optional<std::string> opengl_name() {
     }
 }
 
+/// What a system keeps for itself differs from start to start.
+bool have_same_memory(const Machine& a, const Machine& b) {
+    const auto least = static_cast<double>(std::min(a.memory_bytes, b.memory_bytes));
+    const auto most = static_cast<double>(std::max(a.memory_bytes, b.memory_bytes));
+    return most <= 1.02 * least;
+}
+
 }  // namespace
 
 Machine this_machine(bool draws) {
@@ -89,6 +98,8 @@ std::string difference_of(const Machine& old_one, const Machine& new_one) {
     };
     compare("processor", old_one.processor, new_one.processor);
     compare("cores", fmt::to_string(old_one.cores), fmt::to_string(new_one.cores));
+    if (!have_same_memory(old_one, new_one))
+        compare("memory", byte_size(old_one.memory_bytes), byte_size(new_one.memory_bytes));
     compare("system", old_one.system, new_one.system);
     compare("compiler", old_one.compiler, new_one.compiler);
     compare("build", old_one.build, new_one.build);
@@ -100,8 +111,7 @@ bool may_compare_times(const Machine& old_one, const Machine& new_one) {
     const bool same_opengl =
         !old_one.opengl || !new_one.opengl || *old_one.opengl == *new_one.opengl;
     return old_one.processor == new_one.processor && old_one.cores == new_one.cores &&
-           old_one.memory_bytes == new_one.memory_bytes && old_one.system == new_one.system &&
-           same_opengl;
+           have_same_memory(old_one, new_one) && old_one.system == new_one.system && same_opengl;
 }
 
 }  // namespace relief::tools

@@ -5,8 +5,9 @@
 
 int main(int argc, char** argv) {
     using namespace relief::tools;
-    return run_tool({"relief-accuracy",
-                     "Says what accuracy costs: each method's error beside the time that it takes.",
-                     {add_run_command, add_own_command, add_report_compare_command}},
-                    argc, argv);
+    return run_tool(
+        {"relief-accuracy",
+         "Says what accuracy costs: each method's error beside the time that it takes.",
+         {add_run_command, add_own_command, add_report_compare_command, add_page_command}},
+        argc, argv);
 }

@@ -12,13 +12,10 @@
 #include "report_pictures.h"
 
 namespace relief::tools {
-namespace {
 
 void write_text(const std::filesystem::path& file, const std::string& text) {
     replace_file(file, std::as_bytes(std::span(text)));
 }
-
-}  // namespace
 
 std::vector<std::filesystem::path> write_report(const std::filesystem::path& folder,
                                                 const AccuracyReport& report) {

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "accuracy_report.h"
@@ -15,5 +16,8 @@ namespace relief::tools {
 /// \return the files that a reader opens first
 std::vector<std::filesystem::path> write_report(const std::filesystem::path& folder,
                                                 const AccuracyReport& report);
+
+/// One of them. \throws FileError
+void write_text(const std::filesystem::path& file, const std::string& text);
 
 }  // namespace relief::tools

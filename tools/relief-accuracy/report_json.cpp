@@ -27,6 +27,7 @@ Json json_of(const RunSettings& settings) {
     return {{"quick", settings.quick},
             {"timed", settings.timed},
             {"repeats", settings.repeats},
+            {"passes", settings.passes},
             {"threads", settings.threads}};
 }
 

@@ -28,9 +28,11 @@ Machine machine_at(const JsonPlace& place) {
 }
 
 RunSettings settings_at(const JsonPlace& place) {
+    const auto passes = place.find("passes");  // Older reports were made in one.
     return {.quick = place.at("quick").boolean(),
             .timed = place.at("timed").boolean(),
             .repeats = place.at("repeats").whole_number(),
+            .passes = passes ? passes->whole_number() : 1,
             .threads = static_cast<unsigned>(place.at("threads").whole_number())};
 }
 
@@ -52,7 +54,7 @@ std::optional<Timing> timing_at(const JsonPlace& cost, const std::string& key) {
     Timing timing;
     for (const JsonPlace& round : place->at("rounds").elements()) {
         timing.rounds.push_back(round.number());
-        if (timing.rounds.back() < 0.0) round.fail("is less than 0 seconds");
+        if (!(timing.rounds.back() > 0.0)) round.fail("is not more than 0 seconds");
     }
     return timing;
 }

@@ -6,19 +6,29 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <memory>
+#include <optional>
 
 #include "accuracy_report.h"
 #include "commands.h"
 #include "experiment_options.h"
+#include "relief/accuracy/passes.h"
 #include "relief/accuracy/subjects.h"
 #include "report_table.h"
 
 namespace relief::tools {
 namespace {
 
+constexpr int most_passes = 100;
+
 struct RunCommandOptions {
     std::vector<std::string> words;
+    std::optional<int> passes;
     ExperimentOptions how;
+
+    /// A third of a method's rounds may lie in a busy moment, and its median stays where it is.
+    [[nodiscard]] std::size_t passes_made() const {
+        return how.no_times ? 1 : static_cast<std::size_t>(passes.value_or(3));
+    }
 };
 
 std::string known_words() {
@@ -53,28 +63,33 @@ std::vector<Subject> subjects_of(const std::vector<std::string>& words) {
 
 /// What repeats these subjects as they were run.
 std::string command_for(const std::string& subjects, const RunCommandOptions& options) {
-    return "relief-accuracy run " + subjects + effort_words(options.how);
+    const std::string passes = options.passes ? fmt::format(" --passes {}", *options.passes) : "";
+    return "relief-accuracy run " + subjects + effort_words(options.how) + passes;
 }
 
-/// Runs the subjects one after another and prints each table as soon as it is there.
-std::vector<Experiment> run_all(const std::vector<Subject>& subjects,
-                                const RunCommandOptions& options, Stages& stages) {
+/// Runs the subjects one after another; in the last pass each table is printed as soon as it is
+/// there.
+std::vector<Experiment> run_pass(const std::vector<Subject>& subjects,
+                                 const RunCommandOptions& options, RunOptions run, std::size_t pass,
+                                 Stages& stages) {
+    const std::size_t passes = options.passes_made();
+    const bool prints = prints_tables(options.how) && pass + 1 == passes;
     std::vector<Experiment> all;
-    RunOptions run = run_options(options.how);
     for (std::size_t i = 0; i < subjects.size(); ++i) {
         const std::string subject(word_of(subjects[i]));
         run.tell = [&](const std::string& title, std::size_t done, std::size_t total) {
+            const auto parts = static_cast<double>(passes * subjects.size());
             const double within = static_cast<double>(done) / static_cast<double>(total);
-            const double part =
-                (static_cast<double>(i) + within) / static_cast<double>(subjects.size());
-            stages.show_progress(fmt::format("{}, {} of {} ({}):", subject, done + 1, total, title),
+            const double part = (static_cast<double>(pass * subjects.size() + i) + within) / parts;
+            stages.show_progress(fmt::format("pass {} of {}, {}, {} of {} ({}):", pass + 1, passes,
+                                             subject, done + 1, total, title),
                                  part);
         };
         std::vector<Experiment> found = run_experiments(subjects[i], run);
         stages.clear_progress();
         for (Experiment& experiment : found) {
             experiment.command = command_for(subject, options);
-            if (prints_tables(options.how)) fmt::print("{}\n", table_of(experiment));
+            if (prints) fmt::print("{}\n", table_of(experiment));
             all.push_back(std::move(experiment));
         }
         std::fflush(stdout);
@@ -82,16 +97,31 @@ std::vector<Experiment> run_all(const std::vector<Subject>& subjects,
     return all;
 }
 
-ExitCode run(const RunCommandOptions& options) {
+void check(const RunCommandOptions& options) {
     check(options.how);
+    if (!options.passes) return;
+    if (options.how.no_times) throw UsageError("--no-times and --passes contradict each other");
+    const std::size_t rounds = run_options(options.how).repeats.counted;
+    if (options.passes_made() > rounds) {
+        throw UsageError(fmt::format("--passes {}: more than the {} that each time is taken",
+                                     *options.passes, counted(rounds, "round")),
+                         "give more --repeats");
+    }
+}
+
+ExitCode run(const RunCommandOptions& options) {
+    check(options);
     const std::vector<Subject> subjects = subjects_of(options.words);
     prepare(options.how);
     Stages stages(options.how.general.quiet);
     AccuracyReport report;
-    report.experiments = run_all(subjects, options, stages);
+    report.experiments = run_in_passes(options.passes_made(), run_options(options.how),
+                                       [&](const RunOptions& run, std::size_t pass) {
+                                           return run_pass(subjects, options, run, pass, stages);
+                                       });
+    report.settings.passes = options.passes_made();
     report.command = command_for(fmt::format("{}", fmt::join(options.words, " ")), options);
-    const bool draws =
-        std::find(subjects.begin(), subjects.end(), Subject::shading) != subjects.end();
+    const bool draws = std::any_of(subjects.begin(), subjects.end(), is_drawn);
     hand_over(options.how, std::move(report), draws);
     return ExitCode::done;
 }
@@ -106,6 +136,13 @@ Command add_run_command(CLI::App& tool) {
                    fmt::format("What to measure, one or more of {}.", known_words()))
         ->required();
     add_experiment_options(app, options->how);
+    add_value(app, "--passes", "N",
+              "How often to go through all experiments, their repeats shared out over the passes, "
+              "so that a busy moment of the machine is in one of them alone: 1 to 100. Default: 3.",
+              [options](const std::string& subject, const std::string& text) {
+                  options->passes = parse_integer(subject, text, 1, most_passes);
+              })
+        .group("Effort");
     set_examples(app, {"relief-accuracy run storage --quick --output out/accuracy",
                        "relief-accuracy run storage --quick --no-times --json"});
     return {&app, [options] { return run(*options); }};

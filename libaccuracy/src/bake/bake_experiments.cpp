@@ -5,17 +5,28 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <memory>
 
+#include "analytic_words.h"
 #include "bake/baked_pictures.h"
 #include "bake/bumpy_bake.h"
 #include "measured_methods.h"
 #include "planned_experiment.h"
+#include "relief/accuracy/passes.h"
 
 namespace relief {
 namespace {
 
 double rays_a_texel(const BakeWayFound& found, const BumpyBake& bake) {
     return static_cast<double>(found.trial.rays) / bake.texels();
+}
+
+Cost cost_of(const BakeWayFound& found, std::size_t format) {
+    Cost cost{.stored_bytes = 3.0 * BumpyBake::formats()[format].bits / 8.0};
+    if (found.one_thread.empty()) return cost;
+    cost.one_thread = found.one_thread[format];
+    cost.all_threads = found.all_threads[format];
+    return cost;
 }
 
 /// What all bakes have in common, and a measurement of each way in each of these formats.
@@ -35,12 +46,10 @@ Experiment measured(const BumpyBake& bake, std::span<const BakeWay> ways,
         for (const std::size_t format : formats) {
             const NormalMapFormat& depth = BumpyBake::formats()[format];
             experiment.measurements.push_back(
-                {.method = fmt::format("{}, {}", words_of(ways[i]), depth_of(depth)),
-                 .choices = {{"rays", words_of(ways[i])}, {"depth", depth_of(depth)}},
+                {.method = fmt::format("{}, {}", words_of(ways[i]), depth_words(depth.bits)),
+                 .choices = {{"rays", words_of(ways[i])}, {"depth", depth_words(depth.bits)}},
                  .error = figures_of(found[i].trial.errors[format]),
-                 .cost = {.one_thread = found[i].one_thread,
-                          .all_threads = found[i].all_threads,
-                          .stored_bytes = 3.0 * depth.bits / 8.0},
+                 .cost = cost_of(found[i], format),
                  .note = fmt::format("{:.2f} rays a texel.", rays_a_texel(found[i], bake))});
         }
     }
@@ -52,18 +61,20 @@ Curve curve_of(const std::string& name, const BumpyBake& bake, std::span<const B
                std::size_t format) {
     Curve curve{.method = name};
     for (const BakeWayFound& one : found)
-        curve.points.push_back({rays_a_texel(one, bake), one.trial.errors[format].rms});
+        curve.points.push_back(
+            {rays_a_texel(one, bake), curve_error(figures_of(one.trial.errors[format]))});
     return curve;
 }
 
-/// "12 million rays a second on one thread, 23 on all"; empty where nothing was timed.
+/// "12 million rays a second on one thread, 23 on all", of a map of floats, which take no codes to
+/// speak of; empty where nothing was timed.
 std::string speed_of(const BakeWayFound& found) {
-    if (!found.one_thread || !found.all_threads) return {};
+    if (found.one_thread.empty()) return {};
     const auto millions = [&](const Timing& timing) {
         return 1e-6 * static_cast<double>(found.trial.rays) / timing.spread().median;
     };
     return fmt::format(" It cast {:.2g} million rays a second on one thread, {:.2g} on all.",
-                       millions(*found.one_thread), millions(*found.all_threads));
+                       millions(found.one_thread.back()), millions(found.all_threads.back()));
 }
 
 Experiment by_samples(const BumpyBake& bake, const RunOptions& options) {
@@ -80,7 +91,7 @@ Experiment by_samples(const BumpyBake& bake, const RunOptions& options) {
                 .y_label = "RMS error, degrees"};
     for (const std::size_t format : formats)
         chart.curves.push_back(
-            curve_of(depth_of(BumpyBake::formats()[format]), bake, found, format));
+            curve_of(depth_words(BumpyBake::formats()[format].bits), bake, found, format));
     // The middles of equal squares: half as far apart, a quarter of the error.
     chart.curves.back() =
         fitted_curve(chart.curves.back().method, chart.curves.back().points, -1.0);
@@ -132,7 +143,7 @@ Experiment by_threshold(const BumpyBake& bake, const RunOptions& options) {
     for (std::ptrdiff_t i = adaptive - 1; i >= 0; --i) {
         const auto at = static_cast<std::size_t>(i);
         thresholds.curves.front().points.push_back(
-            {*ways[at].sample_degrees, found[at].trial.errors[2].rms});
+            {*ways[at].sample_degrees, curve_error(figures_of(found[at].trial.errors[2]))});
     }
     experiment.charts = {std::move(rays), std::move(thresholds)};
     const std::array maps = {BakedMap{ways.front(), {.bits = 32}}, BakedMap{ways[2], {.bits = 32}},
@@ -151,10 +162,14 @@ Experiment by_threshold(const BumpyBake& bake, const RunOptions& options) {
 }  // namespace
 
 std::vector<Experiment> bake_experiments(const RunOptions& options) {
-    const BumpyBake bake(options.is_quick ? 120 : 200, options.is_quick ? 128 : 256);
+    const std::shared_ptr<const BumpyBake> bake = made_once(options, [&] {
+        return std::make_shared<const BumpyBake>(options.is_quick ? 120 : 200,
+                                                 options.is_quick ? 128 : 256);
+    });
     const std::vector<PlannedExperiment> plan = {
-        {"Baked normals: rays and bits", [&] { return by_samples(bake, options); }},
-        {"Baked normals: rays where they are needed", [&] { return by_threshold(bake, options); }}};
+        {"Baked normals: rays and bits", [&] { return by_samples(*bake, options); }},
+        {"Baked normals: rays where they are needed",
+         [&] { return by_threshold(*bake, options); }}};
     return run_planned(plan, options);
 }
 

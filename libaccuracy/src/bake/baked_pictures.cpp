@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "analytic_words.h"
 #include "drawn/drawn_methods.h"
 #include "drawn/lit_scene.h"
 #include "drawn/many_samples.h"
@@ -15,7 +16,7 @@ constexpr int picture_side = 320;
 constexpr int rays_a_side = 2;
 
 std::string name_of(const BakedMap& map) {
-    return fmt::format("{}, {}", words_of(map.way), depth_of(map.format));
+    return fmt::format("{}, {}", words_of(map.way), depth_words(map.format.bits));
 }
 
 Image picture_of(const Scene& scene) {
@@ -23,10 +24,6 @@ Image picture_of(const Scene& scene) {
 }
 
 }  // namespace
-
-std::string depth_of(const NormalMapFormat& format) {
-    return format.bits == 32 ? "float" : fmt::format("{} bit", format.bits);
-}
 
 void add_error_maps(const BumpyBake& bake, std::span<const BakedMap> maps, double brightest,
                     Experiment& experiment) {

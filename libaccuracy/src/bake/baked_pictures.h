@@ -24,7 +24,4 @@ void add_error_maps(const BumpyBake& bake, std::span<const BakedMap> maps, doubl
 /// reference shader: no OpenGL is needed.
 void add_renderings(const BumpyBake& bake, std::span<const BakedMap> maps, Experiment& experiment);
 
-/// "16 bit", "float"
-std::string depth_of(const NormalMapFormat& format);
-
 }  // namespace relief

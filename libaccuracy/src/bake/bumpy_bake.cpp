@@ -7,9 +7,9 @@
 #include <algorithm>
 #include <glm/trigonometric.hpp>
 
+#include "relief/accuracy/measure.h"
 #include "relief/mesh/frames.h"
 #include "relief/mesh/shapes.h"
-#include "relief/mesh/threads.h"
 
 namespace relief {
 namespace {
@@ -24,17 +24,6 @@ BakeMapOptions square_map(int side) {
     BakeMapOptions map;
     map.width = map.height = side;
     return map;
-}
-
-/// Seconds of every way's bake, in turns.
-std::vector<Timing> timings(const BakeTrials& trials, std::span<const BakeWay> ways,
-                            const Repeats& repeats) {
-    std::vector<Timing> times(ways.size());
-    interleave(ways.size(), repeats, [&](std::size_t i, bool counted) {
-        const BakeTrial trial = trials.measure(ways[i], BumpyBake::formats());
-        if (counted) times[i].rounds.push_back(trial.cast_seconds);
-    });
-    return times;
 }
 
 }  // namespace
@@ -89,13 +78,20 @@ std::vector<BakeWayFound> BumpyBake::measured(std::span<const BakeWay> ways,
     for (const BakeWay& way : ways)
         found.push_back({trials_.measure(way, formats())});
     if (!options.is_timed) return found;
-    set_thread_limit(1);
-    const std::vector<Timing> one = timings(trials_, ways, options.repeats);
-    set_thread_limit(options.threads);
-    const std::vector<Timing> all = timings(trials_, ways, options.repeats);
-    for (std::size_t i = 0; i < ways.size(); ++i) {
-        found[i].one_thread = one[i];
-        found[i].all_threads = all[i];
+    // A way's rays are cast once for all formats, which follow one another.
+    const std::size_t depths = formats().size();
+    BakeTrial trial;
+    const auto timings = [&] {
+        return rounds_in_turns(ways.size() * depths, options, [&](std::size_t i) {
+            if (i % depths == 0) trial = trials_.measure(ways[i / depths], formats());
+            return trial.cast_seconds + trial.code_seconds[i % depths];
+        });
+    };
+    const std::vector<Timing> one = on_one_thread(options, timings);
+    const std::vector<Timing> all = timings();
+    for (std::size_t i = 0; i < one.size(); ++i) {
+        found[i / depths].one_thread.push_back(one[i]);
+        found[i / depths].all_threads.push_back(all[i]);
     }
     return found;
 }

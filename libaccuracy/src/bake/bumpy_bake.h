@@ -4,7 +4,6 @@
 /// Tests: tests/accuracy/bake_experiments_test.cpp.
 #pragma once
 
-#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -20,8 +19,9 @@ std::string words_of(const BakeWay& way);  ///< "16 rays", "up to 64 rays beyond
 /// What became of one way.
 struct BakeWayFound {
     BakeTrial trial;  ///< Its errors by format.
-    std::optional<Timing> one_thread{};
-    std::optional<Timing> all_threads{};
+    /// By format, rays and codes together; empty where nothing was timed.
+    std::vector<Timing> one_thread{};
+    std::vector<Timing> all_threads{};
 };
 
 /// High and low mesh, ready for rays, and the truth for their map.
@@ -42,8 +42,7 @@ class BumpyBake {
     /// 8 and 16 bits and float.
     static const std::vector<NormalMapFormat>& formats();
 
-    /// All ways in turns. Seconds are of rays and their means, not of making meshes ready nor of
-    /// codes.
+    /// All ways in turns. Seconds are of rays, their means and codes, not of making meshes ready.
     [[nodiscard]] std::vector<BakeWayFound> measured(std::span<const BakeWay> ways,
                                                      const RunOptions& options) const;
 

@@ -37,7 +37,7 @@ Chart wavelength_chart(int bits, int side, bool is_quick) {
         for (std::size_t k = 0; k < chart.curves.size(); ++k) {
             const AngleDistribution errors =
                 wave_errors(wave, named_kernels()[k], Arithmetic::float64);
-            chart.curves[k].points.push_back({wavelength, errors.rms});
+            chart.curves[k].points.push_back({wavelength, curve_error(errors)});
         }
     }
     if (bits < 32) return chart;  // Longer waves are gentler steps: errors grow again.
@@ -63,7 +63,7 @@ Chart resolution_chart(bool is_quick) {
         for (std::size_t k = 0; k < chart.curves.size(); ++k) {
             const AngleDistribution errors =
                 wave_errors(surface, named_kernels()[k], Arithmetic::float64);
-            chart.curves[k].points.push_back({static_cast<double>(side), errors.rms});
+            chart.curves[k].points.push_back({static_cast<double>(side), curve_error(errors)});
         }
     }
     for (std::size_t k = 0; k < chart.curves.size(); ++k) {

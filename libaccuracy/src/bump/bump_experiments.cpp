@@ -14,6 +14,7 @@
 #include "bump/bump_methods.h"
 #include "map_errors.h"
 #include "measured_methods.h"
+#include "relief/accuracy/passes.h"
 #include "relief/mesh/bump_experiment.h"
 #include "relief/mesh/destaircase.h"
 
@@ -35,10 +36,6 @@ Experiment of_texels(const std::string& id, double texels) {
     experiment.item = "texel";
     experiment.items = texels;
     return experiment;
-}
-
-std::string depth_words(int bits) {
-    return bits == 32 ? "float" : fmt::format("{} bit", bits);
 }
 
 /// What float32 changes, and what it saves: of the same kernels in both arithmetics.
@@ -111,7 +108,8 @@ Experiment on_wave(int bits, const RunOptions& options) {
     measure_methods(measured, options, {.one_thread = true, .all_threads = true, .memory = false},
                     experiment);
     experiment.finding = bump_finding(experiment);
-    experiment.charts.push_back(wavelength_chart(bits, side, options.is_quick));
+    experiment.charts.push_back(
+        made_once(options, [&] { return wavelength_chart(bits, side, options.is_quick); }));
     return experiment;
 }
 
@@ -233,7 +231,8 @@ Experiment on_large_map(const RunOptions& options) {
         on_recipe("bump/large", recipe_named("smooth, 16 bit"), side, {}, options);
     experiment.question =
         "What does a large normal map cost, in time and in memory, and what do finer texels bring?";
-    experiment.charts.push_back(resolution_chart(options.is_quick));
+    experiment.charts.push_back(
+        made_once(options, [&] { return resolution_chart(options.is_quick); }));
     return experiment;
 }
 

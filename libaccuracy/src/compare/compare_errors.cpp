@@ -33,15 +33,37 @@ void add_if_changed(ErrorChange& change, const std::string& figure, double befor
     if (differs(before, after)) change.figures.push_back({figure, before, after});
 }
 
+const Chart* find_chart(const Experiment& experiment, const std::string& id) {
+    const auto& all = experiment.charts;
+    const auto found =
+        std::find_if(all.begin(), all.end(), [&](const Chart& one) { return one.id == id; });
+    return found == all.end() ? nullptr : &*found;
+}
+
+const Curve* find_curve(const Chart* chart, const std::string& method) {
+    if (chart == nullptr) return nullptr;
+    const auto& all = chart->curves;
+    const auto found = std::find_if(all.begin(), all.end(),
+                                    [&](const Curve& one) { return one.method == method; });
+    return found == all.end() ? nullptr : &*found;
+}
+
+const CurvePoint* find_point(const Curve& curve, double x) {
+    const auto found = std::find_if(curve.points.begin(), curve.points.end(),
+                                    [&](const CurvePoint& one) { return is_same_place(one.x, x); });
+    return found == curve.points.end() ? nullptr : &*found;
+}
+
+std::string place_of(const CurvePoint& point) {
+    return fmt::format("at {:.4g}", point.x);
+}
+
 ErrorChange change_of(const Experiment& experiment, const Chart& chart, const Curve& before,
                       const Curve& after) {
     ErrorChange change{experiment.id, chart.id, before.method, {}};
     for (const CurvePoint& point : before.points) {
-        const auto same =
-            std::find_if(after.points.begin(), after.points.end(),
-                         [&](const CurvePoint& one) { return is_same_place(one.x, point.x); });
-        if (same != after.points.end())
-            add_if_changed(change, fmt::format("at {:.4g}", point.x), point.error, same->error);
+        if (const CurvePoint* same = find_point(after, point.x))
+            add_if_changed(change, place_of(point), point.error, same->error);
     }
     return change;
 }
@@ -78,19 +100,35 @@ ErrorChange change_of(const Experiment& experiment, const Measurement& before,
 std::vector<ErrorChange> curve_changes(const Experiment& before, const Experiment& after) {
     std::vector<ErrorChange> changes;
     for (const Chart& chart : before.charts) {
-        const auto same_chart = std::find_if(after.charts.begin(), after.charts.end(),
-                                             [&](const Chart& one) { return one.id == chart.id; });
-        if (same_chart == after.charts.end()) continue;
+        const Chart* same_chart = find_chart(after, chart.id);
         for (const Curve& curve : chart.curves) {
-            const auto same =
-                std::find_if(same_chart->curves.begin(), same_chart->curves.end(),
-                             [&](const Curve& one) { return one.method == curve.method; });
-            if (same == same_chart->curves.end()) continue;
+            const Curve* same = find_curve(same_chart, curve.method);
+            if (same == nullptr) continue;
             ErrorChange change = change_of(before, chart, curve, *same);
             if (!change.figures.empty()) changes.push_back(std::move(change));
         }
     }
     return changes;
+}
+
+std::vector<std::string> curves_missing_from(const Experiment& other,
+                                             const Experiment& experiment) {
+    std::vector<std::string> names;
+    for (const Chart& chart : experiment.charts) {
+        const Chart* same_chart = find_chart(other, chart.id);
+        for (const Curve& curve : chart.curves) {
+            const std::string name =
+                fmt::format("{}, chart {}: {}", experiment.id, chart.id, curve.method);
+            const Curve* same = find_curve(same_chart, curve.method);
+            if (same == nullptr) names.push_back(name);
+            if (same == nullptr) continue;
+            for (const CurvePoint& point : curve.points) {
+                if (find_point(*same, point.x) == nullptr)
+                    names.push_back(name + " " + place_of(point));
+            }
+        }
+    }
+    return names;
 }
 
 }  // namespace relief

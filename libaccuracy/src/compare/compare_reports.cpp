@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <limits>
 
 #include "compare/compare_errors.h"
 #include "compare/compare_times.h"
@@ -39,6 +40,11 @@ std::vector<std::string> missing_from(const std::vector<Experiment>& other,
     return names;
 }
 
+void append(std::vector<std::string>& all, std::vector<std::string> more) {
+    all.insert(all.end(), std::make_move_iterator(more.begin()),
+               std::make_move_iterator(more.end()));
+}
+
 bool has_same_input(const Experiment& a, const Experiment& b) {
     return a.input == b.input && a.items == b.items && a.error_unit == b.error_unit;
 }
@@ -51,6 +57,22 @@ void add_pair(std::vector<TimedPair>& pairs, const std::string& experiment,
     pairs.push_back({experiment, method, on_all_threads, before->rounds, after->rounds});
 }
 
+/// Less is pages, and how threads happen to meet.
+constexpr double least_memory_ratio = 1.1;
+constexpr double least_memory_bytes = 1e6;
+
+void add_memory(ReportComparison& result, const std::string& experiment, const Measurement& was,
+                const Measurement& is) {
+    if (!was.cost.peak_bytes || !is.cost.peak_bytes) return;
+    ++result.with_memory;
+    const auto before = static_cast<double>(*was.cost.peak_bytes);
+    const auto after = static_cast<double>(*is.cost.peak_bytes);
+    const double more = std::max(before, after);
+    const double less = std::min(before, after);
+    if (more - less < least_memory_bytes || more < least_memory_ratio * less) return;
+    result.memory.push_back({experiment, was.method, *was.cost.peak_bytes, *is.cost.peak_bytes});
+}
+
 /// Those of `pairs` on one thread, or on all.
 std::vector<TimedPair> of_kind(const std::vector<TimedPair>& pairs, bool on_all_threads) {
     std::vector<TimedPair> chosen;
@@ -60,6 +82,11 @@ std::vector<TimedPair> of_kind(const std::vector<TimedPair>& pairs, bool on_all_
 }
 
 }  // namespace
+
+double MemoryChange::growth() const {
+    if (before == 0) return after > 0 ? std::numeric_limits<double>::infinity() : 0.0;
+    return static_cast<double>(after) / static_cast<double>(before) - 1.0;
+}
 
 ReportComparison compare_reports(const std::vector<Experiment>& before,
                                  const std::vector<Experiment>& after, bool same_machine) {
@@ -80,6 +107,7 @@ ReportComparison compare_reports(const std::vector<Experiment>& before,
             ++result.methods;
             ErrorChange change = change_of(old_one, was, *is);
             if (!change.figures.empty()) result.errors.push_back(std::move(change));
+            add_memory(result, old_one.id, was, *is);
             add_pair(pairs, old_one.id, was.method, false, was.cost.one_thread,
                      is->cost.one_thread);
             add_pair(pairs, old_one.id, was.method, true, was.cost.all_threads,
@@ -87,6 +115,8 @@ ReportComparison compare_reports(const std::vector<Experiment>& before,
         }
         for (ErrorChange& change : curve_changes(old_one, *new_one))
             result.errors.push_back(std::move(change));
+        append(result.gone, curves_missing_from(*new_one, old_one));
+        append(result.added, curves_missing_from(old_one, *new_one));
     }
     result.one_thread = common_change(of_kind(pairs, false));
     result.all_threads = common_change(of_kind(pairs, true));

@@ -5,7 +5,13 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+#include <numeric>
+
+#include "drawn/one_processor.h"
 #include "drawn/picture_error.h"
+#include "measured_methods.h"
+#include "relief/accuracy/measure.h"
 #include "relief/shade/error.h"
 #include "relief/shade/frame_timing.h"
 #include "relief/shade/renderer.h"
@@ -27,34 +33,26 @@ Image drawn(Renderer& renderer, const DrawnMethod& method) {
 /// Single frames take less than a slice of the scheduler's (measure.cpp).
 constexpr std::size_t frames_in_a_round = 4;
 
-/// Means of as many neighbouring frames.
-Timing rounds_of(const std::vector<double>& milliseconds) {
-    Timing timing;
-    for (std::size_t i = 0; i + frames_in_a_round <= milliseconds.size(); i += frames_in_a_round) {
-        double sum = 0.0;
-        for (std::size_t k = 0; k < frames_in_a_round; ++k)
-            sum += milliseconds[i + k];
-        timing.rounds.push_back(1e-3 * sum / static_cast<double>(frames_in_a_round));
-    }
-    return timing;
+/// The mean seconds of some frames of one renderer, without reading them back.
+double seconds_of_frames(Renderer& renderer, const Camera& camera) {
+    Renderer* const only = &renderer;
+    const FrameSeries series = time_frames({&only, 1}, camera, {frames_in_a_round, 0}).front();
+    const double milliseconds = std::accumulate(series.draw.begin(), series.draw.end(), 0.0);
+    return 1e-3 * milliseconds / static_cast<double>(frames_in_a_round);
 }
 
-/// All methods' frames in turns.
-std::vector<Timing> timings(std::span<const std::unique_ptr<Renderer>> renderers,
-                            const Camera& camera, const Repeats& repeats) {
-    std::vector<Renderer*> pointers;
-    for (const std::unique_ptr<Renderer>& renderer : renderers)
-        pointers.push_back(renderer.get());
-    std::vector<Timing> result;
-    const Repeats frames{frames_in_a_round * repeats.counted, repeats.warm_up};
-    for (const FrameSeries& series : time_frames(pointers, camera, frames))
-        result.push_back(rounds_of(series.draw));
-    return result;
+/// What frames of all methods take, in turns, on the threads that the driver has.
+std::vector<Timing> frame_timings(std::span<const std::unique_ptr<Renderer>> renderers,
+                                  const Camera& camera, const RunOptions& options) {
+    return rounds_in_turns(renderers.size(), options,
+                           [&](std::size_t i) { return seconds_of_frames(*renderers[i], camera); });
 }
 
 std::string note_of(const DrawnMethod& method, const Drawing& drawing) {
-    const std::string where = fmt::format("Drawn by {}; not counted: reading the picture back.",
-                                          drawing.context().renderer_name());
+    const std::string where = fmt::format(
+        "Drawn by {}; not counted: reading the picture back.{}", drawing.context().renderer_name(),
+        drawing.context().is_software() ? " One thread is the driver's threads on one processor."
+                                        : "");
     return method.note.empty() ? where : method.note + " " + where;
 }
 
@@ -95,11 +93,19 @@ std::vector<DrawnPicture> measure_drawn(const Drawing& drawing,
         pictures.push_back({std::move(picture), std::move(error.map)});
     }
     if (!options.is_timed) return pictures;
-    const std::vector<Timing> times =
-        timings(renderers, *methods.front().scene.camera, options.repeats);
+    const Camera& camera = *methods.front().scene.camera;
+    std::vector<Timing> one;
+    if (drawing.context().is_software()) {
+        const OneProcessor kept;
+        if (kept.is_kept()) one = frame_timings(renderers, camera, options);
+    }
+    const std::vector<Timing> all = frame_timings(renderers, camera, options);
     const std::size_t first = experiment.measurements.size() - methods.size();
-    for (std::size_t i = 0; i < methods.size(); ++i)
-        experiment.measurements[first + i].cost.all_threads = times[i];
+    for (std::size_t i = 0; i < methods.size(); ++i) {
+        Cost& cost = experiment.measurements[first + i].cost;
+        if (!one.empty()) cost.one_thread = one[i];
+        cost.all_threads = all[i];
+    }
     return pictures;
 }
 
@@ -115,8 +121,8 @@ PicturePair pair_of(const std::string& title, const std::string& method, const I
 }
 
 std::string frame_words(const Measurement& measurement) {
-    if (!measurement.cost.all_threads) return "not timed";
-    return fmt::format("{:.2g} ms", 1e3 * measurement.cost.all_threads->spread().median);
+    const double seconds = median_seconds(measurement);
+    return std::isnan(seconds) ? "not timed" : fmt::format("{:.2g} ms", 1e3 * seconds);
 }
 
 }  // namespace relief

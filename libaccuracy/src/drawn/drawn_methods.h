@@ -53,9 +53,10 @@ struct DrawnPicture {
 /// Draws all of them, and adds a measurement for each to the experiment.
 ///
 /// \param truth  three float channels, linear light; pictures become as large
-/// \return in the order of the methods. Times are of all threads that the driver uses, of frames
-///         from the first command to the last pixel; reading back is not in them, and neither is
-///         the averaging of `pixels_a_side`
+/// \return in the order of the methods. Times are of frames from the first command to the last
+///         pixel; reading back is not in them, and neither is the averaging of `pixels_a_side`. All
+///         threads are those that the driver has; one thread, measured where it draws in software,
+///         is these on one processor
 std::vector<DrawnPicture> measure_drawn(const Drawing& drawing,
                                         std::span<const DrawnMethod> methods, const Image& truth,
                                         const RunOptions& options, Experiment& experiment);
@@ -67,7 +68,8 @@ double drawn_error(const Drawing& drawing, const DrawnMethod& method, const Imag
 PicturePair pair_of(const std::string& title, const std::string& method, const Image& picture,
                     const Image& truth);
 
-/// The median frame of a measurement in words, "1.2 ms"; "not timed" without one.
+/// The median frame of a measurement in words, "1.2 ms"; "not timed" without one. Of the time by
+/// which methods are efficient: on one thread, where that was measured.
 std::string frame_words(const Measurement& measurement);
 
 }  // namespace relief

@@ -11,6 +11,7 @@
 #include "analytic_words.h"
 #include "measured_methods.h"
 #include "normals/normal_methods.h"
+#include "relief/accuracy/passes.h"
 
 namespace relief {
 namespace {
@@ -85,8 +86,8 @@ Chart cells_chart(const Case& one, bool is_quick) {
         const AnalyticMesh truth =
             analytic_mesh(one.surface, one.triangulation, cells, tables_seed);
         for (std::size_t m = 0; m < methods.size(); ++m) {
-            const double rms = normal_errors(methods[m].normals(truth.mesh), truth).rms;
-            points[m].push_back({static_cast<double>(cells), rms});
+            const auto errors = normal_errors(methods[m].normals(truth.mesh), truth);
+            points[m].push_back({static_cast<double>(cells), curve_error(errors)});
         }
     }
     for (std::size_t m = 0; m < methods.size(); ++m) {
@@ -162,7 +163,8 @@ Experiment on_case(const Case& one, const RunOptions& options) {
     experiment.question = fmt::format(
         "Which weighting is closest to the normals of a surface ({}), and what does it cost?",
         words_of(one));
-    experiment.charts.push_back(cells_chart(one, options.is_quick));
+    experiment.charts.push_back(
+        made_once(options, [&] { return cells_chart(one, options.is_quick); }));
     return experiment;
 }
 
@@ -186,7 +188,8 @@ Experiment on_fans(const RunOptions& options) {
     experiment.question =
         "How close is each weighting around a single vertex, by the number of its neighbours?";
     experiment.truth =
-        "The normal of a random cubic at the origin, (0, 0, 1) by construction [Max 1999].";
+        "The normal of a random cubic at the origin, (0, 0, 1) by construction [Max 1999]; a test "
+        "fits the cubic to its fan and differentiates it numerically.";
     experiment.input =
         fmt::format("{} fans of random cubic surfaces, {} neighbours each", fans, usual_valence);
     experiment.error_unit = "degrees";
@@ -203,7 +206,7 @@ Experiment on_fans(const RunOptions& options) {
         std::vector<CurvePoint> points;
         for (int valence = 3; valence <= 9; ++valence) {
             const AngleDistribution errors = fan_errors(method, valence, fans);
-            points.push_back({static_cast<double>(valence), errors.rms});
+            points.push_back({static_cast<double>(valence), curve_error(errors)});
             if (valence == usual_valence)
                 measured.push_back({.name = method.name(),
                                     .choices = method.choices(),

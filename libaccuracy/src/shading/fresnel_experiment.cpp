@@ -67,7 +67,8 @@ Chart index_chart(std::span<const float> cosines) {
         const std::vector<FormulaMethod> methods = fresnel_methods(index, cosines);
         const std::vector<double> truth = true_reflectances(index, cosines);
         for (std::size_t i = 0; i < methods.size(); ++i)
-            chart.curves[i].points.push_back({index, formula_error(methods[i], truth).rms});
+            chart.curves[i].points.push_back(
+                {index, curve_error(formula_error(methods[i], truth))});
     }
     return chart;
 }

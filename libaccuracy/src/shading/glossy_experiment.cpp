@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "drawn/many_samples.h"
+#include "relief/accuracy/passes.h"
 #include "shading/shading_plan.h"
 #include "shading/surroundings.h"
 
@@ -14,6 +15,9 @@ namespace {
 /// Cube maps below 256 texels are blurred into fewer, smaller levels (libshade/src/gl/prefilter.h).
 constexpr int large = 256;
 constexpr int small_map_side = 128;
+/// Of pictures of balls, in pixels.
+constexpr int full_ball_size = 192;
+constexpr int quick_ball_size = 64;
 
 /// Scenes of one roughness: the truth's, and the methods'.
 struct Balls {
@@ -27,10 +31,32 @@ struct Balls {
     }
 };
 
+/// What takes long is the truth, 1024 lookups a pixel for each roughness, and the levels of each
+/// method's map: a quick run has smaller pictures here, and fewer of them.
+Chart roughness_chart(const Drawing& drawing, const Balls& balls, bool is_quick) {
+    const int size = is_quick ? quick_ball_size / 2 : full_ball_size;
+    std::vector<double> roughnesses = {0.1, 0.2, 0.3, 0.5, 1.0};
+    if (!is_quick) roughnesses = {0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0};
+    Chart chart{.id = "roughness",
+                .title = "Error by roughness",
+                .x_label = "roughness",
+                .y_label = "FLIP",
+                .is_x_log = false};
+    for (const DrawnMethod& method : balls.methods(roughnesses.front()))
+        chart.curves.push_back({.method = method.name});
+    for (const double roughness : roughnesses) {
+        const Image truth = many_samples(mirror_ball(balls.finest, roughness), size, 1);
+        const std::vector<DrawnMethod> methods = balls.methods(roughness);
+        for (std::size_t i = 0; i < methods.size(); ++i)
+            chart.curves[i].points.push_back({roughness, drawn_error(drawing, methods[i], truth)});
+    }
+    return chart;
+}
+
 }  // namespace
 
 Experiment glossy_experiment(const Drawing& drawing, const RunOptions& options) {
-    const int size = options.is_quick ? 80 : 192;
+    const int size = options.is_quick ? quick_ball_size : full_ball_size;
     constexpr double shown = 0.3;
     Experiment experiment{
         .id = "shading/glossy-levels",
@@ -49,20 +75,8 @@ Experiment glossy_experiment(const Drawing& drawing, const RunOptions& options) 
     const Image truth = many_samples(mirror_ball(balls.finest, shown), size, 1);
     const std::vector<DrawnPicture> pictures =
         measure_drawn(drawing, all, truth, options, experiment);
-    Chart chart{.id = "roughness",
-                .title = "Error by roughness",
-                .x_label = "roughness",
-                .y_label = "FLIP",
-                .is_x_log = false};
-    for (const DrawnMethod& method : all)
-        chart.curves.push_back({.method = method.name});
-    for (const double roughness : {0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0}) {
-        const Image there = many_samples(mirror_ball(balls.finest, roughness), size, 1);
-        const std::vector<DrawnMethod> methods = balls.methods(roughness);
-        for (std::size_t i = 0; i < methods.size(); ++i)
-            chart.curves[i].points.push_back({roughness, drawn_error(drawing, methods[i], there)});
-    }
-    experiment.charts = {std::move(chart)};
+    experiment.charts = {
+        made_once(options, [&] { return roughness_chart(drawing, balls, options.is_quick); })};
     for (const std::size_t i : {0U, 2U}) {
         experiment.pictures.push_back(
             pair_of("A rough mirror", all[i].name, pictures[i].picture, truth));

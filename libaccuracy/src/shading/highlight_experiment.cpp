@@ -106,7 +106,8 @@ Experiment highlight_experiment(const Drawing& drawing, const RunOptions& option
         .question = "How near do Phong's and Blinn's highlights come to those of a rough metal?",
         .truth =
             "a metal of GGX facets, by the reference shader in double, one ray through the "
-            "centre of each pixel; a test holds that shader to a lit sphere's closed form",
+            "centre of each pixel; tests hold its GGX to the closed form in another notation, and "
+            "its facets to how many there are within 45 degrees",
         .input = fmt::format("torus of roughness {0} under two lamps, one behind it, {1} x {1} "
                              "pixels; exponent {2:.0f}",
                              roughness, size, exponent_of(roughness)),

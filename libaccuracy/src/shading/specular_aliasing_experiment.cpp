@@ -11,6 +11,7 @@
 #include "drawn/lit_scene.h"
 #include "drawn/many_samples.h"
 #include "drawn/picture_error.h"
+#include "relief/accuracy/passes.h"
 #include "relief/mesh/normal_map.h"
 #include "relief/mesh/shapes.h"
 #include "shading/shading_plan.h"
@@ -85,12 +86,35 @@ DrawnMethod method_of(const AliasingChoice& choice, const Image& map, double awa
             choice.pixels_a_side};
 }
 
+/// plane()'s `away` at which so many texels lie along a pixel.
+double distance_for(double texels_a_pixel, int size) {
+    return texels_a_pixel * size / texels;
+}
+
+/// \param size  of the pictures: the rays of the truth are nearly all that this takes
+Chart distance_chart(const Drawing& drawing, const Image& map, int size, int rays) {
+    Chart chart{.id = "distance",
+                .title = "Error by texels along a pixel",
+                .x_label = "texels along a pixel",
+                .y_label = "FLIP"};
+    for (const std::size_t i : {0U, 2U, 4U})
+        chart.curves.push_back({.method = aliasing_choices.at(i).name});
+    for (const double texels_a_pixel : {0.5, 1.0, 2.0, 4.0, 8.0, 16.0}) {
+        const double distance = distance_for(texels_a_pixel, size);
+        const Image truth = many_samples(plane(map, false, distance), size, rays);
+        for (std::size_t i = 0; i < chart.curves.size(); ++i) {
+            const DrawnMethod method = method_of(aliasing_choices.at(2 * i), map, distance);
+            chart.curves[i].points.push_back({texels_a_pixel, drawn_error(drawing, method, truth)});
+        }
+    }
+    return chart;
+}
+
 }  // namespace
 
 Experiment specular_aliasing_experiment(const Drawing& drawing, const RunOptions& options) {
     const int size = options.is_quick ? 96 : 160;
     const int rays = options.is_quick ? 12 : 16;
-    const auto away = [size](double texels_a_pixel) { return texels_a_pixel * size / texels; };
     constexpr double shown = 8.0;
     Experiment experiment{
         .id = "shading/specular-antialiasing",
@@ -108,25 +132,13 @@ Experiment specular_aliasing_experiment(const Drawing& drawing, const RunOptions
     const Image map = bumpy_normals();
     std::vector<DrawnMethod> all;
     for (const AliasingChoice& choice : aliasing_choices)
-        all.push_back(method_of(choice, map, away(shown)));
+        all.push_back(method_of(choice, map, distance_for(shown, size)));
     const Image truth = many_samples(all.front().scene, size, rays);
     const std::vector<DrawnPicture> pictures =
         measure_drawn(drawing, all, truth, options, experiment);
-    Chart chart{.id = "distance",
-                .title = "Error by texels along a pixel",
-                .x_label = "texels along a pixel",
-                .y_label = "FLIP"};
-    for (const std::size_t i : {0U, 2U, 4U})
-        chart.curves.push_back({.method = aliasing_choices.at(i).name});
-    for (const double texels_a_pixel : {0.5, 1.0, 2.0, 4.0, 8.0, 16.0}) {
-        const Image there = many_samples(plane(map, false, away(texels_a_pixel)), size, rays);
-        for (std::size_t i = 0; i < chart.curves.size(); ++i) {
-            const DrawnMethod method =
-                method_of(aliasing_choices.at(2 * i), map, away(texels_a_pixel));
-            chart.curves[i].points.push_back({texels_a_pixel, drawn_error(drawing, method, there)});
-        }
-    }
-    experiment.charts = {std::move(chart)};
+    experiment.charts = {made_once(options, [&] {
+        return distance_chart(drawing, map, options.is_quick ? size / 2 : size, rays);
+    })};
     for (const std::size_t i : {0U, 4U}) {
         experiment.pictures.push_back(
             pair_of("Highlights from afar", all[i].name, pictures[i].picture, truth));

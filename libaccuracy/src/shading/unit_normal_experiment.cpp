@@ -46,8 +46,8 @@ Experiment unit_normal_experiment(const RunOptions& options) {
         .id = "shading/unit-normal",
         .question = "Does the interpolated normal have to be made unit?",
         .truth =
-            "the same light in double, from the normal made unit; a test holds the length in "
-            "the triangle's middle to its closed form",
+            "the same light in double, from the normal made unit; tests hold it to a formula in "
+            "angles, and the length in the triangle's middle to its closed form",
         .input = fmt::format("{} places on a triangle whose corners' normals are {} degrees apart; "
                              "diffuse light and a highlight of shininess 40, lamp of irradiance 1",
                              samples.count(), degrees),

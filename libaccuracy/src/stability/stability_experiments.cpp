@@ -12,6 +12,7 @@ std::vector<Experiment> stability_experiments(const RunOptions& options) {
         {"Normals: scale", [&] { return normals_by_scale(options); }},
         {"Normals: distance from the origin", [&] { return normals_by_offset(options); }},
         {"Normals: needles", [&] { return normals_of_needles(options); }},
+        {"Normals: hard triangles", [&] { return normals_beside_hard_triangles(options); }},
         {"Tangents: scale", [&] { return tangents_by_scale(options); }},
         {"Tangents: distance from the origin", [&] { return tangents_by_offset(options); }},
         {"Bump: steepness", [&] { return bump_by_steepness(options); }},

@@ -5,17 +5,10 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <limits>
 #include <map>
 
 namespace relief {
 namespace {
-
-/// The RMS; NaN where a direction has none, which must not vanish in a mean.
-double error_of(const std::vector<float>& degrees) {
-    const AngleDistribution all = angle_distribution(degrees);
-    return all.undefined > 0 ? std::numeric_limits<double>::quiet_NaN() : all.rms;
-}
 
 /// Those that break at each value, as words.
 std::string breaks_of(const Chart& chart) {
@@ -55,7 +48,7 @@ void Sweeps::add(const std::string& id, const std::string& title, const std::str
             const double value = std::pow(10.0, decade);
             const std::vector<float> degrees = errors(method, value);
             degrees_[method].insert(degrees_[method].end(), degrees.begin(), degrees.end());
-            const double error = error_of(degrees);
+            const double error = curve_error(angle_distribution(degrees));
             curve.points.push_back({value, error});
             if (!curve.breaks_at && !(error <= bound_)) curve.breaks_at = value;
         }

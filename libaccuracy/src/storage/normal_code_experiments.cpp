@@ -58,7 +58,8 @@ Chart patches_chart(const Image& truth, const std::vector<NormalCode>& codes) {
         const Image found = code.stored(truth);
         std::vector<CurvePoint> points;
         for (const int block : {1, 2, 4, 8, 16, 32})
-            points.push_back({static_cast<double>(block), patch_errors(found, truth, block).rms});
+            points.push_back(
+                {static_cast<double>(block), curve_error(patch_errors(found, truth, block))});
         chart.curves.push_back(fitted_curve(code.name, std::move(points), std::nullopt));
     }
     return chart;
@@ -111,7 +112,9 @@ Experiment normal_writing_experiment(const RunOptions& options) {
     Experiment experiment = of_texels("storage/smooth-surface", surface.size());
     experiment.question =
         "What does writing a smooth surface take, and does dither keep the mean of a patch?";
-    experiment.truth = "The surface's normals in closed form, single and summed over patches.";
+    experiment.truth =
+        "The surface's normals in closed form, single and summed over patches; a test "
+        "differentiates its heights numerically.";
     experiment.input = fmt::format("{} x {} texels of waves of 128 texels and more", side, side);
     std::vector<MeasuredMethod> measured;
     for (const NormalCode& code : codes) {

@@ -8,6 +8,7 @@
 #include <algorithm>
 
 #include "measured_methods.h"
+#include "relief/accuracy/passes.h"
 #include "tangents/drawn_frames_experiment.h"
 #include "tangents/tangent_methods.h"
 #include "tangents/textured_cases.h"
@@ -93,7 +94,7 @@ Chart chart_over(const std::vector<std::pair<double, TexturedMesh>>& meshes) {
         curve.method = method.name;
         for (const auto& [x, truth] : meshes) {
             const CornerTangents tangents = method.tangents_of(truth.mesh);
-            curve.points.push_back({x, texel_errors(truth, tangents, method.basis).rms});
+            curve.points.push_back({x, curve_error(texel_errors(truth, tangents, method.basis))});
         }
     }
     return chart;
@@ -170,8 +171,9 @@ Experiment on_case(const TexturedCase& one, const RunOptions& options) {
     experiment.question = fmt::format(
         "Where does a texel tilted by 30 degrees point, by each way of getting frames ({})?",
         one.name);
-    experiment.charts.push_back(one.has_cells ? cells_chart(one, options.is_quick)
-                                              : bevels_chart());
+    experiment.charts.push_back(made_once(options, [&] {
+        return one.has_cells ? cells_chart(one, options.is_quick) : bevels_chart();
+    }));
     return experiment;
 }
 

@@ -132,6 +132,10 @@ const std::string& Context::backend_name() const {
 const std::string& Context::renderer_name() const {
     return implementation_->renderer_name;
 }
+
+bool Context::is_software() const {
+    return api().is_software();
+}
 const gl::Api& Context::api() const {
     return *implementation_->opened.api;
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // docs/accuracy.md says what is measured, not what once was: its errors are held to those of the
-// same experiments on the same inputs. Subjects that draw pictures are left out, for their time.
+// same experiments on the same inputs. Shading's are left out: another driver draws other bits.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -10,6 +10,7 @@
 #include <sstream>
 
 #include "relief/accuracy/experiment.h"
+#include "relief/accuracy/subjects.h"
 #include "report/html_text.h"
 #include "support/shared_data.h"
 #include "tools/workplace.h"
@@ -42,28 +43,35 @@ Page numbers_of_the_page() {
     return page;
 }
 
-TEST(AccuracyDocument, HoldsTheErrorsThatAreMeasured) {
+class AccuracyDocumentOf : public testing::TestWithParam<Subject> {};
+
+TEST_P(AccuracyDocumentOf, ASubjectHoldsTheErrorsThatAreMeasured) {
     const Page page = numbers_of_the_page();
     RunOptions options;
     options.is_quick = true;
     options.is_timed = false;
     std::size_t compared = 0;
-    for (const Subject subject : {Subject::normals, Subject::tangents}) {
-        for (const Experiment& one : run_experiments(subject, options)) {
-            const auto shown = page.find("`" + one.id + "`, " + one.input);
-            if (shown == page.end()) continue;
-            for (const Measurement& measurement : one.measurements) {
-                const auto row = shown->second.find(measurement.method);
-                if (row == shown->second.end()) continue;
-                EXPECT_EQ(row->second, number_text(measurement.error.rms))
-                    << one.id << ": " << measurement.method
-                    << " (run relief-accuracy and scripts/accuracy-page again)";
-                ++compared;
-            }
+    for (const Experiment& one : run_experiments(GetParam(), options)) {
+        const auto shown = page.find("`" + one.id + "`, " + one.input);
+        if (shown == page.end()) continue;
+        for (const Measurement& measurement : one.measurements) {
+            const auto row = shown->second.find(measurement.method);
+            if (row == shown->second.end()) continue;
+            EXPECT_EQ(row->second, number_text(measurement.error.rms))
+                << one.id << ": " << measurement.method
+                << " (run relief-accuracy and scripts/accuracy-page again)";
+            ++compared;
         }
     }
-    EXPECT_GE(compared, 20U) << "the page's experiments were not found";
+    EXPECT_GE(compared, 4U) << "the page's experiment was not found";
 }
+
+INSTANTIATE_TEST_SUITE_P(All, AccuracyDocumentOf,
+                         testing::Values(Subject::normals, Subject::tangents, Subject::bump,
+                                         Subject::storage, Subject::bake, Subject::stability),
+                         [](const testing::TestParamInfo<Subject>& tested) {
+                             return std::string(word_of(tested.param));
+                         });
 
 /// The commands of which the page says that they recommend something.
 std::vector<std::string> commands_of_the_page() {

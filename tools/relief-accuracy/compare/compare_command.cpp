@@ -29,7 +29,7 @@ ComparedReports compared_reports(const CompareOptions& options) {
     ComparedReports compared;
     compared.before = read_report(options.before);
     compared.after = read_report(options.after);
-    compared.same_machine = may_compare_times(compared.before.machine, compared.after.machine);
+    compared.same_machine = may_compare_times(compared.before, compared.after);
     compared.found = compare_reports(compared.before.experiments, compared.after.experiments,
                                      compared.same_machine);
     return compared;
@@ -49,6 +49,14 @@ void require_something_to_judge(const CompareOptions& options, const ComparedRep
                                   "nothing",
                                   options.before.string()),
                       "run both without --no-times");
+    }
+    if (options.bounds.max_memory_growth && found.with_memory == 0) {
+        throw failure(options.after,
+                      fmt::format("has no method in common with {} whose memory is known, so that "
+                                  "--max-memory-growth says nothing",
+                                  options.before.string()),
+                      "run subjects that measure it (normals, tangents, bump, storage), both "
+                      "without --no-times");
     }
 }
 
@@ -87,11 +95,16 @@ Command add_report_compare_command(CLI::App& tool) {
     const char* group = "Verdict";
     add_number(app, "--max-slower", "PERCENT", options->bounds.max_slower, range,
                "Exit with 1 if a method, or the middle of all, takes longer by more than this, "
-               "beyond what chance and the machine's unrest explain.")
+               "beyond what chance and the machine's unrest explain, or so few rounds cannot "
+               "tell. With any bound, a method that is gone is beyond it.")
         .group(group);
     add_number(app, "--max-error-growth", "PERCENT", options->bounds.max_error_growth, range,
                "Exit with 1 if a figure of a method's error, or a point of a curve, grew by more "
                "than this, or has no usable result any more.")
+        .group(group);
+    add_number(app, "--max-memory-growth", "PERCENT", options->bounds.max_memory_growth, range,
+               "Exit with 1 if a method holds more memory than this beyond what it did, by at "
+               "least a tenth and a megabyte.")
         .group(group);
     add_switch(app, "--json", options->json,
                "Print one JSON object instead of text; docs/accuracy-schema.md describes it.");

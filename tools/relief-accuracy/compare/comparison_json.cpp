@@ -66,6 +66,14 @@ Json json_of(const ErrorChange& change) {
             {"figures", figures}};
 }
 
+Json json_of(const MemoryChange& change) {
+    return {{"experiment", change.experiment},
+            {"method", change.method},
+            {"before", change.before},
+            {"after", change.after},
+            {"growth", change.growth()}};  // Endless is null.
+}
+
 template <typename Change>
 Json array_of(const std::vector<Change>& changes) {
     Json array = Json::array();
@@ -87,7 +95,7 @@ Json json_of(const ComparedReports& compared, const ComparisonBounds& bounds) {
             {"old", compared.before.command},
             {"new", compared.after.command},
             {"same_machine", compared.same_machine},
-            {"machine", difference_of(compared.before.machine, compared.after.machine)},
+            {"machine", difference_of(compared.before, compared.after)},
             {"methods", found.methods},
             {"gone", found.gone},
             {"added", found.added},
@@ -95,9 +103,12 @@ Json json_of(const ComparedReports& compared, const ComparisonBounds& bounds) {
             {"one_thread", json_of(found.one_thread)},
             {"all_threads", json_of(found.all_threads)},
             {"times", array_of(found.times)},
+            {"with_memory", found.with_memory},
+            {"memory", array_of(found.memory)},
             {"errors", array_of(found.errors)},
             {"max_slower", json_of(bounds.max_slower)},
             {"max_error_growth", json_of(bounds.max_error_growth)},
+            {"max_memory_growth", json_of(bounds.max_memory_growth)},
             {"beyond", beyond(compared, bounds)}};
 }
 

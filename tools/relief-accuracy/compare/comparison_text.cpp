@@ -15,6 +15,8 @@ namespace {
 
 /// So many lines of a kind are printed, the greatest changes first; the rest is counted.
 constexpr std::size_t most_lines = 20;
+/// And so many figures of a line: a curve may have dozens.
+constexpr std::size_t most_figures = 5;
 
 std::string threads_of(bool on_all_threads) {
     return on_all_threads ? "all threads" : "one thread";
@@ -44,13 +46,26 @@ std::string line_of(const TimeChange& change) {
     return text;
 }
 
-/// "bump/waves: sobel3: rms 0.1 then 0.2, max 0.3 then 0.4"
+/// "bump/waves: sobel3: max 0.3 then 0.4, rms 0.1 then 0.11": of many, those that grew most.
 std::string line_of(const ErrorChange& change) {
+    std::vector<FigureChange> worst = change.figures;
+    std::stable_sort(worst.begin(), worst.end(), [](const FigureChange& a, const FigureChange& b) {
+        return a.growth() > b.growth();
+    });
+    const std::size_t more = worst.size() - std::min(worst.size(), most_figures);
+    worst.resize(worst.size() - more);
     std::vector<std::string> figures;
-    for (const FigureChange& one : change.figures)
+    for (const FigureChange& one : worst)
         figures.push_back(fmt::format("{} {} then {}", one.figure, result_text(one.before),
                                       result_text(one.after)));
-    return fmt::format("{}: {}", name_of(change), fmt::join(figures, ", "));
+    return fmt::format("{}: {}{}", name_of(change), fmt::join(figures, ", "),
+                       more > 0 ? fmt::format(" and {} more", more) : "");
+}
+
+/// "normals/large: max, float64: 12 MB then 24 MB"
+std::string line_of(const MemoryChange& change) {
+    return fmt::format("{}: {}: {} then {}", change.experiment, change.method,
+                       byte_size(change.before), byte_size(change.after));
 }
 
 /// At most most_lines, and how many more there are.
@@ -81,6 +96,19 @@ std::vector<ErrorChange> errors_that(const ReportComparison& found, bool grew) {
     std::stable_sort(chosen.begin(), chosen.end(), [](const ErrorChange& a, const ErrorChange& b) {
         return a.worst().growth() > b.worst().growth();
     });
+    return chosen;
+}
+
+/// Those that hold more than before, or those that hold less; the greatest change first.
+std::vector<MemoryChange> memory_that(const ReportComparison& found, bool grew) {
+    std::vector<MemoryChange> chosen;
+    for (const MemoryChange& change : found.memory) {
+        if ((change.growth() > 0.0) == grew) chosen.push_back(change);
+    }
+    std::stable_sort(chosen.begin(), chosen.end(),
+                     [&](const MemoryChange& a, const MemoryChange& b) {
+                         return grew ? a.growth() > b.growth() : a.growth() < b.growth();
+                     });
     return chosen;
 }
 
@@ -115,6 +143,12 @@ std::string described(const AccuracyReport& report) {
                        report.settings.timed ? "" : "; no times");
 }
 
+bool have_other_opengl(const ComparedReports& compared) {
+    const auto& before = compared.before.machine.opengl;
+    const auto& after = compared.after.machine.opengl;
+    return before && after && *before != *after;
+}
+
 void print_times(const ReportComparison& found) {
     std::vector<std::string> common;
     if (found.one_thread.methods > 0) common.push_back(line_of(found.one_thread, false));
@@ -131,8 +165,36 @@ void print_times(const ReportComparison& found) {
         print_entry("", "too few rounds to tell these from chance (run both with more --repeats)");
 }
 
+void print_memory(const ReportComparison& found) {
+    if (found.with_memory == 0) return;
+    if (found.memory.empty()) {
+        print_entry("memory", fmt::format("the same within a tenth or a megabyte, of {}",
+                                          counted(found.with_memory, "method")));
+    }
+    print_some("more", lines_of(memory_that(found, true)));
+    print_some("less", lines_of(memory_that(found, false)));
+    if (!found.memory.empty()) print_entry("", "memory at the most");
+}
+
 double percent(double ratio) {
     return 100.0 * (ratio - 1.0);
+}
+
+/// What can no longer be judged: a bound is not kept by leaving methods out.
+void add_gone(std::vector<std::string>& lines, const ReportComparison& found) {
+    for (const std::string& name : found.gone)
+        lines.push_back(name + ": is gone");
+}
+
+/// Changes of a kind beyond the bound.
+void add_slower(std::vector<std::string>& lines, const ReportComparison& found, TimeVerdict verdict,
+                const std::string& words, double bound) {
+    for (const TimeChange& change : times_that_are(found, verdict)) {
+        if (percent(change.counted) <= bound) continue;
+        lines.push_back(fmt::format("{}: {:.1f} % slower on {} (at most {} %){}", name_of(change),
+                                    percent(change.counted), threads_of(change.on_all_threads),
+                                    bound, words));
+    }
 }
 
 /// Where all became slower together: on one machine that counts too.
@@ -146,15 +208,32 @@ void add_common(std::vector<std::string>& lines, const ComparedReports& compared
 
 }  // namespace
 
+std::string difference_of(const AccuracyReport& before, const AccuracyReport& after) {
+    std::string words = difference_of(before.machine, after.machine);
+    if (before.settings.threads != after.settings.threads) {
+        words += fmt::format("{}threads: {}, then {}", words.empty() ? "" : "; ",
+                             before.settings.threads, after.settings.threads);
+    }
+    return words;
+}
+
+bool may_compare_times(const AccuracyReport& before, const AccuracyReport& after) {
+    return may_compare_times(before.machine, after.machine) &&
+           before.settings.threads == after.settings.threads;
+}
+
 void print_text(const ComparedReports& compared) {
     const ReportComparison& found = compared.found;
     print_entry("old", described(compared.before));
     print_entry("new", described(compared.after));
-    const std::string difference = difference_of(compared.before.machine, compared.after.machine);
+    const std::string difference = difference_of(compared.before, compared.after);
     if (!difference.empty()) {
         print_entry("machine", difference);
         if (!compared.same_machine)
             print_entry("", "times are judged relative to the middle of all alone");
+        if (have_other_opengl(compared))
+            print_entry("",
+                        "pictures drawn by OpenGL may differ in their last bits for that alone");
     }
     print_entry("methods", fmt::format("{} in both", found.methods));
     print_some("gone", found.gone);
@@ -162,6 +241,7 @@ void print_text(const ComparedReports& compared) {
     print_some("not on", found.other_input);
     if (!found.other_input.empty()) print_entry("", "the same input, and not compared");
     print_times(found);
+    print_memory(found);
     const auto worse = errors_that(found, true);
     const auto better = errors_that(found, false);
     if (worse.empty() && better.empty()) print_entry("errors", "all the same");
@@ -174,12 +254,11 @@ std::vector<std::string> beyond(const ComparedReports& compared, const Compariso
     if (bounds.max_slower) {
         add_common(lines, compared, compared.found.one_thread, false, *bounds.max_slower);
         add_common(lines, compared, compared.found.all_threads, true, *bounds.max_slower);
-        for (const TimeChange& change : times_that_are(compared.found, TimeVerdict::slower)) {
-            if (percent(change.counted) <= *bounds.max_slower) continue;
-            lines.push_back(fmt::format("{}: {:.1f} % slower on {} (at most {} %)", name_of(change),
-                                        percent(change.counted), threads_of(change.on_all_threads),
-                                        *bounds.max_slower));
-        }
+        add_slower(lines, compared.found, TimeVerdict::slower, "", *bounds.max_slower);
+        // What so few rounds cannot tell from chance is no proof that the bound is kept.
+        add_slower(lines, compared.found, TimeVerdict::cannot_tell,
+                   ", as far as so few rounds tell (run both with more --repeats)",
+                   *bounds.max_slower);
     }
     if (bounds.max_error_growth) {
         for (const ErrorChange& change : errors_that(compared.found, true)) {
@@ -190,6 +269,15 @@ std::vector<std::string> beyond(const ComparedReports& compared, const Compariso
                                         result_text(worst.after), *bounds.max_error_growth));
         }
     }
+    if (bounds.max_memory_growth) {
+        for (const MemoryChange& change : memory_that(compared.found, true)) {
+            if (100.0 * change.growth() <= *bounds.max_memory_growth) continue;
+            lines.push_back(
+                fmt::format("{} (at most {} % more)", line_of(change), *bounds.max_memory_growth));
+        }
+    }
+    if (bounds.max_slower || bounds.max_error_growth || bounds.max_memory_growth)
+        add_gone(lines, compared.found);
     return lines;
 }
 

@@ -22,10 +22,18 @@ struct ComparedReports {
     ReportComparison found;
 };
 
+/// What of the machines, and of how many threads they were asked for, differs, in words; empty if
+/// nothing.
+std::string difference_of(const AccuracyReport& before, const AccuracyReport& after);
+
+/// Whether times count as measured: see may_compare_times() of machines.
+bool may_compare_times(const AccuracyReport& before, const AccuracyReport& after);
+
 /// What is still allowed, in percent; absent: anything.
 struct ComparisonBounds {
     std::optional<double> max_slower;
     std::optional<double> max_error_growth;
+    std::optional<double> max_memory_growth;
 };
 
 /// Prints on stdout, longest changes first.

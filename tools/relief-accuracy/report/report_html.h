@@ -20,7 +20,8 @@ namespace relief::tools {
 
 /// The page for a report as accuracy.json holds it.
 /// \param folder  where the picture files lie that the report names
-/// \throws FileError for a picture that is missing
+/// \throws FileError for a picture that is missing; InvalidInput for one outside that folder. Those
+///         that were never written (null) are told in words
 std::string report_html(const nlohmann::ordered_json& report, const std::filesystem::path& folder);
 
 /// A file of page/, from which the page is put together.

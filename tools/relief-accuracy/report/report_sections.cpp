@@ -5,12 +5,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cctype>
 #include <nlohmann/json.hpp>
 #include <vector>
 
 #include "common/text.h"
 #include "file_bytes.h"
+#include "relief/mesh/error.h"
 #include "report/html_text.h"
 #include "report/report_tables.h"
 
@@ -46,10 +48,24 @@ std::string entry(const std::string& term, const std::string& html) {
     return fmt::format("<div><dt>{}</dt><dd>{}</dd></div>\n", term, html);
 }
 
-/// An <img> that holds its picture.
+/// Whether a report may name this file as one of its own: below its folder.
+bool is_within_folder(const std::filesystem::path& file) {
+    return file.is_relative() &&
+           std::none_of(file.begin(), file.end(), [](const auto& part) { return part == ".."; });
+}
+
+/// An <img> that holds its picture; words where the report was made without files.
 std::string picture(const ordered_json& owner, const char* key, const std::string& alternative,
                     const std::filesystem::path& folder) {
-    const std::string bytes = read_file(folder / owner.at(key).get<std::string>());
+    const auto name = owner.find(key);
+    if (name == owner.end() || !name->is_string())
+        return fmt::format("<p class=\"absent\">{}: no picture was written</p>",
+                           html_escaped(alternative));
+    const std::filesystem::path file = name->get<std::string>();
+    if (!is_within_folder(file))
+        throw InvalidInput(
+            fmt::format("names the picture {}, which is outside its folder", file.string()));
+    const std::string bytes = read_file(folder / file);
     return fmt::format(R"(<img src="{}" alt="{}">)", data_uri(bytes, "image/png"),
                        html_escaped(alternative));
 }
@@ -175,6 +191,9 @@ std::string machine_html(const ordered_json& report) {
         repeats = "errors alone: nothing was timed";
     } else if (number_of(settings, "repeats") > 0.0) {
         repeats = fmt::format("medians of {} interleaved rounds", number_of(settings, "repeats"));
+        const double passes = number_of(settings, "passes");
+        if (passes > 1.0)
+            repeats += fmt::format(", taken in {} passes over all experiments", passes);
     }
     return entry("Processor", text_of(machine, "processor")) +
            entry("Cores", number_text(number_of(machine, "cores"))) +

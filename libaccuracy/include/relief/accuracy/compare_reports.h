@@ -11,9 +11,13 @@
 ///   one run do not show;
 /// - as measured, and also relative to the middle of all methods: a machine that was slower changes
 ///   all alike. Of the two the lesser is told. From one machine to another only the second counts.
+///
+/// What this cannot see: a busy moment of the machine as long as all rounds of an experiment looks
+/// like a change of its methods. Passes spread them (passes.h).
 /// Tests: tests/accuracy/compare_reports_test.cpp.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -75,13 +79,29 @@ struct ErrorChange {
     [[nodiscard]] const FigureChange& worst() const;
 };
 
+/// What a method holds at the most, where that is more or less by at least a tenth and a megabyte:
+/// pages, and what threads happen to hold at one time, make less than that.
+struct MemoryChange {
+    std::string experiment;
+    std::string method;
+    std::uint64_t before = 0;  ///< Bytes.
+    std::uint64_t after = 0;
+
+    /// After by before, less 1.
+    [[nodiscard]] double growth() const;
+};
+
 struct ReportComparison {
-    std::size_t methods = 0;  ///< In both.
+    std::size_t methods = 0;      ///< In both.
+    std::size_t with_memory = 0;  ///< Of those, whose memory both know.
+    std::vector<MemoryChange> memory;
     std::vector<TimeChange> times;
     CommonChange one_thread;
     CommonChange all_threads;
     std::vector<ErrorChange> errors;
-    std::vector<std::string> gone;         ///< "EXPERIMENT: METHOD", only in the old one.
+    /// Only in the old one: "EXPERIMENT: METHOD", "EXPERIMENT, chart ID: METHOD", " at X" for a
+    /// point of a curve.
+    std::vector<std::string> gone;
     std::vector<std::string> added;        ///< Only in the new one.
     std::vector<std::string> other_input;  ///< Experiments on something else than before.
 };

@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -19,7 +20,7 @@
 
 namespace relief {
 
-struct AngleSummary;  // bake_check.h
+class EarlierPasses;  // passes.h
 
 /// What experiments are about; the words of `relief-accuracy run`.
 enum class Subject { normals, tangents, bump, storage, bake, shading, stability };
@@ -28,7 +29,7 @@ enum class Subject { normals, tangents, bump, storage, bake, shading, stability 
 struct ErrorFigures {
     std::size_t count = 0;      ///< That have a number.
     std::size_t undefined = 0;  ///< That have none: NaN, or a direction of no length.
-    double rms = 0.0;           ///< Root of the mean square.
+    double rms = 0.0;           ///< Root of the mean square; NaN, as all others, where count is 0.
     double mean = 0.0;
     double p99 = 0.0;  ///< 99 of 100 are no larger.
     double max = 0.0;
@@ -37,9 +38,14 @@ struct ErrorFigures {
     friend bool operator==(const ErrorFigures&, const ErrorFigures&) = default;
 };
 
-/// The one way from any summary of angles to figures.
+/// The one way from any summary of angles to figures; of none, NaN.
 ErrorFigures figures_of(const AngleDistribution& angles);
 ErrorFigures figures_of(const AngleSummary& angles);
+
+/// What a curve shows (CurvePoint::error): the RMS; NaN where there is none, or where a single
+/// result is undefined, which must not vanish in a mean.
+double curve_error(const ErrorFigures& error);
+double curve_error(const AngleDistribution& angles);
 
 /// Seconds of each counted repeat, in the order in which they were taken; in turns with the other
 /// methods of the experiment, so that round i of all was taken at one time.
@@ -134,12 +140,17 @@ struct Experiment {
 
 /// How thoroughly experiments are run.
 struct RunOptions {
-    /// Small inputs and few repeats: all subjects in about a minute on two cores.
+    /// Small inputs: all subjects in about a minute for each pass, on two cores.
     bool is_quick = false;
-    Repeats repeats{9, 2};
-    bool is_timed = true;  ///< False: errors alone, which are the same on every machine.
+    /// Ten rounds of two runs can show that one time of 4600 changed, those on one thread and on
+    /// all counted apart (least_mann_whitney_p()).
+    Repeats repeats{10, 1};
+    /// False: errors alone, which are the same on every machine but for what OpenGL draws.
+    bool is_timed = true;
     /// How many threads "all threads" are; 0: as many as the machine has.
     unsigned threads = 0;
+    /// The rounds of earlier passes, filled in by run_in_passes(); null: there is one pass.
+    std::shared_ptr<EarlierPasses> earlier{};
     /// Before each experiment: its title, and how many are done of how many. May throw Cancelled.
     std::function<void(const std::string& title, std::size_t done, std::size_t total)> tell{};
 };

@@ -13,6 +13,19 @@
 
 namespace relief {
 
+/// Times things in turns, A B C A B C: the one way in which experiments do.
+///
+/// \param options           its repeats, or the share of them that this pass takes (passes.h)
+/// \param seconds_of_round  takes a round of thing `thing`
+/// \return by thing, the rounds of earlier passes first. A wish to end is heard before each round
+std::vector<Timing> rounds_in_turns(
+    std::size_t things, const RunOptions& options,
+    const std::function<double(std::size_t thing)>& seconds_of_round);
+
+/// The same with relief's parallel loops on one thread; on options.threads afterwards.
+std::vector<Timing> on_one_thread(const RunOptions& options,
+                                  const std::function<std::vector<Timing>()>& measured);
+
 /// What measure_costs() looks at.
 struct CostChoice {
     bool one_thread = true;

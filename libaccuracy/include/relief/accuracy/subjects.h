@@ -14,6 +14,9 @@ namespace relief {
 /// Those that there are experiments on, in the order of reports.
 std::vector<Subject> subjects_with_experiments();
 
+/// Whether some of its experiments draw, by OpenGL: those errors are the renderer's.
+bool is_drawn(Subject subject);
+
 /// "normals", "tangents", ...
 std::string_view word_of(Subject subject);
 

@@ -53,6 +53,8 @@ class Context {
     [[nodiscard]] const std::string& backend_name() const;
     /// "llvmpipe (LLVM 15.0.6, 256 bits), 4.5 (Core Profile) Mesa 22.3.6".
     [[nodiscard]] const std::string& renderer_name() const;
+    /// Whether that draws on processors, by one of Mesa's rasterisers.
+    [[nodiscard]] bool is_software() const;
 
     [[nodiscard]] const gl::Api& api() const;
 
