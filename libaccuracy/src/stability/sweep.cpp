@@ -24,7 +24,10 @@ std::string breaks_of(const Chart& chart) {
         const bool is_many = methods.size() > 4;
         text += is_many ? fmt::format("{} methods", methods.size())
                         : fmt::format("{}", fmt::join(methods, " and "));
-        text += fmt::format(" break{} at {:.0e}, ", methods.size() == 1 ? "s" : "", value);
+        // Powers of ten: of counts as people write them.
+        const std::string where =
+            value < 1e4 ? fmt::format("{:g}", value) : fmt::format("{:.0e}", value);
+        text += fmt::format(" break{} at {}, ", methods.size() == 1 ? "s" : "", where);
     }
     if (count == chart.curves.size()) return text + "none holds";
     return text + "all others hold";
