@@ -109,6 +109,13 @@ TEST(Passes, WhatIsTheSameInAllIsMadeOnce) {
     EXPECT_EQ(truths_of({}), "34") << "without passes, each time";
 }
 
+TEST(Passes, OfOtherMethodsAreRefused) {
+    const auto timed_methods = [](const RunOptions& options, std::size_t pass) {
+        return std::vector{timed_by(options, 2 + pass, [](std::size_t) { return 1.0; })};
+    };
+    EXPECT_THROW(run_in_passes(2, counted_rounds(4), timed_methods), std::runtime_error);
+}
+
 TEST(Passes, EndWithWhatAnExperimentThrows) {
     std::size_t runs = 0;
     EXPECT_THROW(run_in_passes(3, counted_rounds(9),

@@ -33,6 +33,7 @@ class EarlierPasses {
     [[nodiscard]] std::size_t share_of(std::size_t rounds) const;
 
     /// What is known of the next group, to be added to. \param methods  how many are in it
+    /// \throws std::runtime_error if there were more or fewer in the pass before
     std::vector<Timing>& next_group(std::size_t methods);
 
     /// What the first pass made in this place, in the order of places; made by `make` there.
