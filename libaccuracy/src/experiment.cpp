@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "measured_methods.h"
 #include "relief/mesh/frontier.h"
 
 namespace relief {
@@ -31,13 +32,6 @@ ErrorFigures figures_of_summary(const Angles& angles, std::size_t undefined) {
             .max = angles.max};
 }
 
-double time_of(const Measurement& measurement) {
-    const Cost& cost = measurement.cost;
-    if (cost.one_thread) return cost.one_thread->spread().median;
-    if (cost.all_threads) return cost.all_threads->spread().median;
-    return not_known;
-}
-
 }  // namespace
 
 ErrorFigures figures_of(const AngleDistribution& angles) {
@@ -59,7 +53,7 @@ double curve_error(const AngleDistribution& angles) {
 void mark_efficient(Experiment& experiment) {
     std::vector<Price> prices;
     for (const Measurement& one : experiment.measurements)
-        prices.push_back({curve_error(one.error), time_of(one)});
+        prices.push_back({curve_error(one.error), median_seconds(one)});
     const std::vector<bool> marks = efficient(prices);
     for (std::size_t i = 0; i < marks.size(); ++i)
         experiment.measurements[i].is_efficient = marks[i];

@@ -72,7 +72,8 @@ Experiment glossy_experiment(const Drawing& drawing, const RunOptions& options) 
     if (!drawing.is_possible_for(experiment)) return experiment;
     const Balls balls;
     const std::vector<DrawnMethod> all = balls.methods(shown);
-    const Image truth = many_samples(mirror_ball(balls.finest, shown), size, 1);
+    const Image truth =
+        made_once(options, [&] { return many_samples(mirror_ball(balls.finest, shown), size, 1); });
     const std::vector<DrawnPicture> pictures =
         measure_drawn(drawing, all, truth, options, experiment);
     experiment.charts = {

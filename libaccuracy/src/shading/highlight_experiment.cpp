@@ -12,6 +12,7 @@
 #include "drawn/lit_scene.h"
 #include "drawn/many_samples.h"
 #include "drawn/picture_error.h"
+#include "relief/accuracy/passes.h"
 #include "relief/mesh/shapes.h"
 #include "shading/shading_plan.h"
 
@@ -119,7 +120,8 @@ Experiment highlight_experiment(const Drawing& drawing, const RunOptions& option
     const std::vector<DrawnMethod> all = highlight_methods(roughness);
     const std::vector<DrawnPicture> pictures =
         measure_drawn(drawing, all, truth, options, experiment);
-    experiment.charts = {chart_of(drawing, options.is_quick ? 96 : size)};
+    experiment.charts = {
+        made_once(options, [&] { return chart_of(drawing, options.is_quick ? 96 : size); })};
     for (const std::size_t i : {0U, 2U}) {
         experiment.pictures.push_back(
             pair_of("Highlights of a rough metal", all[i].name, pictures[i].picture, truth));

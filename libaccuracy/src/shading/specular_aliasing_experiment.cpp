@@ -133,7 +133,8 @@ Experiment specular_aliasing_experiment(const Drawing& drawing, const RunOptions
     std::vector<DrawnMethod> all;
     for (const AliasingChoice& choice : aliasing_choices)
         all.push_back(method_of(choice, map, distance_for(shown, size)));
-    const Image truth = many_samples(all.front().scene, size, rays);
+    const Image truth =
+        made_once(options, [&] { return many_samples(all.front().scene, size, rays); });
     const std::vector<DrawnPicture> pictures =
         measure_drawn(drawing, all, truth, options, experiment);
     experiment.charts = {made_once(options, [&] {

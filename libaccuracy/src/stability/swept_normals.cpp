@@ -2,8 +2,7 @@
 // Tests: tests/accuracy/stability_experiments_test.cpp.
 #include "stability/swept_normals.h"
 
-#include <array>
-
+#include "analytic_words.h"
 #include "relief/mesh/direction_error.h"
 #include "stability/plain_code.h"
 
@@ -11,7 +10,6 @@ namespace relief {
 namespace {
 
 constexpr std::uint32_t torus_seed = 1;
-constexpr std::array swept_arithmetics = {Arithmetic::float64, Arithmetic::float32};
 
 NormalMethod plain_method(const char* name, std::vector<glm::vec3> (*normals)(const Mesh&)) {
     NormalMethod method;
@@ -29,7 +27,7 @@ AnalyticMesh swept_torus(const RunOptions& options) {
 }
 
 std::vector<NormalMethod> swept_normal_methods() {
-    std::vector<NormalMethod> methods = normal_methods(swept_arithmetics);
+    std::vector<NormalMethod> methods = normal_methods(both_arithmetics);
     methods.push_back(plain_method("plain area", plain_area_normals));
     methods.push_back(plain_method("plain angle", plain_angle_normals));
     return methods;

@@ -18,8 +18,7 @@ namespace relief {
 class AngleMoments {
   public:
     /// \param degrees  NaN makes rms() and mean() NaN, and is no greatest: whoever may meet one
-    /// says
-    ///                 what becomes of it
+    ///                 says what becomes of it
     void add(double degrees) {
         ++count_;
         sum_ += degrees;

@@ -136,6 +136,7 @@ const std::string& Context::renderer_name() const {
 bool Context::is_software() const {
     return api().is_software();
 }
+
 const gl::Api& Context::api() const {
     return *implementation_->opened.api;
 }

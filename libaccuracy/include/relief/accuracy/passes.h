@@ -48,8 +48,8 @@ class EarlierPasses {
     std::vector<std::any> results_;
 };
 
-/// What `make` gives, made in the first pass alone: truths and curves take their time, and are the
-/// same in every pass.
+/// What `make` gives, made in the first pass alone: for truths and curves that take their time, and
+/// are the same in every pass.
 template <typename Make>
 auto made_once(const RunOptions& options, const Make& make) {
     using Result = decltype(make());
