@@ -40,7 +40,7 @@ TEST(AccuracyWindow, AClickOnAMethodTakesItAndThePictureFollows) {
     EXPECT_TRUE(is_used(measured, "kernel=sobel3"));
     window.wait_for_rest();
     const auto picture = [&] { return view_on(display->picture(), window.state()["view"]); };
-    const Image before = picture();
+    const Image before = view_on(display->resting_picture(), window.state()["view"]);
 
     window.click_on("method normals=uniform");
     window.wait_for("other normals", [&](const json& now) {

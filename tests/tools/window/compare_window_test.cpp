@@ -21,19 +21,6 @@ using test::Workplace;
 constexpr const char* bricks = "data/vase.obj --height-map data/bricks-height.png ";
 constexpr int middle_of_line = 789;  // Of a view of 981 pixels that ends at 1280.
 
-/// The screen once it stays as it is: the state is told before the frame is shown.
-Image resting_picture(const test::Display& display) {
-    Image last = display.picture();
-    EXPECT_TRUE(eventually([&] {
-        display.act("sleep 0.4");
-        Image now = display.picture();
-        const bool is_same = now.samples == last.samples;
-        last = std::move(now);
-        return is_same;
-    }));
-    return last;
-}
-
 /// Waits for two sides on the screen.
 json both_sides(ViewerWindow& window) {
     return window.wait_for("two sides", [](const json& now) {
@@ -50,7 +37,7 @@ TEST(CompareWindow, DraggingTheLineShowsMoreOfOneSideAndDrawsNoScene) {
     ASSERT_EQ(before["view"][0], 981);
     display->act("mousemove 640 790");
     window.wait_for_rest();
-    const Image split = resting_picture(*display);
+    const Image split = display->resting_picture();
     window.drag(middle_of_line, 700, 160, 0);
     const json after = window.wait_for("a moved line", [](const json& now) {
         return std::abs(now["compare"]["split"].get<double>() - (0.5 + 160.0 / 981.0)) < 2e-3;
@@ -81,7 +68,7 @@ TEST(CompareWindow, BothSidesAreThePicturesThatTheirCommandLinesDraw) {
         workplace.run("relief-view " + std::string(bricks) + "--output again.png " + text);
     ASSERT_EQ(result.exit_code, 0) << result.error;
     const Image again = read_image(workplace / "again.png", ImageUse::color);
-    const Image view = test::view_on(display->picture(), shown["view"]);
+    const Image view = test::view_on(display->resting_picture(), shown["view"]);
     // But for labels at the top, and the line.
     const int line = static_cast<int>(std::lround(0.25 * view.width));
     EXPECT_EQ(changed_share(again, view, 0, 60, line - 3, view.height - 60, 0), 0.0);
@@ -95,7 +82,7 @@ TEST(CompareWindow, NumbersAreThoseOfTheLibraryAndTheDifferenceIsShown) {
     ViewerWindow window(*display, workplace, std::string(bricks) + "--compare map=none");
     const json before = both_sides(window);
     window.wait_for_rest();
-    const Image sides = resting_picture(*display);
+    const Image sides = display->resting_picture();
     window.key("d");
     const json after = window.wait_for("the difference", [](const json& now) {
         return now["drawn"]["difference"] == true && !now["compare"]["numbers"].is_null();
@@ -128,7 +115,7 @@ TEST(CompareWindow, KeysAndThePanelChooseSwapAndEndIt) {
     EXPECT_EQ(window.state()["drawn"]["beside"], 0) << "what is not compared is not drawn";
     window.key("k");
     both_sides(window);
-    const Image before = resting_picture(*display);
+    const Image before = display->resting_picture();
     window.key("x");
     const json swapped = window.wait_for(
         "swapped", [](const json& now) { return now["compare"]["right"] == "as it is"; });

@@ -18,6 +18,7 @@
 #include <iterator>
 #include <stdexcept>
 #include <thread>
+#include <utility>
 
 #include "tools/run_program.h"
 
@@ -113,6 +114,17 @@ Image Display::picture() const {
         }
     }
     return image;
+}
+
+Image Display::resting_picture() const {
+    Image last = picture();
+    const auto stays = [&] {
+        std::this_thread::sleep_for(std::chrono::milliseconds(400));
+        const Image before = std::exchange(last, picture());
+        return before.samples == last.samples;
+    };
+    if (!eventually(stays)) throw std::runtime_error("the screen does not come to rest");
+    return last;
 }
 
 void Display::act(const std::string& words) const {

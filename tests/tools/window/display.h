@@ -41,8 +41,10 @@ class Display {
 
     [[nodiscard]] const std::string& name() const { return name_; }  ///< ":1234"
 
-    /// What is on the screen, 8-bit RGB.
+    /// What is on the screen now, 8-bit RGB: half of a frame, where one is just being put there.
     [[nodiscard]] Image picture() const;
+    /// The same once it stays as it is: a window tells its state before its frame is on the screen.
+    [[nodiscard]] Image resting_picture() const;
 
     /// Runs xdotool there. \throws std::runtime_error if it fails
     void act(const std::string& words) const;

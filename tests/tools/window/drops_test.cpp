@@ -93,7 +93,7 @@ TEST(Drops, ASceneFileTakesTheModelsPlaceWithItsOwnCamera) {
     const Workplace workplace;
     ViewerWindow window(*display, workplace, "data/vase.obj");
     window.wait_for_rest();
-    const Image before = display->picture();
+    const Image before = display->resting_picture();
     ASSERT_TRUE(test::drop_files(display->name(), {workplace / "data/scenes/shading-lights.json"},
                                  700, 400));
     const json after = window.wait_for("the scene", [](const json& now) {

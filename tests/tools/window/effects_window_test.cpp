@@ -39,10 +39,11 @@ TEST(EffectsWindow, MeasuresWhatEachEffectCostsUntilThePlanChanges) {
 TEST(EffectsWindow, MeasuringCanBeStopped) {
     RELIEF_NEEDS_DISPLAY(display);
     const Workplace workplace;
+    // So that it takes long enough to be stopped.
     ViewerWindow window(*display, workplace,
                         "data/vase.obj --environment data/sky --reflectivity 0.3 --height-map "
                         "data/bricks-height.png",
-                        "LP_NUM_THREADS=0");  // So that it takes long enough to be stopped.
+                        "LP_NUM_THREADS=0 MESA_SHADER_CACHE_DISABLE=true");
     window.wait_for_rest();
     window.click_on("Measure what they cost");
     window.click_on("Stop");

@@ -60,7 +60,7 @@ TEST(ReloadWindow, AModelThatChangesIsShownWithTheSameViewAndEdits) {
     window.click_on("Add directional");
     const json before = window.wait_for(
         "a light more", [](const json& now) { return now["directional_lights"].size() == 3; });
-    const Image picture = display->picture();
+    const Image picture = display->resting_picture();
 
     replace(workplace, "vase.obj", vase + "v 9 0 0\nv 9 1 0\nv 9 0 1\nf -3 -2 -1\n");
     const json after = window.wait_for("a triangle more", [&](const json& now) {
@@ -97,17 +97,17 @@ TEST(ReloadWindow, ATextureThatChangesIsDrawnAndABrokenOneIsSaid) {
     write_color(workplace / "paint.png", 200, 20);
     ViewerWindow window(*display, workplace, "square.obj --diffuse-map paint.png");
     window.wait_for_rest();
-    const Image red = display->picture();
+    const Image red = display->resting_picture();
     write_color(workplace / "paint.png", 20, 200);
     EXPECT_TRUE(eventually([&] { return changed_picture(red, display->picture()) > 0.5; }));
     const json green = window.wait_for_rest();
-    const Image picture = display->picture();
+    const Image picture = display->resting_picture();
 
     workplace.write("paint.png", "no image");
     const json broken =
         window.wait_for("an error", [](const json& now) { return now["error"] != ""; });
     EXPECT_THAT(broken["error"].get<std::string>(), HasSubstr("paint.png"));
-    EXPECT_EQ(changed_picture(picture, display->picture()), 0.0) << "the old one stays";
+    EXPECT_EQ(changed_picture(picture, display->resting_picture()), 0.0) << "the old one stays";
     EXPECT_EQ(broken["camera"], green["camera"]);
 
     write_color(workplace / "paint.png", 200, 20);
@@ -122,7 +122,7 @@ TEST(ReloadWindow, AShaderThatChangesIsLinkedAndABrokenOneIsSaid) {
     std::filesystem::create_directories(workplace / "shaders/scatter");
     ViewerWindow window(*display, workplace, "square.obj", "RELIEF_SHADER_DIR=shaders");
     const json before = window.wait_for_rest();
-    const Image plain = display->picture();
+    const Image plain = display->resting_picture();
     const std::string head = "#include \"common/diffuse_color.glsl\"\n";
     const std::string shader = "shaders/scatter/lambert.glsl";
     workplace.write(shader, head +
@@ -132,13 +132,13 @@ TEST(ReloadWindow, AShaderThatChangesIsLinkedAndABrokenOneIsSaid) {
     const json red = window.wait_for_rest();
     EXPECT_EQ(red["relinked"], 1);
     EXPECT_EQ(red["camera"], before["camera"]);
-    const Image picture = display->picture();
+    const Image picture = display->resting_picture();
 
     workplace.write(shader, head + "vec3 diffuse_scattering(float n) { return broken; }\n");
     const json broken =
         window.wait_for("an error", [](const json& now) { return now["error"] != ""; });
     EXPECT_THAT(broken["error"].get<std::string>(), HasSubstr("scatter/lambert.glsl:2"));
-    EXPECT_EQ(changed_picture(picture, display->picture()), 0.0) << "the old one stays";
+    EXPECT_EQ(changed_picture(picture, display->resting_picture()), 0.0) << "the old one stays";
     window.key("7");  // And can still be looked at, from above.
     EXPECT_TRUE(eventually([&] { return changed_picture(picture, display->picture()) > 0.05; }));
     window.wait_for_rest();  // A picture still to be drawn would find the shader mended by itself.

@@ -103,7 +103,7 @@ TEST(SavedFromTheWindow, SceneAndModelStandBesideTheModelAndReplaceNothing) {
     EXPECT_EQ(workplace.read("vase-scene-1.json"), "mine");
     ASSERT_EQ(workplace.run("relief-view vase-scene-2.json --output again.png").exit_code, 0);
     window.wait_for("the whole picture", [](const json& now) { return now["drawn"]["whole"]; });
-    const Image shown = test::view_on(display->picture(), saved["view"]);
+    const Image shown = test::view_on(display->resting_picture(), saved["view"]);
     EXPECT_EQ(compare(read_image(workplace / "again.png", ImageUse::color), shown).differing_pixels,
               0U);
     window.key("ctrl+e");

@@ -32,7 +32,7 @@ TEST(ViewText, DrawsTheSamePixelsWithoutAWindow) {
         workplace.run("relief-view data/vase.obj --output again.png " + text);
     ASSERT_EQ(result.exit_code, 0) << result.error;
     const Image again = read_image(workplace / "again.png", ImageUse::color);
-    const Image shown = test::view_on(display->picture(), moved["view"]);
+    const Image shown = test::view_on(display->resting_picture(), moved["view"]);
     EXPECT_EQ(compare(again, shown).differing_pixels, 0U) << text;
 }
 

@@ -29,7 +29,7 @@ TEST(Window, ADragTurnsTheCameraAndThePicture) {
     const Workplace workplace;
     ViewerWindow window(*display, workplace, "data/vase.obj");
     const json before = window.wait_for_rest();
-    const Image picture = display->picture();
+    const Image picture = display->resting_picture();
     const double height = before["view"][1].get<double>();
     window.drag(700, 300, 100, 40);
     // A drag over the height of the view is half a turn.
@@ -50,7 +50,7 @@ TEST(Window, KeysAndTheWheelMoveTheCameraAndQuitEndsIt) {
     const Workplace workplace;
     ViewerWindow window(*display, workplace, "data/vase.obj --camera 30,20");
     const json before = window.wait_for_rest();
-    const Image picture = display->picture();
+    const Image picture = display->resting_picture();
     EXPECT_NEAR(before["camera"]["azimuth"].get<double>(), 30.0, 1e-3);
     window.key("7");
     window.wait_for("above", [](const json& now) {
@@ -95,7 +95,7 @@ TEST(Window, HelpComesAndGoesAndPanelsGiveTheirRoom) {
     workplace.write_square("square.obj");
     ViewerWindow window(*display, workplace, "square.obj");
     const json before = window.wait_for_rest();
-    const Image picture = display->picture();
+    const Image picture = display->resting_picture();
     window.key("h");
     window.wait_for("help", [](const json& now) { return now["help"] == true; });
     EXPECT_TRUE(eventually([&] { return changed_picture(picture, display->picture()) > 0.2; }));
@@ -113,11 +113,11 @@ TEST(Window, WithoutAPictureNothingStaysOfWhatWasThere) {
     RELIEF_NEEDS_DISPLAY(display);
     const Workplace workplace;
     display->act("mousemove 5 795");  // The pointer is on the screen, too, and changes its shape.
-    const Image screen = display->picture();
+    const Image screen = display->resting_picture();
     ViewerWindow window(*display, workplace, "");
     EXPECT_TRUE(eventually([&] { return changed_picture(screen, display->picture()) == 1.0; }))
         << "all of it: the screen may be seen while it is drawn";
-    const Image picture = display->picture();
+    const Image picture = display->resting_picture();
     window.key("h");
     EXPECT_TRUE(eventually([&] { return changed_picture(picture, display->picture()) > 0.1; }));
     window.key("h");
@@ -129,7 +129,7 @@ TEST(Window, PanelsEditTheScene) {
     const Workplace workplace;
     ViewerWindow window(*display, workplace, "data/vase.obj");
     const json before = window.wait_for_rest();
-    const Image picture = display->picture();
+    const Image picture = display->resting_picture();
     window.click_on("Lights");
     window.click_on("Add directional");
     const json lit = window.wait_for("one light more", [&](const json& now) {
@@ -185,14 +185,14 @@ TEST(Window, AModelAHeightMapAndSurroundingsAreDroppedAndShown) {
     workplace.write_square("square.obj");
     ViewerWindow window(*display, workplace, "");
     window.wait_for("nothing", [](const json& now) { return !now.contains("triangles"); });
-    const Image empty = display->picture();
+    const Image empty = display->resting_picture();
     ASSERT_TRUE(test::drop_files(display->name(), {workplace / "square.obj"}, 700, 400));
     const json model = window.wait_for(
         "the model", [](const json& now) { return now.value("triangles", 0) == 2; });
     window.wait_for_rest();
     EXPECT_TRUE(eventually([&] { return changed_picture(empty, display->picture()) > 0.5; }));
 
-    const Image plain = display->picture();
+    const Image plain = display->resting_picture();
     ASSERT_TRUE(
         test::drop_files(display->name(), {workplace / "data/bricks-height.png"}, 700, 400));
     const json mapped = window.wait_for("the height map as a normal map", [](const json& now) {
@@ -280,7 +280,7 @@ TEST(Window, SavesThePictureThatItShows) {
         window.wait_for("a file", [](const json& now) { return now["saved"]["done"] == 1; });
     EXPECT_EQ(saved["saved"]["file"], "vase-1.png");
     const Image image = read_image(workplace / "vase-1.png", ImageUse::color);
-    const Image screen = display->picture();
+    const Image screen = display->resting_picture();
     ASSERT_EQ(json({image.width, image.height}), before["view"]);
     int differing = 0;  // The view ends at the right and begins at the top.
     const int left = screen.width - image.width;
