@@ -84,8 +84,9 @@ add_library(relief_precompiled OBJECT ${CMAKE_CURRENT_LIST_DIR}/precompiled.cpp)
 target_link_libraries(relief_precompiled PRIVATE relief_flags glm::glm fmt::fmt)
 relief_precompile(relief_precompiled)
 
-# What every test runs under, for set_tests_properties too. Mesa's cache of compiled shaders would
-# carry results from one run to the next; and its own leaks are not ours. With OpenImageIO's 261
+# What every test runs under, for set_tests_properties too. Half of drawing with software OpenGL is compiling
+# shaders, mostly those of the test before: Mesa's cache of compiled ones is on, as it is for users, but in the
+# build's own folder, which scripts/test empties first. Mesa's leaks are not ours. With OpenImageIO's 261
 # libraries in the process, LeakSanitizer's own tracer can crash ("Tracer caught signal 11") in the
 # hook by which it follows thread-local storage: that is off. Two kinds of environment, because
 # gtest_discover_tests takes lists apart.
@@ -95,7 +96,7 @@ if(RELIEF_SANITIZE)
     set(test_seconds 900)
 endif()
 set(RELIEF_TEST_PROPERTIES
-    TIMEOUT ${test_seconds} ENVIRONMENT MESA_SHADER_CACHE_DISABLE=true ENVIRONMENT_MODIFICATION
+    TIMEOUT ${test_seconds} ENVIRONMENT MESA_SHADER_CACHE_DIR=${PROJECT_BINARY_DIR}/shader-cache ENVIRONMENT_MODIFICATION
     LSAN_OPTIONS=set:intercept_tls_get_addr=0:${leak_options})
 
 # relief_add_tests(NAME sources... [LIBRARIES ...]): one GoogleTest program; each test
