@@ -30,16 +30,15 @@ if(RELIEF_SANITIZE)
     target_link_options(relief_flags INTERFACE -fsanitize=address,undefined)
 endif()
 
-# Most of a file's compiling is headers: those that never change are precompiled, and the files of a
-# target are compiled a dozen at a time, which halves the time at least. Caches of compiled files
-# (ccache) cannot tell that two checkouts' precompiled headers are the same, and one changed file is a
-# whole batch to them: with one, there is neither.
+# Most of the time of compiling a file goes into headers. Headers that never change are precompiled. Without a
+# compiler cache the files of a target are also compiled a dozen at a time; with one, a changed file would
+# recompile its whole batch.
 if(CMAKE_CXX_COMPILER_LAUNCHER)
     set(together OFF)
 else()
     set(together ON)
 endif()
-option(RELIEF_PCH "Precompile the headers that nearly every file includes" ${together})
+option(RELIEF_PCH "Precompile the headers that nearly every file includes" ON)
 option(RELIEF_UNITY "Compile the files of a target in batches" ${together})
 set(RELIEF_PCH_HEADER ${CMAKE_CURRENT_LIST_DIR}/precompiled.h)
 
