@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The samples in data/: made again byte for byte, tiling, without seams, closed and unstretched.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <array>
@@ -27,7 +28,7 @@ std::string bytes_of(const std::filesystem::path& file) {
 
 TEST(SampleData, TheProgramWritesTheSameFilesAgain) {
     const test::TemporaryDirectory folder;
-    const std::string command = std::string(RELIEF_MAKE_DATA) + " " + folder.path().string();
+    const std::string command = fmt::format("{} {}", RELIEF_MAKE_DATA, folder.path().string());
     ASSERT_EQ(std::system(command.c_str()), 0);
     std::size_t compared = 0;
     for (const auto& entry : std::filesystem::recursive_directory_iterator(folder.path())) {

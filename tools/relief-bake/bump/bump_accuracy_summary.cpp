@@ -41,7 +41,7 @@ std::vector<std::string> table(const BumpExperiment& experiment) {
                                     duration(1000.0 * row->seconds.median),
                                     row->megapixels_per_second, row->is_efficient ? "*" : ""));
     }
-    lines.push_back("* none is both truer and faster");
+    lines.emplace_back("* no other method is both faster and more accurate");
     for (std::string& line : lines)
         line.erase(line.find_last_not_of(' ') + 1);
     return lines;

@@ -39,8 +39,9 @@ std::vector<std::string> table(const MeshAccuracy& accuracy) {
             row->error.p99, row->error.max, duration(1000.0 * row->seconds), rate,
             row->is_efficient ? "*" : ""));
     }
-    lines.push_back(
-        "* none is both truer and faster; auto casts 4 samples, and 16 where they are "
+    lines.emplace_back(
+        "* no other method is both faster and more accurate; auto casts 4 samples, and 16 where "
+        "they are "
         "so many degrees apart");
     for (std::string& line : lines)
         line.erase(line.find_last_not_of(' ') + 1);

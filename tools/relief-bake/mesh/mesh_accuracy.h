@@ -21,8 +21,9 @@ struct MeasuredBake {
     NormalMapFormat format;
     AngleSummary error;
     std::size_t rays = 0;
-    double seconds = 0.0;       ///< Of the rays; with --compare the median, and the codes among it.
-    bool is_efficient = false;  ///< With --compare: none is both truer and faster.
+    double seconds = 0.0;  ///< Of the rays; with --compare the median, and the codes among it.
+    bool is_efficient =
+        false;  ///< With --compare: no other method is both faster and more accurate.
 };
 
 struct MeshAccuracy {
