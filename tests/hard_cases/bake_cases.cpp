@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "hard_cases/baked_map.h"
@@ -11,6 +12,19 @@
 
 namespace relief::test {
 namespace {
+
+/// What a bake of this high mesh onto a square throws; nothing: "taken".
+std::string refusal_of(const Mesh& high, BakeOptions options = {}) {
+    options.width = options.height = bake_side;
+    try {
+        baked({high}, make_quad(), options);
+    } catch (const BakeMismatch& mismatch) {
+        return mismatch.kind() == BakeMismatch::Kind::apart  ? "apart"
+               : mismatch.kind() == BakeMismatch::Kind::size ? "size"
+                                                             : "no surface";
+    }
+    return "taken";
+}
 
 HardCase self_case() {
     return {
@@ -156,9 +170,8 @@ HardCase broken_case() {
     return {"broken high meshes",
             "Nothing; triangles without area; vertices that are not finite, beside a sound square.",
             "crashes of ray casters",
-            {{"bake", "of nothing all missed; else the square", [] {
-                  if (baked({Mesh{}}, make_quad()).result.texels_missed != bake_texels)
-                      return std::string("hit nothing");
+            {{"bake", "of nothing refused; else the square", [] {
+                  if (refusal_of(Mesh{}) != "no surface") return std::string("nothing is taken");
                   Mesh high = make_quad();
                   const float nan = std::numeric_limits<float>::quiet_NaN();
                   high.positions.insert(
@@ -190,11 +203,74 @@ HardCase bare_case() {
               }}}};
 }
 
+HardCase apart_case() {
+    return {"high mesh in another place",
+            "A square, moved by 5 times its size away from the low one, or beside it.",
+            "bakers that write an empty map without a word",
+            {{"bake", "refused: apart, unless rays are told to reach it", [] {
+                  for (const glm::vec3& by : {glm::vec3(0, 0, 10), glm::vec3(10, 0, 0)}) {
+                      const std::string refusal = refusal_of(moved(make_quad(), by));
+                      if (refusal != "apart") return refusal;
+                  }
+                  BakeOptions longer;
+                  longer.offset = 10.5;
+                  const std::string refusal = refusal_of(moved(make_quad(), {0, 0, 10}), longer);
+                  return refusal == "taken" ? std::string() : refusal;
+              }}}};
+}
+
+HardCase unit_case() {
+    return {"high mesh in another unit",
+            "A square 100 times, and a hundredth, as large as the low one.",
+            "bakers that write a map of something else",
+            {{"bake", "refused: size, unless that is allowed", [] {
+                  for (const float scale : {100.0F, 0.01F}) {
+                      Mesh high = make_quad();
+                      for (glm::vec3& position : high.positions)
+                          position *= scale;
+                      const std::string refusal = refusal_of(high);
+                      if (refusal != "size") return refusal;
+                      BakeOptions allowed;
+                      allowed.allow_size_mismatch = true;
+                      if (refusal_of(high, allowed) != "taken") return std::string("not allowed");
+                  }
+                  return std::string();
+              }}}};
+}
+
+HardCase short_rays_case() {
+    return {"rays too short for the high mesh",
+            "A square 0.5 above the low one, a triangle down to the low one's height beside it, "
+            "and rays that begin 0.25 outside.",
+            "holes without a reason",
+            {{"bake", "all missed, and 0.5 measured as the length that hits", [] {
+                  Mesh high = moved(make_quad(), {0, 0, 0.5F});
+                  high.positions.insert(high.positions.end(), {{2, 0, 0}, {2, 1, 0}, {2, 0, 0.5F}});
+                  high.triangles.emplace_back(4, 5, 6);
+                  high.normals.clear();
+                  high.texcoords.clear();
+                  high.tangents.clear();
+                  BakeOptions options;
+                  options.width = options.height = bake_side;
+                  options.max_distance = 1.5;
+                  options.offset = 0.25;
+                  options.measures_missed = true;
+                  const HardBake map = baked({high}, make_quad(), options);
+                  const ClippedRays& clipped = map.result.clipped_outside;
+                  if (clipped.texels != bake_texels || std::abs(clipped.longest - 0.5) > 1e-6)
+                      return fmt::format("{} texels, {}", clipped.texels, clipped.longest);
+                  options.offset = 1.001 * clipped.longest;
+                  const auto missed = baked({high}, make_quad(), options).result.texels_missed;
+                  return missed == 0 ? std::string() : fmt::format("{} missed", missed);
+              }}}};
+}
+
 }  // namespace
 
 std::vector<HardCase> bake_cases() {
-    return {self_case(), edges_case(), border_case(), needle_case(), missed_case(),
-            wall_case(), scale_case(), broken_case(), bare_case()};
+    return {self_case(),   edges_case(), border_case(), needle_case(),
+            missed_case(), wall_case(),  scale_case(),  broken_case(),
+            bare_case(),   apart_case(), unit_case(),   short_rays_case()};
 }
 
 }  // namespace relief::test

@@ -90,17 +90,20 @@ HardCase model_size_case() {
     return {"high meshes far larger or smaller than the low one",
             "A square 100000 times as large; one a thousandth as large, in the middle of a texel.",
             "distances guessed from the high mesh",
-            {{"bake", "all texels; one, and 255 x texel missed by its rays", [] {
+            {{"bake", "if allowed: all texels; one, and 255 x texel missed by its rays", [] {
                   Mesh large = make_quad(), small = make_quad();
                   for (std::size_t i = 0; i < 4; ++i) {
                       large.positions[i] *= 1e5F;
                       small.positions[i] =
                           1e-3F * small.positions[i] + glm::vec3(0.0625F, 0.0625F, 0.01F);
                   }
+                  BakeOptions options;
+                  options.width = options.height = bake_side;
+                  options.allow_size_mismatch = true;
                   const std::string problem =
-                      not_all(baked({large}, make_quad()), flat_normal, 0.0);
+                      not_all(baked({large}, make_quad(), options), flat_normal, 0.0);
                   if (!problem.empty()) return problem;
-                  const HardBake map = baked({small}, make_quad());
+                  const HardBake map = baked({small}, make_quad(), options);
                   return says(map.result.texels_baked == 1 &&
                               map.report.count("texel missed by its rays") == bake_texels - 1);
               }}}};
@@ -198,7 +201,7 @@ HardCase texture_overlap_case() {
     return {"bake of charts that overlap, one of them mirrored",
             "Two squares with the same texture; the second one's is mirrored, and it is lower.",
             "two charts mixed texel by texel",
-            {{"bake", "the first one's; reported: 256 x texel of several triangles", [] {
+            {{"bake", "the first one's; reported: 256 x texel of mirrored triangles", [] {
                   Mesh low = moved(make_quad(), {0, 0, -1});
                   for (glm::vec2& texcoord : low.texcoords)
                       texcoord.x = 1.0F - texcoord.x;
@@ -213,7 +216,7 @@ HardCase texture_overlap_case() {
                   for (const glm::uvec3& triangle : upper.triangles)
                       low.triangles.push_back(triangle + first);
                   const HardBake map = baked({moved(make_quad(), {0, 0, 0.01F})}, low);
-                  if (map.report.count("texel of several triangles") != bake_texels)
+                  if (map.report.count("texel of mirrored triangles") != bake_texels)
                       return std::string("not reported");
                   return not_all(map, flat_normal, 0.01);
               }}}};

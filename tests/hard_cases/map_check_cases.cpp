@@ -180,12 +180,12 @@ HardCase overlap_case() {
             "bakers whose winner is whoever comes last",
             {{"cover texels",
               "the one that is not mirrored owns all; reported: 4 x texel of "
-              "several triangles",
+              "mirrored triangles",
               [] {
                   Report report;
                   const std::vector<glm::vec2> corners = {{-1, -1}, {5, -1}, {-1, 5}};
                   return not_owned(owners(corners, {{0, 1, 2}, {0, 2, 1}}, 2, report), "1111",
-                                   report, "texel of several triangles", 4);
+                                   report, "texel of mirrored triangles", 4);
               }}}};
 }
 

@@ -82,15 +82,47 @@ TEST_F(BakeAccuracy, KeepsToWhatIsTold) {
     EXPECT_EQ(samples["steps"].size(), 2U);
 }
 
-TEST_F(BakeAccuracy, RefusesWhatNothingKeepsAndStopsWhereCodesAloneAreWorse) {
-    const std::string line = "relief-bake mesh high.obj low.obj out/map.png --size 32 ";
-    ProgramResult result = workplace.run(line + "--max-error 0.01 --bits 8");
-    EXPECT_EQ(result.exit_code, 1);
-    // The first count of samples shows it.
-    EXPECT_THAT(result.error, HasSubstr("no way to bake it keeps within 0.01 degrees (RMS): the "
-                                        "least is "));
-    EXPECT_THAT(result.error, HasSubstr("with 1 sample, 8 bit"));
-    result = workplace.run(line + "--max-error 0.0001 --max-error-kind max --samples 4");
+/// The least error that a refusal names.
+double least_in(const std::string& error) {
+    const std::string before = "the least is ";
+    const std::size_t at = error.find(before);
+    return at == std::string::npos ? -1.0 : std::stod(error.substr(at + before.size()));
+}
+
+TEST_F(BakeAccuracy, RefusesWithTheLeastErrorOfAllChoices) {
+    const auto error_of = [&](const std::string& options) {
+        const ProgramResult result =
+            workplace.run("relief-bake mesh high.obj low.obj out/" + options + " --size 32");
+        EXPECT_EQ(result.exit_code, 1) << options;
+        EXPECT_EQ(workplace.outputs(), "") << options;
+        return result.error;
+    };
+    // Rounding is the larger part.
+    const std::string rounding = error_of("map.png --max-error 0.05 --bits 8");
+    EXPECT_THAT(rounding, HasSubstr("no choice of samples and bits keeps the error within 0.05 "
+                                    "degrees (RMS): the least is 0."));
+    EXPECT_THAT(rounding, HasSubstr(" 8 bit; rounding to 8 bits alone makes 0."));
+    EXPECT_THAT(rounding, HasSubstr("(16 bits would do, with 0.0"));
+    EXPECT_THAT(rounding, HasSubstr(": give --bits 16)"));
+    // Sampling is, although rounding alone is beyond the limit too: 256 samples are tried.
+    const std::string both = error_of("map.png --max-error 0.0001");
+    EXPECT_THAT(both, HasSubstr("with 256 samples, 16 bit; sampling alone makes 0.0"));
+    EXPECT_THAT(both, HasSubstr("(allow a larger error)"));
+    const std::string floats = error_of("map.exr --max-error 0.000001");
+    EXPECT_THAT(floats, HasSubstr("with 256 samples, 32 bit; sampling alone makes "));
+    EXPECT_LE(least_in(floats), least_in(both));
+    // What the refusals name can be had.
+    const json eight = baked(fmt::format("--max-error {} --bits 8", 1.02 * least_in(rounding)));
+    EXPECT_LE(eight["kept"]["rms"].get<double>(), 1.02 * least_in(rounding));
+    const json sixteen = baked(fmt::format("--max-error {}", 1.02 * least_in(both)));
+    EXPECT_EQ(sixteen["kept"]["samples"], 256);
+    EXPECT_LT(least_in(both),
+              0.5 * baked("--max-error 1 --samples 16 --bits 16")["kept"]["rms"].get<double>());
+    std::filesystem::remove(workplace / "out/map.png");
+    std::filesystem::remove(workplace / "out/report.json");
+    const ProgramResult result = workplace.run(
+        "relief-bake mesh high.obj low.obj out/map.png --size 32 --max-error 0.0001 "
+        "--max-error-kind max --samples 4");
     EXPECT_EQ(result.exit_code, 1);
     EXPECT_THAT(result.error, HasSubstr("within 0.0001 degrees (greatest)"));
     EXPECT_EQ(workplace.outputs(), "");
@@ -98,12 +130,12 @@ TEST_F(BakeAccuracy, RefusesWhatNothingKeepsAndStopsWhereCodesAloneAreWorse) {
 
 TEST_F(BakeAccuracy, ErrorsOfNoTexelKeepNoBound) {
     // Beside the low square, so that no ray meets it.
-    workplace.write("high.obj", "v 50 0 0\nv 51 0 0\nv 50 1 0\nf 1 2 3\n");
+    workplace.write("high.obj", "v 1.5 0 0\nv 2.5 0 0\nv 1.5 1 0\nf 1 2 3\n");
     for (const char* option : {"--max-error 5", "--compare"}) {
         const ProgramResult result = workplace.run(
             std::string("relief-bake mesh high.obj low.obj out/map.png --size 32 ") + option);
         EXPECT_EQ(result.exit_code, 1);
-        EXPECT_THAT(result.error, HasSubstr("no texel that was looked at has a normal"));
+        EXPECT_THAT(result.error, HasSubstr("no ray hits high.obj: all 1024 texels"));
         EXPECT_EQ(workplace.outputs(), "");
     }
 }
@@ -131,6 +163,19 @@ TEST_F(BakeAccuracy, ComparesEverySampleCountAndDepth) {
     EXPECT_TRUE(report["reference"]["whole"].get<bool>());
     // The map is baked as usual beside.
     EXPECT_EQ(report["samples"], 32 * 32);
+}
+
+TEST_F(BakeAccuracy, Takes256SamplesWhereFewerAreNotEnough) {
+    const json few = baked("--max-error 10 --samples 64 --bits 16");
+    const double bound = 0.6 * few["kept"]["rms"].get<double>();
+    const json report = baked(fmt::format("--max-error {}", bound));
+    EXPECT_EQ(report["kept"]["samples"], 256);
+    EXPECT_EQ(report["kept"]["bits"], 16);
+    EXPECT_LE(report["kept"]["rms"].get<double>(), bound);
+    // Compared with more samples than its own: the error is that of the samples, and not 0.
+    EXPECT_EQ(report["reference"]["samples"], 1024);
+    EXPECT_GT(report["kept"]["sampling"].get<double>(), 0.1 * bound);
+    EXPECT_EQ(report["samples"], 256 * 32 * 32);
 }
 
 class BakeAccuracyRefusal : public testing::TestWithParam<Refused> {};

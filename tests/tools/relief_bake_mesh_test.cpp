@@ -173,7 +173,7 @@ INSTANTIATE_TEST_SUITE_P(
         Refused{"relief-bake mesh high.txt low.obj out/map.png", 2,
                 "high.txt: .txt is not a format that can be read"},
         Refused{"relief-bake mesh high.obj low.obj out/map.png --samples 3", 2,
-                "--samples 3: not one of 1, 4, 16, 64, auto"},
+                "--samples 3: not one of 1, 4, 16, 64, 256, auto"},
         Refused{"relief-bake mesh high.obj low.obj out/map.png --sample-angle 3", 2,
                 "--sample-angle: has no effect without --samples auto"},
         Refused{"relief-bake mesh high.obj low.obj out/map.png --cage low.obj --offset 1", 2,

@@ -9,12 +9,13 @@
 
 namespace relief::tools {
 
-void add_report_options(CLI::App& app, ReportOptions& options) {
+void add_report_options(CLI::App& app, ReportOptions& options, const std::string& strict) {
     add_path(app, "--report", options.file, "Write what was done and found to FILE, as JSON.")
         .group("Report");
     add_switch(app, "--strict", options.strict,
-               "Exit with 3 if anything was found wrong in the input; the output is written all "
-               "the same.")
+               strict.empty() ? "Exit with 3 if anything was found wrong in the input; the output "
+                                "is written all the same."
+                              : strict)
         .group("Report");
 }
 

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "common/command.h"
@@ -19,7 +20,8 @@ struct ReportOptions {
     bool strict = false;
 };
 
-void add_report_options(CLI::App& app, ReportOptions& options);
+/// \param strict  what --strict does, where a command has rules of its own; empty: the usual text
+void add_report_options(CLI::App& app, ReportOptions& options, const std::string& strict = "");
 
 /// \throws UsageError if the report would overwrite one of the files that the command works on;
 ///         FileError if its folder does not exist, so that this is known before the work is done

@@ -30,10 +30,10 @@ constexpr int most_padding = 1024;
 constexpr int most_occlusion_rays = 65536;
 
 int side_of(int samples) {
-    for (const int side : {1, 2, 4, 8, 16}) {
+    for (const int side : {1, 2, 4, 8, 16, 32}) {
         if (side * side == samples) return side;
     }
-    throw InvalidInput(fmt::format("{} samples are not 1, 4, 16, 64 or 256", samples));
+    throw InvalidInput(fmt::format("{} samples are not 1, 4, 16, 64, 256 or 1024", samples));
 }
 
 void check_distance(const std::optional<double>& distance, const char* what) {
@@ -195,7 +195,7 @@ void bake_strip(const BakeWork& work, const TexelCover& cover, Strip& strip, int
 struct Baker::Implementation {
     template <typename High>
     Implementation(std::span<High> high, const Mesh& mesh, const BakeOptions& given, Report& report)
-        : options(given), low(mesh, options, report), parts(high, low.mesh(), options, report) {}
+        : options(given), low(mesh, options, report), parts(high, low, options, report) {}
 
     BakeOptions options;
     LowSurface low;
@@ -274,6 +274,11 @@ BakeResult Baker::bake(const BakeMapOptions& map,
     result.occlusion_rays = counts.occlusion_rays;
     result.texels_baked = counts.baked;
     result.texels_missed = counts.missed;
+    result.first_missed = counts.first_missed;
+    result.missed_from_behind = counts.missed_from_behind;
+    result.clipped_outside = counts.clipped_outside.summary();
+    result.clipped_inside = counts.clipped_inside.summary();
+    result.measuring_rays = counts.measuring_rays;
     if (counts.baked > 0) {
         result.least_height = counts.least_height;
         result.greatest_height = counts.greatest_height;

@@ -10,7 +10,8 @@ namespace relief {
 namespace {
 
 constexpr double reference_angle = 0.5;  // Degrees.
-constexpr int most_samples = 256;
+constexpr int most_samples = 256;        // Of a reference, unless the map itself has as many.
+constexpr int finest_reference = 1024;
 
 BakeMapOptions with_samples(BakeMapOptions map, int samples, std::optional<double> angle) {
     map.samples = samples;
@@ -21,7 +22,9 @@ BakeMapOptions with_samples(BakeMapOptions map, int samples, std::optional<doubl
 }  // namespace
 
 BakeMapOptions reference_of(const BakeMapOptions& map, int samples) {
-    int wanted = samples > 0 ? samples : std::min(16 * map.samples, most_samples);
+    const int usual =
+        map.samples < most_samples ? std::min(16 * map.samples, most_samples) : finest_reference;
+    int wanted = samples > 0 ? samples : usual;
     // Of large maps, as many as coverage has room for.
     const int longest = std::max(map.width, map.height);
     while (wanted > 4 &&

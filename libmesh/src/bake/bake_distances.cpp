@@ -2,7 +2,10 @@
 // How far two surfaces are apart, from points all over both. Tests: tests/mesh/bake/bake_test.cpp.
 #include "bake/bake_distances.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
 
@@ -72,7 +75,94 @@ double largest_distance(const std::vector<glm::dvec3>& points, const RayScene& s
     return largest;
 }
 
+/// Grows a box by those triangles whose corners are all finite.
+void add_triangles(const Mesh& mesh, Bounds& box) {
+    for (const glm::uvec3& corners : mesh.triangles) {
+        const std::array<glm::vec3, 3> positions = {
+            mesh.positions[corners.x], mesh.positions[corners.y], mesh.positions[corners.z]};
+        if (!std::all_of(positions.begin(), positions.end(),
+                         [](const glm::vec3& position) { return is_finite(position); }))
+            continue;
+        for (const glm::vec3& position : positions) {
+            box.min = glm::min(box.min, position);
+            box.max = glm::max(box.max, position);
+        }
+    }
+}
+
+double diagonal_of(const Bounds& box) {
+    return glm::distance(glm::dvec3(box.max), glm::dvec3(box.min));
+}
+
+/// The largest distance between a face of one box and the same face of the other.
+double face_distance(const Bounds& a, const Bounds& b) {
+    const glm::dvec3 lower = glm::abs(glm::dvec3(a.min) - glm::dvec3(b.min));
+    const glm::dvec3 upper = glm::abs(glm::dvec3(a.max) - glm::dvec3(b.max));
+    const glm::dvec3 larger = glm::max(lower, upper);
+    return std::max({larger.x, larger.y, larger.z});
+}
+
+bool fits_turned(const BakeFit& fit, double low_diagonal) {
+    if (face_distance(fit.high, fit.low) <= 0.1 * low_diagonal) return false;
+    const glm::vec3 a = fit.high.min;
+    const glm::vec3 b = fit.high.max;
+    const Bounds forwards{{a.x, -b.z, a.y}, {b.x, -a.z, b.y}};  // (x, y, z) -> (x, -z, y)
+    const Bounds backwards{{a.x, a.z, -b.y}, {b.x, b.z, -a.y}};
+    return std::min(face_distance(forwards, fit.low), face_distance(backwards, fit.low)) <=
+           0.03 * low_diagonal;
+}
+
+std::string in_words(const Bounds& box) {
+    return fmt::format("({:.4g}, {:.4g}, {:.4g}) to ({:.4g}, {:.4g}, {:.4g})", box.min.x, box.min.y,
+                       box.min.z, box.max.x, box.max.y, box.max.z);
+}
+
+std::string mismatch_message(BakeMismatch::Kind kind, const BakeFit& fit, double reach,
+                             const std::string& part) {
+    const std::string prefix = part.empty() ? "" : fmt::format("part '{}': ", part);
+    if (kind == BakeMismatch::Kind::no_surface)
+        return prefix + "no triangle of the high meshes has finite corners";
+    const std::string boxes = fmt::format("the box of the high meshes is {}, of the low mesh {}",
+                                          in_words(fit.high), in_words(fit.low));
+    if (kind == BakeMismatch::Kind::size) {
+        return fmt::format(
+            "{}the high meshes are {:.4g} times as large as the low mesh, which is not within "
+            "1/{:g} to {:g}: {}",
+            prefix, fit.size_ratio, max_size_ratio, max_size_ratio, boxes);
+    }
+    return fmt::format(
+        "{}the high meshes and the low mesh are {:.4g} apart, but rays reach only {:.4g}: {}",
+        prefix, fit.gap, reach, boxes);
+}
+
 }  // namespace
+
+BakeMismatch::BakeMismatch(Kind kind, const BakeFit& fit, double reach, std::string part)
+    : InvalidInput(mismatch_message(kind, fit, reach, part)),
+      kind_(kind),
+      fit_(fit),
+      reach_(reach),
+      part_(std::move(part)) {}
+
+BakeFit compare_boxes(std::span<const Mesh> high, const Mesh& low) {
+    BakeFit fit;
+    validate(low);
+    add_triangles(low, fit.low);
+    for (const Mesh& mesh : high) {
+        validate(mesh);
+        add_triangles(mesh, fit.high);
+    }
+    if (fit.low.empty() || fit.high.empty()) return fit;
+    const glm::dvec3 above = glm::dvec3(fit.high.min) - glm::dvec3(fit.low.max);
+    const glm::dvec3 below = glm::dvec3(fit.low.min) - glm::dvec3(fit.high.max);
+    fit.gap = glm::length(glm::max(glm::max(above, below), glm::dvec3(0.0)));
+    const double low_diagonal = diagonal_of(fit.low);
+    const double high_diagonal = diagonal_of(fit.high);
+    if (!(low_diagonal > 0.0 && high_diagonal > 0.0)) return fit;
+    fit.size_ratio = high_diagonal / low_diagonal;
+    fit.fits_turned = fits_turned(fit, low_diagonal);
+    return fit;
+}
 
 BakeDistances distances_between(std::span<const Mesh> high, const RayScene& high_scene,
                                 const Mesh& low) {

@@ -14,6 +14,10 @@
 namespace relief {
 namespace {
 
+/// Measured ray lengths bridge a gap between the boxes of at most this share of the low box's
+/// diagonal: a larger one is taken for a misplaced mesh, not for a ray length.
+constexpr double max_automatic_share = 0.5;
+
 BakeDistances distances_of(std::span<const Mesh> high, const HighSurface& surface, const Mesh& low,
                            const BakeOptions& options) {
     const bool all_known = options.cage != nullptr || (options.offset && options.max_distance);
@@ -22,6 +26,42 @@ BakeDistances distances_of(std::span<const Mesh> high, const HighSurface& surfac
     distances.offset = options.offset.value_or(distances.offset);
     distances.max_distance = options.max_distance.value_or(distances.max_distance);
     return distances;
+}
+
+double diagonal(const Bounds& box) {
+    return glm::distance(glm::dvec3(box.max), glm::dvec3(box.min));
+}
+
+/// How far rays may run from the low mesh.
+double reach_of(const BakeOptions& options, double cage_reach, double low_diagonal) {
+    if (options.cage != nullptr)
+        return std::max(cage_reach, options.max_distance.value_or(cage_reach));
+    const double automatic = max_automatic_share * low_diagonal;
+    return std::max(options.offset.value_or(automatic), options.max_distance.value_or(automatic));
+}
+
+/// Compares the boxes before rays are prepared. \return the diagonal of the box around both
+double checked_extent(std::span<const Mesh> high, const Mesh& low, const BakeOptions& options,
+                      double cage_reach, const std::string& name, Report& report) {
+    const BakeFit fit = compare_boxes(high, low);
+    if (fit.low.empty()) return 0.0;
+    if (fit.high.empty()) {
+        // A part without a high mesh is a choice.
+        if (high.empty()) return 0.0;
+        throw BakeMismatch(BakeMismatch::Kind::no_surface, fit, 0.0, name);
+    }
+    const double reach = reach_of(options, cage_reach, diagonal(fit.low));
+    const bool differs_in_size =
+        fit.size_ratio > max_size_ratio || fit.size_ratio < 1.0 / max_size_ratio;
+    if (differs_in_size && !options.allow_size_mismatch)
+        throw BakeMismatch(BakeMismatch::Kind::size, fit, reach, name);
+    if (fit.gap > reach) throw BakeMismatch(BakeMismatch::Kind::apart, fit, reach, name);
+    if (fit.fits_turned) {
+        report.add("high box that fits only with y and z swapped", "part", 0,
+                   "baked as it is: one side may be Y up, the other Z up");
+    }
+    return glm::distance(glm::max(glm::dvec3(fit.high.max), glm::dvec3(fit.low.max)),
+                         glm::min(glm::dvec3(fit.high.min), glm::dvec3(fit.low.min)));
 }
 
 std::vector<std::uint32_t> parts_of_triangles(std::span<const BakePart> parts, const Mesh& low) {
@@ -48,20 +88,25 @@ std::vector<std::uint32_t> parts_of_triangles(std::span<const BakePart> parts, c
 }  // namespace
 
 SeenSurface::SeenSurface(std::span<const Mesh> meshes, const Mesh& low, const BakeOptions& options,
-                         Report& report)
-    : high(meshes, options, report), distances(distances_of(meshes, high, low, options)) {}
+                         double reach, const std::string& name, Report& report)
+    : extent(checked_extent(meshes, low, options, reach, name, report)),
+      high(meshes, options, report),
+      distances(distances_of(meshes, high, low, options)) {}
 
-BakeParts::BakeParts(std::span<const Mesh> high, const Mesh& low, const BakeOptions& options,
+BakeParts::BakeParts(std::span<const Mesh> high, const LowSurface& low, const BakeOptions& options,
                      Report& report) {
-    surfaces_.push_back(std::make_unique<SeenSurface>(high, low, options, report));
+    surfaces_.push_back(
+        std::make_unique<SeenSurface>(high, low.mesh(), options, low.cage_reach(), "", report));
 }
 
-BakeParts::BakeParts(std::span<const BakePart> parts, const Mesh& low, const BakeOptions& options,
-                     Report& report)
-    : part_of_triangle_(parts_of_triangles(parts, low)) {
+BakeParts::BakeParts(std::span<const BakePart> parts, const LowSurface& low,
+                     const BakeOptions& options, Report& report)
+    : part_of_triangle_(parts_of_triangles(parts, low.mesh())) {
+    const double reach = low.cage_reach();
     for (const BakePart& part : parts) {
-        const Mesh own = part_of(low, part.triangles);
-        surfaces_.push_back(std::make_unique<SeenSurface>(part.high, own, options, report));
+        const Mesh own = part_of(low.mesh(), part.triangles);
+        surfaces_.push_back(
+            std::make_unique<SeenSurface>(part.high, own, options, reach, part.name, report));
     }
 }
 

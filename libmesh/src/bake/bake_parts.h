@@ -9,16 +9,21 @@
 #include <vector>
 
 #include "bake/high_surface.h"
+#include "bake/low_surface.h"
 #include "relief/mesh/bake.h"
 
 namespace relief {
 
 /// What the rays of some of the low mesh's triangles may meet, and how far they run.
 struct SeenSurface {
-    /// \param low  what sees it: how far the two are apart says how far rays run
+    /// \param low    what sees it: how far the two are apart says how far rays run
+    /// \param reach  how far rays from a cage run; 0 without one
+    /// \param name   for messages
+    /// \throws BakeMismatch
     SeenSurface(std::span<const Mesh> meshes, const Mesh& low, const BakeOptions& options,
-                Report& report);
+                double reach, const std::string& name, Report& report);
 
+    double extent;  ///< No point of the high meshes is further than this from one of the low mesh.
     HighSurface high;
     BakeDistances distances;
 };
@@ -26,11 +31,11 @@ struct SeenSurface {
 class BakeParts {
   public:
     /// One part: all is seen by all.
-    BakeParts(std::span<const Mesh> high, const Mesh& low, const BakeOptions& options,
+    BakeParts(std::span<const Mesh> high, const LowSurface& low, const BakeOptions& options,
               Report& report);
 
     /// \throws InvalidInput if a triangle of `low` is not in exactly one part
-    BakeParts(std::span<const BakePart> parts, const Mesh& low, const BakeOptions& options,
+    BakeParts(std::span<const BakePart> parts, const LowSurface& low, const BakeOptions& options,
               Report& report);
 
     /// What a texel of that triangle of the low mesh sees.

@@ -95,6 +95,10 @@ BakeTrial BakeTrials::measure(const BakeWay& way, std::span<const NormalMapForma
         trial.quantisation.push_back(sum.stages[codes].summary());
         trial.centre.push_back(sum.centre.summary());
     }
+    if (!sums.empty()) {
+        const auto samples = static_cast<std::size_t>(BakeStage::sampling);
+        trial.sampling = sums.front().stages[samples].summary();
+    }
     return trial;
 }
 

@@ -18,6 +18,16 @@ namespace {
 
 constexpr int block = 4;                    // Samples along a block's side.
 constexpr std::size_t rays_at_once = 4096;  // What is known of them fits a cache.
+constexpr std::size_t max_first_missed = 8;
+constexpr int bins_per_octave = 8;  // Of ray lengths.
+
+/// Keeps the first of the missed texels, by row and column.
+void keep_first(std::vector<MissedTexel>& missed) {
+    std::sort(missed.begin(), missed.end(), [](const MissedTexel& a, const MissedTexel& b) {
+        return a.y != b.y ? a.y < b.y : a.x < b.x;
+    });
+    if (missed.size() > max_first_missed) missed.resize(max_first_missed);
+}
 
 /// Whether a sample is among those that are cast first: in each 4 x 4 one a row and a column.
 bool is_first(int x, int y, int side) {
@@ -225,12 +235,66 @@ class Piece {
             ++counts_.missed;
             found_.add("texel missed by its rays", "texel", map_index(texel),
                        "is filled from its neighbours");
+            describe_missed(texel);
         }
         rows_.states[at] = state;
         if (work_.options.layers.normals) store_normal(sum, at);
         if (work_.options.layers.heights)
             rows_.heights[at] = sum.hits > 0 ? static_cast<float>(sum.height / sum.hits) : 0.0F;
         if (layers_) layers_->store(texel, rows_, at);
+    }
+
+    /// The first sample of a texel that a triangle owns.
+    [[nodiscard]] const CoveredTexel& first_owner(std::size_t texel) const {
+        const auto side = static_cast<std::size_t>(work_.side);
+        const auto width = static_cast<std::size_t>(width_);
+        const std::size_t row =
+            (static_cast<std::size_t>(begin_) + texel / width) * side * width * side;
+        const std::size_t first = row + texel % width * side;
+        for (std::size_t i = 0; i < side * side; ++i) {
+            const CoveredTexel& owner = owners_[first + i / side * width * side + i % side];
+            if (owner.is_covered()) return owner;
+        }
+        return owners_[first];
+    }
+
+    void describe_missed(std::size_t texel) {
+        const bool is_first = counts_.first_missed.size() < max_first_missed;
+        if (!is_first && !work_.options.measures_missed) return;
+        const CoveredTexel& owner = first_owner(texel);
+        const SeenSurface& seen = work_.parts.seen_by(owner.triangle);
+        Report said_already;
+        const ProjectionLine line =
+            work_.low.line(owner, seen.distances, map_index(texel), said_already);
+        if (is_first) {
+            const auto width = static_cast<std::size_t>(width_);
+            counts_.first_missed.push_back({static_cast<int>(texel % width),
+                                            first_row_ + begin_ + static_cast<int>(texel / width),
+                                            work_.low.position(owner)});
+        }
+        if (work_.options.measures_missed && line.outside >= 0.0) measure_missed(line, seen);
+    }
+
+    /// What lies nearest to a missed texel, outwards and inwards.
+    void measure_missed(const ProjectionLine& line, const SeenSurface& seen) {
+        const RayScene& scene = seen.high.scene();
+        const RayHit outwards = scene.nearest({line.point, line.outward, 0.0, seen.extent});
+        const RayHit inwards = scene.nearest({line.point, -line.outward, 0.0, seen.extent});
+        counts_.measuring_rays += 2;
+        const bool takes_back_faces = work_.options.back_faces == BackFaces::take;
+        const bool is_within = (outwards.is_hit() && outwards.distance <= line.outside) ||
+                               (inwards.is_hit() && inwards.distance <= line.inside);
+        // Seen from the texel, the surface faces away outwards of it, and faces it inwards of it.
+        const bool hits_outside = outwards.is_hit() && outwards.distance > line.outside &&
+                                  (takes_back_faces || !outwards.faces_origin);
+        const bool hits_inside = inwards.is_hit() && inwards.distance > line.inside &&
+                                 (takes_back_faces || inwards.faces_origin);
+        if (hits_outside && !(hits_inside && inwards.distance < outwards.distance))
+            counts_.clipped_outside.add(outwards.distance);
+        else if (hits_inside)
+            counts_.clipped_inside.add(inwards.distance);
+        else if (is_within)
+            ++counts_.missed_from_behind;
     }
 
     void store_normal(const TexelSum& sum, std::size_t at) {
@@ -273,7 +337,49 @@ BakeCounts& BakeCounts::operator+=(const BakeCounts& other) {
     missed += other.missed;
     least_height = std::min(least_height, other.least_height);
     greatest_height = std::max(greatest_height, other.greatest_height);
+    first_missed.insert(first_missed.end(), other.first_missed.begin(), other.first_missed.end());
+    keep_first(first_missed);
+    missed_from_behind += other.missed_from_behind;
+    measuring_rays += other.measuring_rays;
+    clipped_outside += other.clipped_outside;
+    clipped_inside += other.clipped_inside;
     return *this;
+}
+
+void RayLengths::add(double length) {
+    ++count_;
+    shortest_ = std::min(shortest_, length);
+    longest_ = std::max(longest_, length);
+    int exponent = 0;
+    const double mantissa = std::frexp(length, &exponent);  // 0.5 to 1
+    const int part = static_cast<int>((mantissa - 0.5) * 2.0 * bins_per_octave);
+    ++bins_[bins_per_octave * exponent + part];
+}
+
+RayLengths& RayLengths::operator+=(const RayLengths& other) {
+    count_ += other.count_;
+    shortest_ = std::min(shortest_, other.shortest_);
+    longest_ = std::max(longest_, other.longest_);
+    for (const auto& [bin, count] : other.bins_)
+        bins_[bin] += count;
+    return *this;
+}
+
+ClippedRays RayLengths::summary() const {
+    if (count_ == 0) return {};
+    ClippedRays clipped{count_, shortest_, longest_, longest_};
+    std::size_t so_far = 0;
+    for (const auto& [bin, count] : bins_) {
+        so_far += count;
+        if (2 * so_far < count_) continue;
+        const int exponent =
+            (bin - (bin % bins_per_octave + bins_per_octave) % bins_per_octave) / bins_per_octave;
+        const int part = bin - bins_per_octave * exponent;
+        const double upper = std::ldexp(0.5 + 0.5 * (part + 1) / bins_per_octave, exponent);
+        clipped.half = std::min(upper, longest_);
+        break;
+    }
+    return clipped;
 }
 
 BakeCounts bake_rows(const BakeWork& work, int first_row, std::span<const CoveredTexel> owners,

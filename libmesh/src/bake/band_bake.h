@@ -5,6 +5,7 @@
 #pragma once
 
 #include <limits>
+#include <map>
 
 #include "bake/bake_parts.h"
 #include "bake/low_surface.h"
@@ -20,6 +21,20 @@ struct BakeWork {
     int side = 1;  ///< Samples along each side of a texel.
 };
 
+/// Lengths of rays that would hit: their number, the shortest and longest, and a histogram.
+class RayLengths {
+  public:
+    void add(double length);
+    RayLengths& operator+=(const RayLengths& other);
+    [[nodiscard]] ClippedRays summary() const;
+
+  private:
+    std::size_t count_ = 0;
+    double shortest_ = std::numeric_limits<double>::infinity();
+    double longest_ = 0.0;
+    std::map<int, std::size_t> bins_;  ///< Eight equal ones for each power of two.
+};
+
 /// Counts over some rows; the order of sums does not matter.
 struct BakeCounts {
     std::size_t samples = 0;
@@ -29,6 +44,10 @@ struct BakeCounts {
     std::size_t missed = 0;
     double least_height = std::numeric_limits<double>::infinity();
     double greatest_height = -std::numeric_limits<double>::infinity();
+    std::vector<MissedTexel> first_missed;
+    std::size_t missed_from_behind = 0;
+    std::size_t measuring_rays = 0;
+    RayLengths clipped_outside, clipped_inside;
 
     BakeCounts& operator+=(const BakeCounts& other);
 };

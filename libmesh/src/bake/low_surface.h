@@ -23,6 +23,11 @@ class LowSurface {
     [[nodiscard]] ProjectionLine line(const CoveredTexel& texel, const BakeDistances& distances,
                                       std::size_t sample, Report& found) const;
 
+    /// Where a texel is.
+    [[nodiscard]] glm::dvec3 position(const CoveredTexel& texel) const {
+        return interpolated(mesh_.positions, texel);
+    }
+
     /// Whether rays run from a cage.
     [[nodiscard]] bool has_cage() const { return !cage_.empty(); }
     /// How far the cage is from the mesh at most; 0 without one.

@@ -167,7 +167,7 @@ class DrawnBand {
           texels_(static_cast<std::size_t>(options.width) *
                   static_cast<std::size_t>(last_row_ - first_row)),
           distances_(options.touched ? texels_.size() : 0),
-          shared_(texels_.size(), false) {}
+          holders_(texels_.size(), 0) {}
 
     void draw(std::uint32_t index) {
         TexelTriangle triangle;
@@ -189,7 +189,8 @@ class DrawnBand {
             ++(texels_[i].is_inside      ? coverage.inside
                : texels_[i].is_covered() ? coverage.touched
                                          : coverage.empty);
-            if (shared_[i]) ++coverage.shared;
+            if (is_shared(i)) ++coverage.shared;
+            if (holders_[i] == one_of_each) ++coverage.mirrored;
         }
         if (coverage.shared > 0) report_shared(report);
         return coverage;
@@ -197,20 +198,32 @@ class DrawnBand {
     [[nodiscard]] std::span<const CoveredTexel> texels() const { return texels_; }
 
   private:
-    /// Texels once each, of however many samples.
+    // The triangles that hold a texel's centre, by whether their texture is mirrored.
+    static constexpr std::uint8_t plain = 1;
+    static constexpr std::uint8_t mirrored = 2;
+    static constexpr std::uint8_t one_of_each = plain | mirrored;
+    static constexpr std::uint8_t several_alike = 4;
+
+    [[nodiscard]] bool is_shared(std::size_t i) const { return holders_[i] >= one_of_each; }
+
+    /// Texels once each, of however many samples: as mirrored only if all shared samples are.
     void report_shared(Report& report) const {
         const auto side = static_cast<std::size_t>(options_.samples_across);
         const std::size_t columns = static_cast<std::size_t>(options_.width);
         const std::size_t width = columns / side;
-        std::vector<bool> said(texels_.size() / (side * side), false);
+        std::vector<std::uint8_t> found(texels_.size() / (side * side), 0);
         const std::size_t first_texel = static_cast<std::size_t>(first_row_) / side * width;
         for (std::size_t i = 0; i < texels_.size(); ++i) {
-            if (!shared_[i]) continue;
-            const std::size_t texel = i / columns / side * width + i % columns / side;
-            if (said[texel]) continue;
-            said[texel] = true;
-            report.add("texel of several triangles", "texel", first_texel + texel,
-                       "belongs to one of them, by a fixed rule");
+            if (is_shared(i)) found[i / columns / side * width + i % columns / side] |= holders_[i];
+        }
+        for (std::size_t texel = 0; texel < found.size(); ++texel) {
+            if (found[texel] == one_of_each) {
+                report.add("texel of mirrored triangles", "texel", first_texel + texel,
+                           "belongs to the one that is not mirrored");
+            } else if (found[texel] != 0) {
+                report.add("texel of several triangles", "texel", first_texel + texel,
+                           "belongs to one of them, by a fixed rule");
+            }
         }
     }
 
@@ -260,8 +273,10 @@ class DrawnBand {
 
     void claim_inside(std::size_t at, std::uint32_t index, const TexelTriangle& triangle,
                       std::int64_t column, std::int64_t row) {
+        const std::uint8_t side = triangle.is_mirrored() ? mirrored : plain;
+        if ((holders_[at] & side) != 0) holders_[at] |= several_alike;
+        holders_[at] |= side;
         if (texels_[at].is_inside) {
-            shared_[at] = true;
             if (!is_before(index, triangle, texels_[at].triangle)) return;
         }
         set(at, index, triangle.weights(column, row), true);
@@ -286,7 +301,7 @@ class DrawnBand {
     int first_row_, last_row_;
     std::vector<CoveredTexel> texels_;
     std::vector<double> distances_;  ///< Of those that are only touched, squared.
-    std::vector<bool> shared_;
+    std::vector<std::uint8_t> holders_;
     std::uint32_t compared_with_ = CoveredTexel::nobody;  ///< By is_before(), which found this:
     bool is_before_ = false;
 };
@@ -300,11 +315,11 @@ void check(std::span<const glm::vec2> texcoords, std::span<const glm::uvec3> tri
                                            TexelCover::largest_side));
     }
     const int across = options.samples_across;
-    constexpr std::array known = {1, 2, 4, 8, 16};
+    constexpr std::array known = {1, 2, 4, 8, 16, 32};
     const bool is_known = std::find(known.begin(), known.end(), across) != known.end();
     if (!is_known || options.width % across != 0 || options.height % across != 0)
         throw InvalidInput(
-            fmt::format("{} samples across a texel are not 1, 2, 4, 8 or 16", across));
+            fmt::format("{} samples across a texel are not 1, 2, 4, 8, 16 or 32", across));
     check_triangles(triangles, texcoords.size());
     if (options.only && !options.only->empty() && options.only->back() >= triangles.size())
         throw InvalidInput(fmt::format("there is no triangle {}", options.only->back()));

@@ -126,6 +126,7 @@ TEST(BakeLayers, OcclusionIsThatOfTheHighMeshes) {
     options.layers.occlusion = OcclusionOptions{.rays = 1024, .distance = 100.0};
     options.offset = 0.25;
     options.max_distance = 0.25;
+    options.allow_size_mismatch = true;
     const BakedImage image =
         bake({moved(make_quad(), 8.0F, glm::vec3(0)), roof}, make_quad(), options);
     EXPECT_EQ(image.result.occlusion_rays, 33U * 1024U);

@@ -120,7 +120,7 @@ TEST(Bake, NothingHighIsAllMissed) {
     const BakedImage image = bake({}, make_quad(), sized(8, 8));
     EXPECT_EQ(image.count(TexelState::missed), 64U);
     EXPECT_EQ(image.result.least_height, 0.0);
-    EXPECT_EQ(bake({Mesh{}}, make_quad(), sized(8, 8)).count(TexelState::missed), 64U);
+    EXPECT_THROW(bake({Mesh{}}, make_quad(), sized(8, 8)), BakeMismatch);
 }
 
 TEST(Bake, AChartSmallerThanATexelHasOne) {
@@ -159,7 +159,7 @@ TEST(Bake, MirroredChartsThatOverlapHaveOneOwnerEach) {
     Mesh wrong = moved(make_quad(), 1.0F, {3, 0, 0});
     wrong.normals.assign(wrong.positions.size(), glm::normalize(glm::vec3(0, 0.6F, 0.8F)));
     const BakedImage image = bake({high, wrong}, low, sized(32, 32));
-    EXPECT_EQ(image.report.count("texel of several triangles"), 32U * 32U);
+    EXPECT_EQ(image.report.count("texel of mirrored triangles"), 32U * 32U);
     for (std::size_t i = 0; i < 32UL * 32UL; ++i)
         EXPECT_LT(degrees_between(image.normal(i), {0.6, 0, 0.8}), 1e-4);
 }
@@ -260,7 +260,7 @@ TEST(Bake, SaysWhatIsWrong) {
     BakeOptions options = sized(4, 4);
     options.samples = 3;
     EXPECT_EQ(test::message_of<InvalidInput>([&] { bake({make_quad()}, make_quad(), options); }),
-              "3 samples are not 1, 4, 16, 64 or 256");
+              "3 samples are not 1, 4, 16, 64, 256 or 1024");
     options = sized(4, 4);
     options.offset = -1.0;
     EXPECT_EQ(test::message_of<InvalidInput>([&] { bake({make_quad()}, make_quad(), options); }),

@@ -103,5 +103,24 @@ TEST(BakeTrials, OfAPartAreNearlyThoseOfTheWhole) {
                 whole.measure({1}, all.formats).errors[1].rms, 0.01);
 }
 
+TEST(BakeTrials, SeparateSamplingFromRoundingUpTo256Samples) {
+    Trials all;
+    const BakeTrials trials(all.baker, all.options, 64, 1024);
+    EXPECT_EQ(trials.reference_samples(), 1024);
+    const BakeTrial few = trials.measure({16}, all.formats);
+    const BakeTrial many = trials.measure({256}, all.formats);
+    // Samples are no comparison with themselves, and four times finer along a side is better.
+    EXPECT_GT(many.sampling.rms, 0.0);
+    EXPECT_LT(many.sampling.rms, 0.5 * few.sampling.rms);
+    // Rounding and sampling are independent: together they make the error.
+    EXPECT_NEAR(many.errors[0].rms, std::hypot(many.sampling.rms, many.quantisation[0].rms),
+                0.05 * many.errors[0].rms);
+    // Larger maps have no room for so many samples.
+    BakeMapOptions large = all.options;
+    large.width = 2112;
+    large.height = 64;
+    EXPECT_EQ(BakeTrials(all.baker, large, 64, 1024).reference_samples(), 256);
+}
+
 }  // namespace
 }  // namespace relief

@@ -131,7 +131,11 @@ TEST(Baker, PartsDoNotCatchEachOthersRays) {
     EXPECT_NEAR(image.result.greatest_height, 0.01, 1e-7);
     const std::vector<Mesh> far = {leaning(make_quad(), {0, 0.6F, 0.8F}, {2, 0, 5})};
     const std::vector<BakePart> apart = {{left, {0, 1}}, {far, {2, 3}}};
-    EXPECT_GT(Baker(apart, low, sized(1, 1), report).distances().offset, 7.0);
+    // 5 apart are bridged only where that is asked for.
+    EXPECT_THROW(Baker(apart, low, sized(1, 1), report), BakeMismatch);
+    BakeOptions longer = sized(1, 1);
+    longer.max_distance = 6.0;
+    EXPECT_GT(Baker(apart, low, longer, report).distances().offset, 7.0);
 }
 
 TEST(Baker, PartsWithoutAnythingHighAreMissed) {
@@ -193,6 +197,157 @@ TEST(Baker, CountsATexelOfSeveralTrianglesOnceForAllItsSamples) {
         });
         EXPECT_EQ(shared->first.back(), 7U);
     }
+}
+
+/// What a baker of these meshes throws.
+BakeMismatch mismatch_of(const std::vector<Mesh>& high, const Mesh& low,
+                         const BakeOptions& options = sized(1, 1)) {
+    Report report;
+    try {
+        const Baker baker(high, low, options, report);
+    } catch (const BakeMismatch& mismatch) {
+        return mismatch;
+    }
+    ADD_FAILURE() << "no mismatch";
+    return {BakeMismatch::Kind::apart, {}, 0.0, ""};
+}
+
+TEST(Baker, ComparesBoxesOfTrianglesAlone) {
+    Mesh high = test::moved(make_quad(), 3.0F, {0, 0, 0.5F});
+    high.positions.emplace_back(100.0F, 0.0F, 0.0F);  // Of no triangle.
+    high.positions.emplace_back(std::numeric_limits<float>::quiet_NaN(), 0.0F, 0.0F);
+    high.triangles.emplace_back(0, 1, 5);
+    high.normals.clear();
+    high.texcoords.clear();
+    high.tangents.clear();
+    const std::vector<Mesh> meshes = {high, test::moved(make_quad(), 1.0F, {0, 0, 1.5F})};
+    const BakeFit fit = compare_boxes(meshes, make_quad());
+    EXPECT_EQ(fit.high.min, glm::vec3(-3, -3, 0.5F));
+    EXPECT_EQ(fit.high.max, glm::vec3(3, 3, 1.5F));
+    EXPECT_EQ(fit.low.max, glm::vec3(1, 1, 0));
+    EXPECT_DOUBLE_EQ(fit.gap, 0.5);
+    EXPECT_DOUBLE_EQ(fit.size_ratio, std::sqrt(73.0 / 8.0));
+    EXPECT_FALSE(fit.fits_turned);
+    // Beside and above: the corners are apart.
+    const std::vector<Mesh> corner = {test::moved(make_quad(), 1.0F, {5, 0, 4})};
+    EXPECT_DOUBLE_EQ(compare_boxes(corner, make_quad()).gap, 5.0);
+}
+
+TEST(Baker, RefusesMeshesOfOtherSizesUnlessAllowed) {
+    for (const float scale : {10.5F, 1.0F / 10.5F}) {
+        const std::vector<Mesh> high = {test::moved(make_quad(), scale, {0, 0, 0})};
+        const BakeMismatch mismatch = mismatch_of(high, make_quad());
+        EXPECT_EQ(mismatch.kind(), BakeMismatch::Kind::size);
+        EXPECT_NEAR(mismatch.fit().size_ratio, scale, 1e-6);
+        BakeOptions options = sized(16, 16);
+        options.allow_size_mismatch = true;
+        EXPECT_GT(bake(high, make_quad(), options).result.texels_baked, 0U);
+    }
+    EXPECT_STREQ(mismatch_of({test::moved(make_quad(), 16.0F, {0, 0, 0})}, make_quad()).what(),
+                 "the high meshes are 16 times as large as the low mesh, which is not within 1/10 "
+                 "to 10: the box of the high meshes is (-16, -16, 0) to (16, 16, 0), of the low "
+                 "mesh (-1, -1, 0) to (1, 1, 0)");
+    const std::vector<Mesh> nearly = {test::moved(make_quad(), 9.5F, {0, 0, 0})};
+    EXPECT_EQ(bake(nearly, make_quad(), sized(8, 8)).result.texels_baked, 64U);
+}
+
+TEST(Baker, RefusesMeshesThatRaysDoNotReach) {
+    const std::vector<Mesh> high = {test::moved(make_quad(), 1.0F, {0, 0, 1.5F})};
+    const BakeMismatch mismatch = mismatch_of(high, make_quad());
+    EXPECT_EQ(mismatch.kind(), BakeMismatch::Kind::apart);
+    EXPECT_DOUBLE_EQ(mismatch.reach(), std::sqrt(2.0));
+    EXPECT_DOUBLE_EQ(mismatch.fit().gap, 1.5);
+    BakeOptions options = sized(8, 8);
+    options.offset = options.max_distance = 1.25;
+    EXPECT_DOUBLE_EQ(mismatch_of(high, make_quad(), options).reach(), 1.25);
+    options.offset = 1.75;
+    EXPECT_EQ(bake(high, make_quad(), options).result.texels_baked, 64U);
+    // From a cage, rays are as long as it is away.
+    const Mesh cage = test::moved(make_quad(), 1.0F, {0, 0, 0.5F});
+    BakeOptions caged = sized(8, 8);
+    caged.cage = &cage;
+    EXPECT_DOUBLE_EQ(mismatch_of(high, make_quad(), caged).reach(), 0.5);
+}
+
+TEST(Baker, RefusesHighMeshesWithoutASurface) {
+    Mesh broken = make_quad();
+    for (glm::vec3& position : broken.positions)
+        position.y = std::numeric_limits<float>::infinity();
+    for (const Mesh& high : {Mesh{}, broken}) {
+        EXPECT_EQ(mismatch_of({high}, make_quad()).kind(), BakeMismatch::Kind::no_surface);
+    }
+}
+
+TEST(Baker, ReportsBoxesThatFitOnlyWhenTurned) {
+    Mesh upright = make_sphere();
+    for (glm::vec3& position : upright.positions)
+        position *= glm::vec3(0.3F, 1.0F, 0.3F);
+    Mesh lying = upright;
+    for (glm::vec3& position : lying.positions)
+        position = {position.x, -position.z, position.y};
+    const std::string kind = "high box that fits only with y and z swapped";
+    EXPECT_EQ(bake({lying}, upright, sized(16, 16)).report.count(kind), 1U);
+    EXPECT_EQ(bake({upright}, lying, sized(16, 16)).report.count(kind), 1U);
+    EXPECT_EQ(bake({upright}, upright, sized(16, 16)).report.count(kind), 0U);
+}
+
+TEST(Baker, MeasuresTheRaysThatMissedTexelsNeed) {
+    // Steps 1/4 to 1 above the low square, two columns of texels each.
+    Mesh stairs;
+    for (int step = 0; step < 4; ++step) {
+        const auto first = static_cast<std::uint32_t>(stairs.positions.size());
+        const float x = -1.0F + 0.5F * static_cast<float>(step);
+        const float z = 0.25F * static_cast<float>(step + 1);
+        stairs.positions.insert(stairs.positions.end(),
+                                {{x, -1, z}, {x + 0.5F, -1, z}, {x + 0.5F, 1, z}, {x, 1, z}});
+        stairs.triangles.insert(stairs.triangles.end(),
+                                {{first, first + 1, first + 2}, {first, first + 2, first + 3}});
+    }
+    BakeOptions options = sized(8, 8);
+    options.offset = 0.375;
+    options.max_distance = 0.0;
+    options.measures_missed = true;
+    for (const int samples : {1, 4, 16}) {
+        options.samples = samples;
+        const BakeResult result = bake({stairs}, make_quad(), options).result;
+        EXPECT_EQ(result.texels_missed, 48U);
+        EXPECT_EQ(result.measuring_rays, 96U);
+        EXPECT_EQ(result.clipped_outside.texels, 48U);
+        EXPECT_DOUBLE_EQ(result.clipped_outside.shortest, 0.5);
+        EXPECT_DOUBLE_EQ(result.clipped_outside.longest, 1.0);
+        // 0.75, rounded up by at most an eighth.
+        EXPECT_GE(result.clipped_outside.half, 0.75);
+        EXPECT_LE(result.clipped_outside.half, 0.75 * 1.125);
+        EXPECT_EQ(result.clipped_inside.texels, 0U);
+        EXPECT_EQ(result.missed_from_behind, 0U);
+        ASSERT_EQ(result.first_missed.size(), 8U);
+        EXPECT_EQ(result.first_missed[0].x, 2);
+        EXPECT_EQ(result.first_missed[6].y, 1);
+        const glm::dvec2 place(result.first_missed[0].position);
+        EXPECT_LT(glm::distance(place, {-0.375, 0.875}), 0.2);
+        // The length that is named hits all.
+        BakeOptions longer = options;
+        longer.offset = 1.001 * result.clipped_outside.longest;
+        EXPECT_EQ(bake({stairs}, make_quad(), longer).result.texels_missed, 0U);
+    }
+    options.samples = 1;
+    // The same below the low square; then with its faces turned round.
+    Mesh below = stairs;
+    for (glm::vec3& position : below.positions)
+        position.z = -position.z;
+    options.offset = 0.0;
+    options.max_distance = 0.375;
+    const BakeResult inside = bake({below}, make_quad(), options).result;
+    EXPECT_EQ(inside.clipped_inside.texels, 48U);
+    EXPECT_DOUBLE_EQ(inside.clipped_inside.longest, 1.0);
+    for (glm::uvec3& triangle : below.triangles)
+        std::swap(triangle.y, triangle.z);
+    options.max_distance = 2.0;
+    const BakeResult behind = bake({below}, make_quad(), options).result;
+    EXPECT_EQ(behind.missed_from_behind, 64U);
+    EXPECT_EQ(behind.clipped_inside.texels, 0U);
+    options.measures_missed = false;
+    EXPECT_EQ(bake({below}, make_quad(), options).result.measuring_rays, 0U);
 }
 
 }  // namespace

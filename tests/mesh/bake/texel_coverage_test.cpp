@@ -200,6 +200,30 @@ TEST(TexelCoverage, ChoosesTheSquareOrMovesEverythingThere) {
     EXPECT_TRUE(map.at(0, 0).is_covered() && map.at(7, 7).is_covered());
 }
 
+TEST(TexelCoverage, TellsMirroredTrianglesFromOtherOverlaps) {
+    // The left half of the map, the same mirrored, and a square inside of the first.
+    const std::vector<glm::vec2> texcoords = {{0, 0},    {0.5F, 0},  {0.5F, 1},  {0, 1},
+                                              {0.5F, 0}, {0, 0},     {0, 1},     {0.5F, 1},
+                                              {0, 0},    {0.25F, 0}, {0.25F, 1}, {0, 1}};
+    const std::vector<glm::uvec3> both = {{0, 2, 1}, {0, 3, 2}, {4, 6, 5}, {4, 7, 6}};
+    std::vector<glm::uvec3> three = both;
+    three.insert(three.begin(), {{8, 10, 9}, {8, 11, 10}});
+    for (const int samples : {1, 2, 32}) {
+        CoverageOptions options = size(8 * samples, 8 * samples);
+        options.samples_across = samples;
+        const auto all = static_cast<std::size_t>(samples * samples);
+        const Map mirrored = covered(texcoords, both, options);
+        EXPECT_EQ(mirrored.coverage.shared, 32U * all);
+        EXPECT_EQ(mirrored.coverage.mirrored, 32U * all);
+        EXPECT_EQ(mirrored.report.count("texel of mirrored triangles"), 32U);
+        EXPECT_EQ(mirrored.report.count("texel of several triangles"), 0U);
+        const Map several = covered(texcoords, three, options);
+        EXPECT_EQ(several.coverage.shared, 32U * all);
+        EXPECT_EQ(several.report.count("texel of mirrored triangles"), 16U);
+        EXPECT_EQ(several.report.count("texel of several triangles"), 16U);
+    }
+}
+
 TEST(TexelCoverage, CountsTrianglesThatCoverNothing) {
     const float nan = std::numeric_limits<float>::quiet_NaN();
     const std::vector<glm::vec2> texcoords = {{0, 0},   {0.5F, 0.5F}, {1, 1},

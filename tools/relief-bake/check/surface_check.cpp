@@ -10,16 +10,21 @@
 #include "common/file_jobs.h"
 #include "common/options.h"
 #include "common/text.h"
+#include "mesh/model_fit.h"
 #include "relief/mesh/image_file.h"
 
 namespace relief::tools {
 namespace {
 
-constexpr std::array of_surface = {
-    "--low",       "--cage",           "--rays",         "--hardness",
-    "--offset",    "--space",          "--back-faces",   "--max-distance",
-    "--samples",   "--outside",        "--sample-angle", "--udim",
-    "--max-error", "--max-error-kind", "--error-map",    "--high-normal-map"};
+constexpr std::array of_surface = {"--low",          "--cage",
+                                   "--rays",         "--hardness",
+                                   "--offset",       "--space",
+                                   "--back-faces",   "--max-distance",
+                                   "--samples",      "--outside",
+                                   "--sample-angle", "--udim",
+                                   "--max-error",    "--max-error-kind",
+                                   "--error-map",    "--high-normal-map",
+                                   "--max-missed",   "--allow-size-mismatch"};
 
 /// Of the maps that the low model has, the one that a file says it is.
 MapPlan plan_of(const SurfaceCheckRequest& request, const BakeModels& models,
@@ -81,6 +86,7 @@ void add_surface_check_options(CLI::App& app, SurfaceCheckRequest& request) {
               })
         .group("Models");
     add_ray_options(app, request.bake);
+    add_fit_options(app, request.bake, "more is trouble");
     add_texel_options(app, request.bake);
     add_high_normal_map_option(app, request.bake.looks);
     add_bound_options(app, request.verify.bound,
@@ -129,6 +135,8 @@ SurfaceCheck check_surface(const CLI::App& app, const SurfaceCheckRequest& reque
     settled.bake.high = request.bake.high;
     settled.bake.low = request.bake.low;
     settled.bake.looks = request.bake.looks;
+    settled.bake.allow_size_mismatch = request.bake.allow_size_mismatch;
+    settled.bake.max_missed = request.bake.max_missed;
     if (result.used.contains("--cage") && !request.bake.cage) {
         throw failure(request.verify.map, "was baked from a cage, whose file it does not name",
                       "give --cage FILE");
@@ -144,7 +152,7 @@ SurfaceCheck check_surface(const CLI::App& app, const SurfaceCheckRequest& reque
     Report report;
     about(request.bake.low, [&] {
         stages.run("check", [&] {
-            const Baker baker = models.baker(options, report);
+            const Baker baker = make_baker(settled.bake, models, options, report);
             result.distances = baker.distances();
             result.map = verify_map(baker, models, settled.bake, map_options(options, plan),
                                     request.verify, report);

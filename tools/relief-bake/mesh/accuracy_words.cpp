@@ -86,6 +86,8 @@ nlohmann::ordered_json measured_json(const MeasuredBake& one) {
             {"mean", one.error.mean},
             {"p99", one.error.p99},
             {"max", one.error.max},
+            {"rounding", one.rounding.rms},
+            {"sampling", one.sampling.rms},
             {"rays", one.rays},
             {"milliseconds", 1000.0 * one.seconds},
             {"efficient", one.is_efficient}};

@@ -83,7 +83,8 @@ Baker BakeModels::baker(const BakeOptions& options, Report& report) const {
     if (pairs.empty()) return {high, low, options, report};
     std::vector<BakePart> parts;
     for (const BakePair& pair : pairs)
-        parts.push_back({std::span(high).subspan(pair.first_high, pair.high_count), pair.low});
+        parts.push_back(
+            {std::span(high).subspan(pair.first_high, pair.high_count), pair.low, pair.name});
     return {parts, low, options, report};
 }
 

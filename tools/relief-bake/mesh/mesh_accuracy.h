@@ -20,6 +20,8 @@ struct MeasuredBake {
     std::optional<double> sample_angle;  ///< Degrees, of `auto`.
     NormalMapFormat format;
     AngleSummary error;
+    AngleSummary rounding;  ///< The part of the error that the format alone makes,
+    AngleSummary sampling;  ///< and the part that the samples alone make.
     std::size_t rays = 0;
     double seconds = 0.0;  ///< Of the rays; with --compare the median, and the codes among it.
     bool is_efficient =
@@ -47,10 +49,12 @@ bool needs_trials(const MeshBakeRequest& request);
 
 /// Measures, and for --max-error settles samples and bits of the request and the format.
 ///
-/// Samples are raised from 1 to 64, or stay as told; at each count all depths that are open are
-/// looked at, which takes no rays. The first count at which one keeps the bound is taken, with the
-/// fewest bits that do. Where the codes of all depths alone are further off, no rays are wasted.
-/// \throws InvalidInput where nothing keeps within the bound, saying what comes closest
+/// Samples are raised from 1 to 256, or stay as told; at each count all depths that the file can
+/// hold are measured, which costs no rays. The first count at which one is within the limit is
+/// taken, with the fewest bits that are. 256 samples are compared with a reference of 1024, on an
+/// eighth of the texels; where the map is too large for such a reference, 64 are the most.
+/// \throws InvalidInput if none is within the limit: it names the least error of all choices, which
+///         part of it is the larger one, and the bits that would do in another file
 MeshAccuracy settle_accuracy(const Baker& baker, const BakeMapOptions& map,
                              MeshBakeRequest& request, NormalMapFormat& format);
 

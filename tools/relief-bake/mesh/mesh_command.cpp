@@ -11,6 +11,7 @@
 #include "common/options.h"
 #include "common/report_options.h"
 #include "mesh/mesh_summary.h"
+#include "mesh/model_fit.h"
 #include "relief/mesh/threads.h"
 
 namespace relief::tools {
@@ -38,6 +39,24 @@ void check(MeshCommand& command) {
         require_folder_of(file);
 }
 
+/// The findings that make --strict exit with 3: all but those that are intended, or that an option
+/// puts a limit to.
+Findings strict_findings(const MeshBakeRequest& request, const Findings& findings) {
+    Findings strict;
+    for (const PlacedFinding& placed : findings.all()) {
+        const std::string& kind = placed.finding.kind;
+        const bool is_intended = kind == "texel of mirrored triangles";
+        const bool is_limited =
+            (kind == "texel missed by its rays" && request.max_missed) ||
+            (kind == "normal behind the surface" && request.accuracy.bound.degrees);
+        if (is_intended || is_limited) continue;
+        Report report;
+        report.add(placed.finding);
+        strict.add(placed.where, report);
+    }
+    return strict;
+}
+
 ExitCode run(const CLI::App& app, MeshCommand& command) {
     check(command);
     set_thread_limit(command.general.threads);
@@ -46,9 +65,13 @@ ExitCode run(const CLI::App& app, MeshCommand& command) {
     if (!command.general.quiet) print_summary(command.request, baked, stages);
     const std::string remedy = remedy_for_shared_texels(command.request, baked);
     if (!remedy.empty()) warn(app, remedy);
+    const std::string swapped =
+        words_of_swapped_models(command.request, baked.high_triangles, baked.low_triangles);
+    if (!swapped.empty()) warn(app, swapped);
     nlohmann::ordered_json report = {{"tool", "relief-bake mesh"}, {"version", version()}};
     report.update(results_json(command.request, baked, stages));
-    return finish(app, command.request.report, command.request.low, baked.findings, report);
+    return finish(app, command.request.report, command.request.low,
+                  strict_findings(command.request, baked.findings), report);
 }
 
 }  // namespace
@@ -58,7 +81,12 @@ Command add_mesh_command(CLI::App& tool) {
         tool, "mesh", "Bakes the normals of detailed models into a map for a simple one.");
     const auto command = std::make_shared<MeshCommand>();
     add_mesh_options(app, command->request, command->files);
-    add_report_options(app, command->request.report);
+    add_report_options(
+        app, command->request.report,
+        "Exit with 3 if there is a finding, but for texels of mirrored triangles; for missed "
+        "texels "
+        "if --max-missed is given; and for normals behind the surface if --max-error is given. The "
+        "map is written all the same.");
     add_general_options(app, command->general);
     set_examples(
         app,

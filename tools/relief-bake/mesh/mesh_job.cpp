@@ -6,12 +6,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <memory>
 
 #include "common/map_choices.h"
 #include "mesh/bake_models.h"
 #include "mesh/bake_words.h"
 #include "mesh/mesh_preview.h"
 #include "mesh/mesh_progress.h"
+#include "mesh/model_fit.h"
 #include "relief/mesh/image_rows.h"
 
 namespace relief::tools {
@@ -73,6 +75,7 @@ class MapWriter {
         if (format_.bits == 32) write(codes.as<float>(), rows.states);
     }
 
+    void complete() { writer_.complete(report_); }
     void finish() { writer_.finish(report_); }
 
   private:
@@ -128,26 +131,44 @@ void add(BakeResult& all, const BakeResult& more) {
     all.occlusion_rays += more.occlusion_rays;
 }
 
-BakedMap bake_map(const MeshBakeRequest& request, const Baker& baker, MapPlan plan,
-                  const BakeOptions& options, MapProgress& progress, MeshBake& baked) {
-    Report report;
-    BakeMapOptions map = map_options(options, plan);
-    map.progress = progress.next_map(request.size.y);
-    BakedMap result;
-    MapWriter writer(request, plan, baked.format, report);
-    result.layers = planned_layers(request, plan, baker, map.layers);
-    LayerWriters layers(request, result.layers, report);
-    const auto take = [&](const BakedRows& rows) {
-        writer.write(rows);
-        layers.write(rows);
-    };
-    result.result = baker.bake(map, take, report);
-    writer.finish();
-    layers.finish(plan.output);
-    baked.findings.add(plan.name(), report);
-    result.plan = std::move(plan);
-    return result;
-}
+/// A map that is baked and not in place yet: its files are complete, and gone unless finished.
+class PendingMap {
+  public:
+    PendingMap(const MeshBakeRequest& request, const Baker& baker, MapPlan plan,
+               const BakeOptions& options, MapProgress& progress, const NormalMapFormat& format)
+        : map_{std::move(plan), {}, {}, {}}, writer_(request, map_.plan, format, report_) {
+        BakeMapOptions map = map_options(options, map_.plan);
+        map.progress = progress.next_map(request.size.y);
+        map.measures_missed = true;
+        map_.layers = planned_layers(request, map_.plan, baker, map.layers);
+        layers_.emplace(request, map_.layers, report_);
+        const auto take = [&](const BakedRows& rows) {
+            writer_.write(rows);
+            layers_->write(rows);
+        };
+        map_.result = baker.bake(map, take, report_);
+        writer_.complete();
+        layers_->complete();
+    }
+    PendingMap(const PendingMap&) = delete;
+    PendingMap& operator=(const PendingMap&) = delete;
+
+    [[nodiscard]] const BakedMap& map() const { return map_; }
+
+    /// Puts the files in place.
+    BakedMap finish(Findings& findings) {
+        writer_.finish();
+        layers_->finish(map_.plan.output);
+        findings.add(map_.plan.name(), report_);
+        return std::move(map_);
+    }
+
+  private:
+    Report report_;
+    BakedMap map_;
+    MapWriter writer_;
+    std::optional<LayerWriters> layers_;
+};
 
 /// Which maps are there when another one fails.
 FileError failure_after(const MeshBake& baked, const Error& error, const std::size_t count) {
@@ -159,16 +180,22 @@ FileError failure_after(const MeshBake& baked, const Error& error, const std::si
                         error.what())};
 }
 
-void bake_all(const MeshBakeRequest& request, const Baker& baker, MapPlans plans,
-              const BakeOptions& options, Stages& stages, MeshBake& baked) {
+void bake_all(const MeshBakeRequest& request, const Baker& baker, const BakeModels& models,
+              MapPlans plans, const BakeOptions& options, Stages& stages, MeshBake& baked) {
     MapProgress progress(stages, plans.maps.size());
+    std::vector<std::unique_ptr<PendingMap>> pending;
     for (MapPlan& plan : plans.maps) {
+        pending.push_back(std::make_unique<PendingMap>(request, baker, std::move(plan), options,
+                                                       progress, baked.format));
+        const BakedMap& map = pending.back()->map();
+        check_missed(request, models, map.plan.name(), map.result);
+    }
+    for (const std::unique_ptr<PendingMap>& map : pending) {
         try {
-            baked.maps.push_back(
-                bake_map(request, baker, std::move(plan), options, progress, baked));
+            baked.maps.push_back(map->finish(baked.findings));
         } catch (const Error& error) {
             if (baked.maps.empty()) throw;
-            throw failure_after(baked, error, plans.maps.size());
+            throw failure_after(baked, error, pending.size());
         }
         add(baked.all, baked.maps.back().result);
     }
@@ -179,7 +206,9 @@ void verify_all(const MeshBakeRequest& request, const Baker& baker, const BakeMo
     for (BakedMap& map : baked.maps) {
         Report said_by_the_bake;
         map.verified = verify_map(baker, models, request, map_options(options, map.plan),
-                                  {.map = map.plan.output, .error_map = request.verify.error_map},
+                                  {.map = map.plan.output,
+                                   .bound = request.accuracy.bound,
+                                   .error_map = request.verify.error_map},
                                   said_by_the_bake);
         Report report;
         for (const std::string& trouble : map.verified->trouble)
@@ -238,9 +267,15 @@ MeshBake bake_maps(const MeshBakeRequest& request, Stages& stages) {
         std::optional<Baker> baker;
         stages.run("bake", [&] {
             Report report;
-            baker.emplace(models.baker(options, report));
+            baker.emplace(make_baker(request, models, options, report));
             baked.findings.add("", report);
+            for (const MapPlan& plan : plans.maps) {
+                check_missed_early(request, models, *baker, map_options(options, plan), plan.name(),
+                                   needs_trials(request));
+            }
         });
+        baked.fit = compare_boxes(models.high, models.low);
+        baked.origin = models.origin;
         MeshBakeRequest settled = request;
         if (needs_trials(request)) {
             stages.run("choose", [&] {
@@ -249,8 +284,9 @@ MeshBake bake_maps(const MeshBakeRequest& request, Stages& stages) {
             });
             take_samples(settled, options);
         }
-        stages.run("bake",
-                   [&] { bake_all(settled, *baker, std::move(plans), options, stages, baked); });
+        stages.run("bake", [&] {
+            bake_all(settled, *baker, models, std::move(plans), options, stages, baked);
+        });
         if (request.verify.wanted)
             stages.run("verify", [&] { verify_all(settled, *baker, models, options, baked); });
     });

@@ -35,12 +35,14 @@ struct MeshBake {
     double texel_size = 0.0;  ///< Of its maps, in the mean; where a height map is made.
     std::vector<BakedMap> maps;
     BakeResult all;                        ///< Sums over all maps, and the least and greatest.
+    BakeFit fit;                           ///< Of all models.
+    glm::dvec3 origin{0.0};                ///< As in BakeModels.
     std::optional<MeshAccuracy> accuracy;  ///< Where something was measured first.
     Findings findings;
 };
 
 /// Reads, bakes and writes; the stages are "read", "bake", which writes as well, and
-/// "verify".
+/// "verify". No file is written before all maps are baked and none misses too many texels.
 /// \throws FileError, UsageError
 MeshBake bake_maps(const MeshBakeRequest& request, Stages& stages);
 

@@ -96,6 +96,11 @@ void LayerWriters::write(const BakedRows& rows) {
     }
 }
 
+void LayerWriters::complete() {
+    for (const auto& writer : writers_)
+        writer->rows.complete(report_);
+}
+
 void LayerWriters::finish(const std::filesystem::path& map) {
     std::string done = map.string();
     for (const auto& writer : writers_) {

@@ -37,6 +37,9 @@ class LayerWriters {
 
     void write(const BakedRows& rows);
 
+    /// Closes the files; finish() renames them. \throws FileError
+    void complete();
+
     /// \param map  that is in place by now
     /// \throws FileError, which says which files are complete
     void finish(const std::filesystem::path& map);

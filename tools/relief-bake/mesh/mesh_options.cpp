@@ -11,6 +11,7 @@
 #include "mesh/mesh_accuracy.h"
 #include "mesh/mesh_sets.h"
 #include "mesh/mesh_verify.h"
+#include "mesh/model_fit.h"
 
 namespace relief::tools {
 namespace {
@@ -27,7 +28,8 @@ glm::ivec2 parse_map_size(const std::string& subject, const std::string& text) {
 
 SampleChoice parse_samples(const std::string& subject, const std::string& text) {
     if (text == "auto") return {auto_samples, true, true};
-    const Choices<int> counts = {{"1", 1}, {"4", 4}, {"16", 16}, {"64", 64}, {"auto", 0}};
+    const Choices<int> counts = {{"1", 1},   {"4", 4},     {"16", 16},
+                                 {"64", 64}, {"256", 256}, {"auto", 0}};
     return {parse_choice(subject, text, counts), false, true};
 }
 
@@ -128,12 +130,13 @@ void add_texel_options(CLI::App& app, MeshBakeRequest& request) {
                "What the normals are relative to: the low mesh's normals and tangents (its own, "
                "else MikkTSpace's), its axes, or the world's. Default: tangent.")
         .group(group);
-    add_value(app, "--samples", "N|auto",
-              "Rays for each texel: 1, 4, 16 or 64 in a square grid; auto casts 4, and 16 where "
-              "they disagree. Default: 1.",
-              [&](const std::string& subject, const std::string& text) {
-                  request.samples = parse_samples(subject, text);
-              })
+    add_value(
+        app, "--samples", "N|auto",
+        "Rays for each texel: 1, 4, 16, 64 or 256 in a square grid; auto casts 4, and 16 where "
+        "they disagree. Default: 1.",
+        [&](const std::string& subject, const std::string& text) {
+            request.samples = parse_samples(subject, text);
+        })
         .group(group);
     add_number(app, "--sample-angle", "DEG", request.sample_angle, {0.0, 180.0, "degrees"},
                fmt::format("By how much, with --samples auto. Default: {:g}.", default_angle))
@@ -154,6 +157,9 @@ void add_mesh_options(CLI::App& app, MeshBakeRequest& request,
               ".exr). <material> in its name gives a map for each material of LOW, <UDIM> one for "
               "each tile that its texture coordinates enter.");
     add_ray_options(app, request);
+    add_fit_options(app, request,
+                    "more is an error, and nothing is written. With --strict, texels that are "
+                    "missed are no fault where this is given");
     add_map_options(app, request);
     add_high_normal_map_option(app, request.looks);
     add_high_color_option(app, request.looks);
@@ -211,6 +217,7 @@ BakeOptions bake_options_of(const MeshBakeRequest& request) {
     options.offset = request.offset;
     options.max_distance = request.max_distance;
     options.back_faces = request.back_faces;
+    options.allow_size_mismatch = request.allow_size_mismatch;
     options.samples = request.samples.count;
     if (const auto angle = angle_of(request, request.samples))
         options.sample_angle = glm::radians(*angle);

@@ -58,6 +58,8 @@ struct MeshBakeRequest {
     std::optional<double> hardness;
     std::optional<double> offset, max_distance;
     BackFaces back_faces = BackFaces::skip;
+    bool allow_size_mismatch = false;
+    std::optional<double> max_missed;  ///< Percent of the covered texels; see missed_limit().
     MatchChoice match = MatchChoice::automatic;
     OutsideChoice outside = OutsideChoice::drop;
     SampleChoice samples;

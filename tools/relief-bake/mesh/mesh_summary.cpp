@@ -8,6 +8,7 @@
 
 #include "common/map_choices.h"
 #include "common/text.h"
+#include "mesh/model_fit.h"
 
 namespace relief::tools {
 namespace {
@@ -84,6 +85,16 @@ std::vector<std::string> map_lines(const MeshBakeRequest& request, const MeshBak
     return lines;
 }
 
+void print_missed(const MeshBakeRequest& request, const MeshBake& baked) {
+    std::vector<std::string> lines;
+    for (const BakedMap& map : baked.maps) {
+        const std::string name = map.plan.name();
+        for (const std::string& line : missed_lines(request, map.result, baked.origin))
+            lines.push_back(fmt::format("{}{}{}", name, name.empty() ? "" : ": ", line));
+    }
+    if (!lines.empty()) print_entry("missed", lines);
+}
+
 void print_layers(const MeshBake& baked) {
     std::vector<std::string> lines;
     for (const BakedMap& map : baked.maps) {
@@ -101,7 +112,7 @@ void print_layers(const MeshBake& baked) {
     print_entry("layers", lines);
 }
 
-nlohmann::ordered_json map_json(const BakedMap& map) {
+nlohmann::ordered_json map_json(const BakedMap& map, const glm::dvec3& origin) {
     nlohmann::ordered_json json = {{"output", map.plan.output.string()}};
     if (map.plan.material) json["material"] = *map.plan.material;
     if (map.plan.udim) json["tile"] = *map.plan.udim;
@@ -110,7 +121,8 @@ nlohmann::ordered_json map_json(const BakedMap& map) {
                  {"least_height", map.result.least_height},
                  {"greatest_height", map.result.greatest_height},
                  {"samples", map.result.samples},
-                 {"rays", map.result.rays}});
+                 {"rays", map.result.rays},
+                 {"missed", missed_json(map.result, origin)}});
     if (map.verified) json["check"] = verified_json(*map.verified);
     for (const WrittenLayer& layer : map.layers)
         json["layers"].push_back(layer_json(layer));
@@ -136,6 +148,7 @@ void print_summary(const MeshBakeRequest& request, const MeshBake& baked, const 
                                      counted(result.samples, "sample"),
                                      megarays_per_second(baked, stages))});
     print_entry(baked.maps.size() == 1 ? "map" : "maps", map_lines(request, baked));
+    print_missed(request, baked);
     print_entry("coded",
                 fmt::format("{}, {}", space_words(request, baked), format_words(baked.format)));
     if (baked.accuracy) print_accuracy(request, *baked.accuracy);
@@ -172,7 +185,7 @@ nlohmann::ordered_json results_json(const MeshBakeRequest& request, const MeshBa
     }
     nlohmann::ordered_json maps = nlohmann::ordered_json::array();
     for (const BakedMap& map : baked.maps)
-        maps.push_back(map_json(map));
+        maps.push_back(map_json(map, baked.origin));
     nlohmann::ordered_json results = {{"high", high},
                                       {"low", request.low.string()},
                                       {"output", request.output.string()},
@@ -195,6 +208,7 @@ nlohmann::ordered_json results_json(const MeshBakeRequest& request, const MeshBa
                                       {"rays", result.rays},
                                       {"occlusion_rays", result.occlusion_rays},
                                       {"rays_per_second", megarays_per_second(baked, stages) * 1e6},
+                                      {"boxes", boxes_json(baked.fit, baked.origin)},
                                       {"pairs", pairs},
                                       {"maps", maps},
                                       {"findings", baked.findings.json()},

@@ -10,6 +10,7 @@
 #include "common/text.h"
 #include "mesh/convention_words.h"
 #include "mesh/error_map.h"
+#include "mesh/model_fit.h"
 #include "relief/mesh/timing.h"
 
 namespace relief::tools {
@@ -27,7 +28,7 @@ MapConvention told_of(const MeshBakeRequest& bake, const InputMap& map) {
     return told;
 }
 
-void judge(VerifiedMap& map, const MeshBakeRequest& bake) {
+void judge(VerifiedMap& map, const MeshBakeRequest& bake, const BakeModels& models) {
     const BakeCheck& check = map.check;
     const double other = check.stages.at(static_cast<std::size_t>(BakeStage::other)).rms;
     if (check.convention.is_explained) {
@@ -44,8 +45,15 @@ void judge(VerifiedMap& map, const MeshBakeRequest& bake) {
         map.trouble.push_back(fmt::format("{:.3g} degrees off, more than the {} allowed", error,
                                           bound_words(map.request.bound)));
     }
-    if (check.error.count == 0)
-        map.trouble.emplace_back("no texel has a surface to be held against");
+    const double missed = missed_percent(check.missed, check.error.count + check.frameless);
+    if (check.error.count == 0) {
+        map.trouble.push_back("no texel has a surface to be compared with; " +
+                              fit_words(bake, models));
+    } else if (missed > missed_limit(bake)) {
+        map.trouble.push_back(
+            fmt::format("{:.3g} % of the texels are missed by their rays, more than {:g}; {}",
+                        missed, missed_limit(bake), fit_words(bake, models)));
+    }
 }
 
 }  // namespace
@@ -76,7 +84,7 @@ VerifiedMap verify_map(const Baker& baker, const BakeModels& models, const MeshB
             [&](int, std::span<const float> degrees) { errors.add(degrees); }, report);
     });
     if (request.error_map) verified.brightest = errors.write(*request.error_map, verified.check);
-    judge(verified, bake);
+    judge(verified, bake, models);
     verified.milliseconds = 1e3 * stopwatch.seconds();
     return verified;
 }

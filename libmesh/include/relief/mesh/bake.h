@@ -13,9 +13,11 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "relief/mesh/bake_layers.h"
+#include "relief/mesh/error.h"
 #include "relief/mesh/high_detail.h"
 #include "relief/mesh/mesh.h"
 #include "relief/mesh/normal_space.h"
@@ -67,7 +69,8 @@ struct BakeMapOptions {
     /// Only these rows, for those who want several maps side by side; there is no padding then.
     /// What is said of triangles is said with row 0.
     std::optional<BakeRowRange> rows;
-    /// A texel's mean of 1, 4, 16, 64 or 256 samples, the centres of as many equal squares of it.
+    /// A texel's mean of 1, 4, 16, 64 or 256 samples, the centres of as many equal squares of it;
+    /// 1024 serve as the reference that 256 are compared with, for maps of at most 2048 texels.
     /// Each has an owner of its own (texel_coverage.h); those that no chart reaches have no say.
     int samples = 1;
     /// With several samples: a quarter of them is cast first (of 4: the upper left and the lower
@@ -82,6 +85,9 @@ struct BakeMapOptions {
     /// How far around charts, in texels, what is not baked is filled from the nearest texels that
     /// are: the mean of them, where several are equally near. 0 to 1024.
     int padding = 0;
+    /// Measures how long rays would have to be for the texels that are missed: the `clipped` fields
+    /// of BakeResult. Costs two more rays for each missed texel.
+    bool measures_missed = false;
     /// A baker is made for those of its own options, of which each map may leave some out.
     BakeLayers layers{};
 };
@@ -102,6 +108,9 @@ struct BakeOptions : BakeMapOptions {
     std::optional<double> offset;
     std::optional<double> max_distance;
     BackFaces back_faces = BackFaces::skip;
+    /// Whether the boxes of the high and the low meshes may differ in size by more than
+    /// max_size_ratio times; see BakeMismatch.
+    bool allow_size_mismatch = false;
     /// How many maps like this one will be baked: many are worth more time to make ready. It
     /// changes nothing else.
     std::size_t map_count = 1;
@@ -139,6 +148,21 @@ struct BakeDistances {
     double max_distance = 0.0;  ///< Inside.
 };
 
+/// A texel whose rays hit nothing.
+struct MissedTexel {
+    int x = 0;
+    int y = 0;
+    glm::dvec3 position{0.0};  ///< On the low mesh, of its first sample.
+};
+
+/// Missed texels that longer rays would hit, on one side of the low mesh.
+struct ClippedRays {
+    std::size_t texels = 0;
+    double shortest = 0.0;  ///< The ray length, from the low mesh, that hits one of them;
+    double half = 0.0;      ///< at least half of them, rounded up by at most 1/8;
+    double longest = 0.0;   ///< all of them.
+};
+
 struct BakeResult {
     Coverage coverage;  ///< Of samples, where there are several to a texel.
     std::size_t texels_baked = 0;
@@ -150,6 +174,52 @@ struct BakeResult {
     /// Of the surface outside of the low mesh, over all samples that hit; 0 where none did.
     double least_height = 0.0;
     double greatest_height = 0.0;
+    std::vector<MissedTexel> first_missed;  ///< By row and column, at most 8.
+    /// With BakeMapOptions::measures_missed, by the line through a missed texel's first sample.
+    /// Each texel is counted at most once: the triangle nearest to it decides.
+    std::size_t missed_from_behind = 0;  ///< The line meets only back faces within its length.
+    ClippedRays clipped_outside;         ///< A longer BakeOptions::offset hits.
+    ClippedRays clipped_inside;          ///< A longer BakeOptions::max_distance hits.
+    std::size_t measuring_rays = 0;      ///< Not among `rays`.
+};
+
+/// How the boxes of high and low meshes compare. A box holds all triangles with finite corners.
+struct BakeFit {
+    Bounds high, low;
+    double gap = 0.0;         ///< The distance between the boxes; 0 where they meet.
+    double size_ratio = 1.0;  ///< The high box's diagonal over the low one's; 1 where one is 0.
+    /// The faces of the boxes lie within 3 % of the low box's diagonal of each other if the high
+    /// meshes are turned by 90 degrees about x, but more than 10 % apart as they are: one side is Y
+    /// up, the other Z up.
+    bool fits_turned = false;
+};
+BakeFit compare_boxes(std::span<const Mesh> high, const Mesh& low);
+
+/// Boxes whose diagonals differ by more than this are taken for meshes of different units.
+inline constexpr double max_size_ratio = 10.0;
+
+/// Thrown for high and low meshes that do not belong together as they are.
+class BakeMismatch : public InvalidInput {
+  public:
+    enum class Kind {
+        no_surface,  ///< No high triangle has finite corners.
+        size,        ///< The diagonals differ by more than max_size_ratio times.
+        apart,       ///< The gap between the boxes is larger than rays are long.
+    };
+    BakeMismatch(Kind kind, const BakeFit& fit, double reach, std::string part);
+
+    [[nodiscard]] Kind kind() const { return kind_; }
+    [[nodiscard]] const BakeFit& fit() const { return fit_; }
+    /// The longest ray from the low mesh; where it is measured (automatic_distances()), at most
+    /// half of the low box's diagonal.
+    [[nodiscard]] double reach() const { return reach_; }
+    [[nodiscard]] const std::string& part() const { return part_; }  ///< BakePart::name.
+
+  private:
+    Kind kind_;
+    BakeFit fit_;
+    double reach_;
+    std::string part_;
 };
 
 /// How far rays must reach for two surfaces that lie close to each other.
@@ -165,6 +235,7 @@ BakeDistances automatic_distances(std::span<const Mesh> high, const Mesh& low);
 struct BakePart {
     std::span<const Mesh> high;
     std::vector<std::uint32_t> triangles;  ///< Of the low mesh.
+    std::string name{};                    ///< For messages.
 };
 
 /// The meshes of a bake made ready for any number of maps: the high ones for rays; directions over
@@ -191,12 +262,15 @@ class Baker {
     /// \param report  counts what is wrong with the meshes
     /// \throws InvalidInput if an option is out of range, a mesh is not valid, `low` has no
     /// texture
-    ///         coordinates, or the cage has other triangles
+    ///         coordinates, or the cage has other triangles; BakeMismatch if the boxes of high and
+    ///         low meshes do not fit. That is checked before rays are prepared, and not for a low
+    ///         mesh without finite triangles
     ///
     /// High meshes and the cage must outlive this.
     Baker(std::span<const Mesh> high, const Mesh& low, const BakeOptions& options, Report& report);
 
-    /// The same for parts that do not see each other, each with distances of its own.
+    /// The same for parts that do not see each other, each with distances of its own. A part may
+    /// have no high mesh: its texels are missed. BakeMismatch is about a single part.
     /// \throws InvalidInput also if a triangle of `low` is not in exactly one part
     Baker(std::span<const BakePart> parts, const Mesh& low, const BakeOptions& options,
           Report& report);

@@ -50,9 +50,10 @@ struct WorstTexel {
 struct BakeCheckOptions {
     BakeMapOptions map;      ///< As the map was made; the size is the image's.
     NormalMapFormat format;  ///< What its codes mean; bits are the image's own.
-    /// Samples for each texel that the truth is the mean of: 4, 16, 64 or 256; 0: 16 times those of
-    /// the map, at most 256. A quarter of them is cast first, the others where those are half a
-    /// degree apart.
+    /// Samples for each texel that the truth is the mean of: 4, 16, 64, 256 or 1024; 0: 16 times
+    /// those of the map, at most 256, and 1024 for a map of 256; fewer where the map is so large
+    /// that coverage has no room for them (TexelCover::largest_side). A quarter of them is cast
+    /// first, the others where those are half a degree apart.
     int reference_samples = 0;
     /// Whether readings of another kind are tried where the map is far off.
     bool finds_convention = true;

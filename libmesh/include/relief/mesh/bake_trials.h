@@ -27,6 +27,7 @@ struct BakeTrial {
     std::vector<AngleSummary> errors;  ///< By format, from the mean over the texel.
     /// By format, of the codes alone: what no number of samples makes less.
     std::vector<AngleSummary> quantisation;
+    AngleSummary sampling;             ///< Of the samples alone: what no format makes less.
     std::vector<AngleSummary> centre;  ///< By format, from the normal at the texel's centre.
     std::size_t rays = 0;
     double cast_seconds = 0.0;         ///< Of the bake itself.
@@ -38,7 +39,8 @@ struct BakeTrial {
 /// Memory: 17 bytes a texel looked at, and four times that while one is measured.
 class BakeTrials {
   public:
-    /// \param reference_samples  of the truth; 0: 256, or as many as the map has room for
+    /// \param reference_samples  of the truth; 0: 256, or as many as the map has room for. Bakes of
+    ///                           256 samples need 1024, else they are compared with themselves
     /// \param texels  at least so many are looked at, or all: in bands of 64 rows, evenly spread
     BakeTrials(const Baker& baker, const BakeMapOptions& map, std::size_t texels,
                int reference_samples = 0);

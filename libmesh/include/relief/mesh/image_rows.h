@@ -101,7 +101,12 @@ class ImageRowWriter {
     ///         FileError if they cannot be written: nothing more can be written then
     void write(std::span<const std::byte> rows);
 
-    /// Renames the file into place.
+    /// Writes what is left and closes the file, which stays beside the old one until finish().
+    /// \param report  gets "texel beyond half's range" for EXR files of halves
+    /// \throws InvalidInput if rows are missing; FileError
+    void complete(Report& report);
+
+    /// Completes the file, unless that is done, and renames it into place.
     /// \param report  gets "texel beyond half's range" for EXR files of halves
     /// \throws InvalidInput if rows are missing; FileError
     void finish(Report& report);

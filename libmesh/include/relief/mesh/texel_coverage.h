@@ -43,8 +43,9 @@ struct CoverageOptions {
     /// Texels whose centre no triangle holds belong to the nearest triangle that has a part in
     /// their square; so that no chart is lost for being small.
     bool touched = true;
-    /// For maps of several samples a texel, 1, 2, 4, 8 or 16 along each of its sides: "texels" here
-    /// are samples then, and those of a whole texel are reported once, by the index of the texel.
+    /// For maps of several samples a texel, 1, 2, 4, 8, 16 or 32 along each of its sides: "texels"
+    /// here are samples then, and those of a whole texel are reported once, by the index of the
+    /// texel.
     int samples_across = 1;
     /// Only these triangles, ascending; indices stay as they are. Absent: all. The span must
     /// outlive what it is given to.
@@ -57,12 +58,16 @@ struct Coverage {
     std::size_t touched = 0;  ///< Texels that only have another part in one.
     std::size_t empty = 0;
     std::size_t shared = 0;  ///< Texels of `inside` whose centre is in several triangles.
+    /// Those of `shared` with one triangle whose texture is mirrored and one whose is not: a
+    /// mirrored model shows such texels twice on purpose.
+    std::size_t mirrored = 0;
 
     Coverage& operator+=(const Coverage& other) {
         inside += other.inside;
         touched += other.touched;
         empty += other.empty;
         shared += other.shared;
+        mirrored += other.mirrored;
         return *this;
     }
 };
@@ -75,8 +80,8 @@ struct Coverage {
 ///                   Called from several threads at once, for different rows
 /// \param report     counts triangles that own nothing because they are not finite, have no area in
 ///                   the image (after rounding, below), or are too far away: 2^33 texels, or 64
-///                   turns across where the texture repeats; and texels whose centre is in several
-///                   triangles
+///                   turns across where the texture repeats; texels whose centre is in several
+///                   triangles; and apart from those, texels of Coverage::mirrored
 /// \throws InvalidInput if a size is out of range or a triangle names a vertex that does not exist
 ///
 /// *Who owns a texel.* The triangle that holds its centre. Coordinates are rounded to fixed-point

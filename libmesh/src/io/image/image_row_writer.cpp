@@ -23,6 +23,7 @@ struct ImageRowWriter::Implementation {
     RowSinkPlan plan;
     std::unique_ptr<RowSink> sink;  ///< Null once an error has made the file useless.
     int next = 0;
+    bool is_complete = false;
 };
 
 ImageRowWriter::ImageRowWriter(const std::filesystem::path& file, const ImageShape& shape,
@@ -62,8 +63,9 @@ void ImageRowWriter::write(std::span<const std::byte> rows) {
     self.next += static_cast<int>(count);
 }
 
-void ImageRowWriter::finish(Report& report) {
+void ImageRowWriter::complete(Report& report) {
     Implementation& self = *implementation_;
+    if (self.is_complete) return;
     const int missing = self.plan.shape.height - self.next;
     if (missing > 0)
         throw InvalidInput(
@@ -71,8 +73,13 @@ void ImageRowWriter::finish(Report& report) {
     if (!self.sink) throw FileError(self.plan.file, "cannot be written any further");
     const std::unique_ptr<RowSink> sink = std::move(self.sink);
     sink->finish();
-    self.replacement.commit();
     sink->report(report);
+    self.is_complete = true;
+}
+
+void ImageRowWriter::finish(Report& report) {
+    complete(report);
+    implementation_->replacement.commit();
 }
 
 void ImageRowWriter::finish() {
