@@ -30,6 +30,16 @@ if(RELIEF_SANITIZE)
     target_link_options(relief_flags INTERFACE -fsanitize=address,undefined)
 endif()
 
+# No report of ThreadSanitizer is suppressed: what it cannot see of oneTBB is announced in
+# libmesh/src/base/parallel.cpp.
+if(RELIEF_TSAN)
+    if(RELIEF_SANITIZE)
+        message(FATAL_ERROR "RELIEF_TSAN and RELIEF_SANITIZE exclude each other")
+    endif()
+    target_compile_options(relief_flags INTERFACE -fsanitize=thread -fno-omit-frame-pointer)
+    target_link_options(relief_flags INTERFACE -fsanitize=thread)
+endif()
+
 # Most of the time of compiling a file goes into headers. Headers that never change are precompiled. Without a
 # compiler cache the files of a target are also compiled a dozen at a time; with one, a changed file would
 # recompile its whole batch.
@@ -91,7 +101,7 @@ relief_precompile(relief_precompiled)
 # gtest_discover_tests takes lists apart.
 set(leak_options suppressions=${PROJECT_SOURCE_DIR}/tests/support/lsan.supp:print_suppressions=0)
 set(test_seconds 300)
-if(RELIEF_SANITIZE)
+if(RELIEF_SANITIZE OR RELIEF_TSAN)
     set(test_seconds 900)
 endif()
 set(RELIEF_TEST_PROPERTIES

@@ -8,31 +8,114 @@
 
 #include <algorithm>
 #include <exception>
+#include <limits>
 #include <memory>
+#include <mutex>
+#include <utility>
 
 #include "progress_stage.h"
 #include "relief/mesh/threads.h"
 
+#ifdef RELIEF_TSAN
+#include <sanitizer/tsan_interface.h>
+#endif
+
 namespace relief {
+
+constinit std::atomic<void (*)()> before_each_piece = nullptr;
+
 namespace {
+
+// oneTBB is not compiled for ThreadSanitizer, which then does not see that a loop's pieces begin
+// after the loop does and end before it. These two say so. This file, with oneTBB's inline
+// functions, is not instrumented either (base/CMakeLists.txt).
+void announce_writes([[maybe_unused]] void* loop) {
+#ifdef RELIEF_TSAN
+    __tsan_release(loop);
+#endif
+}
+
+void expect_writes([[maybe_unused]] void* loop) {
+#ifdef RELIEF_TSAN
+    __tsan_acquire(loop);
+#endif
+}
+
+/// The exception of the failed piece with the smallest index.
+class FirstFailure {
+  public:
+    /// Whether a piece before this one has failed, so that this one has no effect on the outcome.
+    [[nodiscard]] bool is_before(std::size_t piece) const {
+        return piece_.load(std::memory_order_relaxed) < piece;
+    }
+
+    void set(std::size_t piece, std::exception_ptr exception) {
+        const std::lock_guard lock(mutex_);
+        if (exception_ && piece_ < piece) return;
+        piece_ = piece;
+        exception_ = std::move(exception);
+    }
+
+    /// After the loop. \throws the exception, if there is one
+    void rethrow() {
+        if (exception_) std::rethrow_exception(std::move(exception_));
+    }
+
+  private:
+    std::atomic<std::size_t> piece_ = std::numeric_limits<std::size_t>::max();
+    std::mutex mutex_;
+    std::exception_ptr exception_;
+};
+
+void call_hook() {
+    if (void (*const hook)() = before_each_piece.load(std::memory_order_relaxed)) hook();
+}
+
+/// Runs the pieces as oneTBB cuts them.
+///
+/// oneTBB's own handling of exceptions cancels the loop and all loops within its other pieces,
+/// which then return normally although parts of them never ran. So no exception reaches oneTBB:
+/// each is caught in its piece. A context of its own keeps the loop from being cancelled from
+/// outside, by a caller's oneTBB tasks.
+template <typename RunPiece>
+void run_pieces(std::size_t count, std::size_t grain, const RunPiece& run_piece) {
+    FirstFailure failure;
+    tbb::task_group_context context(tbb::task_group_context::isolated);
+    announce_writes(&failure);
+    tbb::parallel_for(
+        tbb::blocked_range<std::size_t>(0, count, grain),
+        [&](const auto& piece) {
+            expect_writes(&failure);
+            if (!failure.is_before(piece.begin())) {
+                try {
+                    run_piece(piece.begin(), piece.end());
+                } catch (...) {
+                    failure.set(piece.begin(), std::current_exception());
+                }
+            }
+            announce_writes(&failure);
+        },
+        context);
+    expect_writes(&failure);
+    failure.rethrow();
+}
 
 /// In pieces so small that somebody who wants the work to end is heard soon.
 void parallel_for_watched(std::size_t count, std::size_t grain, Progress* progress,
                           const std::function<void(std::size_t, std::size_t)>& body) {
     constexpr std::size_t looks = 256;  // 2 s of work are 8 ms apart on one thread.
     const std::size_t step = std::max(grain, count / looks);
-    check_cancelled();
-    if (count <= grain) {
+    const auto run_piece = [&](std::size_t first, std::size_t last) {
         const ProgressPiece piece(progress);
-        return body(0, count);
-    }
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, grain), [&](const auto& range) {
-        const ProgressPiece piece(progress);
-        for (std::size_t begin = range.begin(); begin < range.end(); begin += step) {
+        for (std::size_t begin = first; begin < last; begin += step) {
+            call_hook();
             check_cancelled();
-            body(begin, std::min(begin + step, range.end()));
+            body(begin, std::min(begin + step, last));
         }
-    });
+    };
+    check_cancelled();
+    if (count <= grain) return run_piece(0, count);
+    run_pieces(count, grain, run_piece);
 }
 
 }  // namespace
@@ -42,10 +125,13 @@ void parallel_for(std::size_t count, std::size_t grain,
     if (count == 0) return;
     if (current_progress != nullptr)
         return parallel_for_watched(count, grain, current_progress, body);
+    const auto run_piece = [&](std::size_t begin, std::size_t end) {
+        call_hook();
+        body(begin, end);
+    };
     // Nothing to share out: a program that never has more than this never starts oneTBB.
-    if (count <= grain) return body(0, count);
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, grain),
-                      [&](const auto& piece) { body(piece.begin(), piece.end()); });
+    if (count <= grain) return run_piece(0, count);
+    run_pieces(count, grain, run_piece);
 }
 
 void parallel_for_reporting(std::size_t count, std::size_t grain, Report& report,

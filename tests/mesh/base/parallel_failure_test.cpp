@@ -1,0 +1,374 @@
+// SPDX-License-Identifier: Apache-2.0
+// Failures in any piece of any parallel loop, in operations of every kind: the exception arrives,
+// nothing crashes, no incomplete result is returned as if it were whole, and the next run gives the
+// usual bytes. Pieces fail through the hook of base/parallel.h. The same for cancellation.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fmt/format.h>
+
+#include <atomic>
+#include <fstream>
+#include <functional>
+#include <iterator>
+#include <limits>
+#include <random>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "parallel.h"
+#include "relief/mesh/bake.h"
+#include "relief/mesh/bump_file.h"
+#include "relief/mesh/compare.h"
+#include "relief/mesh/curvature.h"
+#include "relief/mesh/diagnose.h"
+#include "relief/mesh/frames.h"
+#include "relief/mesh/gltf_document.h"
+#include "relief/mesh/heights_from_normals.h"
+#include "relief/mesh/image_file.h"
+#include "relief/mesh/kernel_choice.h"
+#include "relief/mesh/mesh_file.h"
+#include "relief/mesh/normal_map_check.h"
+#include "relief/mesh/progress.h"
+#include "relief/mesh/shapes.h"
+#include "support/height_fields.h"
+#include "support/shared_data.h"
+
+namespace relief {
+namespace {
+
+/// Not an Error: no function takes it for a fault of its input.
+struct Injected {};
+
+/// What happens at one piece of a run, by the number of the piece in order of time.
+struct Injection {
+    std::atomic<std::size_t> pieces = 0;  ///< That have begun.
+    std::size_t at = 0;
+    Progress* cancelled = nullptr;  ///< Absent: the piece throws.
+    std::atomic<bool> is_done = false;
+};
+
+Injection* current_injection = nullptr;
+
+void inject() {
+    Injection& injection = *current_injection;
+    if (injection.pieces.fetch_add(1) != injection.at) return;
+    injection.is_done = true;
+    if (injection.cancelled == nullptr) throw Injected();
+    injection.cancelled->cancel();
+}
+
+/// Injects while it lives.
+class InjectionScope {
+  public:
+    explicit InjectionScope(Injection& injection) {
+        current_injection = &injection;
+        before_each_piece = inject;
+    }
+    ~InjectionScope() { before_each_piece = nullptr; }
+    InjectionScope(const InjectionScope&) = delete;
+    InjectionScope& operator=(const InjectionScope&) = delete;
+};
+
+template <typename Element>
+void append(std::string& bytes, const std::vector<Element>& elements) {
+    bytes.append(reinterpret_cast<const char*>(elements.data()), elements.size() * sizeof(Element));
+}
+
+void append(std::string& bytes, const Image& image) {
+    bytes += fmt::format("{}x{}x{}", image.width, image.height, image.channels);
+    std::visit([&](const auto& samples) { append(bytes, samples); }, image.samples);
+}
+
+void append(std::string& bytes, const Mesh& mesh) {
+    append(bytes, mesh.positions);
+    append(bytes, mesh.normals);
+    append(bytes, mesh.tangents);
+    append(bytes, mesh.texcoords);
+    append(bytes, mesh.triangles);
+}
+
+void append(std::string& bytes, const Report& report) {
+    for (const Finding& finding : report.findings())
+        bytes += to_string(finding);
+}
+
+template <typename... Parts>
+std::string bytes_of(const Parts&... parts) {
+    std::string bytes;
+    (append(bytes, parts), ...);
+    return bytes;
+}
+
+std::string contents_of(const std::filesystem::path& file) {
+    std::ifstream stream(file, std::ios::binary);
+    return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+/// Codes without any pattern that compresses well.
+Image noisy_codes(int width, int height, int channels, unsigned seed) {
+    Image image = make_image(width, height, channels, 8, ColorSpace::data);
+    std::minstd_rand random(seed);
+    for (std::uint8_t& sample : std::get<std::vector<std::uint8_t>>(image.samples))
+        sample = static_cast<std::uint8_t>(random() >> 8);
+    return image;
+}
+
+/// What the operations read, made once.
+struct Inputs {
+    Inputs() {
+        heights = test::rough(300, 280);
+        Report report;
+        BumpOptions bump;
+        bump.strength = 4.0;
+        normals = normals_from_height(heights, bump, report);
+        normal_map = normal_map_from_height(heights, bump, {.bits = 8}, report);
+        for (unsigned i = 0; i < 4; ++i) {
+            images.push_back(folder / fmt::format("image{}.png", i));
+            write_image(images.back(), noisy_codes(700, 800, 3, i + 1));
+        }
+        write_image(folder / "heights.png", noisy_codes(1100, 900, 1, 7));
+        sphere = make_sphere(160, 160);
+        MeshFile file;
+        file.mesh = make_torus(0.4F, 300, 300);
+        write_mesh(folder / "torus.obj", file);
+        write_mesh(folder / "torus.ply", file);
+        GltfDocument::from_mesh(file).write(folder / "torus.glb");
+    }
+
+    test::TemporaryDirectory folder;
+    Image heights;
+    Image normals;
+    Image normal_map;
+    std::vector<std::filesystem::path> images;
+    Mesh sphere;
+};
+
+const Inputs& inputs() {
+    static const Inputs all;
+    return all;
+}
+
+std::string run_bake() {
+    const Mesh high = make_sphere(48, 48);
+    const Mesh low = make_sphere(12, 12);
+    BakeOptions options;
+    options.width = options.height = 96;
+    options.samples = 4;
+    options.padding = 4;
+    options.layers.heights = true;
+    std::vector<float> normals, heights;
+    Report report;
+    bake_normals(
+        {&high, 1}, low, options,
+        [&](const BakedRows& rows) {
+            normals.insert(normals.end(), rows.normals.begin(), rows.normals.end());
+            heights.insert(heights.end(), rows.heights.begin(), rows.heights.end());
+        },
+        report);
+    return bytes_of(normals, heights, report);
+}
+
+std::string run_frames(NormalMode normals, TangentMode tangents) {
+    FrameOptions options;
+    options.normals = normals;
+    options.tangents = tangents;
+    options.crease_angle = 0.5;
+    Report report;
+    return bytes_of(with_frames(inputs().sphere, options, report).mesh, report);
+}
+
+/// As a renderer decodes the textures of a scene: loops within loops.
+std::string run_decode_images() {
+    std::vector<Image> decoded(inputs().images.size());
+    parallel_for(decoded.size(), 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i)
+            decoded[i] = read_image(inputs().images[i], ImageUse::color);
+    });
+    std::string bytes;
+    for (const Image& image : decoded)
+        append(bytes, image);
+    return bytes;
+}
+
+std::string run_read_mesh(const char* name) {
+    Report report;
+    return bytes_of(read_mesh(inputs().folder / name, report).mesh, report);
+}
+
+std::string run_read_gltf(const std::filesystem::path& file) {
+    Report report;
+    const GltfDocument document = GltfDocument::read(file, report);
+    std::string bytes;
+    for (const GltfPrimitiveId id : document.triangle_primitives())
+        append(bytes, document.mesh(id));
+    return bytes;
+}
+
+/// An operation, as the bytes of its result.
+struct Operation {
+    const char* name;
+    std::function<std::string()> run;
+
+    friend void PrintTo(const Operation& operation, std::ostream* stream) {
+        *stream << operation.name;
+    }
+};
+
+std::vector<Operation> operations() {
+    return {
+        {"WritePng",
+         [] {
+             const std::filesystem::path file = inputs().folder / "written.png";
+             write_image(file, noisy_codes(900, 900, 3, 99));
+             return contents_of(file);
+         }},
+        {"DecodeImages", run_decode_images},
+        {"NormalsFromHeight",
+         [] {
+             Report report;
+             return bytes_of(normals_from_height(inputs().heights, BumpOptions{}, report));
+         }},
+        {"WriteBumpFile",
+         [] {
+             const HeightMapFile source(inputs().folder / "heights.png");
+             const std::filesystem::path file = inputs().folder / "bump.png";
+             Report report;
+             write_bump_file(source, BumpOptions{}, file, BumpFileFormat{}, report);
+             return contents_of(file);
+         }},
+        {"HeightsFromNormals",
+         [] {
+             IntegrationOptions options;
+             options.wrap = Wrap::clamp;
+             Report report;
+             return bytes_of(heights_from_normals(inputs().normals, options, report).heights,
+                             report);
+         }},
+        {"ChooseKernel",
+         [] {
+             const KernelChoice choice = choose_kernel(inputs().heights, BumpOptions{});
+             return fmt::format("{} {}", static_cast<int>(choice.kernel), choice.rms_degrees);
+         }},
+        {"CheckNormalMap",
+         [] {
+             const NormalMapCheck check = check_normal_map(inputs().normal_map);
+             return bytes_of(check.bits, to_report(check)) +
+                    fmt::format("{} {}", check.tiling.seam_x, check.tiling.seam_y);
+         }},
+        {"Bake", run_bake},
+        {"MikkTSpace", [] { return run_frames(NormalMode::automatic, TangentMode::mikktspace); }},
+        {"AreaWeighted", [] { return run_frames(NormalMode::angle, TangentMode::area_weighted); }},
+        {"Lengyel", [] { return run_frames(NormalMode::area, TangentMode::lengyel); }},
+        {"Curvature",
+         [] {
+             Report report;
+             return bytes_of(
+                 mean_curvatures(inputs().sphere.positions, inputs().sphere.triangles, report),
+                 report);
+         }},
+        {"Diagnose", [] { return bytes_of(to_report(diagnose(inputs().sphere))); }},
+        {"Compare",
+         [] {
+             const CornerMatch match = match_corners(inputs().sphere, inputs().sphere);
+             return bytes_of(match.corners);
+         }},
+        {"ReadObj", [] { return run_read_mesh("torus.obj"); }},
+        {"ReadPly", [] { return run_read_mesh("torus.ply"); }},
+        {"ReadGltf", [] { return run_read_gltf(inputs().folder / "torus.glb"); }},
+    };
+}
+
+class ParallelFailures : public testing::TestWithParam<Operation> {};
+
+/// The first pieces, and as many others evenly up to the last one.
+std::set<std::size_t> sampled_pieces(std::size_t count) {
+#ifdef __SANITIZE_THREAD__
+    constexpr std::size_t most = 6;
+#else
+    constexpr std::size_t most = 24;
+#endif
+    std::set<std::size_t> pieces;
+    for (std::size_t i = 0; i < most; ++i)
+        pieces.insert(i < most / 2 ? i : i * (count - 1) / (most - 1));
+    while (!pieces.empty() && *pieces.rbegin() >= count)
+        pieces.erase(std::prev(pieces.end()));
+    return pieces;
+}
+
+void expect_failures_arrive(const std::function<std::string()>& run, std::size_t least_pieces) {
+    Injection none;
+    none.at = std::numeric_limits<std::size_t>::max();
+    std::string expected;
+    {
+        const InjectionScope scope(none);
+        expected = run();
+    }
+    ASSERT_FALSE(expected.empty());
+    ASSERT_GE(none.pieces, least_pieces);
+    std::size_t failed = 0;
+    for (const std::size_t piece : sampled_pieces(none.pieces)) {
+        Injection injection;
+        injection.at = piece;
+        const InjectionScope scope(injection);
+        try {
+            // How many pieces oneTBB makes of a loop depends on timing, so that there may be fewer.
+            EXPECT_EQ(run() == expected, true) << "piece " << piece;
+            EXPECT_FALSE(injection.is_done) << "the failure of piece " << piece << " is lost";
+        } catch (const Injected&) {
+            ++failed;
+        }
+    }
+    EXPECT_GE(failed, 1U);
+    EXPECT_EQ(run() == expected, true) << "after the failures";
+}
+
+TEST_P(ParallelFailures, ReachTheCallerAndLeaveNothingBehind) {
+    expect_failures_arrive(GetParam().run, 2);
+}
+
+TEST_P(ParallelFailures, CancellationReachesTheCallerAndLeavesNothingBehind) {
+    const std::function<std::string()>& run = GetParam().run;
+    const std::string expected = run();
+    Injection none;
+    none.at = std::numeric_limits<std::size_t>::max();
+    {
+        Progress progress;
+        const ProgressScope progress_scope(progress);
+        const InjectionScope scope(none);
+        EXPECT_EQ(run() == expected, true) << "as somebody waits";
+    }
+    for (const std::size_t piece : sampled_pieces(none.pieces)) {
+        Progress progress;
+        const ProgressScope progress_scope(progress);
+        Injection injection;
+        injection.at = piece;
+        injection.cancelled = &progress;
+        const InjectionScope scope(injection);
+        try {
+            EXPECT_EQ(run() == expected, true) << "piece " << piece;
+        } catch (const Cancelled&) {
+            EXPECT_TRUE(injection.is_done);
+        }
+    }
+    EXPECT_EQ(run() == expected, true) << "after the cancellations";
+}
+
+INSTANTIATE_TEST_SUITE_P(Operations, ParallelFailures, testing::ValuesIn(operations()),
+                         [](const auto& operation) { return operation.param.name; });
+
+class FailuresInCompressedModels : public testing::TestWithParam<const char*> {};
+
+TEST_P(FailuresInCompressedModels, ReachTheCaller) {
+    RELIEF_NEEDS_SHARED(file, GetParam());
+    expect_failures_arrive([&] { return run_read_gltf(file); }, 1);
+}
+
+INSTANTIATE_TEST_SUITE_P(Models, FailuresInCompressedModels,
+                         testing::Values("data/models/gltf/Duck/glTF-Draco/Duck.gltf",
+                                         "data/models/gltf-ext/misc/DenseSphere.glb",
+                                         "data/models/gltf-ext/meshopt/pirate.glb"));
+
+}  // namespace
+}  // namespace relief
