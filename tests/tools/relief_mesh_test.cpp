@@ -255,6 +255,27 @@ TEST(ProcessCommand, OutputDoesNotDependOnThreads) {
     EXPECT_EQ(workplace.read("out/1.glb"), workplace.read("out/7.glb"));
 }
 
+TEST(ProcessCommand, AMissingTextureOfMtlIsLeftOutOfGltfAndFound) {
+    const Workplace workplace;
+    workplace.write_square("plain.obj");
+    workplace.write("square.mtl", "newmtl wall\nKd 0.5 0.25 1\nmap_Kd gone.png\n");
+    workplace.write("square.obj", "mtllib square.mtl\nusemtl wall\n" + workplace.read("plain.obj"));
+    for (const std::string verb : {"process square.obj out/a.glb --tangents mikktspace --strict",
+                                   "subdivide square.obj out/a.glb --strict"}) {
+        const ProgramResult result = workplace.run("relief-mesh " + verb);
+        EXPECT_EQ(result.exit_code, 3) << result.error;
+        EXPECT_THAT(result.out, HasSubstr("1 x unreadable diffuse texture of material 'wall' "
+                                          "(material 0): left out: "));
+        EXPECT_THAT(result.out, HasSubstr("gone.png: no such file"));
+        Report report;
+        const GltfView view = GltfDocument::read(workplace / "out/a.glb", report).view();
+        EXPECT_TRUE(view.images.empty());
+        ASSERT_EQ(view.materials.size(), 1U);
+        EXPECT_FALSE(view.materials[0].base_color_texture);
+        EXPECT_EQ(view.materials[0].base_color, glm::vec4(0.5F, 0.25F, 1.0F, 1.0F));
+    }
+}
+
 TEST(ProcessCommand, SaysWhatTheOutputFormatLeavesBehind) {
     const Workplace workplace;
     workplace.write_square("square.obj");

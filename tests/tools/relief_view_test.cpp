@@ -302,6 +302,119 @@ TEST(ViewCommand, DrawsRealModelsWithTheirOwnMaps) {
     EXPECT_GE(json::parse(result.out)["picture"]["textures"], 2) << "colour and normals";
 }
 
+/// A square with a material whose base color texture has this image.
+void write_textured_square(const Workplace& workplace, const json& image) {
+    std::string bytes;
+    const auto append = [&](const auto& values) {
+        bytes.append(reinterpret_cast<const char*>(values.data()), sizeof(values));
+    };
+    append(std::array<float, 12>{-1, -1, 0, 1, -1, 0, 1, 1, 0, -1, 1, 0});
+    append(std::array<float, 8>{0, 1, 1, 1, 1, 0, 0, 0});
+    append(std::array<std::uint16_t, 6>{0, 1, 2, 0, 2, 3});
+    workplace.write("square.bin", bytes);
+    const json document = {
+        {"asset", {{"version", "2.0"}}},
+        {"buffers", {{{"uri", "square.bin"}, {"byteLength", bytes.size()}}}},
+        {"bufferViews",
+         {{{"buffer", 0}, {"byteLength", 48}},
+          {{"buffer", 0}, {"byteOffset", 48}, {"byteLength", 32}},
+          {{"buffer", 0}, {"byteOffset", 80}, {"byteLength", 12}}}},
+        {"accessors",
+         {{{"bufferView", 0},
+           {"componentType", 5126},
+           {"count", 4},
+           {"type", "VEC3"},
+           {"min", {-1, -1, 0}},
+           {"max", {1, 1, 0}}},
+          {{"bufferView", 1}, {"componentType", 5126}, {"count", 4}, {"type", "VEC2"}},
+          {{"bufferView", 2}, {"componentType", 5123}, {"count", 6}, {"type", "SCALAR"}}}},
+        {"images", {image}},
+        {"textures", {{{"source", 0}}}},
+        {"materials",
+         {{{"name", "wall"},
+           {"pbrMetallicRoughness",
+            {{"baseColorFactor", {0.5, 0.25, 1.0, 1.0}}, {"baseColorTexture", {{"index", 0}}}}},
+           {"extensions", {{"KHR_materials_unlit", json::object()}}}}}},
+        {"meshes",
+         {{{"primitives",
+            {{{"attributes", {{"POSITION", 0}, {"TEXCOORD_0", 1}}},
+              {"indices", 2},
+              {"material", 0}}}}}}},
+        {"nodes", {{{"mesh", 0}}}},
+        {"scenes", {{{"nodes", {0}}}}},
+        {"scene", 0}};
+    workplace.write("square.gltf", document.dump());
+}
+
+/// What the base color factor shows alone: 0.5, 0.25 and 1, sRGB-coded.
+constexpr Pixel untextured = {188, 137, 255, 255};
+
+TEST(ViewCommand, ImagesOfModelsThatCannotBeReadAreNamedAndDrawnWithout) {
+    const Workplace workplace;
+    workplace.write("damaged.png", "\x89PNG\r\n\x1A\nnot much");
+    write_plain(workplace / "../outside.png", {255, 255, 255});
+    const std::string line =
+        "relief-view square.gltf --camera 0,0 --size 33x33 --samples 1 --output out/p.png";
+    const std::vector<std::pair<std::string, std::string>> uris = {
+        {"gone.png", "gone.png: no such file"},
+        {"damaged.png", "damaged.png: "},
+        {"../outside.png", "images[0].uri '../outside.png' leads out of"},
+        {"/etc/passwd", "images[0].uri '/etc/passwd' leads out of"},
+        {"file:///etc/passwd", "images[0].uri 'file:///etc/passwd' leads out of"},
+        {"http://localhost/a.png", "images[0].uri 'http://localhost/a.png' leads out of"},
+        {"https://localhost/a.png", "images[0].uri 'https://localhost/a.png' leads out of"},
+        {"", "images[0] names no file and has no bytes"},
+        {".", ": is not a file"},
+        {"data:,abc", "square.gltf: images[0]: "},
+        {"data:image/png;base64,iVBORw0KGgo=", "square.gltf: images[0]: "}};
+    for (const auto& [uri, problem] : uris) {
+        write_textured_square(workplace, {{"uri", uri}});
+        const ProgramResult result = workplace.run(line);
+        ASSERT_EQ(result.exit_code, 0) << uri << result.error;
+        EXPECT_THAT(result.out,
+                    HasSubstr("1 x unreadable diffuse texture of material 'wall' (image 0): drawn "
+                              "without it: square.gltf: "))
+            << uri;
+        EXPECT_THAT(result.out, HasSubstr(problem));
+        EXPECT_EQ(pixel(picture_in(workplace / "out/p.png"), 16, 16), untextured) << uri;
+        const ProgramResult strict = workplace.run(line + " --strict");
+        EXPECT_EQ(strict.exit_code, 3) << uri;
+        EXPECT_THAT(strict.error, HasSubstr("square.gltf: ")) << uri;
+        EXPECT_THAT(strict.error, HasSubstr("exit code 3, because of --strict")) << uri;
+    }
+    write_textured_square(workplace, {{"bufferView", 0}, {"mimeType", "image/png"}});
+    const json summary = json::parse(workplace.run(line + " --json --explain-effects").out);
+    EXPECT_EQ(summary["findings"][0]["kind"], "unreadable diffuse texture of material 'wall'");
+    EXPECT_EQ(pixel(picture_in(workplace / "out/p.png"), 16, 16), untextured) << "embedded";
+    for (const json& effect : summary["effects"]["draws"][0]["effects"]) {
+        if (effect["effect"] == "diffuse texture")
+            EXPECT_EQ(effect["reason"], "its image cannot be read");
+    }
+    EXPECT_EQ(summary["effects"]["draws"][0]["textures"].size(), 0U);
+    std::filesystem::remove(workplace / "../outside.png");
+}
+
+TEST(ViewCommand, ImagesOfMtlAndSceneFilesThatCannotBeReadAreNamedAndDrawnWithout) {
+    const Workplace workplace;
+    workplace.write_square("plain.obj");
+    workplace.write("square.mtl", "newmtl wall\nKd 0.5 0.25 1\nillum 0\nmap_Kd gone.png\n");
+    workplace.write("square.obj", "mtllib square.mtl\nusemtl wall\n" + workplace.read("plain.obj"));
+    workplace.write("scene.json", R"({"relief_scene": 1, "nodes": [{"shape": "quad", "material":
+        {"name": "wall", "unlit": true, "diffuse": [0.5, 0.25, 1],
+         "diffuse_texture": "gone.png"}}]})");
+    for (const std::string model : {"square.obj", "scene.json"}) {
+        const ProgramResult result =
+            workplace.run("relief-view " + model +
+                          " --camera 0,0 --size 33x33 --samples 1 --strict --output out/p.png");
+        EXPECT_EQ(result.exit_code, 3) << result.error;
+        EXPECT_THAT(result.out, HasSubstr("1 x unreadable diffuse texture of material 'wall' "
+                                          "(image 0): drawn without it: " +
+                                          model + ": "));
+        EXPECT_THAT(result.out, HasSubstr("gone.png: no such file"));
+        EXPECT_EQ(pixel(picture_in(workplace / "out/p.png"), 16, 16), untextured) << model;
+    }
+}
+
 class ViewRefusal : public testing::TestWithParam<Refused> {};
 
 TEST_P(ViewRefusal, SaysWhyAndLeavesNothingBehind) {
@@ -321,6 +434,13 @@ INSTANTIATE_TEST_SUITE_P(
     Usage, ViewRefusal,
     testing::Values(
         Refused{"--explain-effects", 2, "MODEL is missing (see relief-view --help)"},
+        Refused{"square.obj --normal-map gone.png --output out/old.png", 1,
+                "gone.png: no such file"},
+        Refused{"square.obj --diffuse-map gone.png --output out/old.png", 1,
+                "gone.png: no such file"},
+        Refused{"square.obj --strict", 2,
+                "--strict: is about the exit code of a picture, and a window shows its findings "
+                "(name a picture with --output)"},
         Refused{"square.obj --json", 2,
                 "--json: is a summary, and a window has none (name a picture with --output)"},
         Refused{"square.obj --output out/old.png --dump-state out/state.json", 2,

@@ -130,12 +130,13 @@ std::vector<std::string> compression_in_words(const GltfDocument& document, bool
 }
 
 std::vector<std::string> write_model(const std::filesystem::path& file, const Model& model,
-                                     const std::filesystem::path& input, bool has_tangents) {
+                                     const std::filesystem::path& input, bool has_tangents,
+                                     Report& report) {
     if (const auto* document = std::get_if<GltfDocument>(&model))
         return write_document(file, *document, input, has_tangents);
     const auto& contents = std::get<MeshFile>(model);
     if (!is_document(writable_format(file))) return write_as_mesh(file, contents, has_tangents);
-    GltfDocument::from_mesh(contents).write(file);
+    GltfDocument::from_mesh(contents, report).write(file);
     return {};
 }
 

@@ -47,8 +47,10 @@ std::vector<std::string> compression_in_words(const GltfDocument& document, bool
 ///
 /// \param input         what to name in errors about the model
 /// \param has_tangents  whether there are any, which mesh files cannot hold
+/// \param report        names textures that are left out because their files are missing
 /// \return what the format leaves behind: "tangents", "2 animations", ...
 std::vector<std::string> write_model(const std::filesystem::path& file, const Model& model,
-                                     const std::filesystem::path& input, bool has_tangents);
+                                     const std::filesystem::path& input, bool has_tangents,
+                                     Report& report);
 
 }  // namespace relief::tools

@@ -223,9 +223,12 @@ Processed process(const ProcessRequest& request, Stages& stages) {
         else
             process_mesh(request, std::get<MeshFile>(model), options, done);
     });
+    Report write_report;
     stages.run("write", [&] {
-        done.left_behind = write_model(request.output, model, request.input, has_tangents(done));
+        done.left_behind =
+            write_model(request.output, model, request.input, has_tangents(done), write_report);
     });
+    done.findings.add("", write_report);
     return done;
 }
 

@@ -224,9 +224,12 @@ Reshaped run(const ReshapeRequest& request, const std::string& verb, const MeshC
                 reshape_mesh(request, std::get<MeshFile>(model).mesh, change, done);
         });
     });
+    Report write_report;
     stages.run("write", [&] {
-        done.left_behind = write_model(request.output, model, request.input, done.has_tangents);
+        done.left_behind =
+            write_model(request.output, model, request.input, done.has_tangents, write_report);
     });
+    done.findings.add("", write_report);
     return done;
 }
 

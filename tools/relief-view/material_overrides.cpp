@@ -45,7 +45,9 @@ void require_texcoords(const Scene& scene, const ViewOptions& options, const std
     }
 }
 
+/// An image that an option names: unlike those of models, it has to be readable.
 Texture add_texture(Scene& scene, ImageSource image) {
+    image.is_required = true;
     scene.images.push_back(std::move(image));
     return {.image = scene.images.size() - 1};
 }

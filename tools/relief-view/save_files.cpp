@@ -89,7 +89,7 @@ void save_model(const std::filesystem::path& file, const std::filesystem::path& 
     Report told;  // Who shows the model has said it.
     Model contents = read_model(model, told);
     std::visit([&](auto& read) { frame(read, told); }, contents);
-    write_model(file, contents, model, true);
+    write_model(file, contents, model, true, told);
 }
 
 }  // namespace relief::tools

@@ -5,10 +5,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <functional>
 #include <map>
 
 #include "common/map_choices.h"
 #include "material_overrides.h"
+#include "relief/mesh/error.h"
 #include "relief/mesh/height_map.h"
 #include "relief/mesh/image_file.h"
 #include "relief/shade/image_source.h"
@@ -83,8 +85,10 @@ class Preparation {
         for (std::size_t i = 0; i < result_.maps.size(); ++i) {
             const std::optional<Heights> heights = heights_of(scene_.materials[i]);
             if (!heights) continue;
-            convert(result_.maps[i], *heights, kernel, MapBits::sixteen);
-            changed = true;
+            changed |= unless_unreadable(heights->image, [&] {
+                convert(result_.maps[i], *heights, kernel, MapBits::sixteen);
+                return true;
+            });
         }
         if (!changed)
             refuse_change(variant_, "there are no heights to take slopes of", "give --height-map");
@@ -97,14 +101,16 @@ class Preparation {
             MaterialMaps& maps = result_.maps[i];
             if (!maps.normal_map) continue;
             const ImageSource& source = scene_.images[maps.normal_map->texture.image];
-            const Image image = decode(source, ImageUse::data);
-            if (image.bits() <= static_cast<int>(bits)) continue;
-            if (const std::optional<Heights> heights = heights_of(scene_.materials[i])) {
-                convert(maps, *heights, options_.kernel.value_or(BumpOptions{}.kernel), bits);
-            } else {
-                code_again(*maps.normal_map, source, image, bits);
-            }
-            changed = true;
+            changed |= unless_unreadable(source, [&] {
+                const Image image = decode(source, ImageUse::data);
+                if (image.bits() <= static_cast<int>(bits)) return false;
+                if (const std::optional<Heights> heights = heights_of(scene_.materials[i])) {
+                    convert(maps, *heights, options_.kernel.value_or(BumpOptions{}.kernel), bits);
+                } else {
+                    code_again(*maps.normal_map, source, image, bits);
+                }
+                return true;
+            });
         }
         if (!changed)
             refuse_change(variant_, "there is no normal map of more bits", "give --height-map");
@@ -144,6 +150,17 @@ class Preparation {
         }
     }
 
+    /// Does the work for a material unless its image cannot be read, as the picture is drawn
+    /// without the image then. \return what the work returns, or false
+    static bool unless_unreadable(const ImageSource& image, const std::function<bool()>& work) {
+        try {
+            return work();
+        } catch (const FileError&) {
+            if (image.is_required) throw;
+            return false;
+        }
+    }
+
     void begin_maps() {
         for (const Material& material : scene_.materials)
             result_.maps.push_back({material.normal_map, material.bump_map});
@@ -157,7 +174,10 @@ class Preparation {
         BumpMap map;
         map.texture = material.normal_map->texture;
         map.strength = static_cast<float>(options_.strength.value_or(BumpOptions{}.strength));
-        return Heights{{options_.height_map->string(), *options_.height_map}, map};
+        return Heights{{.name = options_.height_map->string(),
+                        .source = *options_.height_map,
+                        .is_required = true},
+                       map};
     }
 
     BumpMap as_bump_map(const Heights& heights) {

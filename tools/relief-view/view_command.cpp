@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "common/findings.h"
+#include "common/report_options.h"
 #include "common/text.h"
 #include "compare_options.h"
 #include "debug_options.h"
@@ -66,8 +67,10 @@ Image draw_other(const ViewOptions& options, const Context& context, const Compo
 }
 
 /// Draws every picture that is asked for, writes them where they are to go, and compares.
+///
+/// \param plan  becomes the plan that was drawn: within the budget, and without unreadable textures
 Drawn draw(const ViewOptions& options, const FrameSettings& settings, ComposedScene& composed,
-           FramePlan plan, Stages& stages, Report& report) {
+           FramePlan& plan, Stages& stages, Report& report) {
     const Image reference = options.reference ? read_reference(options) : Image{};
     const std::unique_ptr<Context> context =
         stages.run("context", [&] { return std::make_unique<Context>(options.backend); });
@@ -76,6 +79,7 @@ Drawn draw(const ViewOptions& options, const FrameSettings& settings, ComposedSc
     const std::unique_ptr<Renderer> renderer = stages.run("prepare", [&] {
         return std::make_unique<Renderer>(*context, composed.scene(), plan, settings, report);
     });
+    plan = renderer->plan();
     const std::unique_ptr<PictureSink> sink = options.output ? make_sink(options) : nullptr;
     Drawn drawn;
     drawn.measures = std::move(measures);
@@ -100,7 +104,7 @@ Drawn draw(const ViewOptions& options, const FrameSettings& settings, ComposedSc
     return drawn;
 }
 
-ExitCode run(ViewOptions& options) {
+ExitCode run(const CLI::App& app, ViewOptions& options) {
     settle(options);
     if (options.list_bindings) {
         fmt::print("{}", bindings_text());
@@ -116,16 +120,15 @@ ExitCode run(ViewOptions& options) {
         markers =
             stages.run("check", [&] { return chosen_markers(options.debug, composed.scene()); });
     const FrameSettings settings = settings_of(options, markers);
-    const FramePlan plan = viewed_plan(options, composed.scene(), settings,
-                                       chosen_plan(options, composed.scene(), settings), report);
-    if (options.explain_effects && !options.json) print_effects(composed.scene(), plan);
-    if (options.effects.print_shaders && !options.json) print_shaders(composed.scene(), plan);
-
+    FramePlan plan = viewed_plan(options, composed.scene(), settings,
+                                 chosen_plan(options, composed.scene(), settings), report);
     save_files(options, composed, stages);
     std::optional<Drawn> drawn;
     if (options.output || options.reference || options.effects.measures()) {
         drawn = draw(options, settings, composed, plan, stages, report);
     }
+    if (options.explain_effects && !options.json) print_effects(composed.scene(), plan);
+    if (options.effects.print_shaders && !options.json) print_shaders(composed.scene(), plan);
 
     Findings findings;
     findings.add("", report);
@@ -148,7 +151,9 @@ ExitCode run(ViewOptions& options) {
         print_measures(drawn->measures, options, drawn->frame);
     }
     if (drawn && drawn->comparison) require_match(options, *drawn->comparison);
-    return ExitCode::done;
+    const ReportOptions strictness{.strict = options.strict};
+    return found_fault(app, strictness, options.model, findings) ? ExitCode::fell_back
+                                                                 : ExitCode::done;
 }
 
 }  // namespace
@@ -173,7 +178,7 @@ Command add_view_command(CLI::App& tool) {
          "relief-view data/vase.obj --material gold --light point:2,2,2,4 --save-scene "
          "out/golden.json",
          "relief-view data/vase.obj --diffuse-map data/bricks-diffuse.png --explain-effects"});
-    return {&tool, [options] { return run(*options); }};
+    return {&tool, [&tool, options] { return run(tool, *options); }};
 }
 
 }  // namespace relief::tools

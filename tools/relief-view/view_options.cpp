@@ -74,6 +74,11 @@ void add_output_options(CLI::App& app, ViewOptions& options) {
         "Alone, it needs no OpenGL.")
         .group(group);
     add_switch(app, "--json", options.json, "Print the summary as one JSON object.").group(group);
+    add_switch(
+        app, "--strict", options.strict,
+        "Exit with 3 if anything was found wrong in the model, such as a missing texture; the "
+        "picture is written all the same.")
+        .group(group);
 }
 
 void add_window_options(CLI::App& app, ViewOptions& options) {
@@ -144,6 +149,9 @@ void check_output(const ViewOptions& options) {
     refuse(options.no_state && !options.wants_window(), "--no-state",
            "is of a window, and none is opened", "leave it out");
     refuse(options.wants_window() && options.json, "--json", "is a summary, and a window has none",
+           "name a picture with --output");
+    refuse(options.wants_window() && options.strict, "--strict",
+           "is about the exit code of a picture, and a window shows its findings",
            "name a picture with --output");
     refuse(is_linear_output(options) && (options.exposure || options.tone_mapping),
            options.exposure ? "--exposure" : "--tone-mapping",

@@ -132,6 +132,7 @@ struct ViewOptions {
     DebugChoices debug;
     CompareChoices compare;
     bool json = false;
+    bool strict = false;
     GeneralOptions general;
 };
 

@@ -3,12 +3,24 @@
 // coordinates shows none. Tests: tests/shade/render/renderer_test.cpp.
 #include "render/material_textures.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
+#include <cstdint>
+#include <optional>
+#include <set>
+#include <string_view>
+#include <utility>
+
+#include "relief/shade/image_source.h"
+#include "relief/shade/labels.h"
 
 namespace relief {
 
 namespace {
+
+const char* const unreadable_reason = "its image cannot be read";
 
 /// One of a material's textures: where it is bound, how it is read, and whether features sample it.
 struct TextureRow {
@@ -56,6 +68,53 @@ const std::array<TextureRow, material_unit_count>& texture_rows() {
     return all;
 }
 
+/// The effect that a texture makes, by its name in effects().
+const char* effect_of(TextureUnit unit, const Features& features) {
+    switch (unit) {
+        case TextureUnit::diffuse_texture:
+            return "diffuse texture";
+        case TextureUnit::specular_texture:
+            return "specular texture";
+        case TextureUnit::emission_texture:
+            return "emission texture";
+        case TextureUnit::occlusion_texture:
+            return "occlusion texture";
+        case TextureUnit::opacity_texture:
+            return "opacity texture";
+        case TextureUnit::metallic_roughness_texture:
+            return "metallic-roughness texture";
+        case TextureUnit::bump_texture:
+            return "bump map";
+        default:
+            return features.detail == NormalDetail::object_normal_map ? "object-space normal map"
+                                                                      : "normal map";
+    }
+}
+
+void leave_out(Features& features, TextureUnit unit) {
+    const std::string_view name = effect_of(unit, features);
+    const auto effect = std::find_if(effects().begin(), effects().end(),
+                                     [&](const Effect& one) { return one.name == name; });
+    effect->set(features, false);
+    if (unit == TextureUnit::emission_texture) features.emission = false;
+}
+
+/// Turns off the reasons of effects that the draw does not have any more.
+void correct_reasons(DrawPlan& draw, const Features& planned) {
+    for (const Effect& effect : effects()) {
+        if (!effect.on(planned) || effect.on(draw.features)) continue;
+        for (EffectReason& reason : draw.reasons) {
+            if (reason.effect == effect.name) reason = {effect.name, false, unreadable_reason};
+        }
+    }
+    if (!draw.needs_tangents || draw.features.detail != NormalDetail::none) return;
+    draw.needs_tangents = false;
+    for (EffectReason& reason : draw.reasons) {
+        if (reason.effect == "computed tangents")
+            reason = {reason.effect, false, unreadable_reason};
+    }
+}
+
 }  // namespace
 
 std::vector<UsedTexture> used_textures(const Features& features, const Material& material,
@@ -67,6 +126,32 @@ std::vector<UsedTexture> used_textures(const Features& features, const Material&
         used.push_back({row.unit, texture, row.use});
     }
     return used;
+}
+
+void leave_out_textures(const Scene& scene, const std::map<std::size_t, std::string>& unreadable,
+                        FramePlan& plan, Report& report) {
+    std::set<std::pair<std::optional<std::uint32_t>, TextureUnit>> reported;
+    for (DrawPlan& draw : plan.draws) {
+        const std::optional<std::uint32_t> number = draw.range.material;
+        const Material& material = number ? scene.materials[*number] : default_material();
+        const Mesh& mesh = scene.meshes[scene.instances[draw.instance].mesh];
+        const Features planned = draw.features;
+        for (const UsedTexture& used : used_textures(planned, material, mesh)) {
+            const auto entry =
+                used.texture == nullptr ? unreadable.end() : unreadable.find(used.texture->image);
+            if (entry == unreadable.end()) continue;
+            leave_out(draw.features, used.unit);
+            if (!reported.emplace(number, used.unit).second) continue;
+            report.add(
+                fmt::format("unreadable {} of {}", effect_of(used.unit, planned),
+                            material_label(scene, number)),
+                "image", entry->first,
+                "drawn without it: " + with_origin(scene.images[entry->first], entry->second));
+        }
+        if (draw.features == planned) continue;
+        draw.features = canonical(draw.features);
+        correct_reasons(draw, planned);
+    }
 }
 
 bool has_textures(const Material& material) {

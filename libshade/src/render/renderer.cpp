@@ -142,7 +142,7 @@ Renderer::Implementation::Implementation(const Context& context, const Scene& sc
 
     Stopwatch stopwatch;  // Not OpenGL's timer queries: they are wrong on llvmpipe.
     want_planned(textures, scene, plan);
-    textures.decode(scene.images);
+    leave_out_textures(scene, textures.decode(scene.images), plan, report);
     const bool shows_environment = plan.environment_map && scene.environment.has_value();
     if (shows_environment) cache.environments.decode(*scene.environment);
     times.decode_images = 1e3 * stopwatch.lap();

@@ -6,6 +6,7 @@
 
 #include <map>
 #include <memory>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -23,8 +24,11 @@ class SceneTextures {
         images_.try_emplace({image, purpose});
     }
 
-    /// Decodes what is wanted and not in the cache. \throws FileError if one cannot be read
-    void decode(const std::vector<ImageSource>& sources);
+    /// Decodes what is wanted and not in the cache. Images that cannot be read are not wanted any
+    /// more.
+    /// \return those images, by index, each with what is wrong
+    /// \throws FileError if an image that is required cannot be read
+    std::map<std::size_t, std::string> decode(const std::vector<ImageSource>& sources);
 
     /// Uploads what was decoded. \throws GpuError
     void upload(const std::vector<ImageSource>& sources);
@@ -41,6 +45,8 @@ class SceneTextures {
 
   private:
     using Key = std::pair<std::size_t, ImagePurpose>;
+
+    std::vector<std::string> decode_all(const std::vector<ImageSource>& sources);
 
     TextureCache* cache_;
     std::map<Key, std::shared_ptr<const GpuImage>> images_;

@@ -4,6 +4,7 @@
 #include "render/texture_cache.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "relief/shade/image_source.h"
 
@@ -40,6 +41,21 @@ std::shared_ptr<const GpuImage> TextureCache::add(const ImageSource& source,
     images_.push_back(
         {ImageIdentity(source), purpose, std::make_shared<const GpuImage>(std::move(made))});
     return images_.back().image;
+}
+
+const std::string* TextureCache::find_fault(const ImageSource& source,
+                                            const ImagePurpose& purpose) const {
+    const auto fault = std::find_if(faults_.begin(), faults_.end(), [&](const Fault& known) {
+        return known.purpose == purpose && known.identity.is(source);
+    });
+    return fault == faults_.end() ? nullptr : &fault->text;
+}
+
+void TextureCache::add_fault(ImageIdentity identity, const ImagePurpose& purpose,
+                             std::string fault) {
+    constexpr std::size_t max_faults = 256;  // A window may show many versions of a file.
+    if (faults_.size() == max_faults) faults_.erase(faults_.begin());
+    faults_.push_back({std::move(identity), purpose, std::move(fault)});
 }
 
 BoundTexture TextureCache::white() {

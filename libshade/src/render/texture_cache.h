@@ -7,6 +7,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <string>
 #include <tuple>
 #include <vector>
 
@@ -50,6 +51,14 @@ class TextureCache {
     std::shared_ptr<const GpuImage> add(const ImageSource& source, const ImagePurpose& purpose,
                                         const Image& image);
 
+    /// What is wrong with an image that could not be decoded, as long as its file or its bytes stay
+    /// as they were; else null.
+    [[nodiscard]] const std::string* find_fault(const ImageSource& source,
+                                                const ImagePurpose& purpose) const;
+
+    /// \param identity  from before decoding, so that a file that changed meanwhile is read again
+    void add_fault(ImageIdentity identity, const ImagePurpose& purpose, std::string fault);
+
     GLuint sampler(TextureWrap u, TextureWrap v, TextureFilter filter);
     BoundTexture white();
     BoundTexture flat();  ///< Looks up as (0, 0, 1).
@@ -66,8 +75,15 @@ class TextureCache {
         std::shared_ptr<const GpuImage> image;
     };
 
+    struct Fault {
+        ImageIdentity identity;
+        ImagePurpose purpose;
+        std::string text;
+    };
+
     const gl::Api* api_;
     std::vector<Entry> images_;
+    std::vector<Fault> faults_;
     std::map<std::tuple<TextureWrap, TextureWrap, TextureFilter>, gl::Sampler> samplers_;
     std::optional<gl::Texture> white_;
     std::optional<gl::Texture> flat_;

@@ -5,9 +5,13 @@
 // Source: glTF 2.0, section 3.9. Tests: tests/shade/scene/scene_file_test.cpp.
 #include "scene/gltf_materials.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <map>
+#include <string>
 #include <utility>
+#include <variant>
 
 #include "parallel.h"
 #include "progress_stage.h"
@@ -36,9 +40,12 @@ std::optional<Texture> texture_from(const std::optional<GltfTexture>& texture,
     return Texture{texture->image, texture->wrap_u, texture->wrap_v, texture->filter};
 }
 
-/// The mean of a texture's image, or nothing where it cannot be read. A colour image is kept
-/// decoded if no other use needs its bytes, so that drawing need not decode it again.
-std::optional<glm::vec3> mean_of(ImageSource& image, ImageUse use, bool keep) {
+/// The mean of an image's texels, or what is wrong with the image.
+using MeanOrFault = std::variant<glm::vec3, std::string>;
+
+/// A color image is kept decoded if no other use needs its bytes, so that drawing need not decode
+/// it again.
+MeanOrFault mean_of(ImageSource& image, ImageUse use, bool keep) {
     try {
         Image decoded = decode(image, use);
         const glm::vec3 mean = mean_color(decoded);
@@ -46,8 +53,8 @@ std::optional<glm::vec3> mean_of(ImageSource& image, ImageUse use, bool keep) {
         return mean;
     } catch (const Cancelled&) {
         throw;
-    } catch (const Error&) {
-        return std::nullopt;
+    } catch (const Error& error) {
+        return error.what();
     }
 }
 
@@ -58,13 +65,13 @@ class MeansOfImages {
     MeansOfImages(std::vector<ImageSource>& images, ImageUse use, const std::vector<bool>& keep)
         : images_(images), use_(use), keep_(keep) {}
 
-    void want(std::size_t image) { means_.try_emplace(image, std::nullopt); }
+    void want(std::size_t image) { means_.try_emplace(image); }
 
     void decode_all() {
         std::vector<std::size_t> wanted;
         for (const auto& [image, mean] : means_)
             wanted.push_back(image);
-        std::vector<std::optional<glm::vec3>> results(wanted.size());
+        std::vector<MeanOrFault> results(wanted.size());
         ProgressStage stage("images", wanted.size());
         parallel_for(wanted.size(), 1, [&](std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i) {
@@ -76,12 +83,15 @@ class MeansOfImages {
             means_[wanted[i]] = results[i];
     }
 
-    /// The mean, or 1 and an entry in the report where the image could not be read.
-    glm::vec3 mean(std::size_t image, std::size_t material, Report& report) const {
-        const std::optional<glm::vec3>& found = means_.at(image);
-        if (found) return *found;
-        report.add("unreadable texture", "material", material,
-                   "its mean counts as 1 in the material's Phong equivalent");
+    /// The mean; or 1 where the image could not be read, which is reported.
+    glm::vec3 mean(std::size_t image, const char* texture, const std::string& material,
+                   Report& report) const {
+        const MeanOrFault& result = means_.at(image);
+        if (const auto* mean = std::get_if<glm::vec3>(&result)) return *mean;
+        report.add(fmt::format("unreadable {} of {} for its mean", texture, material), "image",
+                   image,
+                   "counts as 1 in the material's Phong equivalent: " +
+                       with_origin(images_[image], std::get<std::string>(result)));
         return glm::vec3(1.0F);
     }
 
@@ -89,7 +99,7 @@ class MeansOfImages {
     std::vector<ImageSource>& images_;
     ImageUse use_;
     const std::vector<bool>& keep_;
-    std::map<std::size_t, std::optional<glm::vec3>> means_;
+    std::map<std::size_t, MeanOrFault> means_;
 };
 
 /// Which images nothing but a colour texture uses.
@@ -102,6 +112,11 @@ std::vector<bool> color_only(const GltfView& view) {
         }
     }
     return result;
+}
+
+std::string label(const GltfView& view, std::size_t material) {
+    const std::string& name = view.materials[material].name;
+    return name.empty() ? fmt::format("material {}", material) : fmt::format("material '{}'", name);
 }
 
 std::vector<TextureMeans> texture_means(const GltfView& view, std::vector<ImageSource>& images,
@@ -121,8 +136,8 @@ std::vector<TextureMeans> texture_means(const GltfView& view, std::vector<ImageS
     surfaces.decode_all();
     for (std::size_t i = 0; i < count; ++i) {
         if (!has_surface(view.materials[i])) continue;
-        const glm::vec3 mean =
-            surfaces.mean(view.materials[i].metallic_roughness_texture->image, i, report);
+        const glm::vec3 mean = surfaces.mean(view.materials[i].metallic_roughness_texture->image,
+                                             "metallic-roughness texture", label(view, i), report);
         means[i].roughness = mean.y;
         means[i].metallic = mean.z;
     }
@@ -141,7 +156,8 @@ std::vector<TextureMeans> texture_means(const GltfView& view, std::vector<ImageS
     colors.decode_all();
     for (std::size_t i = 0; i < count; ++i) {
         if (!is_textured_metal(i)) continue;
-        means[i].base_color = colors.mean(view.materials[i].base_color_texture->image, i, report);
+        means[i].base_color = colors.mean(view.materials[i].base_color_texture->image,
+                                          "diffuse texture", label(view, i), report);
     }
     return means;
 }

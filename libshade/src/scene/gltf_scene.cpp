@@ -6,6 +6,8 @@
 // Tests: tests/shade/scene/scene_file_test.cpp.
 #include "scene/gltf_scene.h"
 
+#include <fmt/format.h>
+
 #include <map>
 #include <numbers>
 #include <set>
@@ -166,13 +168,20 @@ void add_animations(const GltfDocument& document, SceneGraph& graph, Report& rep
 
 }  // namespace
 
-SceneGraph graph_from(const GltfDocument& document, const SceneOptions& options, Report& report) {
+SceneGraph graph_from(const GltfDocument& document, const std::filesystem::path& model,
+                      const SceneOptions& options, Report& report) {
     const GltfView view = document.view();
     SceneGraph graph;
-    for (const GltfImage& image : view.images) {
+    for (std::size_t i = 0; i < view.images.size(); ++i) {
+        const GltfImage& image = view.images[i];
         ImageSource source;
-        source.name = image.name;
+        const auto* path = std::get_if<std::filesystem::path>(&image.source);
+        source.name = !image.name.empty() ? image.name
+                      : path != nullptr   ? path->filename().string()
+                                          : fmt::format("images[{}]", i);
         std::visit([&](const auto& encoded) { source.source = encoded; }, image.source);
+        source.origin = model.string();
+        source.fault = image.fault;
         graph.scene.images.push_back(std::move(source));
     }
     graph.scene.materials = materials_from(view, options, graph.scene.images, report);

@@ -6,6 +6,7 @@
 #include <span>
 
 #include "progress_stage.h"
+#include "relief/mesh/error.h"
 
 namespace relief {
 
@@ -29,7 +30,13 @@ struct Decoder {
 }  // namespace
 
 Image decode(const ImageSource& source, ImageUse use) {
+    if (!source.fault.empty()) throw FileError(source.origin, source.fault);
     return std::visit(Decoder{source.name, use}, source.source);
+}
+
+std::string with_origin(const ImageSource& source, const std::string& error) {
+    const bool has_origin = source.origin.empty() || error.starts_with(source.origin);
+    return has_origin ? error : source.origin + ": " + error;
 }
 
 void note_image_file(const ImageSource& source) {

@@ -175,10 +175,9 @@ std::size_t JsonImages::own_image(const JsonCursor& number) const {
 Texture JsonImages::texture(const JsonCursor& cursor) {
     const JsonCursor image = cursor.is_object() ? cursor.at("image") : cursor;
     if (image.is_number()) return with_sampling(cursor, {own_image(image)});
-    const ImageSource found = source(image);
-    const auto [entry, is_new] =
-        index_of_.try_emplace(std::get<std::filesystem::path>(found.source), images_.size());
-    if (is_new) images_.push_back(found);
+    const std::filesystem::path path = (folder_ / image.text()).lexically_normal();
+    const auto [entry, is_new] = index_of_.try_emplace(path, images_.size());
+    if (is_new) images_.push_back({path.string(), path, scene_file_.string()});
     return with_sampling(cursor, {entry->second});
 }
 

@@ -28,20 +28,22 @@ Value one_of(const JsonCursor& cursor, const Named<Value> (&names)[count]) {
 /// The images of a scene by their files, each once.
 class JsonImages {
   public:
-    /// \param folder  where relative paths begin
-    JsonImages(std::filesystem::path folder, std::vector<ImageSource>& images)
-        : folder_(std::move(folder)), images_(images) {}
+    /// \param scene_file  in whose folder relative paths begin
+    JsonImages(const std::filesystem::path& scene_file, std::vector<ImageSource>& images)
+        : scene_file_(scene_file), folder_(scene_file.parent_path()), images_(images) {}
 
     /// The file that a string names. \throws InvalidInput if it is not there
     [[nodiscard]] std::filesystem::path file(const JsonCursor& cursor) const;
     /// The folder that a string names, there or not.
     [[nodiscard]] std::filesystem::path folder(const JsonCursor& cursor) const;
     [[nodiscard]] ImageSource source(const JsonCursor& cursor) const;
+    /// A texture of an image that may be missing: the Renderer finds out.
     Texture texture(const JsonCursor& cursor);
 
   private:
     [[nodiscard]] std::size_t own_image(const JsonCursor& number) const;
 
+    std::filesystem::path scene_file_;
     std::filesystem::path folder_;
     std::vector<ImageSource>& images_;
     std::map<std::filesystem::path, std::size_t> index_of_;

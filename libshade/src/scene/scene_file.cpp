@@ -22,15 +22,17 @@ namespace {
 /// The scene's images by path, each once.
 class ImagesByPath {
   public:
-    explicit ImagesByPath(std::vector<ImageSource>& images) : images_(images) {}
+    ImagesByPath(const std::filesystem::path& model, std::vector<ImageSource>& images)
+        : model_(model.string()), images_(images) {}
 
     Texture texture(const std::filesystem::path& file) {
         const auto [entry, is_new] = index_of_.try_emplace(file, images_.size());
-        if (is_new) images_.push_back({file.string(), file});
+        if (is_new) images_.push_back({file.string(), file, model_});
         return {entry->second};
     }
 
   private:
+    std::string model_;
     std::vector<ImageSource>& images_;
     std::map<std::filesystem::path, std::size_t> index_of_;
 };
@@ -100,9 +102,9 @@ void name_missing_materials(Scene& scene) {
     scene.materials.push_back(std::move(material));
 }
 
-Scene scene_from(MeshFile contents, Report& report) {
+Scene scene_from(MeshFile contents, const std::filesystem::path& file, Report& report) {
     Scene scene;
-    ImagesByPath images(scene.images);
+    ImagesByPath images(file, scene.images);
     for (std::size_t i = 0; i < contents.materials.size(); ++i) {
         scene.materials.push_back(material_from(contents.materials[i], i, images, report));
     }
@@ -123,9 +125,9 @@ SceneGraph load_scene_graph(const std::filesystem::path& file, const SceneOption
         if (extension == ".json") {
             graph = read_scene_json(file, options, report);
         } else if (extension == ".gltf" || extension == ".glb") {
-            graph = graph_from(GltfDocument::read(file, report), options, report);
+            graph = graph_from(GltfDocument::read(file, report), file, options, report);
         } else {
-            graph.scene = scene_from(read_mesh(file, report), report);
+            graph.scene = scene_from(read_mesh(file, report), file, report);
         }
         pose(graph, 0.0);
         validate(graph);

@@ -109,7 +109,7 @@ class SceneReader {
         : folder_(file.parent_path()),
           options_(options),
           report_(report),
-          images_(folder_, graph_.scene.images) {}
+          images_(file, graph_.scene.images) {}
 
     SceneGraph read(const JsonCursor& root) {
         root.allow({"relief_scene", "description", "materials", "nodes", "lights", "camera",

@@ -4,13 +4,18 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <optional>
+#include <string>
 
 #include "draw_test.h"
 #include "random_scene.h"
 #include "relief/mesh/image_file.h"
 #include "support/shapes.h"
+#include "support/shared_data.h"
 
 namespace relief {
 namespace {
@@ -121,6 +126,34 @@ TEST_F(Cached, AFileThatChangedIsReadAgain) {
         file, std::filesystem::last_write_time(file) + std::chrono::seconds(1));
     EXPECT_EQ(test::pixel(draw(scene).image, 20, 15), glm::dvec4(0, 0, 255, 255));
     std::filesystem::remove(file);
+}
+
+TEST_F(Cached, ADamagedFileIsReadAgainWhenItChanges) {
+    const test::TemporaryDirectory folder;
+    const std::filesystem::path file = folder / "image.png";
+    Scene scene = textured_scene();
+    const Image expected = draw(scene).image;
+    write_image(file, test::constant_image({1, 0, 0, 1}, 3, 8, ColorSpace::srgb));
+    std::ifstream stream(file, std::ios::binary);
+    const std::string good((std::istreambuf_iterator<char>(stream)), {});
+    const auto write = [&](const std::string& bytes) {
+        std::ofstream(file, std::ios::binary) << bytes;
+    };
+    scene.images[0].source = file;
+    write(std::string(good.size(), 'x'));
+    const auto time = std::filesystem::last_write_time(file);
+    const auto findings = [&] {
+        Report report;
+        (void)draw(scene, {40, 30, 1}, report);
+        return report.findings().size();
+    };
+    EXPECT_EQ(findings(), 1U);
+    write(good);
+    std::filesystem::last_write_time(file, time);
+    EXPECT_EQ(findings(), 1U) << "the file looks as it did, so it is not decoded again";
+    std::filesystem::last_write_time(file, time + std::chrono::seconds(1));
+    EXPECT_EQ(findings(), 0U);
+    EXPECT_TRUE(test::same_bits(draw(scene).image, expected));
 }
 
 TEST_F(Cached, RenderersThatLiveSideBySideDoNotDrawIntoEachOther) {

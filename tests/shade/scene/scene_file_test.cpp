@@ -229,6 +229,13 @@ TEST(LoadScene, GivesGltfsMaterialsAsTheirAuthorsMeant) {
     EXPECT_NEAR(glass.diffuse.x, 0.5F, 1e-6F);
 }
 
+std::size_t unreadable_textures_in(const Report& report) {
+    std::size_t count = 0;
+    for (const Finding& finding : report.findings())
+        count += finding.kind.starts_with("unreadable ") ? 1 : 0;
+    return count;
+}
+
 TEST(LoadScene, TranslatesGltfsMaterialsToPhongByChoice) {
     const test::TemporaryDirectory folder;
     write_text(folder / "lit.gltf", lit_triangle());
@@ -241,7 +248,7 @@ TEST(LoadScene, TranslatesGltfsMaterialsToPhongByChoice) {
     EXPECT_EQ(glass.alpha_mode, AlphaMode::blend);
     EXPECT_TRUE(glass.diffuse_texture);
     // The image is missing, and only Phong's means need to look into it.
-    EXPECT_EQ(report.count("unreadable texture"), 1U);
+    EXPECT_EQ(unreadable_textures_in(report), 1U);
 }
 
 TEST(LoadScene, CountsWhatIsNotDrawnAsMeant) {
@@ -280,9 +287,9 @@ TEST(LoadScene, ReadsMeansOfRealTexturesAndGoesOnWithoutMissingOnes) {
     }
     ASSERT_FALSE(file.empty());
     EXPECT_NO_THROW((void)load_scene(file, report));
-    EXPECT_EQ(report.count("unreadable texture"), 0U);  // As authored, nothing is looked into.
+    EXPECT_EQ(unreadable_textures_in(report), 0U);  // As authored, nothing is looked into.
     EXPECT_NO_THROW((void)load_scene(file, phong, report));
-    EXPECT_GT(report.count("unreadable texture"), 0U);
+    EXPECT_GT(unreadable_textures_in(report), 0U);
 }
 
 TEST(LoadScene, NamesTheFileOfWhatItCannotRead) {

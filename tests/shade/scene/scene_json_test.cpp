@@ -283,8 +283,6 @@ TEST_F(SceneFile, RefusesWhatItDoesNotKnowAndSaysWhere) {
            "/materials/m/shininess: is -1, but must be within [0, 1000000]");
     expect(R"("materials": {"m": {"diffuse": "red"}})",
            "/materials/m/diffuse: must be three numbers, one number, or \"#rrggbb\"");
-    expect(R"("materials": {"m": {"diffuse_texture": "missing.png"}})",
-           "/materials/m/diffuse_texture: there is no file ");
     expect(R"("materials": {"m": {"normal_map": "a.png", "bump_map": "b.png"}})",
            "/materials/m: has a normal map and a bump map");
     expect(R"("nodes": [{"shape": "cub"}])",

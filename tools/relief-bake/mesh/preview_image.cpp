@@ -38,7 +38,7 @@ ImageSource preview_image(const std::filesystem::path& map, const NormalMapForma
     const int width = reader.info().width;
     const int height = reader.info().height;
     const int factor = (std::max(width, height) + most - 1) / most;
-    if (factor <= 1) return {map.string(), map};
+    if (factor <= 1) return {.name = map.string(), .source = map, .is_required = true};
     // What is left over at the right and at the bottom becomes texels of their own: the map ends a
     // little further out then, by less than a texel of the smaller one.
     Image means = make_image((width + factor - 1) / factor, (height + factor - 1) / factor, 3, 32,

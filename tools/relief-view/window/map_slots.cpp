@@ -70,7 +70,7 @@ std::size_t image_of(Scene& scene, const std::filesystem::path& file) {
     };
     const auto found = std::find_if(scene.images.begin(), scene.images.end(), is_it);
     if (found != scene.images.end()) return static_cast<std::size_t>(found - scene.images.begin());
-    scene.images.push_back({file.string(), file});
+    scene.images.push_back({.name = file.string(), .source = file, .is_required = true});
     return scene.images.size() - 1;
 }
 

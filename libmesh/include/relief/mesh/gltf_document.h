@@ -71,8 +71,11 @@ struct GltfTexture {
 /// An image in its encoded form: bytes from the document, or a file beside it.
 struct GltfImage {
     std::string name;
-    /// No bytes where the document names a file outside its folder.
+    /// Without bytes where `fault` says why.
     std::variant<std::vector<std::byte>, std::filesystem::path> source;
+    /// Why the image cannot be read: "images[0].uri '../x.png' leads out of the document's folder,
+    /// so it is not read". Empty: nothing is known to be wrong before the image is decoded.
+    std::string fault{};
 };
 
 /// A material as glTF defines it; colours linear.
@@ -218,6 +221,11 @@ class GltfDocument {
     /// FileError if an image is missing or neither PNG nor JPEG; InvalidInput if the mesh is
     ///         not valid, has no triangle or names a material that is not there
     static GltfDocument from_mesh(const MeshFile& contents);
+
+    /// The same, but a material whose image is missing is written without that texture.
+    ///
+    /// \param report  names each such texture: its material, its file and what is wrong
+    static GltfDocument from_mesh(const MeshFile& contents, Report& report);
 
     GltfDocument(GltfDocument&&) noexcept;
     GltfDocument& operator=(GltfDocument&&) noexcept;

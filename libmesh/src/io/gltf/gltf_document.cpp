@@ -81,7 +81,11 @@ GltfDocument GltfDocument::read(const std::filesystem::path& file, Report& repor
 }
 
 GltfDocument GltfDocument::from_mesh(const MeshFile& contents) {
-    return GltfDocument(std::make_unique<Contents>(Contents{gltf_from_mesh(contents)}));
+    return GltfDocument(std::make_unique<Contents>(Contents{gltf_from_mesh(contents, nullptr)}));
+}
+
+GltfDocument GltfDocument::from_mesh(const MeshFile& contents, Report& report) {
+    return GltfDocument(std::make_unique<Contents>(Contents{gltf_from_mesh(contents, &report)}));
 }
 
 void GltfDocument::write(const std::filesystem::path& file) const {

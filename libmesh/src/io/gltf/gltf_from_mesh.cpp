@@ -3,7 +3,8 @@
 //
 // Object space becomes the space of the one node. Phong's exponent becomes GGX's alpha by
 // alpha^2 = 2 / (Ns + 2) [Karis 2013], and alpha is glTF's roughness squared; libshade's
-// phong_from_metallic_roughness is the inverse. A missing image is a FileError.
+// phong_from_metallic_roughness is the inverse. A missing image is a finding, or without a report a
+// FileError.
 // Tests: tests/mesh/io/gltf/gltf_from_mesh_test.cpp.
 #include "io/gltf/gltf_from_mesh.h"
 #include "io/gltf/gltf_edit.h"
@@ -25,7 +26,7 @@ namespace {
 /// Puts together the document of one mesh.
 class DocumentMaker {
   public:
-    explicit DocumentMaker(const MeshFile& file) : file_(file) {}
+    DocumentMaker(const MeshFile& file, Report* report) : file_(file), report_(report) {}
     GltfContents make();
 
   private:
@@ -33,10 +34,14 @@ class DocumentMaker {
     std::size_t add_accessor(const std::vector<Element>& elements, const char* type,
                              int component_type, int target);
     void add_primitive(const MaterialRange& range);
-    void add_material(const MtlMaterial& material);
+    void add_material(const MtlMaterial& material, std::size_t index);
     Json texture_info(const std::filesystem::path& image);
+    void add_texture(Json& holder, const char* key, const char* texture,
+                     const std::optional<std::filesystem::path>& image, const MtlMaterial& material,
+                     std::size_t index);
 
     const MeshFile& file_;
+    Report* report_;
     GltfContents contents_;
     std::map<std::filesystem::path, std::size_t> textures_;
     bool uses_emissive_strength_ = false;
@@ -156,9 +161,10 @@ void DocumentMaker::add_primitive(const MaterialRange& range) {
 
 /// The texture of an image file; each file is put inside once.
 Json DocumentMaker::texture_info(const std::filesystem::path& image) {
-    const auto [entry, is_new] = textures_.try_emplace(image, textures_.size());
-    if (is_new) {
+    auto entry = textures_.find(image);
+    if (entry == textures_.end()) {
         const std::string bytes = read_file(image);
+        entry = textures_.emplace(image, textures_.size()).first;
         const std::string media_type = image_media_type(bytes);
         if (media_type != "image/png" && media_type != "image/jpeg") {
             throw FileError(image, "is neither PNG nor JPEG, which is all that glTF holds");
@@ -172,7 +178,27 @@ Json DocumentMaker::texture_info(const std::filesystem::path& image) {
     return {{"index", entry->second}};
 }
 
-void DocumentMaker::add_material(const MtlMaterial& material) {
+/// Sets a member of a material to the texture of an image, if the material has the image and it can
+/// be read.
+///
+/// \param texture  what the report calls it
+void DocumentMaker::add_texture(Json& holder, const char* key, const char* texture,
+                                const std::optional<std::filesystem::path>& image,
+                                const MtlMaterial& material, std::size_t index) {
+    if (!image) return;
+    std::error_code ignored;
+    if (report_ == nullptr || std::filesystem::is_regular_file(*image, ignored)) {
+        holder[key] = texture_info(*image);
+        return;
+    }
+    const bool exists = std::filesystem::exists(*image, ignored);
+    report_->add(fmt::format("unreadable {} of material '{}'", texture, material.name), "material",
+                 index,
+                 fmt::format("left out: {}: {}", image->string(),
+                             exists ? "is not a file" : "no such file"));
+}
+
+void DocumentMaker::add_material(const MtlMaterial& material, std::size_t index) {
     const auto clamped = [](float value) { return std::clamp(value, 0.0F, 1.0F); };
     const glm::vec3 color = glm::clamp(material.diffuse, 0.0F, 1.0F);
     const float opacity = clamped(material.opacity);
@@ -181,12 +207,17 @@ void DocumentMaker::add_material(const MtlMaterial& material) {
         {"metallicFactor", 0.0F},
         {"roughnessFactor",
          clamped(std::sqrt(std::sqrt(2.0F / (std::max(material.shininess, 0.0F) + 2.0F))))}};
-    if (material.diffuse_map) pbr["baseColorTexture"] = texture_info(*material.diffuse_map);
+    add_texture(pbr, "baseColorTexture", "diffuse texture", material.diffuse_map, material, index);
     Json json = {{"name", material.name}, {"pbrMetallicRoughness", pbr}};
     if (opacity < 1.0F) json["alphaMode"] = "BLEND";
+    add_texture(json, "emissiveTexture", "emission texture", material.emission_map, material,
+                index);
     // An image of light needs a factor to be seen; MTL's own default for Ke is black.
     glm::vec3 emission = glm::max(material.emission, 0.0F);
-    if (material.emission_map && emission == glm::vec3(0.0F)) emission = glm::vec3(1.0F);
+    const bool has_emission_texture = json.contains("emissiveTexture");
+    if (has_emission_texture && emission == glm::vec3(0.0F)) emission = glm::vec3(1.0F);
+    // Most texels of such textures are black.
+    if (material.emission_map && !has_emission_texture) emission = glm::vec3(0.0F);
     const float strength = std::max({emission.r, emission.g, emission.b, 1.0F});
     if (emission != glm::vec3(0.0F)) {
         emission /= strength;
@@ -196,8 +227,7 @@ void DocumentMaker::add_material(const MtlMaterial& material) {
         json["extensions"]["KHR_materials_emissive_strength"]["emissiveStrength"] = strength;
         uses_emissive_strength_ = true;
     }
-    if (material.emission_map) json["emissiveTexture"] = texture_info(*material.emission_map);
-    if (material.normal_map) json["normalTexture"] = texture_info(*material.normal_map);
+    add_texture(json, "normalTexture", "normal map", material.normal_map, material, index);
     contents_.root["materials"].push_back(json);
 }
 
@@ -222,8 +252,8 @@ GltfContents DocumentMaker::make() {
     for (const MaterialRange& range : ranges) {
         if (range.triangle_count > 0) add_primitive(range);
     }
-    for (const MtlMaterial& material : file_.materials)
-        add_material(material);
+    for (std::size_t i = 0; i < file_.materials.size(); ++i)
+        add_material(file_.materials[i], i);
     if (uses_emissive_strength_) root["extensionsUsed"] = {"KHR_materials_emissive_strength"};
     contents_.position_uses.assign(array_in(root, "accessors").size(), 0);
     return std::move(contents_);
@@ -231,7 +261,7 @@ GltfContents DocumentMaker::make() {
 
 }  // namespace
 
-GltfContents gltf_from_mesh(const MeshFile& file) {
+GltfContents gltf_from_mesh(const MeshFile& file, Report* report) {
     validate(file.mesh);
     if (file.mesh.triangles.empty()) throw InvalidInput("the mesh has no triangle");
     for (const MaterialRange& range : file.mesh.material_ranges) {
@@ -242,7 +272,7 @@ GltfContents gltf_from_mesh(const MeshFile& file) {
                             *range.material, file.materials.size()));
         }
     }
-    return DocumentMaker(file).make();
+    return DocumentMaker(file, report).make();
 }
 
 }  // namespace relief

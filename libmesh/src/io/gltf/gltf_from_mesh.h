@@ -5,10 +5,13 @@
 
 #include "io/gltf/gltf_contents.h"
 #include "relief/mesh/mesh_file.h"
+#include "relief/mesh/report.h"
 
 namespace relief {
 
 /// See GltfDocument::from_mesh.
-GltfContents gltf_from_mesh(const MeshFile& file);
+///
+/// \param report  null: an image that cannot be read is a FileError
+GltfContents gltf_from_mesh(const MeshFile& file, Report* report);
 
 }  // namespace relief

@@ -176,8 +176,8 @@ GltfBuffer read_buffer(const Json& buffer, std::size_t index, const GltfContents
 void check_images(const GltfContents& contents, Report& report) {
     const Json& images = array_in(contents.root, "images");
     for (std::size_t i = 0; i < images.size(); ++i) {
+        if (!images[i].contains("uri")) continue;
         const std::string uri = text_in(images[i], "uri");
-        if (uri.empty()) continue;
         if (is_data_uri(uri)) {
             try {
                 decode_data_uri(uri);
@@ -188,9 +188,9 @@ void check_images(const GltfContents& contents, Report& report) {
         }
         const auto path = path_inside(contents.folder, uri);
         std::error_code ignored;
-        if (!path) {
+        if (!path && !uri.empty()) {
             report.add("image outside the document's folder", "image", i, "kept by name, not read");
-        } else if (!std::filesystem::exists(*path, ignored)) {
+        } else if (!path || !std::filesystem::is_regular_file(*path, ignored)) {
             report.add("missing image", "image", i, "kept by name");
         }
     }

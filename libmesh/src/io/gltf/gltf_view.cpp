@@ -8,6 +8,8 @@
 // Tests: tests/mesh/io/gltf/gltf_view_test.cpp.
 #include "io/gltf/gltf_view.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -185,7 +187,8 @@ std::vector<std::byte> bytes_of(std::string_view text) {
     return bytes;
 }
 
-GltfImage image_from(const GltfContents& contents, const Json& json) {
+GltfImage image_from(const GltfContents& contents, std::size_t index) {
+    const Json& json = contents.root["images"][index];
     GltfImage image;
     image.name = text_in(json, "name");
     const std::string uri = text_in(json, "uri");
@@ -197,6 +200,12 @@ GltfImage image_from(const GltfContents& contents, const Json& json) {
         image.source = bytes_of(decode_data_uri(uri).bytes);
     } else if (const auto path = path_inside(contents.folder, uri)) {
         image.source = *path;
+    } else {
+        image.fault = uri.empty() ? fmt::format("images[{}] names no file and has no bytes", index)
+                                  : fmt::format(
+                                        "images[{}].uri '{}' leads out of the document's "
+                                        "folder, so it is not read",
+                                        index, uri);
     }
     return image;
 }
@@ -355,9 +364,8 @@ GltfView view_of(const GltfContents& contents) {
     for (const Json& material : array_in(contents.root, "materials")) {
         view.materials.push_back(material_from(contents.root, material));
     }
-    for (const Json& image : array_in(contents.root, "images")) {
-        view.images.push_back(image_from(contents, image));
-    }
+    for (std::size_t i = 0; i < array_in(contents.root, "images").size(); ++i)
+        view.images.push_back(image_from(contents, i));
     Placer(contents, view).place_all();
     return view;
 }

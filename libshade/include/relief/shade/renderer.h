@@ -56,12 +56,14 @@ class Renderer {
   public:
     /// Draws as plan_effects() plans.
     ///
-    /// \param report  counts fallbacks of tangent and normal computation and of image decoding, and
-    ///                textures that do not show because a mesh has no texture coordinates
-    /// \throws InvalidInput if the scene or the settings are not valid, FileError if an image that
-    /// is
-    ///         needed cannot be read, GpuError if OpenGL refuses something; a shader's errors are
-    ///         named by file and line
+    /// \param report  counts fallbacks of tangent and normal computation and of image decoding,
+    ///                textures that do not show because a mesh has no texture coordinates, and
+    ///                textures whose images are missing or damaged: the picture is drawn as if
+    ///                their materials did not have them, but for emission textures, without which
+    ///                nothing is emitted. plan() is then the plan without them
+    /// \throws InvalidInput if the scene or the settings are not valid, FileError if an image of
+    ///         the environment, or one that is required (scene.h), cannot be read, GpuError if
+    ///         OpenGL refuses something; a shader's errors are named by file and line
     Renderer(const Context& context, const Scene& scene, const FrameSettings& settings,
              Report& report);
 

@@ -29,6 +29,12 @@ namespace relief {
 struct ImageSource {
     std::string name;  ///< For messages.
     std::variant<std::filesystem::path, Shared<std::vector<std::byte>>, Shared<Image>> source;
+    std::string origin{};  ///< The file that names the image, for messages; empty: none.
+    /// Why there is nothing to decode; empty: there is.
+    std::string fault{};
+    /// Whether a Renderer that cannot decode the image throws. Else it draws without the texture
+    /// and reports that.
+    bool is_required = false;
 };
 
 /// The largest value of a material's colour.

@@ -121,6 +121,29 @@ TEST_F(GltfFromMesh, ImagesAreEmbeddedOnceAsTheyAre) {
     EXPECT_THAT(bytes.substr(0, 4096), HasSubstr("\"mimeType\":\"image/jpeg\""));
 }
 
+TEST_F(GltfFromMesh, WithAReportMissingImagesAreLeftOutAndNamed) {
+    MeshFile file;
+    file.mesh = test::grid(1);
+    file.materials.resize(2);
+    file.materials[1].name = "brick";
+    file.materials[1].diffuse_map = folder_ / "none.png";
+    file.materials[1].emission_map = folder_ / "none.png";
+    file.materials[1].normal_map = folder_.path();
+    Report report;
+    const GltfView view = GltfDocument::from_mesh(file, report).view();
+    EXPECT_TRUE(view.images.empty());
+    ASSERT_EQ(view.materials.size(), 2U);
+    EXPECT_FALSE(view.materials[1].base_color_texture);
+    EXPECT_EQ(view.materials[1].emission, glm::vec3(0.0F));
+    ASSERT_EQ(report.findings().size(), 3U);
+    EXPECT_EQ(to_string(report.findings()[0]),
+              "1 x unreadable diffuse texture of material 'brick' (material 1): left out: " +
+                  (folder_ / "none.png").string() + ": no such file");
+    EXPECT_EQ(report.findings()[1].kind, "unreadable normal map of material 'brick'");
+    EXPECT_EQ(report.findings()[1].outcome,
+              "left out: " + folder_.path().string() + ": is not a file");
+}
+
 TEST_F(GltfFromMesh, MissingAndForeignImagesAreFileErrors) {
     MeshFile file{test::cube(), {}};
     file.materials.resize(1);

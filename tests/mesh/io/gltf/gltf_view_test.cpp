@@ -82,6 +82,10 @@ TEST_F(GltfViewTest, MaterialsHaveTheirValuesOrGltfsDefaults) {
     EXPECT_EQ(std::get<std::vector<std::byte>>(view.images[1].source).size(), 3U);
     // Outside the folder: never opened, so empty.
     EXPECT_TRUE(std::get<std::vector<std::byte>>(view.images[2].source).empty());
+    EXPECT_EQ(view.images[0].fault, "");
+    EXPECT_EQ(view.images[1].fault, "");
+    EXPECT_EQ(view.images[2].fault,
+              "images[2].uri '../b.png' leads out of the document's folder, so it is not read");
 }
 
 TEST_F(GltfViewTest, TextureTransformsScaleThenTurnThenShift) {
