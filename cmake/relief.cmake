@@ -30,8 +30,6 @@ if(RELIEF_SANITIZE)
     target_link_options(relief_flags INTERFACE -fsanitize=address,undefined)
 endif()
 
-# No report of ThreadSanitizer is suppressed: what it cannot see of oneTBB is announced in
-# libmesh/src/base/parallel.cpp.
 if(RELIEF_TSAN)
     if(RELIEF_SANITIZE)
         message(FATAL_ERROR "RELIEF_TSAN and RELIEF_SANITIZE exclude each other")
@@ -107,6 +105,12 @@ endif()
 set(RELIEF_TEST_PROPERTIES
     TIMEOUT ${test_seconds} ENVIRONMENT MESA_SHADER_CACHE_DIR=${PROJECT_BINARY_DIR}/shader-cache ENVIRONMENT_MODIFICATION
     LSAN_OPTIONS=set:intercept_tls_get_addr=0:${leak_options})
+
+if(RELIEF_TSAN)
+    set(RELIEF_TEST_PROPERTIES
+        TIMEOUT ${test_seconds} ENVIRONMENT
+        TSAN_OPTIONS=suppressions=${PROJECT_SOURCE_DIR}/tests/support/tsan.supp)
+endif()
 
 # relief_add_tests(NAME sources... [LIBRARIES ...]): one GoogleTest program; each test
 # is a ctest entry called NAME/Suite.Test. A test that calls GTEST_SKIP shows as "Skipped" there.

@@ -151,7 +151,8 @@ ExitCode run(const CLI::App& app, ViewOptions& options) {
         print_measures(drawn->measures, options, drawn->frame);
     }
     if (drawn && drawn->comparison) require_match(options, *drawn->comparison);
-    const ReportOptions strictness{.strict = options.strict};
+    ReportOptions strictness;
+    strictness.strict = options.strict;
     return found_fault(app, strictness, options.model, findings) ? ExitCode::fell_back
                                                                  : ExitCode::done;
 }

@@ -139,8 +139,8 @@ TEST_F(GltfFromMesh, WithAReportMissingImagesAreLeftOutAndNamed) {
     EXPECT_EQ(to_string(report.findings()[0]),
               "1 x unreadable diffuse texture of material 'brick' (material 1): left out: " +
                   (folder_ / "none.png").string() + ": no such file");
-    EXPECT_EQ(report.findings()[1].kind, "unreadable normal map of material 'brick'");
-    EXPECT_EQ(report.findings()[1].outcome,
+    EXPECT_EQ(report.findings()[2].kind, "unreadable normal map of material 'brick'");
+    EXPECT_EQ(report.findings()[2].outcome,
               "left out: " + folder_.path().string() + ": is not a file");
 }
 
