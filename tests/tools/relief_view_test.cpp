@@ -387,8 +387,9 @@ TEST(ViewCommand, ImagesOfModelsThatCannotBeReadAreNamedAndDrawnWithout) {
     EXPECT_EQ(summary["findings"][0]["kind"], "unreadable diffuse texture of material 'wall'");
     EXPECT_EQ(pixel(picture_in(workplace / "out/p.png"), 16, 16), untextured) << "embedded";
     for (const json& effect : summary["effects"]["draws"][0]["effects"]) {
-        if (effect["effect"] == "diffuse texture")
+        if (effect["effect"] == "diffuse texture") {
             EXPECT_EQ(effect["reason"], "its image cannot be read");
+        }
     }
     EXPECT_EQ(summary["effects"]["draws"][0]["textures"].size(), 0U);
     std::filesystem::remove(workplace / "../outside.png");
