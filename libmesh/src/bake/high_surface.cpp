@@ -3,7 +3,9 @@
 #include "bake/high_surface.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <tuple>
 #include <utility>
 
 #include "bake/surface_texture.h"
@@ -59,11 +61,11 @@ Wide interpolated(std::span<const Value> values, const glm::uvec3& corners, cons
     return sum;
 }
 
-/// Of maps that are covered all over, where half of the samples need a second ray.
+/// Of maps that are covered all over.
 double expected_rays(const BakeOptions& options) {
     const int rays = options.layers.occlusion ? options.layers.occlusion->rays : 0;
     return static_cast<double>(options.map_count) * options.width * options.height *
-           (1.5 * options.samples + rays);
+           (options.samples + rays);
 }
 
 }  // namespace
@@ -76,7 +78,45 @@ HighSurface::HighSurface(std::span<const Mesh> meshes, const BakeOptions& option
         entries_.push_back(entry(meshes[i], i, options, report));
         ray_meshes.push_back({entries_[i].mesh->positions, entries_[i].mesh->triangles});
     }
-    scene_ = std::make_unique<RayScene>(std::move(ray_meshes), expected_rays(options));
+    scene_ = std::make_unique<RayScene>(std::move(ray_meshes), expected_rays(options),
+                                        [this](const MetTriangle& a, const MetTriangle& b) {
+                                            return attributes(a) < attributes(b);
+                                        });
+}
+
+std::vector<std::uint32_t> HighSurface::attributes(const MetTriangle& met) const {
+    const Entry& entry = entries_[met.mesh];
+    const Mesh& mesh = *entry.mesh;
+    glm::uvec3 corners = mesh.triangles[met.triangle];
+    const auto is_before = [&](std::uint32_t a, std::uint32_t b) {
+        const glm::vec3& p = mesh.positions[a];
+        const glm::vec3& q = mesh.positions[b];
+        return std::tie(p.x, p.y, p.z) < std::tie(q.x, q.y, q.z);
+    };
+    std::sort(&corners[0], &corners[0] + 3, is_before);
+    std::vector<std::uint32_t> result;
+    const auto add = [&](const auto& values, std::uint32_t vertex) {
+        if (values.empty()) return;
+        const float* numbers = reinterpret_cast<const float*>(&values[vertex]);
+        for (std::size_t i = 0; i < sizeof(values[0]) / sizeof(float); ++i)
+            result.push_back(std::bit_cast<std::uint32_t>(numbers[i]));
+    };
+    for (int i = 0; i < 3; ++i) {
+        add(mesh.normals, corners[i]);
+        add(mesh.tangents, corners[i]);
+        add(mesh.texcoords, corners[i]);
+        add(mesh.colors, corners[i]);
+        add(entry.color_texcoords, corners[i]);
+        add(entry.curvature, corners[i]);
+    }
+    const auto range =
+        std::upper_bound(mesh.material_ranges.begin(), mesh.material_ranges.end(), met.triangle,
+                         [](std::uint32_t triangle, const MaterialRange& one) {
+                             return triangle < one.first_triangle;
+                         });
+    if (range != mesh.material_ranges.begin())
+        result.push_back(static_cast<std::uint32_t>(std::prev(range)->material.value_or(-1)));
+    return result;
 }
 
 HighSurface::Entry HighSurface::entry(const Mesh& mesh, std::size_t index,

@@ -64,6 +64,9 @@ class HighSurface {
     [[nodiscard]] Entry entry(const Mesh& mesh, std::size_t index, const BakeOptions& options,
                               Report& report);
     [[nodiscard]] const HighMaterial* material(const RayHit& hit) const;
+    /// Whatever a bake can read of a triangle, in an order that does not depend on which of its
+    /// corners is the first one.
+    [[nodiscard]] std::vector<std::uint32_t> attributes(const MetTriangle& met) const;
 
     std::vector<Mesh> made_;  ///< Those that had to be given normals or tangents.
     std::vector<Entry> entries_;

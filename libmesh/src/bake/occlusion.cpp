@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "geometry/direction.h"
+#include "geometry/portable_math.h"
 
 namespace relief {
 namespace {
@@ -113,8 +114,8 @@ std::vector<double> Occlusion::open_shares(const RayScene& scene,
             // Even on the disc is by the cosine on the hemisphere above it.
             const double radius = std::sqrt(u);
             const glm::dvec3 direction =
-                axes *
-                glm::dvec3(radius * std::cos(turn), radius * std::sin(turn), std::sqrt(1.0 - u));
+                axes * glm::dvec3(radius * portable::cos(turn), radius * portable::sin(turn),
+                                  std::sqrt(1.0 - u));
             if (glm::dot(direction, place.face) <= 0.0) continue;
             ++cast[i];
             packets.add(i, {origin, direction, 0.0, far});

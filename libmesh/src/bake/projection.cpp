@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Two rounds of packets, and a walk for what they leave open. See projection.h.
+// Packets of rays, and a walk for what they leave open. See projection.h.
 // Tests: tests/mesh/bake/projection_test.cpp.
 #include "bake/projection.h"
 
@@ -11,28 +11,6 @@ namespace {
 
 constexpr double step_share = 4e-6;  // Of the scene's size.
 constexpr int most_steps = 256;      // Through so many layers of surface.
-
-/// Casts rays by packets: ray_of(i) says which, each(i, hit) gets what it meets, unless it meets
-/// the triangle known_of(i).
-template <typename RayOf, typename KnownOf, typename Each>
-void cast(const RayScene& scene, std::size_t count, const RayOf& ray_of, const KnownOf& known_of,
-          const Each& each) {
-    RayPacket packet;
-    std::array<Ray, RayPacket::size> rays;
-    for (std::size_t first = 0; first < count; first += RayPacket::size) {
-        const std::size_t lanes = std::min(RayPacket::size, count - first);
-        for (std::size_t lane = 0; lane < lanes; ++lane) {
-            rays[lane] = ray_of(first + lane);
-            scene.set(packet, lane, rays[lane]);
-        }
-        scene.find(packet, lanes);
-        for (std::size_t lane = 0; lane < lanes; ++lane) {
-            const MetTriangle met{packet.mesh[lane], packet.triangle[lane]};
-            if (packet.hits(lane) && met == known_of(first + lane)) continue;
-            each(first + lane, scene.hit(packet, lane, rays[lane]));
-        }
-    }
-}
 
 Ray from_outside(const ProjectionLine& line) {
     return {line.point + line.outside * line.outward, -line.outward, 0.0,
@@ -46,55 +24,36 @@ Projection::Projection(const RayScene& scene, BackFaces back_faces)
 
 std::size_t Projection::find(std::span<const ProjectionLine> lines,
                              std::span<ProjectedPoint> points) const {
-    std::size_t rays = find_from_outside(lines, points);
-    if (back_faces_ == BackFaces::take) return rays;
-    std::vector<std::size_t> doubtful;
-    rays += find_doubtful(lines, points, doubtful);
-    for (const std::size_t i : doubtful)
+    std::size_t rays = lines.size();
+    for (const std::size_t i : find_from_outside(lines, points))
         rays += walk(lines[i], points[i]);
     return rays;
 }
 
-std::size_t Projection::find_from_outside(std::span<const ProjectionLine> lines,
-                                          std::span<ProjectedPoint> points) const {
-    cast(
-        scene_, lines.size(), [&](std::size_t i) { return from_outside(lines[i]); },
-        [](std::size_t) {
-            return MetTriangle{RayPacket::nothing, 0};
-        },
-        [&](std::size_t i, const RayHit& hit) {
+std::vector<std::size_t> Projection::find_from_outside(std::span<const ProjectionLine> lines,
+                                                       std::span<ProjectedPoint> points) const {
+    std::vector<std::size_t> doubtful;
+    RayPacket packet;
+    for (std::size_t first = 0; first < lines.size(); first += RayPacket::size) {
+        const std::size_t lanes = std::min(RayPacket::size, lines.size() - first);
+        for (std::size_t lane = 0; lane < lanes; ++lane) {
+            const ProjectionLine& line = lines[first + lane];
+            if (back_faces_ == BackFaces::take)
+                scene_.set(packet, lane, from_outside(line));
+            else
+                scene_.set(packet, lane, from_outside(line), line.outside);
+        }
+        scene_.find(packet, lanes);
+        for (std::size_t lane = 0; lane < lanes; ++lane) {
+            const std::size_t i = first + lane;
+            const RayHit hit = scene_.hit(packet, lane);
             points[i] = {hit, lines[i].outside - hit.distance};
-        });
-    return lines.size();
-}
-
-std::size_t Projection::find_doubtful(std::span<const ProjectionLine> lines,
-                                      std::span<const ProjectedPoint> points,
-                                      std::vector<std::size_t>& doubtful) const {
-    std::vector<std::size_t> outwards;
-    for (std::size_t i = 0; i < lines.size(); ++i) {
-        if (!points[i].hit.is_hit()) continue;
-        if (!points[i].hit.faces_origin)
-            doubtful.push_back(i);
-        else if (points[i].height > step_)
-            outwards.push_back(i);
+            if (!hit.is_hit() || back_faces_ == BackFaces::take) continue;
+            if (!hit.faces_origin || packet.last[lane] > hit.distance + step_)
+                doubtful.push_back(i);
+        }
     }
-    cast(
-        scene_, outwards.size(),
-        [&](std::size_t i) {
-            const ProjectionLine& line = lines[outwards[i]];
-            return Ray{line.point, line.outward, 0.0, points[outwards[i]].height + step_};
-        },
-        // The surface itself, as nearly always: there is nothing before it.
-        [&](std::size_t i) {
-            const RayHit& surface = points[outwards[i]].hit;
-            return MetTriangle{surface.mesh, surface.triangle};
-        },
-        [&](std::size_t i, const RayHit& hit) {
-            if (hit.is_hit() && hit.distance < points[outwards[i]].height - step_)
-                doubtful.push_back(outwards[i]);
-        });
-    return outwards.size();
+    return doubtful;
 }
 
 /// Along a line from its point, outwards or inwards, one triangle after another.

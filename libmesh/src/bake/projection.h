@@ -11,9 +11,9 @@
 /// it faces it, else within two solids that pass through each other, and both must be left. Where
 /// no surface was left, P lies outside, and it is the first surface inwards that faces P.
 ///
-/// That takes one ray where nothing lies outwards of P: the first hit from outside is it. Where
-/// that hit lies outwards of P, a second ray outwards tells whether it is the first surface there;
-/// it almost always is. Only else the line is walked triangle by triangle.
+/// One ray from outside finds the first hit, and whether the line meets anything between that hit
+/// and P. Where it does not, which is nearly always so, the first hit is the surface wanted. Else
+/// the line is walked triangle by triangle.
 #pragma once
 
 #include <span>
@@ -51,17 +51,14 @@ class Projection {
   private:
     struct Walk;
 
-    std::size_t find_from_outside(std::span<const ProjectionLine> lines,
-                                  std::span<ProjectedPoint> points) const;
-    /// Which of the points found lie outwards, with something else before them.
-    std::size_t find_doubtful(std::span<const ProjectionLine> lines,
-                              std::span<const ProjectedPoint> points,
-                              std::vector<std::size_t>& doubtful) const;
+    /// \return the lines whose first hit may not be the surface wanted
+    std::vector<std::size_t> find_from_outside(std::span<const ProjectionLine> lines,
+                                               std::span<ProjectedPoint> points) const;
     std::size_t walk(const ProjectionLine& line, ProjectedPoint& point) const;
 
     const RayScene& scene_;
     BackFaces back_faces_;
-    double step_;  ///< By which rays pass what they have met: above the errors of Embree's floats.
+    double step_;  ///< By which rays pass what they have met.
 };
 
 }  // namespace relief

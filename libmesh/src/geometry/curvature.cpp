@@ -9,6 +9,7 @@
 
 #include "geometry/check_triangles.h"
 #include "geometry/direction.h"
+#include "geometry/portable_math.h"
 #include "geometry/weld.h"
 #include "parallel.h"
 
@@ -93,7 +94,7 @@ struct VertexSum {
         const double dot_b = glm::dot(-b, c - b);
         const double dot_c = glm::dot(-c, b - c);
         laplacian -= dot_c / area2 * b + dot_b / area2 * c;
-        normal += std::atan2(area2, dot_a) / area2 * cross;
+        normal += portable::atan2(area2, dot_a) / area2 * cross;
         if (dot_a < 0.0)
             mixed_area += area2 / 4.0;
         else if (dot_b < 0.0 || dot_c < 0.0)

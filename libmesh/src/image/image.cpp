@@ -13,6 +13,7 @@
 #include <string_view>
 #include <type_traits>
 
+#include "geometry/portable_math.h"
 #include "image/texel_loops.h"
 #include "large_memory.h"
 #include "parallel.h"
@@ -26,11 +27,11 @@ constexpr std::size_t samples_per_piece = 1 << 14;
 // The constants as the standard prints them. The two branches do not quite meet: between the codes
 // 0.04045 and its light 0.0031308 lies a step of 1e-7, which no 16-bit code can see.
 double decoded(double coded) {
-    return coded <= 0.04045 ? coded / 12.92 : std::pow((coded + 0.055) / 1.055, 2.4);
+    return coded <= 0.04045 ? coded / 12.92 : portable::pow((coded + 0.055) / 1.055, 2.4);
 }
 
 double encoded(double light) {
-    return light <= 0.0031308 ? 12.92 * light : 1.055 * std::pow(light, 1.0 / 2.4) - 0.055;
+    return light <= 0.0031308 ? 12.92 * light : 1.055 * portable::pow(light, 1.0 / 2.4) - 0.055;
 }
 
 /// Light of every 8- or 16-bit code.

@@ -1,118 +1,87 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rays from the eye by Embree, made exact. See visibility.h. Embree sees the scene divided by the
-// camera's far distance, so that no scale is too large or too small for its floats.
+// Embree sees the scene divided by the camera's far distance, so that no scale is too large or too
+// small for its floats. See visibility.h.
 // Tests: tests/shade/reference/visibility_test.cpp.
 #include "reference/visibility.h"
 
 #include <algorithm>
-#include <cmath>
+#include <array>
 #include <tuple>
 
 #include "rays/embree_scene.h"
 
 namespace relief::reference {
 
-namespace {
-
-/// Where the ray meets the plane of a triangle: weights of the corners, and the depth. For a ray d
-/// from the origin the weights are as d.(b x c) : d.(c x a) : d.(a x b), and neighbours see exactly
-/// opposite values for the edge that they share.
-bool intersect(const glm::dvec3& ray, const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c,
-               Hit& hit) {
-    const glm::dvec3 weights(glm::dot(ray, glm::cross(b, c)), glm::dot(ray, glm::cross(c, a)),
-                             glm::dot(ray, glm::cross(a, b)));
-    const double sum = weights.x + weights.y + weights.z;
-    if (!(std::abs(sum) > 0.0) || !std::isfinite(sum)) return false;
-    hit.barycentric = weights / sum;
-    hit.depth = -(hit.barycentric.x * a.z + hit.barycentric.y * b.z + hit.barycentric.z * c.z);
-    // The triple product a.(b x c) is negative where the eye sees a, b, c counter-clockwise; with
-    // depth positive, so is the sum.
-    hit.counter_clockwise = sum < 0.0;
-    return std::isfinite(hit.depth);
-}
-
-}  // namespace
-
 Visibility::Visibility(std::vector<ViewMesh> meshes, double near, double far)
-    : meshes_(std::move(meshes)), near_(near), far_(far), embree_(std::make_unique<EmbreeScene>()) {
+    : meshes_(std::move(meshes)),
+      near_(near),
+      far_(far),
+      embree_(
+          std::make_unique<EmbreeScene>(EmbreeSpace{glm::dvec3(0.0), far}, SceneBuild::thorough)) {
     for (std::size_t i = 0; i < meshes_.size(); ++i) {
         if (meshes_[i].triangles.empty()) continue;
-        const std::span<const glm::dvec3> positions = meshes_[i].positions_view;
-        const auto fill = [&](std::size_t begin, std::size_t end, float* xyz) {
-            for (std::size_t v = begin; v < end; ++v) {
-                for (int axis = 0; axis < 3; ++axis)
-                    *xyz++ = static_cast<float>(positions[v][axis] * (1.0 / far));
-            }
-        };
-        embree_->add(static_cast<std::uint32_t>(i), positions.size(), fill, meshes_[i].triangles);
+        embree_->add(static_cast<std::uint32_t>(i), meshes_[i].positions_view,
+                     meshes_[i].triangles);
     }
     embree_->build();
 }
 
 Visibility::~Visibility() = default;
 
-/// Whether b has the edge of a that lies opposite to one of its corners.
-bool Visibility::shares_edge(const Hit& a, int opposite_corner, const Hit& b) const {
+/// Whether b meets the ray where a does, and has the edge or the vertex of a that is there: all
+/// corners of a whose weights are not 0.
+bool Visibility::shares_place(const Hit& a, const Hit& b) const {
     if (a.instance != b.instance) return false;
     const ViewMesh& mesh = meshes_[a.instance];
-    const auto has = [&](const glm::dvec3& position) {
-        const glm::uvec3& corners = mesh.triangles[b.triangle];
-        for (int i = 0; i < 3; ++i) {
-            if (mesh.positions_view[corners[i]] == position) return true;
-        }
-        return false;
-    };
     const glm::uvec3& corners = mesh.triangles[a.triangle];
-    return has(mesh.positions_view[corners[(opposite_corner + 1) % 3]]) &&
-           has(mesh.positions_view[corners[(opposite_corner + 2) % 3]]);
+    const glm::uvec3& others = mesh.triangles[b.triangle];
+    for (int i = 0; i < 3; ++i) {
+        if (a.barycentric[i] == 0.0) continue;
+        const glm::dvec3& place = mesh.positions_view[corners[i]];
+        if (place != mesh.positions_view[others.x] && place != mesh.positions_view[others.y] &&
+            place != mesh.positions_view[others.z])
+            return false;
+    }
+    return true;
 }
 
-/// Whether a triangle found by Embree is missed by the exact ray, which meets its neighbour; on the
-/// edge itself the first of both counts.
-bool Visibility::is_outside(const std::vector<Hit>& all, std::size_t index) const {
-    const Hit& hit = all[index];
-    for (int corner = 0; corner < 3; ++corner) {
-        if (hit.barycentric[corner] > 0.0) continue;
-        for (std::size_t other = 0; other < all.size(); ++other) {
-            if (other == index || !shares_edge(hit, corner, all[other])) continue;
-            if (hit.barycentric[corner] < 0.0 || other < index) return true;
-        }
-    }
-    return false;
+/// Whether a triangle on whose edge or vertex the ray is lies behind another one there: the first
+/// of them counts.
+bool Visibility::is_repeated(const std::vector<Hit>& all, std::size_t index) const {
+    const glm::dvec3& weights = all[index].barycentric;
+    if (weights.x != 0.0 && weights.y != 0.0 && weights.z != 0.0) return false;
+    return std::any_of(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(index),
+                       [&](const Hit& before) { return shares_place(all[index], before); });
 }
 
 std::vector<Hit> Visibility::hits(double x, double y) const {
-    // A little beyond both ends, for the exact test to decide.
-    const RaySegment segment{glm::vec3(0.0F), glm::vec3(x, y, -1.0),
-                             static_cast<float>(near_ / far_ * 0.999), 1.001F};
+    const glm::dvec3 direction(x, y, -1.0);
+    // A little beyond both ends, for the depth to decide.
     std::vector<MetTriangle> found;
-    embree_->find_all(segment, found);
+    embree_->find_all({glm::dvec3(0.0), direction, 0.999 * near_, 1.001 * far_}, found);
 
-    const glm::dvec3 ray(x, y, -1.0);
+    const RayFrame ray = frame_of(glm::dvec3(0.0), direction);
     std::vector<Hit> all;
-    for (const auto& [instance, triangle] : found) {
-        const ViewMesh& mesh = meshes_[instance];
-        const glm::uvec3& corners = mesh.triangles[triangle];
-        Hit hit{instance, triangle};
-        if (!intersect(ray, mesh.positions_view[corners.x], mesh.positions_view[corners.y],
-                       mesh.positions_view[corners.z], hit)) {
-            continue;
-        }
+    for (const MetTriangle& met : found) {
+        const std::array<glm::dvec3, 3> corners = embree_->corners(met);
+        ExactHit exact;
+        if (!intersect(ray, corners, exact)) continue;
+        Hit hit{met.mesh, met.triangle};
+        hit.barycentric = exact.weights;
+        hit.counter_clockwise = exact.faces_origin;
+        for (int i = 0; i < 3; ++i)
+            hit.depth -= exact.weights[i] * corners[static_cast<std::size_t>(i)].z;
         if (hit.depth >= near_ && hit.depth <= far_) all.push_back(hit);
     }
-    const auto rank = [](const Hit& hit) {
-        return std::tuple(hit.depth, hit.instance, hit.triangle);
-    };
-    std::sort(all.begin(), all.end(),
-              [&](const Hit& a, const Hit& b) { return rank(a) < rank(b); });
-    all.erase(std::unique(all.begin(), all.end(),
-                          [&](const Hit& a, const Hit& b) { return rank(a) == rank(b); }),
-              all.end());
-    std::vector<Hit> inside;
+    std::sort(all.begin(), all.end(), [](const Hit& a, const Hit& b) {
+        return std::tie(a.depth, a.instance, a.triangle) <
+               std::tie(b.depth, b.instance, b.triangle);
+    });
+    std::vector<Hit> once;
     for (std::size_t i = 0; i < all.size(); ++i) {
-        if (!is_outside(all, i)) inside.push_back(all[i]);
+        if (!is_repeated(all, i)) once.push_back(all[i]);
     }
-    return inside;
+    return once;
 }
 
 }  // namespace relief::reference

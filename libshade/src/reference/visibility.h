@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// Which triangles a ray from the eye meets, and exactly where. View space: the eye at the origin,
-/// looking along -z. Embree, which works in float, says which triangles may be hit; where they are
-/// hit is computed in double. Triangles without area, and those with a
-/// vertex that is not finite, are never met. Tests: tests/shade/reference/visibility_test.cpp.
+/// looking along -z. By the rules of rays/embree_scene.h, so the result is the same on every
+/// processor. Tests: tests/shade/reference/visibility_test.cpp.
 #pragma once
 
 #include <cstddef>
@@ -41,13 +40,14 @@ class Visibility {
     Visibility(const Visibility&) = delete;
     Visibility& operator=(const Visibility&) = delete;
 
-    /// All hits of the ray through (x, y, -1), nearest first; of two triangles that share an edge
-    /// that the ray meets, one.
+    /// All hits of the ray through (x, y, -1), nearest first; of the triangles of an instance that
+    /// share the edge or the vertex that the ray meets, the nearest, and of equally near ones the
+    /// first.
     [[nodiscard]] std::vector<Hit> hits(double x, double y) const;
 
   private:
-    [[nodiscard]] bool shares_edge(const Hit& a, int opposite_corner, const Hit& b) const;
-    [[nodiscard]] bool is_outside(const std::vector<Hit>& all, std::size_t index) const;
+    [[nodiscard]] bool shares_place(const Hit& a, const Hit& b) const;
+    [[nodiscard]] bool is_repeated(const std::vector<Hit>& all, std::size_t index) const;
 
     std::vector<ViewMesh> meshes_;
     double near_;

@@ -12,6 +12,7 @@
 #include "geometry/corners.h"
 #include "geometry/direction.h"
 #include "geometry/disjoint_sets.h"
+#include "geometry/portable_math.h"
 #include "parallel.h"
 
 namespace relief {
@@ -164,7 +165,7 @@ class FansAtPosition {
         aside = direction_or_zero(aside);
         const auto angle = [&](const Spoke& spoke) {
             const glm::dvec3 normal(normal_at(spoke));
-            return std::atan2(glm::dot(normal, aside), glm::dot(normal, ahead));
+            return portable::atan2(glm::dot(normal, aside), glm::dot(normal, ahead));
         };
         std::sort(sound_.begin(), sound_.end(),
                   [&](const Spoke& a, const Spoke& b) { return angle(a) < angle(b); });

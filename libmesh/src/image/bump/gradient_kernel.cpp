@@ -10,6 +10,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "geometry/portable_math.h"
 #include "relief/mesh/error.h"
 
 namespace relief {
@@ -46,7 +47,7 @@ GradientKernel gaussian(int radius) {
     std::vector<double> differences;
     std::vector<double> smoothing{1.0};
     for (int x = 1; x <= radius; ++x) {
-        const double g = std::exp(-0.5 * x * x / (deviation * deviation));
+        const double g = portable::exp(-0.5 * x * x / (deviation * deviation));
         differences.push_back(x * g);
         smoothing.push_back(g);
     }
@@ -105,13 +106,13 @@ double slope_response(const GradientKernel& kernel, glm::dvec2 frequency) {
     double along = 0.0;
     for (const auto& [before, after, weight] : kernel.differences) {
         const auto part = [&](int offset) {
-            return frequency.x == 0.0 ? offset : std::sin(frequency.x * offset) / frequency.x;
+            return frequency.x == 0.0 ? offset : portable::sin(frequency.x * offset) / frequency.x;
         };
         along += weight * (part(after) - part(before));
     }
     double across = kernel.smoothing[0];
     for (std::size_t i = 1; i < kernel.smoothing.size(); ++i)
-        across += 2.0 * kernel.smoothing[i] * std::cos(frequency.y * static_cast<double>(i));
+        across += 2.0 * kernel.smoothing[i] * portable::cos(frequency.y * static_cast<double>(i));
     return along * across / kernel.divisor;
 }
 
@@ -122,11 +123,11 @@ double anisotropy(const GradientKernel& kernel, double wavelength) {
     for (int i = 0; i <= directions; ++i) {
         // By symmetry the first quarter turn holds all there is to find.
         const double angle = std::numbers::pi / 2.0 * i / directions;
-        const glm::dvec2 wave(length * std::cos(angle), length * std::sin(angle));
+        const glm::dvec2 wave(length * portable::cos(angle), length * portable::sin(angle));
         const double x = wave.x * slope_response(kernel, wave);
         const double y = wave.y * slope_response(kernel, {wave.y, wave.x});
-        greatest = std::max(greatest,
-                            std::abs(std::atan2(x * wave.y - y * wave.x, x * wave.x + y * wave.y)));
+        greatest = std::max(
+            greatest, std::abs(portable::atan2(x * wave.y - y * wave.x, x * wave.x + y * wave.y)));
     }
     return greatest;
 }

@@ -12,6 +12,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "geometry/portable_math.h"
 #include "vector_targets.h"
 
 namespace relief {
@@ -110,8 +111,8 @@ RELIEF_INLINE void pass_of(const PassArguments& a) {
     std::array<double, Radix> unit_cos{}, unit_sin{};
     for (std::size_t k = 0; k < Radix; ++k) {
         const double angle = -2.0 * std::numbers::pi * static_cast<double>(k) / Radix;
-        unit_cos[k] = std::cos(angle);
-        unit_sin[k] = std::sin(angle);
+        unit_cos[k] = portable::cos(angle);
+        unit_sin[k] = portable::sin(angle);
     }
     const std::size_t apart = a.groups * a.width;
     for (std::size_t g = 0; g < a.groups; ++g) {
@@ -186,8 +187,8 @@ ComplexFft::ComplexFft(std::size_t length) : length_(length) {
             for (std::size_t k = 0; k < radix; ++k) {
                 const double angle = -2.0 * std::numbers::pi * static_cast<double>(g * k) /
                                      static_cast<double>(rest);
-                pass.cosines.push_back(std::cos(angle));
-                pass.sines.push_back(std::sin(angle));
+                pass.cosines.push_back(portable::cos(angle));
+                pass.sines.push_back(portable::sin(angle));
             }
         }
         rest /= radix;
@@ -202,11 +203,11 @@ ComplexFft::ComplexFft(std::size_t length) : length_(length) {
         // j^2 modulo 2n, so that the angle keeps its digits.
         const auto angle = std::numbers::pi * static_cast<double>(j * j % (2 * length)) /
                            static_cast<double>(length);
-        chirp_->cosines.push_back(std::cos(angle));
-        chirp_->sines.push_back(-std::sin(angle));
+        chirp_->cosines.push_back(portable::cos(angle));
+        chirp_->sines.push_back(-portable::sin(angle));
         for (const std::size_t at : {j, (padded - j) % padded}) {
-            real[at * lanes] = std::cos(angle);
-            imag[at * lanes] = std::sin(angle);
+            real[at * lanes] = portable::cos(angle);
+            imag[at * lanes] = portable::sin(angle);
         }
     }
     std::vector<double> scratch(chirp_->fft.scratch_size());

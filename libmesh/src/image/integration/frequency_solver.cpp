@@ -12,6 +12,7 @@
 #include <cmath>
 #include <complex>
 
+#include "geometry/portable_math.h"
 #include "parallel.h"
 
 namespace relief {
@@ -31,7 +32,7 @@ double squared_difference(const GradientKernel& kernel, double frequency, double
 double squared_smoothing(const GradientKernel& kernel, double frequency) {
     double sum = kernel.smoothing.front();
     for (std::size_t i = 1; i < kernel.smoothing.size(); ++i)
-        sum += 2.0 * kernel.smoothing[i] * std::cos(frequency * static_cast<double>(i));
+        sum += 2.0 * kernel.smoothing[i] * portable::cos(frequency * static_cast<double>(i));
     return sum * sum;
 }
 
@@ -49,7 +50,7 @@ FrequencySolver::Axis::Axis(int count, const GradientKernel& kernel, Wrap wrap, 
                 static_cast<std::size_t>(count)) {
     for (std::size_t k = 0; k < transform.length(); ++k) {
         const double frequency = transform.frequency(k);
-        const double sine = std::sin(0.5 * frequency);
+        const double sine = portable::sin(0.5 * frequency);
         difference.push_back(squared_difference(kernel, frequency, texel));
         smoothing.push_back(squared_smoothing(kernel, frequency));
         shortness.push_back(sine * sine);

@@ -5,6 +5,7 @@
 // of the even samples followed by the odd ones backwards [Makhoul 1980].
 // Tests: tests/mesh/image/integration/real_transform_test.cpp.
 #include "image/integration/real_transform.h"
+#include "geometry/portable_math.h"
 
 #include <algorithm>
 #include <cmath>
@@ -26,8 +27,8 @@ std::size_t place_of(std::size_t j, std::size_t length) {
 RealTransform::RealTransform(TransformKind kind, std::size_t length)
     : kind_(kind), length_(length), fft_(length) {
     for (std::size_t k = 0; kind == TransformKind::cosine && k < length; ++k) {
-        cosines_.push_back(std::cos(0.5 * frequency(k)));
-        sines_.push_back(std::sin(0.5 * frequency(k)));
+        cosines_.push_back(portable::cos(0.5 * frequency(k)));
+        sines_.push_back(portable::sin(0.5 * frequency(k)));
     }
 }
 

@@ -12,6 +12,7 @@
 #include <numbers>
 #include <vector>
 
+#include "geometry/portable_math.h"
 #include "image/border.h"
 #include "image/texel_loops.h"
 #include "relief/mesh/error.h"
@@ -33,7 +34,7 @@ struct Taps {
 
 double sinc(double x) {
     if (x == 0.0) return 1.0;
-    return std::sin(std::numbers::pi * x) / (std::numbers::pi * x);
+    return portable::sin(std::numbers::pi * x) / (std::numbers::pi * x);
 }
 
 double radius_of(ResizeFilter filter) {

@@ -16,6 +16,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/gtc/quaternion.hpp>
 
+#include "geometry/portable_math.h"
 #include "io/gltf/gltf_accessor.h"
 #include "io/gltf/gltf_uri.h"
 #include "relief/mesh/error.h"
@@ -324,8 +325,8 @@ class Placer {
 
 glm::vec2 transformed(const GltfTextureTransform& transform, const glm::vec2& texcoord) {
     const glm::vec2 scaled = transform.scale * texcoord;
-    const float cosine = std::cos(transform.rotation);
-    const float sine = std::sin(transform.rotation);
+    const auto cosine = static_cast<float>(portable::cos(double{transform.rotation}));
+    const auto sine = static_cast<float>(portable::sin(double{transform.rotation}));
     return {cosine * scaled.x + sine * scaled.y + transform.offset.x,
             cosine * scaled.y - sine * scaled.x + transform.offset.y};
 }
@@ -339,7 +340,7 @@ glm::vec4 transformed(const GltfTextureTransform& transform, const glm::vec4& ta
     const auto rotation = static_cast<double>(transform.rotation);
     // The inverse of the transform, with v upwards, applied to how position changes with u and v.
     const glm::dvec3 turned =
-        t * (std::cos(rotation) / scale.x) - b * (std::sin(rotation) / scale.y);
+        t * (portable::cos(rotation) / scale.x) - b * (portable::sin(rotation) / scale.y);
     const double length = glm::length(turned);
     if (!(length > 0.0) || !std::isfinite(length)) return tangent;
     return {glm::vec3(turned / length),

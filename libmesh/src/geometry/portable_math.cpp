@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: Apache-2.0
+// Plain additions, multiplications and divisions, which IEEE 754 rounds in one way only; relief is
+// compiled without contraction. Tests: tests/mesh/geometry/portable_math_test.cpp.
+#include "geometry/portable_math.h"
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <numbers>
+
+#include "geometry/corner_angle.h"
+
+namespace relief::portable {
+namespace {
+
+/// An angle less a multiple of a quarter turn: from -pi/4 to pi/4.
+struct Reduced {
+    double angle;
+    int quarters;
+};
+
+/// pi/2 in three parts, of which the first two have 33 bits: their products with a count are exact.
+Reduced reduced(double x) {
+    constexpr double first = 0x1.921fb544p+0;
+    constexpr double second = 0x1.0b4611a6p-34;
+    constexpr double third = 0x1.3198a2e037073p-69;
+    // Beyond that products with a count are no longer exact. The remainder is, of a rounded turn.
+    if (!(std::abs(x) <= 1e5)) x = std::fmod(x, 2.0 * std::numbers::pi);
+    if (std::isnan(x)) return {x, 0};
+    const double count = std::floor(x * (2.0 / std::numbers::pi) + 0.5);
+    const double angle = ((x - count * first) - count * second) - count * third;
+    return {angle, static_cast<int>(static_cast<long long>(count) & 3)};
+}
+
+/// 1 / n! for n = first, first - 2, ... with the signs of sine's and cosine's Taylor series.
+template <int first>
+constexpr auto taylor_coefficients() {
+    std::array<double, static_cast<std::size_t>(first / 2)> all{};
+    int n = first;
+    for (double& coefficient : all) {
+        double factorial = 1.0;  // Exact up to 18!.
+        for (int k = 2; k <= n; ++k)
+            factorial *= k;
+        coefficient = (n / 2 % 2 == 0 ? 1.0 : -1.0) / factorial;
+        n -= 2;
+    }
+    return all;
+}
+
+/// Up to x^17: what is left out is less than 1e-19.
+double sine_series(double x) {
+    constexpr auto coefficients = taylor_coefficients<17>();
+    const double square = x * x;
+    double sum = 0.0;
+    for (const double coefficient : coefficients)
+        sum = coefficient + square * sum;
+    return x + x * (square * sum);
+}
+
+double cosine_series(double x) {
+    constexpr auto coefficients = taylor_coefficients<18>();
+    const double square = x * x;
+    double sum = 0.0;
+    for (const double coefficient : coefficients)
+        sum = coefficient + square * sum;
+    return 1.0 + square * sum;
+}
+
+double sine_of(const Reduced& reduced) {
+    switch (reduced.quarters) {
+        case 0:
+            return sine_series(reduced.angle);
+        case 1:
+            return cosine_series(reduced.angle);
+        case 2:
+            return -sine_series(reduced.angle);
+        default:
+            return -cosine_series(reduced.angle);
+    }
+}
+
+constexpr double ln2_first = 0x1.62e42feep-1;  // Of 32 bits.
+constexpr double ln2_second = 0x1.a39ef35793c76p-33;
+
+}  // namespace
+
+double sin(double x) {
+    return sine_of(reduced(x));
+}
+
+double cos(double x) {
+    Reduced later = reduced(x);
+    later.quarters = (later.quarters + 1) & 3;
+    return sine_of(later);
+}
+
+double atan2(double y, double x) {
+    if (x == 0.0 && y == 0.0) return 0.0;
+    return y < 0.0 ? -upper_angle(-y, x) : upper_angle(y, x);
+}
+
+double exp(double x) {
+    if (x < -746.0) return 0.0;
+    const double count = std::floor(x * std::numbers::log2e + 0.5);
+    const double rest = (x - count * ln2_first) - count * ln2_second;
+    double sum = 0.0;
+    for (int n = 15; n >= 1; --n)
+        sum = (1.0 + sum) * (rest / n);
+    return std::ldexp(1.0 + sum, static_cast<int>(count));
+}
+
+double log(double x) {
+    int power = 0;
+    double share = std::frexp(x, &power);
+    if (share < 0.70710678118654752) {
+        share *= 2.0;
+        --power;
+    }
+    // log(share) = 2 artanh(s), and s is at most 0.1716 in size.
+    const double s = (share - 1.0) / (share + 1.0);
+    const double square = s * s;
+    double sum = 0.0;
+    for (int n = 23; n >= 3; n -= 2)
+        sum = (1.0 / n + sum) * square;
+    return power * ln2_first + (power * ln2_second + (2.0 * s + 2.0 * s * sum));
+}
+
+double pow(double x, double y) {
+    return x > 0.0 && std::isfinite(x) ? exp(y * log(x)) : x;
+}
+
+}  // namespace relief::portable
