@@ -95,7 +95,7 @@ TEST(WaveErrors, AreThoseOfTheKernelsResponse) {
     for (const double wavelength : {6.0, 32.0, 100.0}) {
         const WaveMap wave = oblique_wave(side, wavelength, 32);
         for (const NamedKernel& kernel : named_kernels()) {
-            if (kernel.kernel == Kernel::forward) continue;  // Its response is not in phase.
+            if (kernel.kernel == Kernel::forward) continue;  // It is half a texel off.
             const double expected =
                 expected_rms(gradient_kernel(kernel.kernel, kernel.radius), wavelength);
             // Heights are rounded to float: 2^-24 of up to 16 texels, a millionth in a slope.

@@ -15,7 +15,7 @@ namespace relief {
 /// degrees.
 enum class Kernel {
     //                                                       order noise anisotropy
-    forward,   ///< The next height less this one: it is the      1  1.414    1.54
+    forward,   ///< The next height less this one: it is the      1  1.414    0.37
                ///< slope half a texel farther on.
     central3,  ///< Half the difference of the two neighbours.    2  0.707    1.54
     prewitt3,  ///< Central differences of three lines, 1 1 1.    2  0.408    1.56
@@ -62,14 +62,17 @@ GradientKernel gradient_kernel(Kernel kernel, int gaussian_radius = 2);
 /// sqrt(sum of squares of all weights), in slope per height.
 double noise_gain(const GradientKernel& kernel);
 
-/// What the kernel makes of the slope along x of a plane wave, over the true one: 1 is perfect.
+/// The slope along x that the kernel finds in a plane wave, divided by the true slope: 1 is exact.
+/// The true slope is taken at the center of the kernel: at the texel, or half a texel farther along
+/// x for Kernel::forward.
 ///
-/// \param frequency  radians a texel in x and y; x within (-pi, pi), 0 giving the limit
-/// Of a kernel that is not symmetric (forward), the part in phase.
+/// \param frequency  radians per texel in x and y; x within (-pi, pi), 0 gives the limit
 double slope_response(const GradientKernel& kernel, glm::dvec2 frequency);
 
 /// The greatest angle, over all directions of the wave, between the gradient that the kernel finds
-/// in a plane wave and the true one. Radians.
+/// in a plane wave and the true one. Radians. Each of the two slopes is compared at the center of
+/// its own kernel, see slope_response(). At the texel itself the gradient of Kernel::forward can be
+/// off by any angle, because its two slopes belong to two different places.
 ///
 /// \param wavelength  texels, above 2
 double anisotropy(const GradientKernel& kernel, double wavelength);

@@ -102,11 +102,16 @@ double noise_gain(const GradientKernel& kernel) {
 }
 
 double slope_response(const GradientKernel& kernel, glm::dvec2 frequency) {
-    // A difference of the wave exp(i w x), over its true slope i w exp(i w x): its real part.
+    // A difference of the wave exp(i w x), over its true slope i w exp(i w x) at the center of the
+    // kernel. All differences have that center, so the ratio is real.
+    const HeightDifference& first = kernel.differences.front();
+    const double center = 0.5 * (first.before + first.after);
     double along = 0.0;
     for (const auto& [before, after, weight] : kernel.differences) {
         const auto part = [&](int offset) {
-            return frequency.x == 0.0 ? offset : portable::sin(frequency.x * offset) / frequency.x;
+            const double from_center = offset - center;
+            return frequency.x == 0.0 ? from_center
+                                      : portable::sin(frequency.x * from_center) / frequency.x;
         };
         along += weight * (part(after) - part(before));
     }

@@ -5,7 +5,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <glm/vec2.hpp>
 #include <numbers>
 
 #include "relief/mesh/error.h"
@@ -24,7 +26,7 @@ struct Known {
 };
 
 const Known table[] = {
-    {Kernel::forward, 1, 1, std::sqrt(2.0), 1.54},
+    {Kernel::forward, 1, 1, std::sqrt(2.0), 0.37},
     {Kernel::central3, 2, 1, std::sqrt(0.5), 1.54},
     {Kernel::prewitt3, 2, 1, std::sqrt(6.0) / 6.0, 1.56},
     {Kernel::sobel3, 2, 1, std::sqrt(12.0) / 8.0, 0.75},
@@ -64,13 +66,55 @@ TEST(GradientKernel, ResponseToAWaveHasTheKnownForms) {
                 std::sin(w) / w * std::pow(std::cos(w / 2.0), 2.0), 1e-15);
     EXPECT_NEAR(slope_response(gradient_kernel(Kernel::central5), {w, 0.0}),
                 (8.0 * std::sin(w) - std::sin(2.0 * w)) / (6.0 * w), 1e-15);
-    // Half a texel off, and the part in phase is that of a central difference.
-    EXPECT_NEAR(slope_response(gradient_kernel(Kernel::forward), {w, 0.0}), std::sin(w) / w, 1e-15);
+    // Half a texel farther on, forward is a central difference of half the width.
+    EXPECT_NEAR(slope_response(gradient_kernel(Kernel::forward), {w, 0.0}),
+                std::sin(w / 2.0) / (w / 2.0), 1e-15);
+}
+
+/// The gradients that forward differences find in plane waves of 8 texels in many directions and
+/// phases: the largest angles to the true gradient, in degrees.
+struct ForwardErrors {
+    double half_texel_on = 0.0;  ///< Each difference reaches from half a texel before the place on.
+    double at_texel = 0.0;       ///< Each difference reaches from the place on.
+};
+
+ForwardErrors measured_forward_errors() {
+    ForwardErrors largest;
+    for (int i = 0; i <= 720; ++i) {
+        const double direction = pi / 2.0 * i / 720.0;
+        const glm::dvec2 w = 2.0 * pi / 8.0 * glm::dvec2(std::cos(direction), std::sin(direction));
+        for (int k = 0; k < 97; ++k) {
+            const double phase = 2.0 * pi * k / 97.0;
+            const auto error_from = [&](double start) {
+                const auto height = [&](double x, double y) {
+                    return std::sin(w.x * x + w.y * y + phase);
+                };
+                const glm::dvec2 found(height(start + 1.0, 0.0) - height(start, 0.0),
+                                       height(0.0, start + 1.0) - height(0.0, start));
+                const glm::dvec2 truth = std::cos(phase) * w;
+                return std::abs(std::atan2(found.x * truth.y - found.y * truth.x,
+                                           found.x * truth.x + found.y * truth.y)) *
+                       180.0 / pi;
+            };
+            largest.half_texel_on = std::max(largest.half_texel_on, error_from(-0.5));
+            largest.at_texel = std::max(largest.at_texel, error_from(0.0));
+        }
+    }
+    return largest;
+}
+
+TEST(GradientKernel, TheDirectionErrorOfForwardIsCountedHalfATexelFartherOn) {
+    const GradientKernel forward = gradient_kernel(Kernel::forward);
+    const ForwardErrors measured = measured_forward_errors();
+    EXPECT_NEAR(measured.half_texel_on, anisotropy(forward, 8.0) * 180.0 / pi, 1e-9);
+    EXPECT_NEAR(anisotropy(forward, 8.0) * 180.0 / pi, 0.3725, 5e-5);
+    EXPECT_NEAR(anisotropy(forward, 16.0) * 180.0 / pi, 0.0923, 5e-5);
+    EXPECT_GT(measured.at_texel, 90.0);
 }
 
 TEST(GradientKernel, TheErrorOfTheResponseFallsWithTheOrder) {
     for (const Known& known : table) {
-        if (known.kernel == Kernel::forward) continue;  // Its first order is the phase.
+        if (known.kernel == Kernel::forward) continue;  // Its first-order error is its place.
         const GradientKernel kernel = gradient_kernel(known.kernel);
         const auto error = [&](double length) {
             return 1.0 - slope_response(kernel, {2.0 * pi / length, 0.0});
