@@ -62,11 +62,11 @@ std::vector<glm::dvec3> carved_normals(const Waves& base, const Waves& detail) {
 }
 
 Waves base_waves(double slope) {
-    return tiling_waves(blend_side, blend_side, 6, 60, slope, 31);
+    return waves_with_slope(blend_side, 6, 60, slope, 31);
 }
 
 Waves detail_waves(double slope) {
-    return tiling_waves(blend_side, blend_side, 12, 7, slope, 32);
+    return waves_with_slope(blend_side, 12, 7, slope, 32);
 }
 
 std::string row_of(double base_slope, double detail_slope, bool is_carved) {

@@ -30,7 +30,7 @@ double slope_variance(const Image& normals) {
 
 std::string row_of(double rms_slope) {
     const Image normals =
-        normals_image(mip_side, mip_side, tiling_waves(mip_side, mip_side, 60, 4, rms_slope, 51));
+        normals_image(mip_side, mip_side, waves_with_slope(mip_side, 60, 4, rms_slope, 51));
     const std::vector<Image> levels = normal_mip_levels(normals);
     const auto mean = levels.back().as<float>();
     const double length = glm::length(glm::dvec3(mean[0], mean[1], mean[2]));

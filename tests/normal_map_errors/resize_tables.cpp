@@ -19,13 +19,13 @@ constexpr ResizeFilter filters[] = {ResizeFilter::box, ResizeFilter::triangle, R
 
 struct Situation {
     int to;
-    double rms_slope;
+    double rms_slope;      ///< Of the whole map, with the waves that are lost.
     double shortest_held;  ///< Waves in texels of the original that the other size can hold,
     double shortest_lost;  ///< and the shortest of those that it cannot; 0: there are none.
 };
 
 std::string row_of(const Situation& at, ResizeDomain domain) {
-    const std::vector<HeightWave> held =
+    std::vector<HeightWave> held =
         tiling_waves(resize_side, resize_side, 12, at.shortest_held, at.rms_slope, 5);
     std::vector<HeightWave> all = held;
     if (at.shortest_lost > 0.0) {
@@ -36,6 +36,9 @@ std::string row_of(const Situation& at, ResizeDomain domain) {
             if (is_lost && all.size() < 48) all.push_back(wave);
         }
     }
+    const double factor = at.rms_slope / rms_slope_of(resize_side, resize_side, all);
+    held = scaled_waves(held, factor);
+    all = scaled_waves(all, factor);
     const Image normals = normals_image(resize_side, resize_side, all);
     const AnalyticHeights truth =
         wave_heights(at.to, at.to, resized_waves(held, static_cast<double>(resize_side) / at.to));

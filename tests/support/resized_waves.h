@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// The same surface of waves at another resolution: the truth about resized normal maps.
+/// Surfaces of waves for normal maps: with a given slope, and the same surface at another
+/// resolution.
 #pragma once
 
+#include <cmath>
+#include <cstdint>
+#include <glm/glm.hpp>
 #include <vector>
 
 #include "relief/mesh/analytic_heights.h"
@@ -19,6 +23,30 @@ inline std::vector<HeightWave> resized_waves(std::vector<HeightWave> waves, doub
         wave.amplitude /= scale;
     }
     return waves;
+}
+
+/// Root of the mean square of the slopes at the texels of a field.
+inline double rms_slope_of(int width, int height, const std::vector<HeightWave>& waves) {
+    double squares = 0.0;
+    for (const glm::dvec3& normal : wave_heights(width, height, waves).normals)
+        squares += (normal.x * normal.x + normal.y * normal.y) / (normal.z * normal.z);
+    return std::sqrt(squares / (static_cast<double>(width) * height));
+}
+
+/// The same waves with their amplitudes multiplied by a factor.
+inline std::vector<HeightWave> scaled_waves(std::vector<HeightWave> waves, double factor) {
+    for (HeightWave& wave : waves)
+        wave.amplitude *= factor;
+    return waves;
+}
+
+/// tiling_waves() whose field has exactly this slope. Waves of equal frequency interfere, so that
+/// the slope of tiling_waves() alone is only about the one that was asked for.
+inline std::vector<HeightWave> waves_with_slope(int side, int count, double shortest,
+                                                double rms_slope, std::uint32_t seed) {
+    const std::vector<HeightWave> waves =
+        tiling_waves(side, side, count, shortest, rms_slope, seed);
+    return scaled_waves(waves, rms_slope / rms_slope_of(side, side, waves));
 }
 
 /// The true normals of a field as an image.

@@ -50,7 +50,8 @@ HeightAt waves_at(std::span<const HeightWave> waves, const glm::dvec2& place);
 /// Waves that make a field tile: each goes a whole number of times into width and height.
 ///
 /// \param shortest   texels; the wavelengths lie between this and the longer side
-/// \param rms_slope  of the sum, all waves having the same share
+/// \param rms_slope  of the sum, if no two waves have the same frequency; all waves have the same
+///                   share. Waves of equal frequency interfere, and the slope of the sum differs
 /// \param seed       of directions, lengths and phases: same seed, same waves, on every machine
 /// \throws InvalidInput if a size or the count is not positive, or no wave that tiles is that long
 std::vector<HeightWave> tiling_waves(int width, int height, int count, double shortest,
