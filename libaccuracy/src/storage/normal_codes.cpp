@@ -147,18 +147,22 @@ NormalCode as_ten_bits() {
     return code;
 }
 
+/// Float maps, (n + 1) / 2, rounded to half floats: what `relief-bake --half` writes.
 NormalCode as_halves() {
     NormalCode code = named("xyz", "half", "nearest", 6.0);
     code.encode = [](const Image& normals) {
-        return coded<std::uint16_t>(normals, 3, [](const glm::dvec3& n, std::uint16_t* to) {
+        Report report;
+        const Image map = encode_normal_map(normals, {.bits = 32}, report);
+        return coded<std::uint16_t>(map, 3, [](const glm::dvec3& sample, std::uint16_t* to) {
             for (int axis = 0; axis < 3; ++axis)
-                to[axis] = glm::packHalf1x16(static_cast<float>(n[axis]));
+                to[axis] = glm::packHalf1x16(static_cast<float>(sample[axis]));
         });
     };
     code.decode = [](const Image& codes) {
         return decoded<std::uint16_t>(codes, [](const std::uint16_t* from) {
-            return glm::dvec3(glm::unpackHalf1x16(from[0]), glm::unpackHalf1x16(from[1]),
-                              glm::unpackHalf1x16(from[2]));
+            const glm::dvec3 sample(glm::unpackHalf1x16(from[0]), glm::unpackHalf1x16(from[1]),
+                                    glm::unpackHalf1x16(from[2]));
+            return 2.0 * sample - 1.0;
         });
     };
     return code;
