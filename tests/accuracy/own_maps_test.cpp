@@ -142,24 +142,24 @@ TEST(OwnNormalMaps, AreComparedWithWhatTheFileHolds) {
     NormalMapFormat format;
     format.bits = 8;
     const Image map = encode_normal_map(normals_of(waves(FieldCoding::float32)), format, report);
-    const Image normals = decode_normal_map(map, Green::up, FlatCode::middle, report);
+    const Image normals = decode_normal_map(map, Green::up, FlatCode::half, report);
     const OwnExperiment own = measure_own_normals(normals, 8, untimed_map());
     EXPECT_LE(found(own, "xyz float").error.max, 1e-4);
     // Vectors are made unit before they become codes again: most codes stay, not all.
     EXPECT_GT(found(own, "xyz 8 bit").error.rms, 0.0);
     EXPECT_LT(found(own, "xyz 8 bit").error.rms, 0.1);
     EXPECT_GT(found(own, "xy 8 bit").error.rms, found(own, "xyz 8 bit").error.rms);
-    EXPECT_EQ(own.command(), "relief-bake convert map.png OUT.png --bits 16");
+    EXPECT_EQ(own.command(), "relief-bake convert map.png OUT.png --bits 16 --zero-code 127.5");
     EXPECT_THAT(own.experiment.truth, HasSubstr("in 8 bits"));
 }
 
 TEST(OwnNormalMaps, AreOffByWhatTheirBitsHold) {
     const OwnExperiment own =
         measure_own_normals(normals_of(waves(FieldCoding::float32)), 32, untimed_map());
-    // A code of 8 bits is 1 / 127: half of one along each axis at the most, and of 16 bits 256
+    // A code of 8 bits is 2 / 255: half of one along each axis at the most, and of 16 bits 257
     // times less.
     const double eight = found(own, "xyz 8 bit").error.rms;
-    EXPECT_NEAR(found(own, "xyz 16 bit").error.rms, eight * 127.0 / 32767.0, 0.05 * eight / 256.0);
+    EXPECT_NEAR(found(own, "xyz 16 bit").error.rms, eight * 255.0 / 65535.0, 0.05 * eight / 256.0);
     EXPECT_LT(eight, 0.4);
     EXPECT_GT(eight, 0.1);
     EXPECT_GT(found(own, "xyz 8 bit, blue-noise").error.rms, eight);

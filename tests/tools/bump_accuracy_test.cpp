@@ -36,7 +36,7 @@ std::string strength_of(const BumpField& field) {
 double error_of(const Workplace& workplace, const std::string& name, const BumpField& field) {
     Report report;
     const Image normals = decode_normal_map(read_image(workplace / name, ImageUse::data), Green::up,
-                                            FlatCode::middle, report);
+                                            FlatCode::half, report);
     return field_error(normals, field).rms;
 }
 

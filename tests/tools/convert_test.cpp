@@ -51,7 +51,7 @@ void write_map(const Workplace& workplace, const std::string& name,
 }
 
 Image decoded(const std::filesystem::path& file, Green green = Green::up,
-              FlatCode flat = FlatCode::middle) {
+              FlatCode flat = FlatCode::half) {
     Report report;
     return decode_normal_map(read_image(file, ImageUse::data), green, flat, report);
 }
@@ -138,7 +138,7 @@ TEST(ConvertCommand, FloatMapsOfSignedComponentsAreNotTakenForOthers) {
     EXPECT_THAT(refused.error, HasSubstr("signed.exr: holds samples below 0, so n and not "
                                          "(n + 1) / 2 (convert it with --input-signed)"));
     EXPECT_THAT(run(workplace, "signed.exr out/n.png --input-signed").out,
-                HasSubstr("flat is 0 (as told)\n"));
+                HasSubstr("zero is 0 (as told)\n"));
     EXPECT_LT(normal_error(decoded(workplace / "out/n.png"), truth()).max, degrees_of_16_bit);
     write_map(workplace, "map.png");
     EXPECT_EQ(workplace.run("relief-bake convert map.png out/m.png --input-signed").exit_code, 2);
@@ -170,15 +170,21 @@ TEST(ConvertCommand, DepthAndFlatCodeChangeWithoutTurningANormal) {
     const Workplace workplace;
     const NormalMapFormat half{16, Green::up, FlatCode::half};
     write_map(workplace, "half.png", half, normal_map_metadata(half));
-    run(workplace, "half.png out/middle.png --flat middle");
+    EXPECT_THAT(run(workplace, "half.png out/middle.png --zero-code 128").out,
+                HasSubstr("coded     16 bit, zero at 32768 of 65535 (glTF and engines decode zero "
+                          "at 32767.5, so they read it 0.0012 degrees off), green up\n"));
     EXPECT_EQ(read_image_info(workplace / "out/middle.png").metadata.at("relief:flat"), "32768");
-    EXPECT_LT(normal_error(decoded(workplace / "out/middle.png"), truth()).max,
-              2 * degrees_of_16_bit);
+    EXPECT_LT(
+        normal_error(decoded(workplace / "out/middle.png", Green::up, FlatCode::middle), truth())
+            .max,
+        2 * degrees_of_16_bit);
     run(workplace, "half.png out/n.exr");
     EXPECT_EQ(read_image_info(workplace / "out/n.exr").bits, 32);
     EXPECT_LT(normal_error(decoded(workplace / "out/n.exr"), truth()).max, degrees_of_16_bit);
-    EXPECT_THAT(run(workplace, "half.png out/8.png --bits 8 --dither blue-noise").out,
-                HasSubstr("coded     8 bit, flat is between codes, green up, dithered blue-noise"));
+    EXPECT_THAT(
+        run(workplace, "half.png out/8.png --bits 8 --dither blue-noise").out,
+        HasSubstr("coded     8 bit, zero at 127.5 of 255 (as glTF and engines decode), green "
+                  "up, dithered blue-noise"));
     EXPECT_LT(
         normal_error(decoded(workplace / "out/8.png", Green::up, FlatCode::half), truth()).max,
         0.8);
@@ -250,7 +256,7 @@ TEST(ConvertCommand, DetailsAreLaidOverTheBaseWhicheverWayTheirGreenPoints) {
     write_image(workplace / "detail.png",
                 encode_normal_map(detail, {16, Green::down, FlatCode::half}, report));
     const std::string line =
-        "base.png out/n.png --detail detail.png --detail-green down --detail-flat half "
+        "base.png out/n.png --detail detail.png --detail-green down --detail-zero-code 127.5 "
         "--detail-repeat 2 --blend partial-derivative";
     EXPECT_THAT(run(workplace, line).out,
                 HasSubstr("detail.png laid over it (partial-derivative, 2 x 2 times)\n"));
@@ -377,7 +383,7 @@ TEST(ConvertCommand, MetadataComesAlongButForWhatChanges) {
     run(workplace, "map.png out/n.tif --flip green --bits 8");
     const auto metadata = read_image_info(workplace / "out/n.tif").metadata;
     EXPECT_EQ(metadata.at("relief:green"), "down");
-    EXPECT_EQ(metadata.at("relief:flat"), "128");
+    EXPECT_EQ(metadata.at("relief:flat"), "127.5");
     EXPECT_EQ(metadata.at("relief:content"), "normal map, object space");
     EXPECT_EQ(metadata.at("relief:basis"), "mikktspace");
 }

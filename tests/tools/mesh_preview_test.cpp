@@ -62,7 +62,7 @@ TEST(MeshPreview, TheMapMakesTheLowModelLookLikeTheHighOne) {
     const Workplace workplace;
     write_pair(workplace);
     for (const std::string options :
-         {"map.png", "map.png --green down --bits 8 --flat half", "map.exr",
+         {"map.png", "map.png --green down --bits 8 --zero-code 128", "map.exr",
           "map.png --space world", "map.tif --space object --bits 8",
           "map.png --background transparent"}) {
         SCOPED_TRACE(options);

@@ -26,7 +26,7 @@ double rms_angle(const Workplace& workplace, const char* a, const char* b) {
     Report report;
     const auto normals = [&](const char* file) {
         return decode_normal_map(read_image(workplace / file, ImageUse::data), Green::up,
-                                 FlatCode::middle, report);
+                                 FlatCode::half, report);
     };
     const Image one = normals(a), other = normals(b);
     double squares = 0.0;

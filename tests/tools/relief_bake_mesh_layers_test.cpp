@@ -154,7 +154,7 @@ TEST(MeshBakeLayers, HeightsMakeTheNormalsThatAreBakedByTheStrengthPrinted) {
     Report report;
     const auto normals = [&](const char* file) {
         return decode_normal_map(read_image(workplace / file, ImageUse::data), Green::up,
-                                 FlatCode::middle, report);
+                                 FlatCode::half, report);
     };
     const Image baked = normals("out/map.png");
     const Image made = normals("out/n.png");

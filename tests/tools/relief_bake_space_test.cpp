@@ -36,7 +36,7 @@ TEST(ConvertSpace, ThereAndBackIsTheSameMapToTheCode) {
     workplace.write_square("square.obj");
     ASSERT_EQ(workplace
                   .run("relief-bake convert " + bricks_map +
-                       " out/map.png --bits 16 --flat middle "
+                       " out/map.png --bits 16 --zero-code 128 "
                        "--normalize --quiet")
                   .exit_code,
               0);
@@ -67,7 +67,7 @@ TEST(ConvertSpace, TurnsGreenAsAskedFor) {
     workplace.write_square("square.obj");
     // The image upright on the square: its object space is tangent space with green up.
     for (const char* green : {"up", "down"}) {
-        const std::string flat = " --bits 16 --flat middle --quiet";
+        const std::string flat = " --bits 16 --zero-code 128 --quiet";
         ASSERT_EQ(workplace
                       .run("relief-bake convert " + bricks_map +
                            " out/tangent.png --input-green up "

@@ -45,7 +45,7 @@ void write_ramp(const Workplace& workplace, const std::string& name, bool upward
 glm::dvec3 middle_normal(const std::filesystem::path& file, Green green) {
     Report report;
     const Image normals =
-        decode_normal_map(read_image(file, ImageUse::data), green, FlatCode::middle, report);
+        decode_normal_map(read_image(file, ImageUse::data), green, FlatCode::half, report);
     const std::size_t texel = (small_side / 2 * small_side + small_side / 2) * 3;
     const auto samples = normals.as<float>();
     return {samples[texel], samples[texel + 1], samples[texel + 2]};
@@ -62,10 +62,12 @@ TEST(BumpCommand, StoresTheSlopeThatStrengthSays) {
         "relief-bake bump ramp.png out/normal.png --strength 255 --wrap clamp --kernel sobel3");
     ASSERT_EQ(result.exit_code, 0) << result.error;
     EXPECT_EQ(result.error, "");
-    EXPECT_THAT(result.out, HasSubstr("read      ramp.png: 16 x 16, 1 channel, 16 bit\n"
-                                      "slopes    sobel3, strength 255 texels, clamp at the border\n"
-                                      "coded     16 bit, flat is the middle code, green up\n"
-                                      "findings  none\n"));
+    EXPECT_THAT(result.out,
+                HasSubstr("read      ramp.png: 16 x 16, 1 channel, 16 bit\n"
+                          "slopes    sobel3, strength 255 texels, clamp at the border\n"
+                          "coded     16 bit, zero at 32767.5 of 65535 (as glTF and engines "
+                          "decode; flat texels are 0.0012 degrees off), green up\n"
+                          "findings  none\n"));
     EXPECT_LT(degrees_between(middle_normal(workplace / "out/normal.png", Green::up), {-1, 0, 1}),
               shown_degrees_of_16_bit);
     EXPECT_EQ(workplace.outputs(), "normal.png");
@@ -103,8 +105,9 @@ TEST(BumpCommand, AConstantMapIsExactlyFlatInEveryDepth) {
     EXPECT_EQ(read_image(workplace / "out/d.exr", ImageUse::data).bits(), 32);
     for (const char* name : {"out/a.png", "out/b.png", "out/c.tif", "out/d.exr"}) {
         Report report;
-        const Image normals = decode_normal_map(read_image(workplace / name, ImageUse::data),
-                                                Green::up, FlatCode::middle, report);
+        const Image normals =
+            decode_normal_map(read_image(workplace / name, ImageUse::data), Green::up,
+                              FlatCode::half, report, FlatTexels::exact);
         for (std::size_t i = 0; i < normals.sample_count(); ++i)
             ASSERT_EQ(normals.as<float>()[i], i % 3 == 2 ? 1.0F : 0.0F) << name;
     }
@@ -155,7 +158,7 @@ TEST(BumpCommand, EachAxisHasItsOwnBorder) {
         EXPECT_EQ(json::parse(workplace.read("out/report.json"))["wrap"], wrap);
         Report report;
         const Image map = decode_normal_map(read_image(workplace / "out/n.png", ImageUse::data),
-                                            Green::up, FlatCode::middle, report);
+                                            Green::up, FlatCode::half, report);
         return glm::dvec3(map.as<float>()[0], map.as<float>()[1], map.as<float>()[2]);
     };
     // The ramp rises by one a texel; around the seam it falls by 15 over 2 texels less the step.
@@ -240,7 +243,7 @@ TEST(BumpCommand, ConvertsARealFloatMap) {
 glm::dvec3 mean_normal(const std::filesystem::path& file) {
     Report report;
     const Image normals =
-        decode_normal_map(read_image(file, ImageUse::data), Green::up, FlatCode::middle, report);
+        decode_normal_map(read_image(file, ImageUse::data), Green::up, FlatCode::half, report);
     glm::dvec3 sum{};
     for (std::size_t i = 0; i < normals.sample_count(); ++i)
         sum[static_cast<int>(i % 3)] += static_cast<double>(normals.as<float>()[i]);
@@ -259,9 +262,10 @@ TEST(BumpCommand, DitheredMapsAreRightInTheMean) {
     for (const std::string dither : {"ordered", "blue-noise"}) {
         const ProgramResult result = workplace.run(line + " --dither " + dither);
         ASSERT_EQ(result.exit_code, 0) << result.error;
-        EXPECT_THAT(result.out, HasSubstr("coded     8 bit, flat is the middle code, green up, "
-                                          "dithered " +
-                                          dither + "\n"));
+        EXPECT_THAT(result.out,
+                    HasSubstr("coded     8 bit, zero at 127.5 of 255 (as glTF and engines "
+                              "decode), green up, dithered " +
+                              dither + "\n"));
         EXPECT_LT(degrees_between(mean_normal(workplace / "out/n.png"), truth), 0.02);
     }
 }
@@ -396,8 +400,8 @@ INSTANTIATE_TEST_SUITE_P(
                 "--bits 16: .exr holds 32 bits (--half stores halves)"},
         Refused{"relief-bake bump flat.png out/n.png --bits 12", 2,
                 "--bits 12: not one of 8, 16, 32"},
-        Refused{"relief-bake bump flat.png out/n.exr --flat half", 2,
-                "--flat: has no effect on 32-bit output, where flat is exact"},
+        Refused{"relief-bake bump flat.png out/n.exr --zero-code 127.5", 2,
+                "--zero-code: has no effect on 32-bit output, where zero is exact"},
         Refused{"relief-bake bump flat.png out/n.exr --dither ordered", 2,
                 "--dither: has no effect on 32-bit output, which needs no codes"},
         Refused{"relief-bake bump flat.png out/n.png --half", 2, "--half: is for .exr, not n.png"},

@@ -36,8 +36,9 @@ inline Choices<Green> green_choices() {
     return {{"up", Green::up}, {"down", Green::down}};
 }
 
-inline Choices<FlatCode> flat_choices() {
-    return {{"middle", FlatCode::middle}, {"half", FlatCode::half}};
+/// The code of zero in 8 bits; in 16 bits 32767.5 and 32768.
+inline Choices<FlatCode> zero_code_choices() {
+    return {{"127.5", FlatCode::half}, {"128", FlatCode::middle}};
 }
 
 inline Choices<Dither> dither_choices() {

@@ -33,14 +33,13 @@ std::string green_words(const MapInputOptions& options, const InputMap& map) {
     return fmt::format("green {} ({})", name_of(*map.green, green_choices()), source);
 }
 
-std::string flat_words(const MapInputOptions& options, const InputMap& map) {
-    if (options.is_signed) return "flat is 0 (as told)";
-    if (map.image.bits() == 32) return "flat is 0.5";
+std::string zero_words(const MapInputOptions& options, const InputMap& map) {
+    if (options.is_signed) return "zero is 0 (as told)";
+    if (map.image.bits() == 32) return "zero is 0.5";
     const char* source = options.flat                           ? "as told"
                          : map.metadata.contains("relief:flat") ? "as its file says"
-                                                                : "by its flat texels";
-    return fmt::format("flat is {} ({})",
-                       map.flat == FlatCode::middle ? "the middle code" : "between codes", source);
+                                                                : "as glTF decodes";
+    return fmt::format("zero is {} of 255 ({})", name_of(map.flat, zero_code_choices()), source);
 }
 
 /// Whether float samples are below 0 more often than overshoots of a filter are.
@@ -100,7 +99,7 @@ InputMap read_normal_map(const std::filesystem::path& file, const MapInputOption
         map.flat = *options.flat;
     else if (map.image.channels > 2)
         map.flat = detect_flat_code(map.image, map.metadata);
-    map.words = green_words(options, map) + ", " + flat_words(options, map);
+    map.words = green_words(options, map) + ", " + zero_words(options, map);
     return map;
 }
 

@@ -26,8 +26,8 @@ struct InputMap {
     Image image;  ///< Float samples hold (n + 1) / 2, however they were stored.
     std::map<std::string, std::string> metadata;
     std::optional<Green> green;  ///< Absent where nobody says, and nobody asks the map.
-    FlatCode flat = FlatCode::middle;
-    std::string words;  ///< "green down (as told), flat is the middle code"
+    FlatCode flat = FlatCode::half;
+    std::string words;  ///< "green down (as told), zero is 127.5 of 255 (as its file says)"
 };
 
 /// \throws FileError if it cannot be read, has too few channels to be a normal map, or cannot tell

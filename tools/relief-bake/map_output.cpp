@@ -6,6 +6,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 
 #include "common/map_choices.h"
 #include "common/options.h"
@@ -13,6 +15,25 @@
 
 namespace relief::tools {
 namespace {
+
+/// "zero at 127.5 of 255 (as glTF and engines decode; flat texels are 0.32 degrees off)"
+std::string zero_code_words(const NormalMapFormat& format) {
+    const double largest = format.bits == 8 ? 255.0 : 65535.0;
+    // Half a code in x and in y.
+    const std::string degrees =
+        fmt::format("{:.2g}", std::atan(std::numbers::sqrt2 / largest) * 180.0 / std::numbers::pi);
+    if (format.flat == FlatCode::middle) {
+        return fmt::format(
+            "zero at {:g} of {:g} (glTF and engines decode zero at {:g}, so they read it {} "
+            "degrees off)",
+            (largest + 1.0) / 2.0, largest, largest / 2.0, degrees);
+    }
+    const std::string flat = format.dither == Dither::none
+                                 ? fmt::format("; flat texels are {} degrees off", degrees)
+                                 : "";
+    return fmt::format("zero at {:g} of {:g} (as glTF and engines decode{})", largest / 2.0,
+                       largest, flat);
+}
 
 [[noreturn]] void refuse(const std::filesystem::path& output) {
     const std::string extension = extension_of(output);
@@ -47,15 +68,17 @@ void add_map_output_options(CLI::App& app, MapOutputOptions& options, bool follo
                "Bits per channel: 8 or 16 for .png, 8, 16 or 32 (float) for .tif, 32 for .exr." +
                    or_input("16, and 32 for .exr."))
         .group(group);
-    add_choice(app, "--flat", options.flat, flat_choices(),
-               "Which code stands for zero in 8 and 16 bits: 128 of 255, so that flat is exactly "
-               "flat (middle), or 127.5, as glTF's formula has it and no code can say (half)." +
-                   or_input("middle."))
+    add_choice(app, "--zero-code", options.flat, zero_code_choices(),
+               "Which code of 255 stands for zero in 8 bits, and likewise of 65535 in 16 bits. "
+               "127.5: glTF and engines decode maps so; no code is exactly zero. 128: flat texels "
+               "are exactly flat for readers that know this, and engines read all normals "
+               "0.32 degrees off in 8 bits, 0.0012 in 16." +
+                   or_input("127.5."))
         .group(group);
     add_choice(app, "--dither", options.dither, dither_choices(),
                "How normals between two codes are rounded: to the nearest (none), or so that the "
                "mean over a few texels is right, by a short pattern (ordered) or one that the eye "
-               "sees least (blue-noise). Flat stays exactly flat. Default: none.")
+               "sees least (blue-noise). Default: none.")
         .group(group);
     add_switch(app, "--half", options.half,
                "Store .exr as half floats, 11 bits each: half the size.")
@@ -87,7 +110,7 @@ NormalMapFormat format_of(const MapOutputOptions& options, const std::filesystem
                          wants_halves ? "--half stores halves" : "");
     }
     if (bits == 32 && options.flat)
-        throw UsageError("--flat: has no effect on 32-bit output, where flat is exact");
+        throw UsageError("--zero-code: has no effect on 32-bit output, where zero is exact");
     if (bits == 32 && options.dither)
         throw UsageError("--dither: has no effect on 32-bit output, which needs no codes");
     return {.bits = bits,
@@ -114,9 +137,7 @@ std::string format_words(const NormalMapFormat& format) {
     const std::string dither = format.dither == Dither::none
                                    ? ""
                                    : ", dithered " + name_of(format.dither, dither_choices());
-    return fmt::format("{} bit, flat is {}, {}{}", format.bits,
-                       format.flat == FlatCode::middle ? "the middle code" : "between codes", green,
-                       dither);
+    return fmt::format("{} bit, {}, {}{}", format.bits, zero_code_words(format), green, dither);
 }
 
 }  // namespace relief::tools

@@ -31,10 +31,10 @@ struct MapOutputDefaults {
     std::optional<int>
         bits{};  ///< Absent, or not among what the format holds: its greatest below 32.
     Green green = Green::up;
-    FlatCode flat = FlatCode::middle;
+    FlatCode flat = FlatCode::half;
 };
 
-/// --bits, --green, --flat, --dither, --half, --fast, --small.
+/// --bits, --green, --zero-code, --dither, --half, --fast, --small.
 ///
 /// \param follows_input  whether the defaults are what the input has, for --help
 void add_map_output_options(CLI::App& app, MapOutputOptions& options, bool follows_input = false);
@@ -55,7 +55,7 @@ NormalMapFormat format_of(const MapOutputOptions& options, const std::filesystem
 ImageWriteOptions write_options_of(const MapOutputOptions& options,
                                    const std::filesystem::path& output);
 
-/// "16 bit, flat is the middle code, green up"
+/// "8 bit, zero at 127.5 of 255 (as glTF and engines decode; ...), green up"
 std::string format_words(const NormalMapFormat& format);
 
 }  // namespace relief::tools

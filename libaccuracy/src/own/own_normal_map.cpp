@@ -32,10 +32,13 @@ std::string command_of(const NormalCode& code, const OwnOptions& options) {
         std::string_view file_and_options;
     };
     constexpr std::array offers = {
-        Offer{"xyz 8 bit", "OUT.png --bits 8"},
-        Offer{"xyz 8 bit, blue-noise", "OUT.png --bits 8 --dither blue-noise"},
-        Offer{"xyz 8 bit, ordered", "OUT.png --bits 8 --dither ordered"},
-        Offer{"xyz 16 bit", "OUT.png --bits 16"}, Offer{"xyz float", "OUT.exr"}};
+        Offer{"xyz 8 bit", "OUT.png --bits 8 --zero-code 127.5"},
+        Offer{"xyz 8 bit, zero at 128", "OUT.png --bits 8 --zero-code 128"},
+        Offer{"xyz 8 bit, blue-noise", "OUT.png --bits 8 --zero-code 127.5 --dither blue-noise"},
+        Offer{"xyz 8 bit, ordered", "OUT.png --bits 8 --zero-code 127.5 --dither ordered"},
+        Offer{"xyz 16 bit", "OUT.png --bits 16 --zero-code 127.5"},
+        Offer{"xyz half", "OUT.exr --half"},
+        Offer{"xyz float", "OUT.exr"}};
     for (const Offer& offer : offers) {
         if (offer.name == code.name)
             return fmt::format("relief-bake convert {} {}", options.arguments,

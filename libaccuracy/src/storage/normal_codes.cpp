@@ -72,34 +72,55 @@ std::string word_of(Dither dither) {
     }
 }
 
+/// \param zero  the code of zero in maps of whole numbers; "exact" in layouts that hold 0 exactly
 NormalCode named(const std::string& layout, const std::string& bits, const std::string& rounding,
-                 double bytes) {
+                 double bytes, const std::string& zero = "exact") {
     NormalCode code;
     code.name = layout + " " + bits;
     if (rounding != "nearest") code.name += ", " + rounding;
-    code.choices = {{"layout", layout}, {"bits", bits}, {"rounding", rounding}};
+    code.choices = {{"layout", layout}, {"bits", bits}, {"rounding", rounding}, {"zero", zero}};
     code.bytes = bytes;
     return code;
 }
 
 std::string rounding_of(const NormalMapFormat& format) {
-    if (format.dither != Dither::none) return word_of(format.dither);
-    return format.flat == FlatCode::half ? "nearest, zero at 127.5" : "nearest";
+    return format.dither == Dither::none ? "nearest" : word_of(format.dither);
 }
 
-/// As normal maps hold them.
-NormalCode as_map(const NormalMapFormat& format) {
-    NormalCode code = named("xyz", format.bits == 32 ? "float" : fmt::format("{} bit", format.bits),
-                            rounding_of(format), 3.0 * format.bits / 8.0);
+std::string zero_of(FlatCode flat, int bits) {
+    const double largest = bits == 8 ? 255.0 : 65535.0;
+    return fmt::format("{}", flat == FlatCode::middle ? (largest + 1.0) / 2.0 : largest / 2.0);
+}
+
+/// As normal maps hold them, read by a decoder that takes this code for zero. glTF and engines take
+/// FlatCode::half.
+NormalCode as_map(const NormalMapFormat& format, FlatCode decoder) {
+    const bool is_float = format.bits == 32;
+    NormalCode code =
+        named("xyz", is_float ? "float" : fmt::format("{} bit", format.bits), rounding_of(format),
+              3.0 * format.bits / 8.0, is_float ? "exact" : zero_of(format.flat, format.bits));
+    if (format.flat == FlatCode::middle && !is_float) {
+        code.name += ", zero at " + zero_of(format.flat, format.bits);
+        if (decoder == FlatCode::half) code.name += ", read as glTF does";
+    } else if (decoder == FlatCode::middle) {
+        code.name += ", read with zero at " + zero_of(decoder, format.bits);
+    }
+    if (decoder != format.flat)
+        code.choices.back().second += ", read as " + zero_of(decoder, format.bits);
     code.encode = [format](const Image& normals) {
         Report report;
         return encode_normal_map(normals, format, report);
     };
-    code.decode = [format](const Image& codes) {
+    code.decode = [format, decoder](const Image& codes) {
         Report report;
-        return decode_normal_map(codes, format.green, format.flat, report);
+        return decode_normal_map(codes, format.green, decoder, report);
     };
     return code;
+}
+
+/// Written and read as glTF and engines do.
+NormalCode as_map(const NormalMapFormat& format) {
+    return as_map(format, FlatCode::half);
 }
 
 template <typename Sample>
@@ -115,7 +136,7 @@ Image without_z(const Image& map) {
 /// x and y of such maps; z is what makes them unit.
 NormalCode as_xy_map(const NormalMapFormat& format) {
     NormalCode code = named("xy", fmt::format("{} bit", format.bits), rounding_of(format),
-                            2.0 * format.bits / 8.0);
+                            2.0 * format.bits / 8.0, zero_of(format.flat, format.bits));
     code.encode = [format](const Image& normals) {
         Report report;
         const Image map = encode_normal_map(normals, format, report);
@@ -201,21 +222,28 @@ NormalCode as_octahedral(int bits, bool best) {
 }  // namespace
 
 std::vector<NormalCode> normal_codes() {
-    const auto dithered = [](int bits, Dither dither) {
-        return NormalMapFormat{bits, Green::up, FlatCode::middle, dither};
+    const auto rounded = [](int bits, Dither dither) {
+        return NormalMapFormat{bits, Green::up, FlatCode::half, dither};
     };
-    std::vector<NormalCode> codes = {as_map(dithered(8, Dither::none)),
-                                     as_map({8, Green::up, FlatCode::half, Dither::none}),
-                                     as_map(dithered(8, Dither::ordered)),
-                                     as_map(dithered(8, Dither::blue_noise)),
+    const auto zero_is_a_code = [](int bits) {
+        return NormalMapFormat{bits, Green::up, FlatCode::middle, Dither::none};
+    };
+    std::vector<NormalCode> codes = {as_map(rounded(8, Dither::none)),
+                                     as_map(rounded(8, Dither::none), FlatCode::middle),
+                                     as_map(zero_is_a_code(8), FlatCode::middle),
+                                     as_map(zero_is_a_code(8)),
+                                     as_map(rounded(8, Dither::ordered)),
+                                     as_map(rounded(8, Dither::blue_noise)),
                                      as_ten_bits(),
-                                     as_map(dithered(16, Dither::none)),
-                                     as_map(dithered(16, Dither::blue_noise)),
+                                     as_map(rounded(16, Dither::none)),
+                                     as_map(zero_is_a_code(16), FlatCode::middle),
+                                     as_map(zero_is_a_code(16)),
+                                     as_map(rounded(16, Dither::blue_noise)),
                                      as_halves(),
-                                     as_map(dithered(32, Dither::none)),
-                                     as_xy_map(dithered(8, Dither::none)),
-                                     as_xy_map(dithered(8, Dither::blue_noise)),
-                                     as_xy_map(dithered(16, Dither::none))};
+                                     as_map(rounded(32, Dither::none)),
+                                     as_xy_map(rounded(8, Dither::none)),
+                                     as_xy_map(rounded(8, Dither::blue_noise)),
+                                     as_xy_map(rounded(16, Dither::none))};
     for (const int bits : {8, 10, 12, 16}) {
         for (const bool best : {false, true})
             codes.push_back(as_octahedral(bits, best));

@@ -29,9 +29,9 @@ struct NormalCode {
     [[nodiscard]] Image stored(const Image& normals) const { return decode(encode(normals)); }
 };
 
-/// x, y, z in 8, 10 and 16 bits, half and float (as files hold them: (n + 1) / 2); x and y alone; octahedral in 2 x 8 to 2 x 16 bits,
-/// rounded to the nearest code of each coordinate or to the best of four; dithered where relief
-/// does that.
+/// x, y, z in 8, 10 and 16 bits, half and float (as files hold them: (n + 1) / 2); x and y alone;
+/// octahedral in 2 x 8 to 2 x 16 bits, rounded to the nearest code of each coordinate or to the
+/// best of four; dithered where relief does that.
 std::vector<NormalCode> normal_codes();
 
 /// Directions as a map of `width` texels a row, rounded to float. \throws InvalidInput if rows are

@@ -115,8 +115,12 @@ glm::dvec3 normal_at(const SurfaceNormalMap& map, const glm::dvec2& texcoord) {
         [&](const auto& samples) {
             using Sample = std::decay_t<decltype(samples[0])>;
             const NormalCoding<Sample> coding{map.flat};
+            const ExactFlat<Sample> exact(map.flat == FlatCode::half ? map.flat_codes
+                                                                     : std::nullopt);
             return scales * filtered(map.texture, texcoord, [&](std::size_t texel) {
                        const Sample* sample = &samples[channels * texel];
+                       if (exact.is_flat(sample[0], sample[1]))
+                           return glm::dvec3(0.0, 0.0, coding.decoded(sample[2]));
                        return glm::dvec3(coding.decoded(sample[0]), coding.decoded(sample[1]),
                                          coding.decoded(sample[2]));
                    });

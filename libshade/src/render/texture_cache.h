@@ -31,7 +31,7 @@ struct ImagePurpose {
 struct GpuImage {
     gl::Texture texture;
     int bits = 8;
-    FlatCode flat = FlatCode::middle;  ///< Detected; of normal maps only.
+    FlatCode flat = FlatCode::half;  ///< Detected; of normal maps only.
 };
 
 /// A texture and its sampler, to be bound to one unit.

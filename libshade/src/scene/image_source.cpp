@@ -46,6 +46,8 @@ void note_image_file(const ImageSource& source) {
 FlatCode detected_flat_code(const ImageSource& source, const Image& image) {
     if (const auto* file = std::get_if<std::filesystem::path>(&source.source))
         return detect_flat_code(image, read_image_info(*file).metadata);
+    if (const auto* bytes = std::get_if<Shared<std::vector<std::byte>>>(&source.source))
+        return detect_flat_code(image, read_image_info(std::span(**bytes), source.name).metadata);
     return detect_flat_code(image);
 }
 

@@ -56,12 +56,12 @@ NormalMap normal_map_from(const JsonCursor& object, JsonImages& images) {
         map.texture = images.texture(object);
         return map;
     }
-    read_members(object,
-                 {{"texture", [&](const JsonCursor& c) { map.texture = images.texture(c); }},
-                  {"scale", number(map.scale, -1e6F, 1e6F)},
-                  {"green", choice(map.green, green_words)},
-                  {"flat", [&](const JsonCursor& c) { map.flat = one_of(c, flat_code_words); }},
-                  {"space", choice(map.space, normal_space_words)}});
+    read_members(
+        object, {{"texture", [&](const JsonCursor& c) { map.texture = images.texture(c); }},
+                 {"scale", number(map.scale, -1e6F, 1e6F)},
+                 {"green", choice(map.green, green_words)},
+                 {"zero_code", [&](const JsonCursor& c) { map.flat = one_of(c, zero_code_words); }},
+                 {"space", choice(map.space, normal_space_words)}});
     (void)object.at("texture");
     return map;
 }

@@ -28,7 +28,7 @@ Json normal_map_json(const NormalMap& map, const ImageName& name) {
                  {"scale", json_number(map.scale)},
                  {"green", word_for(map.green, green_words)},
                  {"space", word_for(map.space, normal_space_words)}};
-    if (map.flat) json["flat"] = word_for(*map.flat, flat_code_words);
+    if (map.flat) json["zero_code"] = word_for(*map.flat, zero_code_words);
     return json;
 }
 

@@ -46,8 +46,8 @@ inline constexpr Named<TangentFrame> tangent_frame_words[] = {
 inline constexpr Named<NormalSpace> normal_space_words[] = {{"tangent", NormalSpace::tangent},
                                                             {"object", NormalSpace::object}};
 inline constexpr Named<Green> green_words[] = {{"up", Green::up}, {"down", Green::down}};
-inline constexpr Named<FlatCode> flat_code_words[] = {{"middle", FlatCode::middle},
-                                                      {"half", FlatCode::half}};
+inline constexpr Named<FlatCode> zero_code_words[] = {{"127.5", FlatCode::half},
+                                                      {"128", FlatCode::middle}};
 inline constexpr Named<TextureWrap> wrap_words[] = {{"repeat", TextureWrap::repeat},
                                                     {"clamp", TextureWrap::clamp},
                                                     {"mirror", TextureWrap::mirror}};

@@ -111,7 +111,7 @@ TEST_F(SceneFile, MaterialsHaveEveryMemberByItsName) {
         "diffuse_texture": "a.png", "specular_texture": "b.png", "emission_texture": {"image": "a.png",
         "wrap_u": "clamp", "wrap_v": "mirror", "filter": "nearest"}, "occlusion_texture": "b.png",
         "occlusion_strength": 0.5, "opacity_texture": "b.png",
-        "normal_map": {"texture": "a.png", "scale": 2, "green": "down", "flat": "half", "space": "object"},
+        "normal_map": {"texture": "a.png", "scale": 2, "green": "down", "zero_code": "127.5", "space": "object"},
         "tangent_frame": "derivatives", "specular_antialiasing": true, "alpha_mode": "mask",
         "opacity": 0.7, "alpha_cutoff": 0.2, "double_sided": true, "unlit": true},
         "bumpy": {"like": "gold", "bump_map": {"texture": "b.png", "strength": 3}, "transmission": 0.5}})");

@@ -127,7 +127,7 @@ BumpFileFormat file_format_of(const BumpRequest& request, const std::filesystem:
     };
     refuse(request.xy_only, "--xy");
     refuse(request.alpha != MapAlpha::none, "--alpha");
-    refuse(request.output.flat.has_value(), "--flat");
+    refuse(request.output.flat.has_value(), "--zero-code");
     refuse(request.output.dither.has_value(), "--dither");
     refuse(request.output.bits.value_or(32) != 32, "--bits");
     MapOutputOptions floats = request.output;

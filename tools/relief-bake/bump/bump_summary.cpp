@@ -123,7 +123,7 @@ nlohmann::ordered_json results_json(const Baked& baked, const Stages& stages) {
         {"alpha", name_of(baked.format.alpha, map_alpha_choices())},
         {"bits", format.bits},
         {"green", name_of(format.green, green_choices())},
-        {"flat", name_of(format.flat, flat_choices())},
+        {"zero_code", name_of(format.flat, zero_code_choices())},
         {"dither", name_of(format.dither, dither_choices())},
         {"findings", baked.findings.json()},
         {"milliseconds", durations_json(stages.finished())},

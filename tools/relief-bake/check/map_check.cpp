@@ -173,8 +173,9 @@ void print_text(const CheckedMap& map) {
     if (has_green(check)) print_entry("green", green_in_words(check.green));
     if (has_directions(check)) {
         if (map.bits != 32)
-            print_entry("flat", check.flat == FlatCode::middle ? "the middle code (128 of 255)"
-                                                               : "between codes (127.5 of 255)");
+            print_entry("zero", check.flat == FlatCode::middle
+                                    ? "a code (128 of 255)"
+                                    : "between two codes (127.5 of 255), as glTF decodes");
         print_entry("tiles", tiling_in_words(check.tiling));
     }
     print_entry("bits", bits_in_words(check.bits));
@@ -200,7 +201,7 @@ nlohmann::ordered_json json_of(const CheckedMap& map) {
             {"lengths", lengths_json(check.lengths)},
             {"lengths_uncurved", lengths_json(check.lengths_uncurved)},
             {"green", green_json(check)},
-            {"flat", name_of(check.flat, flat_choices())},
+            {"zero_code", name_of(check.flat, zero_code_choices())},
             {"seams", {check.tiling.seam_x, check.tiling.seam_y}},
             {"bits_used", check.bits},
             {"alpha_correlation", check.alpha_correlation

@@ -35,7 +35,7 @@ std::string remedy_for(MapCondition condition, MapContent content,
         case green_down:
             return convert(" --flip green");
         case flat_contradicted:
-            return convert(" --input-flat half --flat middle");
+            return convert(" --input-zero-code 127.5");
         case bits_unused:
             return convert(" --bits 8");
         case alpha_opaque:

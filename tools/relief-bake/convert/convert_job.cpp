@@ -81,13 +81,14 @@ Image decoded(const ConvertRequest& request, const InputMap& input, Converted& d
               Report& report) {
     if (request.rebuild_z) {
         done.steps.emplace_back("z computed from x and y");
-        return decode_xy_map(input.image, *request.rebuild_z, Green::up, input.flat, report);
+        return decode_xy_map(input.image, *request.rebuild_z, Green::up, input.flat, report,
+                             FlatTexels::exact);
     }
     done.lengths = count_lengths(input.image, input.flat, report);
     done.steps.push_back(fmt::format("made of length 1 (was {:.3f}, from {:.3f} to {:.3f})",
                                      done.lengths->mean, done.lengths->least,
                                      done.lengths->greatest));
-    return decode_normal_map(input.image, Green::up, input.flat, report);
+    return decode_normal_map(input.image, Green::up, input.flat, report, FlatTexels::exact);
 }
 
 /// All that goes through floats. Frees the texels of the input on the way.

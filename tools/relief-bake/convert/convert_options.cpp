@@ -76,9 +76,10 @@ void add_input_options(CLI::App& app, ConvertRequest& request) {
               "(DirectX), or whichever its slopes show, as relief-bake check finds it (auto). "
               "Default: what the file says; else it is unknown, which --green alone minds.")
         .group(group);
-    add_choice(app, "--input-flat", request.input.flat, flat_choices(),
-               "Which code stands for zero in the input: see --flat. Default: what the file says, "
-               "else the commoner of the two among its flat texels.")
+    add_choice(
+        app, "--input-zero-code", request.input.flat, zero_code_choices(),
+        "Which code stands for zero in the input: see --zero-code. Default: what the file says, "
+        "else 127.5. Flat texels are read as exactly flat under both.")
         .group(group);
     add_switch(app, "--input-signed", request.input.is_signed,
                "Float samples of the input hold n itself, from -1 to 1, not (n + 1) / 2, which is "
@@ -162,8 +163,8 @@ void add_detail_options(CLI::App& app, DetailChoice& detail) {
     add_green(app, "--detail-green", detail.input,
               "The same for the detail. Default: what its file says, else as in the base.")
         .group(group);
-    add_choice(app, "--detail-flat", detail.input.flat, flat_choices(),
-               "Which code stands for zero in the detail. Default: as for --input-flat.")
+    add_choice(app, "--detail-zero-code", detail.input.flat, zero_code_choices(),
+               "Which code stands for zero in the detail. Default: as for --input-zero-code.")
         .group(group);
 }
 
@@ -219,7 +220,7 @@ void check_convert_options(const ConvertRequest& request) {
         need(detail.strength.has_value(), "--detail-strength", "--detail");
         need(detail.repeat.has_value(), "--detail-repeat", "--detail");
         need(detail.input.green || detail.input.finds_green, "--detail-green", "--detail");
-        need(detail.input.flat.has_value(), "--detail-flat", "--detail");
+        need(detail.input.flat.has_value(), "--detail-zero-code", "--detail");
     }
     if (!request.resize.size) {
         need(request.resize.domain.has_value(), "--resize-of", "--resize");

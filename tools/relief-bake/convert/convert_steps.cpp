@@ -54,7 +54,7 @@ ConvertStep strength_step(double strength) {
 Image detail_normals(const DetailChoice& choice, const NormalField& base, Report& report) {
     const InputMap detail = read_normal_map(*choice.file, choice.input);
     Image normals = about(*choice.file, [&] {
-        return decode_normal_map(detail.image, Green::up, detail.flat, report);
+        return decode_normal_map(detail.image, Green::up, detail.flat, report, FlatTexels::exact);
     });
     const std::optional<Green> base_green = base.green ? base.green : detail.green;
     const Green green = detail.green.value_or(base_green.value_or(Green::up));

@@ -98,7 +98,7 @@ nlohmann::ordered_json results_json(const Converted& converted, const Stages& st
             {"input_lengths", lengths_json(converted.lengths)},
             {"bits", converted.format.bits},
             {"green", green(converted.green)},
-            {"flat", name_of(converted.format.flat, flat_choices())},
+            {"zero_code", name_of(converted.format.flat, zero_code_choices())},
             {"dither", name_of(converted.format.dither, dither_choices())},
             {"levels", levels_json(converted)},
             {"findings", converted.findings.json()},

@@ -116,7 +116,8 @@ MadeHeights make_heights(const Job& job, const HeightsRequest& request, Stages& 
     const Image file = about(job.input, [&] {
         return stages.run("integrate", [&] {
             settle_green(job, input, made);
-            const Image normals = decode_normal_map(input.image, made.green, input.flat, report);
+            const Image normals =
+                decode_normal_map(input.image, made.green, input.flat, report, FlatTexels::exact);
             input.image = Image{};
             made.integration.wrap = settled_wraps(request, normals);
             made.result = heights_from_normals(normals, made.integration, report);

@@ -30,9 +30,10 @@ void add_heights_options(CLI::App& app, HeightsRequest& request) {
                "Where green is bright in the input: on slopes that face up (OpenGL) or down "
                "(DirectX). Default: what the file says, else what its slopes show.")
         .group(input);
-    add_choice(app, "--input-flat", request.input.flat, flat_choices(),
-               "Which code stands for zero in the input: 128 of 255 (middle) or 127.5 (half). "
-               "Default: what the file says, else the commoner of the two among its flat texels.")
+    add_choice(
+        app, "--input-zero-code", request.input.flat, zero_code_choices(),
+        "Which code stands for zero in the input: 128 of 255, or 127.5 as glTF decodes. "
+        "Default: what the file says, else 127.5. Flat texels are read as exactly flat under both.")
         .group(input);
     add_switch(app, "--input-signed", request.input.is_signed,
                "Float samples of the input hold the components themselves, not (n + 1) / 2.")

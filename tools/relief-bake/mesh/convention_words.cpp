@@ -69,8 +69,8 @@ std::string part_words(const MapConvention& found, ConventionPart part) {
                        ? "its numbers went through the sRGB curve"
                        : "its numbers were taken for sRGB and decoded";
         case flat:
-            return found.flat == FlatCode::half ? "flat is between its codes (127.5 of 255)"
-                                                : "flat is its middle code (128 of 255)";
+            return found.flat == FlatCode::half ? "its zero is between two codes (127.5 of 255)"
+                                                : "its zero is a code (128 of 255)";
         case turn:
             return turn_words(found.turn);
         case axes:
@@ -138,8 +138,9 @@ std::vector<std::string> convention_remedies(const std::filesystem::path& map,
         case axes:
             return {convert + " --axes=" + axes_option(found.axes)};
         case flat:
-            return {convert + (found.flat == FlatCode::half ? " --input-flat half --flat middle"
-                                                            : " --input-flat middle")};
+            return {convert + (found.flat == FlatCode::half
+                                   ? " --input-zero-code 127.5"
+                                   : " --input-zero-code 128 --zero-code 127.5")};
         case space:
             if (found.space == MapAxes::tangent)
                 return {fmt::format("{} --to-object {}", convert, quoted(low))};

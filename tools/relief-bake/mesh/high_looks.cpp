@@ -19,10 +19,6 @@ void add_look(CLI::App& app, const std::string& name, std::optional<std::filesys
         .group("High models");
 }
 
-FlatCode flat_code_of(const Image& map) {
-    return map.bits() == 32 ? FlatCode::middle : detect_flat_code(map);
-}
-
 }  // namespace
 
 void add_high_normal_map_option(CLI::App& app, HighLookOptions& options) {
@@ -41,7 +37,17 @@ const Image* HighLooks::image(const std::filesystem::path& file, ImageUse use) {
     const std::string key = fmt::format("{} {}", file.string(), static_cast<int>(use));
     const auto known = images_.find(key);
     if (known != images_.end()) return &known->second;
-    return &images_.emplace(key, read_image(file, use)).first->second;
+    const Image* added = &images_.emplace(key, read_image(file, use)).first->second;
+    if (use == ImageUse::data) metadata_[added] = read_image_info(file).metadata;
+    return added;
+}
+
+SurfaceNormalMap HighLooks::normal_map(const SurfaceTexture& texture, float scale) const {
+    const Image& map = *texture.image;
+    SurfaceNormalMap result{texture, scale, Green::up, FlatCode::half, {}};
+    result.flat = detect_flat_code(map, metadata_.at(&map));
+    if (result.flat == FlatCode::half) result.flat_codes = flat_texel_codes(map);
+    return result;
 }
 
 const Image* HighLooks::image(const std::filesystem::path& model, const MapLooks& looks,
@@ -61,7 +67,9 @@ const Image* HighLooks::image(const std::filesystem::path& model, const MapLooks
     if (bytes.empty()) {
         throw failure(model, fmt::format("image {} is outside of its folder", index), remedy);
     }
-    return &images_.emplace(key, read_image(bytes, name, use)).first->second;
+    const Image* added = &images_.emplace(key, read_image(bytes, name, use)).first->second;
+    if (use == ImageUse::data) metadata_[added] = read_image_info(bytes, name).metadata;
+    return added;
 }
 
 SurfaceTexture HighLooks::texture(const std::filesystem::path& model, const MapLooks& looks,
@@ -77,10 +85,8 @@ void HighLooks::add(const std::filesystem::path& file, const Mesh& mesh, const M
         const GltfMaterial& look = looks.materials[i];
         HighMaterial material;
         if (look.normal_texture && !options.normal_map) {
-            material.normal_map =
-                SurfaceNormalMap{texture(file, looks, *look.normal_texture, ImageUse::data),
-                                 look.normal_scale, Green::up, FlatCode::half};
-            material.normal_map->flat = flat_code_of(*material.normal_map->texture.image);
+            material.normal_map = normal_map(
+                texture(file, looks, *look.normal_texture, ImageUse::data), look.normal_scale);
             ++normal_maps_;
         }
         if (with_colors && !options.color) material.color = glm::vec3(look.base_color);
@@ -104,9 +110,8 @@ void HighLooks::add(const std::filesystem::path& file, const Mesh& mesh, const M
     if (has_normal_map || has_color) detail.otherwise.emplace();
     const auto each = [&](HighMaterial& material) {
         if (has_normal_map) {
-            const Image* map = image(*options.normal_map, ImageUse::data);
-            material.normal_map =
-                SurfaceNormalMap{{.image = map}, 1.0F, Green::up, flat_code_of(*map)};
+            const SurfaceTexture texture{.image = image(*options.normal_map, ImageUse::data)};
+            material.normal_map = normal_map(texture, 1.0F);
         }
         if (has_color)
             material.color_texture =

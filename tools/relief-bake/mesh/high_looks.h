@@ -47,7 +47,11 @@ class HighLooks {
                            const GltfTexture& texture, ImageUse use);
 
     std::vector<HighDetail> details_;
+    SurfaceNormalMap normal_map(const SurfaceTexture& texture, float scale) const;
+
     std::map<std::string, Image> images_;  ///< By file, number and use.
+    /// Text entries of the files that images are from.
+    std::map<const Image*, std::map<std::string, std::string>> metadata_;
     std::size_t normal_maps_ = 0;
     std::size_t color_textures_ = 0;
 };

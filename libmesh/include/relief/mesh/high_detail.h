@@ -4,6 +4,8 @@
 /// and normal maps. Tests: tests/mesh/bake/high_detail_test.cpp.
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <glm/glm.hpp>
 #include <optional>
 #include <vector>
@@ -32,6 +34,8 @@ struct SurfaceNormalMap {
     float scale = 1.0F;      ///< Of x and y.
     Green green = Green::up;
     FlatCode flat = FlatCode::half;  ///< glTF's formula.
+    /// Of x and y: read as exactly flat, see flat_texel_codes(). Only for FlatCode::half.
+    std::optional<std::array<std::uint16_t, 2>> flat_codes{};
 };
 
 struct HighMaterial {

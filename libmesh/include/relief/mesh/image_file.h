@@ -58,6 +58,9 @@ Image read_image(std::span<const std::byte> bytes, const std::string& name, Imag
 /// What a file's header says; throws as read_image does, as far as headers tell.
 ImageInfo read_image_info(const std::filesystem::path& file);
 
+/// The same from memory. `name` is for messages.
+ImageInfo read_image_info(std::span<const std::byte> bytes, const std::string& name);
+
 /// What writing may cost: PNG on all threads, TIFF by how it deflates; other formats know no
 /// difference. The samples are the same.
 ///

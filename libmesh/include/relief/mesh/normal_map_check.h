@@ -126,7 +126,8 @@ struct NormalMapCheck {
     VectorLengths lengths;           ///< Of the samples as they are stored.
     VectorLengths lengths_uncurved;  ///< With `curve` undone; equal to `lengths` where it is none.
     GreenEvidence green;             ///< Of tangent-space normals.
-    FlatCode flat = FlatCode::middle;         ///< What detect_flat_code() says.
+    /// What detect_flat_code() says, or FlatCode::half where the texels contradict the metadata.
+    FlatCode flat = FlatCode::half;
     Tiling tiling;                            ///< Of x and y, the worse of the two.
     std::vector<int> bits;                    ///< Really used, by channel; 0: more than 16.
     std::optional<double> alpha_correlation;  ///< Of the slopes of alpha with those of the normals.

@@ -46,13 +46,13 @@ struct XyChannels {
 
 /// Unit normals from x and y alone: z is what makes them unit, and faces outwards.
 ///
-/// \param map  two to four channels
+/// \param map  two to four channels; the whole map for FlatTexels::exact
 /// \return three float channels, unit, y up. Where x and y alone are longer than 1, as compression
 ///         leaves them, z is 0 and they are shortened.
 /// \param report  counts those, and texels that are not finite: read as flat
 /// \throws InvalidInput if the image is empty or lacks one of the channels
 Image decode_xy_map(const Image& map, const XyChannels& channels, Green green, FlatCode flat,
-                    Report& report);
+                    Report& report, FlatTexels texels = FlatTexels::as_coded);
 
 /// How long the vectors of a map are.
 struct LengthSpread {

@@ -49,7 +49,7 @@ constexpr std::array all_map_conditions = {
                      "as DirectX has it; OpenGL and glTF want it up"},
     MapConditionInfo{green_unknown, "green cannot be told", "map", remark,
                      "its slopes are as good a surface with green up as with green down"},
-    MapConditionInfo{flat_contradicted, "flat is not what the file says", "map", trouble,
+    MapConditionInfo{flat_contradicted, "zero is not what the file says", "map", trouble,
                      "its flat texels have another code than the one named"},
     MapConditionInfo{all_flat, "every texel the same", "map", remark, "shows nothing"},
     MapConditionInfo{x_constant, "constant first component", "map", remark,

@@ -173,6 +173,13 @@ void find_texels(const NormalMapCheck& check, const MapStatistics& all, FoundCon
     found.if_so(rms > 0.02 && rms <= 0.05, MapCondition::not_quite_unit);
 }
 
+/// Whether flat texels have 127 while the file says that zero is 128. The other way round nothing
+/// can be told: maps with zero at 127.5 have 128 in flat texels too.
+bool contradicts_flat_code(const Image& map, const std::map<std::string, std::string>& metadata) {
+    return metadata.contains("relief:flat") &&
+           detect_flat_code(map, metadata) == FlatCode::middle && flat_evidence(map).is_half();
+}
+
 void find_conventions(const Image& map, const NormalMapCheck& check,
                       const std::map<std::string, std::string>& metadata, const MapStatistics& all,
                       FoundConditions& found) {
@@ -190,11 +197,8 @@ void find_conventions(const Image& map, const NormalMapCheck& check,
         found.if_so(check.green.green == Green::down, green_down);
         found.if_so(!check.green.green, green_unknown);
     }
-    // The other way round nothing shows: maps coded about 127.5 may well have 128 for flat.
-    if (has_directions(check.content) && metadata.contains("relief:flat")) {
-        const bool says_middle = detect_flat_code(map, metadata) == FlatCode::middle;
-        found.if_so(says_middle && flat_evidence(map).is_half(), flat_contradicted);
-    }
+    if (has_directions(check.content))
+        found.if_so(contradicts_flat_code(map, metadata), flat_contradicted);
 }
 
 void find_channels(const Image& map, const NormalMapCheck& check, const MapStatistics& all,
@@ -264,7 +268,10 @@ NormalMapCheck check_normal_map(const Image& map,
         found.if_so(true, MapCondition::not_normals);
         return check;
     }
-    if (map.channels >= 3) check.flat = detect_flat_code(map);
+    if (map.channels >= 3) {
+        check.flat =
+            contradicts_flat_code(map, metadata) ? FlatCode::half : detect_flat_code(map, metadata);
+    }
     const Meaning meaning = meaning_of(map, check.flat);
     check.content = meaning.content;
     check.curve = meaning.samples.curve;

@@ -5,9 +5,12 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <optional>
+#include <type_traits>
 
 #include "relief/mesh/normal_map.h"
 #include "vector_targets.h"
@@ -81,6 +84,28 @@ struct NormalCoding<float, Real> {
     [[nodiscard]] static Real decoded(float sample) {
         return Real{2} * static_cast<Real>(sample) - 1;
     }
+};
+
+/// Tells the texels of a map that are read as exactly flat, see FlatTexels.
+template <typename Sample>
+class ExactFlat {
+  public:
+    /// \param codes  of x and y, see flat_texel_codes()
+    explicit ExactFlat(const std::optional<std::array<std::uint16_t, 2>>& codes) : codes_(codes) {}
+    ExactFlat(const Image& map, FlatCode flat, FlatTexels texels, int x, int y) {
+        if (texels == FlatTexels::exact && flat == FlatCode::half)
+            codes_ = flat_texel_codes(map, x, y);
+    }
+
+    [[nodiscard]] bool is_flat(Sample x, Sample y) const {
+        if constexpr (std::is_same_v<Sample, float>)
+            return false;
+        else
+            return codes_ && x == (*codes_)[0] && y == (*codes_)[1];
+    }
+
+  private:
+    std::optional<std::array<std::uint16_t, 2>> codes_;
 };
 
 }  // namespace relief

@@ -7,7 +7,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <limits>
+#include <numeric>
 
 #include "image/normals/dither_tile.h"
 #include "image/normals/normal_coding.h"
@@ -67,39 +69,37 @@ void encode(const Image& normals, const NormalMapFormat& format, Image& result, 
 }
 
 template <typename Sample>
-void decode(const Image& map, Green green, FlatCode flat, std::span<float> normals,
-            Report& report) {
+void decode(const Image& map, Green green, FlatCode flat, FlatTexels texels,
+            std::span<float> normals, Report& report) {
     const std::span<const Sample> samples = map.as<Sample>();
     const auto channels = static_cast<std::size_t>(map.channels);
     const NormalCoding<Sample> coding{flat};
     const double up = green == Green::up ? 1.0 : -1.0;
+    const ExactFlat<Sample> exact(map, flat, texels, 0, 1);
     for_each_texel(normals.size() / 3, report, [&](std::size_t texel, Report& found) {
         const Sample* sample = &samples[texel * channels];
         Direction direction{coding.decoded(sample[0]), coding.decoded(sample[1]) * up,
                             coding.decoded(sample[2])};
+        if (exact.is_flat(sample[0], sample[1])) direction.x = direction.y = 0.0;
         if (!make_unit(direction))
             found.add("normal without direction", "texel", texel, "read as flat");
         store(direction, &normals[texel * 3]);
     });
 }
 
-/// Whether the lower of the two codes around zero is the commoner among texels that are flat in
-/// both x and y, to within those two codes.
+/// How many texels hold each pair of the two codes around zero, lower first, x before y.
 template <typename Code>
-FlatCode commoner_zero(const Image& map) {
-    constexpr Code upper = std::numeric_limits<Code>::max() / 2 + 1;
-    constexpr Code lower = upper - 1;
+std::array<std::size_t, 4> pairs_around_zero(const Image& map, int x, int y) {
+    constexpr Code lower = std::numeric_limits<Code>::max() / 2;
     const std::span<const Code> samples = map.as<Code>();
     const auto channels = static_cast<std::size_t>(map.channels);
-    const auto flat = [](Code code) { return code == lower || code == upper; };
-    std::size_t lower_count = 0;
-    std::size_t upper_count = 0;
-    for (std::size_t first = 0; first + 2 < samples.size(); first += channels) {
-        if (!flat(samples[first]) || !flat(samples[first + 1])) continue;
-        for (std::size_t channel = 0; channel < 2; ++channel)
-            ++(samples[first + channel] == lower ? lower_count : upper_count);
+    std::array<std::size_t, 4> counts{};
+    for (std::size_t first = 0; first < samples.size(); first += channels) {
+        const auto in_x = static_cast<Code>(samples[first + static_cast<std::size_t>(x)] - lower);
+        const auto in_y = static_cast<Code>(samples[first + static_cast<std::size_t>(y)] - lower);
+        if (in_x <= 1 && in_y <= 1) ++counts[2U * in_x + in_y];
     }
-    return lower_count > upper_count ? FlatCode::half : FlatCode::middle;
+    return counts;
 }
 
 std::string zero_code(const NormalMapFormat& format) {
@@ -135,22 +135,42 @@ Image encode_normal_map(const Image& normals, const NormalMapFormat& format, Rep
     return result;
 }
 
-Image decode_normal_map(const Image& map, Green green, FlatCode flat, Report& report) {
+Image decode_normal_map(const Image& map, Green green, FlatCode flat, Report& report,
+                        FlatTexels texels) {
     check_map(map);
     Image result = make_image(map.width, map.height, 3, 32, ColorSpace::data);
     const std::span<float> normals = result.as<float>();
     switch (map.bits()) {
         case 8:
-            decode<std::uint8_t>(map, green, flat, normals, report);
+            decode<std::uint8_t>(map, green, flat, texels, normals, report);
             break;
         case 16:
-            decode<std::uint16_t>(map, green, flat, normals, report);
+            decode<std::uint16_t>(map, green, flat, texels, normals, report);
             break;
         default:
-            decode<float>(map, green, flat, normals, report);
+            decode<float>(map, green, flat, texels, normals, report);
             break;
     }
     return result;
+}
+
+std::optional<std::array<std::uint16_t, 2>> flat_texel_codes(const Image& map, int x, int y) {
+    if (map.empty()) throw InvalidInput("an empty image holds no normals");
+    if (std::min(x, y) < 0 || std::max(x, y) >= map.channels) {
+        throw InvalidInput(
+            fmt::format("channels {} and {} of an image that has {}", x, y, map.channels));
+    }
+    if (map.bits() == 32) return std::nullopt;
+    const std::array<std::size_t, 4> counts = map.bits() == 8
+                                                  ? pairs_around_zero<std::uint8_t>(map, x, y)
+                                                  : pairs_around_zero<std::uint16_t>(map, x, y);
+    const std::size_t all = std::accumulate(counts.begin(), counts.end(), std::size_t{0});
+    const auto most = std::max_element(counts.begin(), counts.end());
+    if (all == 0 || 4 * *most < 3 * all) return std::nullopt;
+    const auto pair = static_cast<unsigned>(most - counts.begin());
+    const unsigned lower = map.bits() == 8 ? 127 : 32767;
+    return std::array{static_cast<std::uint16_t>(lower + pair / 2),
+                      static_cast<std::uint16_t>(lower + pair % 2)};
 }
 
 FlatCode detect_flat_code(const Image& map, const std::map<std::string, std::string>& metadata) {
@@ -159,9 +179,7 @@ FlatCode detect_flat_code(const Image& map, const std::map<std::string, std::str
         if (said->second == "127.5" || said->second == "32767.5") return FlatCode::half;
         if (said->second == "128" || said->second == "32768") return FlatCode::middle;
     }
-    if (map.bits() == 8) return commoner_zero<std::uint8_t>(map);
-    if (map.bits() == 16) return commoner_zero<std::uint16_t>(map);
-    return FlatCode::middle;
+    return FlatCode::half;
 }
 
 std::map<std::string, std::string> normal_map_metadata(const NormalMapFormat& format) {

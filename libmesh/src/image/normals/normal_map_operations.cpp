@@ -101,7 +101,7 @@ LengthSpread spread_of(const std::vector<RowLengths>& rows) {
 }  // namespace
 
 Image decode_xy_map(const Image& map, const XyChannels& channels, Green green, FlatCode flat,
-                    Report& report) {
+                    Report& report, FlatTexels texels) {
     check_xy_map(map, channels);
     Image result = make_image(map.width, map.height, 3, 32, ColorSpace::data);
     float* const normals = result.as<float>().data();
@@ -112,11 +112,15 @@ Image decode_xy_map(const Image& map, const XyChannels& channels, Green green, F
     with_sample_type(map, [&]<typename Sample>(Sample) {
         const std::span<const Sample> samples = map.as<Sample>();
         const NormalCoding<Sample> coding{flat};
+        const ExactFlat<Sample> exact(map, flat, texels, channels.x, channels.y);
         for_each_texel(samples.size() / stride, report, [&](std::size_t texel, Report& found) {
             const Sample* sample = &samples[texel * stride];
-            store(facing_outwards(coding.decoded(sample[x]), coding.decoded(sample[y]) * up, texel,
-                                  found),
-                  normals + texel * 3);
+            const Direction normal =
+                exact.is_flat(sample[x], sample[y])
+                    ? Direction{0.0, 0.0, 1.0}
+                    : facing_outwards(coding.decoded(sample[x]), coding.decoded(sample[y]) * up,
+                                      texel, found);
+            store(normal, normals + texel * 3);
         });
     });
     return result;

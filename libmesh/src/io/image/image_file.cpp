@@ -45,6 +45,12 @@ Image read_encoded(std::span<const std::byte> bytes, const std::filesystem::path
     return read_all(*module_rows(std::move(container), bytes, name), name);
 }
 
+ImageInfo info_of(std::span<const std::byte> bytes, const std::filesystem::path& name) {
+    ImageContainer container = examine_image(bytes, name);
+    if (std::optional<ImageInfo> info = read_info_directly(container)) return std::move(*info);
+    return module_rows(std::move(container), bytes, name)->info();
+}
+
 /// Below this size a PNG is faster read and inflated at once.
 constexpr std::uintmax_t large_png = std::uintmax_t{1} << 20;
 
@@ -84,10 +90,11 @@ Image read_image(std::span<const std::byte> bytes, const std::string& name, Imag
 ImageInfo read_image_info(const std::filesystem::path& file) {
     if (const auto rows = open_streamed_rows(file)) return rows->info();
     const std::string contents = read_bytes(file);
-    const auto bytes = std::as_bytes(std::span(contents));
-    ImageContainer container = examine_image(bytes, file);
-    if (std::optional<ImageInfo> info = read_info_directly(container)) return std::move(*info);
-    return module_rows(std::move(container), bytes, file)->info();
+    return info_of(std::as_bytes(std::span(contents)), file);
+}
+
+ImageInfo read_image_info(std::span<const std::byte> bytes, const std::string& name) {
+    return info_of(bytes, name);
 }
 
 }  // namespace relief

@@ -26,8 +26,8 @@ std::string with_origin(const ImageSource& source, const std::string& error);
 /// decoded anew.
 void note_image_file(const ImageSource& source);
 
-/// Which stored code of a normal map stands for zero: as the file's text says, or as the image
-/// looks. \param image  decoded from the source
+/// Which stored code of a normal map stands for zero: what the file's text says, else 127.5, see
+/// detect_flat_code(). \param image  decoded from the source
 FlatCode detected_flat_code(const ImageSource& source, const Image& image);
 
 }  // namespace relief

@@ -38,7 +38,7 @@ Image smooth(int side, const Slope& slope) {
         }
     }
     Report report;
-    return encode_normal_map(normals, {.bits = 8}, report);
+    return encode_normal_map(normals, {.bits = 8, .flat = FlatCode::middle}, report);
 }
 
 TEST(FlatEvidence, CountsTexelsNearFlatAndThoseOfTheLowerCode) {
@@ -59,20 +59,17 @@ TEST(FlatEvidence, CountsTexelsNearFlatAndThoseOfTheLowerCode) {
 }
 
 TEST(FlatEvidence, ASmoothSurfaceRaisesNoAlarm) {
-    int guessed_half = 0;
     for (const double steepness : {0.05, 0.2, 0.5, 1.0, 3.0}) {
         for (const double shift : {-0.3, -0.01, -0.004, 0.0, 0.003, 0.1}) {
             for (const int side : {64, 256}) {
                 const Image map = smooth(side, [&](double x, double y) {
                     return glm::dvec2(steepness * (x + shift), steepness * (y - 0.7 * shift));
                 });
-                guessed_half += detect_flat_code(map) == FlatCode::half ? 1 : 0;
                 EXPECT_FALSE(check_normal_map(map, says_128).has(MapCondition::flat_contradicted))
                     << steepness << ' ' << shift << ' ' << side;
             }
         }
     }
-    EXPECT_GT(guessed_half, 5);  // The commoner of the two codes, by chance.
 }
 
 TEST(FlatEvidence, FlatTexelsOfAnotherCodeAreFoundBesideCurvedOnes) {

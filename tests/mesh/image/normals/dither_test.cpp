@@ -162,7 +162,7 @@ TEST(Dither, WhatACodeSaysExactlyKeepsThatCode) {
             for (const glm::dvec3& axis :
                  {glm::dvec3(0, 0, 1), glm::dvec3(1, 0, 0), glm::dvec3(0, -1, 0)}) {
                 Report report;
-                const NormalMapFormat plain{bits};
+                const NormalMapFormat plain{bits, Green::up, FlatCode::middle};
                 NormalMapFormat dithered = plain;
                 dithered.dither = dither;
                 EXPECT_EQ(encode_normal_map(patch_of(axis), dithered, report).samples,

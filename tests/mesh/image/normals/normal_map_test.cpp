@@ -5,11 +5,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "mesh/image/normals/flat_codes.h"
 #include "relief/mesh/error.h"
+#include "relief/mesh/normal_map_operations.h"
 #include "support/angle.h"
 #include "support/samples.h"
 
@@ -187,8 +189,8 @@ TEST(NormalMap, WhatIsNoDirectionIsFlatAndCounted) {
 TEST(NormalMap, OnlyTheDirectionCounts) {
     Report report;
     for (const float length : {1e-30F, 0.5F, 2.0F, 1e30F}) {
-        const Image map =
-            encode_normal_map(map_of({0.6F * length, 0, 0.8F * length}), {16}, report);
+        const Image map = encode_normal_map(map_of({0.6F * length, 0, 0.8F * length}),
+                                            {16, Green::up, FlatCode::middle}, report);
         EXPECT_THAT(map.as<std::uint16_t>(), ElementsAre(32768 + 19660, 32768, 32768 + 26214));
     }
     EXPECT_TRUE(report.empty());
@@ -206,18 +208,95 @@ TEST(NormalMap, WrongImagesAndDepthsAreRefused) {
     EXPECT_THROW(detect_flat_code(Image{}), InvalidInput);
 }
 
-TEST(NormalMap, TheFlatCodeIsDetectedFromFlatTexelsAndFromMetadata) {
+TEST(NormalMap, ZeroIsWhatTheMetadataSaysElseAsGltfDecodes) {
     const Image lower = map_of<std::uint8_t>(3, {127, 127, 255, 127, 128, 255, 10, 128, 200});
     const Image upper = map_of<std::uint8_t>(3, {128, 128, 255, 127, 128, 255, 127, 10, 200});
     EXPECT_EQ(detect_flat_code(lower), FlatCode::half);
-    EXPECT_EQ(detect_flat_code(upper), FlatCode::middle);
-    EXPECT_EQ(detect_flat_code(map_of<std::uint16_t>(3, {32767, 32767, 65535})), FlatCode::half);
-    EXPECT_EQ(detect_flat_code(map_of<std::uint16_t>(4, {32768, 32768, 65535, 32767})),
-              FlatCode::middle);
-    EXPECT_EQ(detect_flat_code(map_of<float>(3, {0.4F, 0.4F, 1.0F})), FlatCode::middle);
+    EXPECT_EQ(detect_flat_code(upper), FlatCode::half);
+    EXPECT_EQ(detect_flat_code(map_of<std::uint16_t>(3, {32768, 32768, 65535})), FlatCode::half);
     EXPECT_EQ(detect_flat_code(upper, {{"relief:flat", "127.5"}}), FlatCode::half);
     EXPECT_EQ(detect_flat_code(lower, {{"relief:flat", "128"}}), FlatCode::middle);
-    EXPECT_EQ(detect_flat_code(lower, {{"relief:flat", "what?"}}), FlatCode::half);
+    EXPECT_EQ(detect_flat_code(lower, {{"relief:flat", "32768"}}), FlatCode::middle);
+    EXPECT_EQ(detect_flat_code(upper, {{"relief:flat", "what?"}}), FlatCode::half);
+}
+
+TEST(NormalMap, TheDefaultIsWhatGltfAndEnginesDecode) {
+    const Image normals = hemisphere();
+    Report report;
+    for (const int bits : {8, 16}) {
+        NormalMapFormat format;
+        format.bits = bits;
+        const Image map = to_float(encode_normal_map(normals, format, report));
+        double largest = 0.0;
+        for (std::size_t first = 0; first < map.sample_count(); first += 3) {
+            // glTF 2.0: the components 0 to 1 of a texel map to -1 to 1.
+            const auto decoded = [&](std::size_t i) {
+                return 2.0 * static_cast<double>(map.as<float>()[first + i]) - 1.0;
+            };
+            const glm::dvec3 truth(normals.as<float>()[first], normals.as<float>()[first + 1],
+                                   normals.as<float>()[first + 2]);
+            largest = std::max(largest,
+                               test::degrees_between({decoded(0), decoded(1), decoded(2)}, truth));
+        }
+        // Half a code in three components, and none of another zero.
+        EXPECT_LT(largest, bits == 8 ? 0.395 : 0.0016);
+    }
+}
+
+TEST(NormalMap, FlatIsExactlyFlatUnderBothZeros) {
+    // A flat quarter beside normals all around.
+    Image normals = hemisphere();
+    const std::size_t flat_samples = normals.sample_count() / 3 / 4 * 3;
+    for (std::size_t i = 0; i < flat_samples; ++i)
+        normals.as<float>()[i] = i % 3 == 2 ? 1.0F : 0.0F;
+    Report report;
+    for (const FlatCode flat : both_codes) {
+        for (const int bits : {8, 16}) {
+            for (const Green green : {Green::up, Green::down}) {
+                Image map = encode_normal_map(normals, {bits, green, flat}, report);
+                if (green == Green::down)  // Turned round by its codes: 128 becomes 127.
+                    map_axes(map, {{{0, false}, {1, true}, {2, false}}}, flat, report);
+                const Image exact =
+                    decode_normal_map(map, Green::up, flat, report, FlatTexels::exact);
+                const Image as_coded = decode_normal_map(map, Green::up, flat, report);
+                for (std::size_t i = 0; i < flat_samples; ++i)
+                    ASSERT_EQ(exact.as<float>()[i], i % 3 == 2 ? 1.0F : 0.0F);
+                // All others are what the formula says.
+                for (std::size_t i = flat_samples; i < normals.sample_count(); ++i)
+                    ASSERT_NEAR(exact.as<float>()[i], as_coded.as<float>()[i], 0.004F);
+                EXPECT_EQ(flat_texel_codes(map).has_value(), true);
+            }
+        }
+    }
+    EXPECT_TRUE(report.empty());
+}
+
+TEST(NormalMap, FlatTexelsHaveCodesOnlyWhereOnePairOfCodesPrevails) {
+    EXPECT_THAT(flat_texel_codes(map_of<std::uint8_t>(3, {128, 127, 255, 9, 128, 200})).value(),
+                ElementsAre(128, 127));
+    EXPECT_THAT(flat_texel_codes(map_of<std::uint16_t>(3, {32767, 32767, 65535})).value(),
+                ElementsAre(32767, 32767));
+    EXPECT_THAT(flat_texel_codes(map_of<std::uint8_t>(3, {128, 9, 128}), 0, 2).value(),
+                ElementsAre(128, 128));
+    // Three of four, and fewer.
+    EXPECT_TRUE(
+        flat_texel_codes(map_of<std::uint8_t>(2, {128, 128, 128, 128, 127, 128, 128, 128})));
+    EXPECT_FALSE(flat_texel_codes(map_of<std::uint8_t>(2, {128, 128, 128, 128, 127, 128})));
+    EXPECT_FALSE(flat_texel_codes(map_of<std::uint8_t>(2, {126, 128, 128, 129})));
+    EXPECT_FALSE(flat_texel_codes(map_of<float>(3, {0.5F, 0.5F, 1.0F})));
+    EXPECT_THROW(flat_texel_codes(Image{}), InvalidInput);
+    EXPECT_THROW(flat_texel_codes(map_of<std::uint8_t>(2, {1, 2}), 0, 2), InvalidInput);
+    // Dithered flat ground: each of the four pairs is a direction of its own.
+    std::vector<float> flat;
+    for (int i = 0; i < 64 * 64; ++i)
+        flat.insert(flat.end(), {0.0F, 0.0F, 1.0F});
+    Image normals = map_of(std::move(flat));
+    normals.width = normals.height = 64;
+    Report report;
+    for (const Dither dither : {Dither::ordered, Dither::blue_noise}) {
+        EXPECT_FALSE(flat_texel_codes(
+            encode_normal_map(normals, {8, Green::up, FlatCode::half, dither}, report)));
+    }
 }
 
 TEST(NormalMap, MetadataSaysWhatTheMapHoldsAndIsUnderstoodAgain) {
