@@ -52,6 +52,8 @@ void write_glb(const std::filesystem::path& file, relief::Mesh mesh) {
 void write_brick_normals(const std::filesystem::path& file) {
     relief::Report report;
     relief::BumpOptions options;
+    options.kernel = relief::Kernel::sobel3;
+    options.wrap = relief::Wrap::repeat;
     options.strength = 6.0;
     const relief::Image heights = relief::height_field(sample::brick_heights(256));
     const relief::NormalMapFormat format{

@@ -29,7 +29,7 @@ struct Map {
 
 Image normals_of(const Image& heights, double strength) {
     Report report;
-    BumpOptions options;
+    BumpOptions options{Kernel::sobel3, Wrap::repeat};
     options.strength = strength;
     return normal_map_from_height(heights, options, {}, report);
 }

@@ -145,7 +145,7 @@ std::string step_tables() {
                 continue;
             BumpField field = make_bump_field(recipe, side, side);
             const Best before = best_on(field);
-            field.heights = destaircase(field.heights, {.wrap = field.options.wrap}).heights;
+            field.heights = destaircase(field.heights, {.wrap = *field.options.wrap}).heights;
             const Best after = best_on(field);
             text += fmt::format("| {} | {} | {} | {} | {} | {:.2f} |\n", recipe.name,
                                 code_name(name_of(before.kernel, before.radius)),

@@ -107,8 +107,76 @@ TEST(BumpAccuracyCommand, KeepsWithinABoundAtTheLeastCost) {
         workplace.run(line + " out/d.png --max-error 0.02 --max-error-kind max --bits 8");
     EXPECT_EQ(none.exit_code, 1);
     EXPECT_THAT(none.error, HasSubstr("h.png: no way to convert it keeps within 0.02 degrees "
-                                      "(greatest): the least is 0."));
+                                      "(greatest): "));
     EXPECT_THAT(workplace.outputs(), testing::Not(HasSubstr("d.png")));
+}
+
+TEST(BumpAccuracyCommand, ALimitIsForTheErrorOfTheMapAsWell) {
+    const Workplace workplace;
+    const BumpField field =
+        make_bump_field({"", FieldShape::waves, 32.0, 0.3, FieldCoding::bits8, 1.0, 5}, 160, 128);
+    write_image(workplace / "noisy.png", field.heights);
+    const std::string line = "relief-bake bump noisy.png" + strength_of(field);
+    // The map is some degrees off whatever is done, however close kernels are to each other.
+    const ProgramResult refused = workplace.run(line + " out/a.png --max-error 0.5");
+    EXPECT_EQ(refused.exit_code, 1);
+    EXPECT_THAT(refused.error, HasSubstr("noisy.png: no way to convert it keeps within 0.5 degrees "
+                                         "(RMS): the map itself has an expected error of "));
+    EXPECT_THAT(refused.error, HasSubstr("limit what is added by --max-added-error"));
+    EXPECT_THAT(workplace.outputs(), testing::Not(HasSubstr("a.png")));
+    const ProgramResult added =
+        workplace.run(line + " out/b.png --max-added-error 0.5 --report out/b.json");
+    ASSERT_EQ(added.exit_code, 0) << added.error;
+    EXPECT_THAT(added.out, HasSubstr(" degrees RMS expected\n"));
+    EXPECT_THAT(added.out, HasSubstr(" from the map itself, "));
+    const json expected = json::parse(workplace.read("out/b.json"))["kept"]["expected_degrees"];
+    EXPECT_LE(expected["added"].get<double>(), 0.5);
+    EXPECT_NEAR(expected["total"].get<double>(),
+                std::hypot(expected["map"].get<double>(), expected["added"].get<double>()), 1e-9);
+    // What is printed is the error that there is.
+    EXPECT_NEAR(expected["total"].get<double>() / error_of(workplace, "out/b.png", field), 1.0,
+                0.4);
+}
+
+TEST(BumpAccuracyCommand, SaysWhatFollowsIfGrainIsDetail) {
+    const Workplace workplace;
+    const BumpField field =
+        make_bump_field({"", FieldShape::waves, 32.0, 0.3, FieldCoding::bits8, 1.5, 5}, 160, 128);
+    write_image(workplace / "noisy.png", field.heights);
+    const std::string line = "relief-bake bump noisy.png" + strength_of(field);
+    const ProgramResult result = workplace.run(line + " out/a.png --report out/a.json");
+    ASSERT_EQ(result.exit_code, 0) << result.error;
+    EXPECT_THAT(result.out, HasSubstr("fine grain that may be noise or detail"));
+    EXPECT_THAT(result.out, HasSubstr("(--grain detail)"));
+    const json report = json::parse(workplace.read("out/a.json"));
+    EXPECT_EQ(report["grain"]["taken_for"], "noise");
+    EXPECT_TRUE(report["grain"]["ambiguous"].get<bool>());
+    EXPECT_GT(report["grain"]["otherwise"]["expected_degrees"].get<double>(),
+              5.0 * report["expected_degrees"].get<double>());
+    ASSERT_EQ(workplace.run(line + " out/b.png --grain detail --report out/b.json").exit_code, 0);
+    const json detail = json::parse(workplace.read("out/b.json"));
+    EXPECT_EQ(detail["grain"]["taken_for"], "detail");
+    EXPECT_NE(detail["kernel"], "gaussian");
+}
+
+TEST(BumpAccuracyCommand, APictureIsNoHeightMap) {
+    const Workplace workplace;
+    Image picture = make_image(64, 64, 4, 8, ColorSpace::data);
+    for (std::size_t i = 0; i < picture.sample_count(); ++i)
+        picture.as<std::uint8_t>()[i] = static_cast<std::uint8_t>(i * 37 % 251);
+    write_image(workplace / "photo.png", picture);
+    const ProgramResult result =
+        workplace.run("relief-bake bump photo.png out/a.png --kernel sobel3");
+    ASSERT_EQ(result.exit_code, 0) << result.error;
+    EXPECT_THAT(result.out, HasSubstr("color image read as heights"));
+    EXPECT_THAT(result.out, HasSubstr("choose one channel by --channel"));
+    EXPECT_THAT(result.out, HasSubstr("alpha with values between 0 and 1"));
+    EXPECT_EQ(
+        workplace.run("relief-bake bump photo.png out/b.png --kernel sobel3 --strict").exit_code,
+        3);
+    const ProgramResult chosen =
+        workplace.run("relief-bake bump photo.png out/c.png --kernel sobel3 --channel red");
+    EXPECT_THAT(chosen.out, testing::Not(HasSubstr("color image")));
 }
 
 TEST(BumpAccuracyCommand, ComparesEveryWayOnTheMap) {

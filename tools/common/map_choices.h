@@ -18,6 +18,14 @@ inline Choices<Kernel> kernel_choices() {
             {"central7", Kernel::central7}, {"gaussian", Kernel::gaussian}};
 }
 
+/// Absent: as the map calls for.
+inline Choices<std::optional<Kernel>> kernel_or_auto_choices() {
+    Choices<std::optional<Kernel>> choices = {{"auto", std::nullopt}};
+    for (const auto& [name, kernel] : kernel_choices())
+        choices.emplace_back(name, kernel);
+    return choices;
+}
+
 inline Choices<HeightChannel> height_channel_choices() {
     return {{"mean", HeightChannel::mean}, {"luminance", HeightChannel::luminance},
             {"red", HeightChannel::red},   {"green", HeightChannel::green},

@@ -51,8 +51,9 @@ void add_height_options(CLI::App& app, ViewOptions& options) {
     add_number(app, "--strength", "S", options.strength, {},
                "Height in texels that the height map's value 1.0 stands for. Default: 16.")
         .group(maps_group);
-    add_choice(app, "--kernel", options.kernel, kernel_choices(),
-               "How slopes are taken from the height map. Default: sobel3.")
+    add_choice(app, "--kernel", options.kernel, kernel_or_auto_choices(),
+               "How slopes are taken from the height map; auto takes the truest for it, as "
+               "relief-bake bump does. Default: auto.")
         .group(maps_group);
 }
 

@@ -85,7 +85,7 @@ NormalMap normal_map_of_heights(Scene& scene, const ViewOptions& options, Stages
     const std::filesystem::path& file = *options.height_map;
     BumpOptions bump;
     bump.strength = options.strength.value_or(bump.strength);
-    bump.kernel = options.kernel.value_or(bump.kernel);
+    bump.kernel = options.kernel;
     Image map = stages.run("height map", [&] {
         return about(file, [&] {
             return converted_heights(read_image(file, ImageUse::data), bump, 16, report);
@@ -179,6 +179,16 @@ Image converted_heights(const Image& image, const BumpOptions& bump, int bits, R
     format.bits = bits;
     return encode_normal_map(normals_from_height(height_field(image), bump, report), format,
                              report);
+}
+
+std::optional<Kernel> kernel_shown(const ViewOptions& options) {
+    if (options.kernel || !options.height_map) return options.kernel;
+    BumpOptions bump;
+    bump.strength = options.strength.value_or(bump.strength);
+    bump = settled_options(height_field(read_image(*options.height_map, ImageUse::data)), bump);
+    if (bump.kernel == Kernel::gaussian && bump.gaussian_radius != BumpOptions{}.gaussian_radius)
+        return std::nullopt;
+    return bump.kernel;
 }
 
 NormalMap converted_map(const Texture& texture) {

@@ -27,6 +27,12 @@ void override_materials(Scene& scene, const ViewOptions& options, Stages& stages
 /// The heights in an image as a normal map in codes of so many bits: green up, flat exactly flat.
 Image converted_heights(const Image& image, const BumpOptions& bump, int bits, Report& report);
 
+/// The kernel by which the options' height map is converted, or would be.
+///
+/// \return nothing for a Gaussian that the map called for, whose radius is its own
+/// \throws FileError if the height map cannot be read
+std::optional<Kernel> kernel_shown(const ViewOptions& options);
+
 /// How to read such a map.
 NormalMap converted_map(const Texture& texture);
 

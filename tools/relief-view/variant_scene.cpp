@@ -64,7 +64,7 @@ class Preparation {
                 maps = {std::nullopt, as_bump_map(*heights)};
                 changed = true;
             } else if (use == MapUse::normal_map && maps.bump_map) {
-                convert(maps, *heights, BumpOptions{}.kernel, MapBits::sixteen);
+                convert(maps, *heights, std::nullopt, MapBits::sixteen);
                 changed = true;
             }
         }
@@ -78,7 +78,7 @@ class Preparation {
 
     void change(Kernel kernel) {
         const bool is_converted = options_.height_map && options_.height_as != HeightUse::bump_map;
-        if (is_converted && kernel == options_.kernel.value_or(BumpOptions{}.kernel))
+        if (is_converted && kernel == kernel_shown(options_))
             refuse_change(variant_, "is how the picture is already", "choose another one");
         begin_maps();
         bool changed = false;
@@ -105,7 +105,7 @@ class Preparation {
                 const Image image = decode(source, ImageUse::data);
                 if (image.bits() <= static_cast<int>(bits)) return false;
                 if (const std::optional<Heights> heights = heights_of(scene_.materials[i])) {
-                    convert(maps, *heights, options_.kernel.value_or(BumpOptions{}.kernel), bits);
+                    convert(maps, *heights, options_.kernel, bits);
                 } else {
                     code_again(*maps.normal_map, source, image, bits);
                 }
@@ -186,7 +186,9 @@ class Preparation {
         return map;
     }
 
-    void convert(MaterialMaps& maps, const Heights& heights, Kernel kernel, MapBits bits) {
+    /// \param kernel  absent: as the map calls for
+    void convert(MaterialMaps& maps, const Heights& heights, std::optional<Kernel> kernel,
+                 MapBits bits) {
         BumpOptions bump;
         bump.kernel = kernel;
         bump.strength = heights.map.strength;

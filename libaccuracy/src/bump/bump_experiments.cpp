@@ -134,7 +134,7 @@ void convert(const BumpField& field, const BumpMethod& method) {
     options.arithmetic = method.arithmetic;
     Report report;
     if (method.destaircased) {
-        const Image smooth = destaircase(field.heights, {.wrap = options.wrap}).heights;
+        const Image smooth = destaircase(field.heights, {.wrap = *options.wrap}).heights;
         normal_map_from_height(smooth, options, {.bits = method.bits}, report);
     } else {
         normal_map_from_height(field.heights, options, {.bits = method.bits}, report);

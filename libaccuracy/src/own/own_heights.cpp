@@ -10,6 +10,7 @@
 #include "own/own_experiment.h"
 #include "relief/accuracy/own.h"
 #include "relief/mesh/destaircase.h"
+#include "relief/mesh/height_statistics.h"
 
 namespace relief {
 namespace {
@@ -28,8 +29,8 @@ std::function<void()> work_of(const BumpMethod& method, const BumpSample& sample
         Report ignored;
         for (const Image& part : sample.measured) {
             if (method.destaircased) {
-                normal_map_from_height(destaircase(part, {.wrap = bump.wrap}).heights, bump, format,
-                                       map, ignored);
+                normal_map_from_height(destaircase(part, {.wrap = *bump.wrap}).heights, bump,
+                                       format, map, ignored);
             } else {
                 normal_map_from_height(part, bump, format, map, ignored);
             }
@@ -47,7 +48,7 @@ std::string command_of(const BumpMethod& method, const BumpOptions& bump,
     command += " --precision " + word_of(method.arithmetic);
     if (method.bits != 32) command += fmt::format(" --bits {}", method.bits);
     if (method.destaircased) command += " --destaircase";
-    return command + " --wrap " + words_of(bump.wrap);
+    return command + " --wrap " + words_of(*bump.wrap);
 }
 
 /// Steps are smoothed away where there are any; one arithmetic and depth shows what that does.
@@ -98,8 +99,10 @@ OwnExperiment measure_own_heights(const BumpSample& sample, glm::ivec2 size,
 
 OwnExperiment measure_own_heights(const Image& height, const BumpOptions& bump,
                                   const OwnOptions& options, std::int64_t most_texels) {
-    return measure_own_heights(sample_of(height, most_texels), {height.width, height.height}, bump,
-                               options);
+    BumpOptions with_wrap = bump;
+    if (!bump.wrap) with_wrap.wrap = detect_tiling(height).wraps();
+    return measure_own_heights(sample_of(height, most_texels), {height.width, height.height},
+                               with_wrap, options);
 }
 
 }  // namespace relief

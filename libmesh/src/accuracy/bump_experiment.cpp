@@ -15,6 +15,7 @@
 #include "relief/mesh/direction_error.h"
 #include "relief/mesh/error.h"
 #include "relief/mesh/frontier.h"
+#include "relief/mesh/height_statistics.h"
 
 namespace relief {
 namespace {
@@ -56,7 +57,7 @@ bool is_any_destaircased(std::span<const BumpMethod> methods) {
 std::vector<Image> smoothed_heights(const Trial& trial) {
     std::vector<Image> smooth;
     for (const Image& part : trial.heights)
-        smooth.push_back(destaircase(part, {.wrap = trial.bump.wrap}).heights);
+        smooth.push_back(destaircase(part, {.wrap = *trial.bump.wrap}).heights);
     return smooth;
 }
 
@@ -96,7 +97,8 @@ BumpReference reference_for(const BumpSample& sample, const BumpExperimentOption
     KernelChoice best = plain;
     bool destaircased = false;
     if (plain.depth.bits > 0 && plain.depth.bits < fine_bits) {
-        const KernelChoice smooth = choose_kernel(sample.looked_at, options.bump, true);
+        const KernelChoice smooth =
+            choose_kernel(sample.looked_at, options.bump, true, options.grain);
         destaircased = smooth.rms_degrees < plain.rms_degrees;
         if (destaircased) best = smooth;
     }
@@ -104,6 +106,7 @@ BumpReference reference_for(const BumpSample& sample, const BumpExperimentOption
     reference.method =
         BumpMethod{best.kernel, best.gaussian_radius, Arithmetic::float64, 32, destaircased};
     reference.own_degrees = best.rms_degrees;
+    reference.own_max_degrees = best.max_degrees;
     reference.words = fmt::format(
         "the kernel chosen for this map in float64{}; itself expected to be about {:.2g} degrees "
         "off what the map was made of, which nothing can know exactly",
@@ -280,11 +283,12 @@ BumpSample sample_of(const Image& height, std::int64_t most_texels) {
 BumpExperiment measure_bump(const BumpSample& sample, std::span<const BumpMethod> methods,
                             const BumpExperimentOptions& options) {
     BumpExperiment experiment;
-    experiment.choice = choose_kernel(sample.looked_at, options.bump);
+    experiment.choice = choose_kernel(sample.looked_at, options.bump, false, options.grain);
     experiment.reference = reference_for(sample, options, experiment.choice);
     Trial trial;
     trial.bump = options.bump;
     trial.heights = sample.measured;
+    if (!trial.bump.wrap) trial.bump.wrap = detect_tiling(sample.measured.front()).wraps();
     if (!sample.is_whole) {
         trial.bump.wrap = Wrap::clamp;
         const Image& part = sample.measured.front();
@@ -315,11 +319,17 @@ BumpExperiment measure_bump(const BumpField& field, std::span<const BumpMethod> 
     return experiment;
 }
 
-const BumpMeasurement* cheapest_within(const BumpExperiment& experiment, double degrees,
-                                       ErrorKind kind) {
+ExpectedError expected_error(const BumpReference& reference, const BumpMeasurement& measurement,
+                             ErrorKind kind) {
+    return {kind == ErrorKind::rms ? reference.own_degrees : reference.own_max_degrees,
+            error_of(measurement, kind)};
+}
+
+const BumpMeasurement* cheapest_within(const BumpExperiment& experiment,
+                                       const ErrorLimits& limits) {
     const BumpMeasurement* cheapest = nullptr;
     for (const BumpMeasurement& one : experiment.measurements) {
-        if (!(error_of(one, kind) <= degrees)) continue;
+        if (!limits.hold(expected_error(experiment.reference, one, limits.kind))) continue;
         if (cheapest == nullptr || cost_of(one.method) < cost_of(cheapest->method)) cheapest = &one;
     }
     return cheapest;

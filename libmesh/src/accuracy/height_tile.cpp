@@ -78,9 +78,8 @@ std::array<std::array<double, widest_difference + 1>, widest_difference + 1> cen
 }
 
 /// A jump that towers over all changes near it, but for those right beside it.
-bool is_cliff(const double* line, double least) {
+bool is_cliff(const double* line, double least, double times) {
     constexpr int near = 4;
-    constexpr double times = 4.0;
     const double jump = std::abs(line[1] - line[0]);
     if (jump < least || jump == 0.0) return false;
     double greatest = 0.0;
@@ -127,6 +126,75 @@ std::vector<double> masked(const HeightTile& tile, int times) {
     return inside;
 }
 
+using Neighbors = std::array<double, 8>;
+
+/// The texels around one that is not at the border, opposite ones 4 apart.
+Neighbors neighbors_of(const HeightTile& tile, int x, int y) {
+    constexpr int around[8][2] = {{1, 0},  {1, 1},   {0, 1},  {-1, 1},
+                                  {-1, 0}, {-1, -1}, {0, -1}, {1, -1}};
+    Neighbors result{};
+    for (std::size_t i = 0; i < result.size(); ++i) {
+        const int at = (y + around[i][1]) * tile.width + x + around[i][0];
+        result[i] = tile.values[static_cast<std::size_t>(at)];
+    }
+    return result;
+}
+
+/// How far a texel is above the lines between opposite neighbors: the median of the four.
+double height_above(const Neighbors& around, double value) {
+    std::array<double, 4> above{};
+    for (std::size_t i = 0; i < 4; ++i)
+        above[i] = value - 0.5 * (around[i] + around[i + 4]);
+    std::sort(above.begin(), above.end());
+    return 0.5 * (above[1] + above[2]);
+}
+
+std::vector<double> remove_lone_spikes(HeightTile& tile, double least) {
+    // No Gaussian noise and no detail that a kernel could resolve sticks out as far.
+    constexpr double deviations = 8.0;
+    // Corners and ends of lines have neighbors that are much like them; along an edge, neighbors
+    // stick out as well.
+    constexpr double alike = 0.4;
+    HeightTile sticking_out{tile.width, tile.height, tile.wrap,
+                            std::vector<double>(tile.values.size(), 0.0)};
+    std::vector<double>& above = sticking_out.values;
+    std::vector<double> sizes;
+    for (int y = 1; y + 1 < tile.height; ++y) {
+        for (int x = 1; x + 1 < tile.width; ++x) {
+            const auto texel = static_cast<std::size_t>(y * tile.width + x);
+            above[texel] = height_above(neighbors_of(tile, x, y), tile.values[texel]);
+            sizes.push_back(std::abs(above[texel]));
+        }
+    }
+    if (sizes.empty()) return {};
+    const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
+    std::nth_element(sizes.begin(), middle, sizes.end());
+    // The median of the size of a Gaussian is 0.6745 deviations.
+    const double limit = std::max(least, deviations * *middle / 0.6745);
+    const HeightTile before = tile;
+    std::vector<double> heights;
+    for (int y = 1; y + 1 < tile.height; ++y) {
+        for (int x = 1; x + 1 < tile.width; ++x) {
+            const auto texel = static_cast<std::size_t>(y * tile.width + x);
+            const double height = above[texel];
+            if (!(std::abs(height) > limit)) continue;
+            const Neighbors around = neighbors_of(before, x, y);
+            const double value = before.values[texel];
+            const Neighbors above_around = neighbors_of(sticking_out, x, y);
+            const auto like = std::count_if(around.begin(), around.end(), [&](double neighbor) {
+                return std::abs(neighbor - value) < alike * std::abs(height);
+            });
+            const auto rough = std::count_if(
+                above_around.begin(), above_around.end(),
+                [&](double neighbor) { return std::abs(neighbor) > alike * std::abs(height); });
+            if (like > 1 || rough > 1) continue;
+            tile.values[texel] -= height;
+            heights.push_back(height);
+        }
+    }
+    return heights;
+}
+
 double noise_by(std::span<const HeightTile> tiles, int times) {
     std::vector<double> all;
     for (const HeightTile& tile : tiles) {
@@ -149,7 +217,9 @@ HeightTile filtered(const HeightTile& tile, std::span<const double> weights, int
     return result;
 }
 
-TileSlopes true_slopes(const HeightTile& tile, double least_cliff) {
+TileSlopes true_slopes(const HeightTile& tile, double least_cliff, bool has_exact_levels) {
+    // Between exact levels, every change is a cliff, however close the next one is.
+    const double times = has_exact_levels ? 0.0 : 4.0;
     TileSlopes result;
     result.slopes.resize(tile.values.size());
     std::vector<unsigned char>& beside = result.beside_cliff;
@@ -164,7 +234,7 @@ TileSlopes true_slopes(const HeightTile& tile, double least_cliff) {
                       std::vector<unsigned char> cliffs(padded.size(), 0);
                       for (int i = -widest_difference; i < count + widest_difference; ++i)
                           cliffs[static_cast<std::size_t>(i + margin)] =
-                              is_cliff(line + i, least_cliff) ? 1 : 0;
+                              is_cliff(line + i, least_cliff, times) ? 1 : 0;
                       for (int i = 0; i < count; ++i) {
                           int left = 0;
                           int right = 0;
@@ -182,6 +252,18 @@ TileSlopes true_slopes(const HeightTile& tile, double least_cliff) {
                   });
     }
     return result;
+}
+
+std::vector<double> remove_spikes(HeightTile& tile, double least) {
+    std::vector<double> heights;
+    // Where two are side by side, one hides the other.
+    constexpr int passes = 3;
+    for (int pass = 0; pass < passes; ++pass) {
+        const std::vector<double> found = remove_lone_spikes(tile, least);
+        if (found.empty()) break;
+        heights.insert(heights.end(), found.begin(), found.end());
+    }
+    return heights;
 }
 
 HighFrequencies high_frequencies(std::span<const HeightTile> tiles) {

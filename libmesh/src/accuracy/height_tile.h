@@ -32,7 +32,15 @@ struct TileSlopes {
     std::vector<glm::dvec2> slopes;
     std::vector<unsigned char> beside_cliff;  ///< 1 where a neighbour is across one.
 };
-TileSlopes true_slopes(const HeightTile& tile, double least_cliff);
+/// \param has_exact_levels  every change of at least `least_cliff` is one
+TileSlopes true_slopes(const HeightTile& tile, double least_cliff, bool has_exact_levels = false);
+
+/// Takes texels away that stick out on their own from all around them, as hot pixels do: each gets
+/// the middle of its neighbors.
+///
+/// \param least  what sticks out by less stays
+/// \return how far each one stuck out
+std::vector<double> remove_spikes(HeightTile& tile, double least);
 
 /// What is left of tiles in the highest frequencies, where it is least.
 struct HighFrequencies {

@@ -26,6 +26,9 @@ constexpr Kernel fixed_kernels[] = {Kernel::central3, Kernel::scharr3,  Kernel::
 /// Little, since what is uncertain of the truth adds to all predictions alike.
 constexpr double as_good = 1.003;
 
+/// Fewer texels than this say too little of what they may have been.
+constexpr std::size_t least_texels = 64;
+
 std::vector<KernelPrediction> all_predictions(const KernelRehearsal& rehearsal) {
     std::vector<KernelPrediction> all;
     for (const Kernel kernel : fixed_kernels)
@@ -34,15 +37,31 @@ std::vector<KernelPrediction> all_predictions(const KernelRehearsal& rehearsal) 
     for (const int radius : radii) {
         all.push_back(rehearsal.predict(Kernel::gaussian, radius));
         least = std::min(least, all.back().rms_degrees);
-        // Wider ones only get worse from here; and none is better than exact.
-        if (radius >= 3 && (least == 0.0 || all.back().rms_degrees > 1.3 * least)) break;
+        // Wider ones only get worse from here; and none is better than exact. High spikes are
+        // spread over more texels before they are smoothed away.
+        const int least_radius = rehearsal.spikes() > 0.0 ? 16 : 3;
+        if (least == 0.0 && radius >= 3) break;
+        if (radius >= least_radius && all.back().rms_degrees > 1.3 * least) break;
     }
     return all;
+}
+
+bool has_less_error(const KernelPrediction& a, const KernelPrediction& b) {
+    return a.rms_degrees < b.rms_degrees;
+}
+
+/// \param all  from cheap to dear
+KernelPrediction best_of(const std::vector<KernelPrediction>& all) {
+    const double least = std::min_element(all.begin(), all.end(), has_less_error)->rms_degrees;
+    return *std::find_if(all.begin(), all.end(), [least](const KernelPrediction& tried) {
+        return tried.rms_degrees <= as_good * least;
+    });
 }
 
 /// "8 bits used", or what else the heights are.
 std::string coding_words(const HeightCoding& coding) {
     const int bits = coding.depth.bits;
+    if (coding.has_exact_levels) return "a few levels, taken for the true heights";
     if (bits > 0) return fmt::format("{} bit{} used", bits, bits == 1 ? "" : "s");
     return coding.mantissa_bits < 20 ? fmt::format("floats of {} bits", coding.mantissa_bits)
                                      : "float heights";
@@ -58,13 +77,22 @@ std::string reason_of(const KernelRehearsal& rehearsal, const BumpOptions& optio
     const double step = texels * rehearsal.coding().step();
     const double noise = texels * rehearsal.noise();
     if (best.rms_degrees == 0.0) return coding + ": level ground, on which every kernel is exact";
+    if (rehearsal.grain() > 0.0 && rehearsal.noise() == 0.0) {
+        return fmt::format("{}: grain of {:.2g} texels{} is taken for detail", coding,
+                           texels * rehearsal.grain(),
+                           rehearsal.is_only_grain() ? ", and hardly anything else," : "");
+    }
     const bool is_noisy = noise > 0.3 * step && noise > 0.0;
-    const std::string trouble = is_noisy     ? fmt::format("noise of {:.2g} texels", noise)
+    const bool has_spikes = !is_noisy && rehearsal.spikes() > 0.0;
+    const std::string trouble = has_spikes
+                                    ? fmt::format("{:.2g}% of texels that stick out on their own",
+                                                  100.0 * rehearsal.spikes())
+                                : is_noisy   ? fmt::format("noise of {:.2g} texels", noise)
                                 : step > 0.0 ? fmt::format("steps of {:.2g} texels", step)
                                              : "rounding";
     if (kernel.smoothing.size() > 1) {
         return fmt::format("{}: {} outweigh{} fine detail, so heights are smoothed over {} texels",
-                           coding, trouble, is_noisy || step == 0.0 ? "s" : "",
+                           coding, trouble, is_noisy || (step == 0.0 && !has_spikes) ? "s" : "",
                            2 * kernel.smoothing.size() - 1);
     }
     if (rehearsal.walls() > 0.005 && kernel.radius == 1) {
@@ -135,37 +163,47 @@ std::vector<ImagePart> parts_to_look_at(int width, int height) {
 }
 
 KernelChoice choose_kernel(std::span<const Image> parts, const BumpOptions& options,
-                           bool destaircased) {
+                           bool destaircased, Grain grain) {
     check(parts);
-    const KernelRehearsal rehearsal(parts, options, destaircased);
+    const KernelRehearsal rehearsal(parts, options, destaircased, grain);
     KernelChoice choice;
     choice.depth = rehearsal.coding().depth;
     choice.noise = rehearsal.noise();
     choice.walls = rehearsal.walls();
+    choice.grain = rehearsal.grain();
+    choice.spikes = rehearsal.spikes();
     choice.predictions = all_predictions(rehearsal);
-    const auto by_error = [](const KernelPrediction& a, const KernelPrediction& b) {
-        return a.rms_degrees < b.rms_degrees;
-    };
-    const double least =
-        std::min_element(choice.predictions.begin(), choice.predictions.end(), by_error)
-            ->rms_degrees;
-    const KernelPrediction best =
-        *std::find_if(choice.predictions.begin(), choice.predictions.end(),
-                      [&](const auto& tried) { return tried.rms_degrees <= as_good * least; });
-    std::stable_sort(choice.predictions.begin(), choice.predictions.end(), by_error);
+    const KernelPrediction best = best_of(choice.predictions);
+    std::stable_sort(choice.predictions.begin(), choice.predictions.end(), has_less_error);
     choice.kernel = best.kernel;
     choice.gaussian_radius = best.gaussian_radius;
     choice.rms_degrees = best.rms_degrees;
+    choice.max_degrees = best.max_degrees;
     choice.reason = reason_of(rehearsal, options, best);
+    if (choice.grain > 0.0) {
+        const KernelRehearsal other(parts, options, destaircased,
+                                    choice.noise > 0.0 ? Grain::detail : Grain::noise);
+        choice.otherwise = {other.predict(best.kernel, best.gaussian_radius).rms_degrees,
+                            best_of(all_predictions(other))};
+    }
+    std::size_t texels = 0;
+    for (const Image& part : parts)
+        texels += part.sample_count();
+    if (texels < least_texels && choice.rms_degrees > 0.0) {
+        choice.rms_degrees = choice.max_degrees = std::numeric_limits<double>::quiet_NaN();
+        choice.reason = fmt::format("{} texel{} say too little to expect an error", texels,
+                                    texels == 1 ? "" : "s");
+    }
     return choice;
 }
 
-KernelChoice choose_kernel(const Image& height, const BumpOptions& options, bool destaircased) {
+KernelChoice choose_kernel(const Image& height, const BumpOptions& options, bool destaircased,
+                           Grain grain) {
     if (height.empty()) throw InvalidInput("an empty height field has no kernel");
     std::vector<Image> parts;
     for (const ImagePart& place : parts_to_look_at(height.width, height.height))
         parts.push_back(part_of(height, place));
-    return choose_kernel(parts, options, destaircased);
+    return choose_kernel(parts, options, destaircased, grain);
 }
 
 }  // namespace relief

@@ -78,23 +78,6 @@ HeightTile evened(HeightTile tile) {
     return tile;
 }
 
-/// Rounding and noise as the map has them, but not the same ones.
-Image spoilt(const HeightTile& tile, const HeightCoding& coding, double noise, std::uint32_t seed) {
-    Random random(seed);
-    HeightTile result = tile;
-    const double step = coding.step();
-    // Codes lie elsewhere: what is left of the old steps must not fit them.
-    const double shift = 0.382 * step;
-    for (double& value : result.values) {
-        if (noise > 0.0) value += noise * random.normal();
-        if (step > 0.0)
-            value = step * std::floor((value + shift) / step + 0.5) - shift;
-        else
-            value += coding.error_of(value) * random.normal();
-    }
-    return image_of(result);
-}
-
 double root_mean_square_rounding(std::span<const HeightTile> tiles, const HeightCoding& coding) {
     double squares = 0.0;
     double count = 0.0;
@@ -106,22 +89,6 @@ double root_mean_square_rounding(std::span<const HeightTile> tiles, const Height
     return std::sqrt(squares / count);
 }
 
-/// Of the heights about the mean of their tile.
-double variance_of(std::span<const HeightTile> tiles) {
-    double squares = 0.0;
-    double count = 0.0;
-    for (const HeightTile& tile : tiles) {
-        double sum = 0.0;
-        for (const double value : tile.values)
-            sum += value;
-        const double mean = sum / static_cast<double>(tile.values.size());
-        for (const double value : tile.values)
-            squares += (value - mean) * (value - mean);
-        count += static_cast<double>(tile.values.size());
-    }
-    return squares / count;
-}
-
 bool have_spectrum(std::span<const HeightTile> tiles) {
     return std::all_of(tiles.begin(), tiles.end(), [&](const HeightTile& tile) {
         return tile.width == tile.height && tile.width == tiles[0].width && tile.width >= 8 &&
@@ -129,12 +96,28 @@ bool have_spectrum(std::span<const HeightTile> tiles) {
     });
 }
 
-/// What is more of a map's variance than this is no noise.
-constexpr double most_noise = 0.2;
+/// A map whose spectrum exceeds that of its grain by less than this, of the grain, is nothing else.
+constexpr double least_excess = 0.01;
+
+/// The levels of masks and terraces: few, and farther apart than the codes of the file.
+bool has_exact_levels(const HeightDepth& depth, int bits_of_file) {
+    constexpr int most_bits = 2;
+    if (depth.bits == 0 || depth.bits > most_bits) return false;
+    return bits_of_file == 32 || depth.step > 1.5 / (std::exp2(bits_of_file) - 1.0);
+}
+
+bool is_flat(const NoiseSpectrum& noise) {
+    // Where it is grain for sure: the highest octave.
+    const auto begin = noise.rings.begin() + noise.side / 4;
+    const auto end = noise.rings.begin() + 5 * noise.side / 8;
+    const auto [least, greatest] = std::minmax_element(begin, end);
+    return *greatest < 1.6 * *least;
+}
 
 struct MeanSquare {
     double sum = 0.0;
     double count = 0.0;
+    double max = 0.0;
 };
 
 /// Of the angles in radians between float normals and the truth: by the chord, which is as good as
@@ -152,6 +135,7 @@ MeanSquare square_error(const Image& normals, std::span<const glm::dvec3> truth,
             const double square = glm::dot(chord, chord);
             const double longer = 1.0 + square * (1.0 / 24.0 + square * (3.0 / 640.0));
             result.sum += square * longer * longer;
+            result.max = std::max(result.max, square * longer * longer);
             result.count += 1.0;
         }
     }
@@ -162,6 +146,7 @@ MeanSquare square_error(const Image& normals, std::span<const glm::dvec3> truth,
 
 double HeightCoding::error_of(double height) const {
     constexpr double of_rounding = 0.28867513459481287;  // The root of 1/12.
+    if (has_exact_levels) return 0.0;
     if (depth.bits > 0) return of_rounding * depth.step;
     if (height == 0.0) return 0.0;
     int exponent = 0;
@@ -169,41 +154,112 @@ double HeightCoding::error_of(double height) const {
     return of_rounding * std::ldexp(1.0, exponent - mantissa_bits);
 }
 
-void KernelRehearsal::restore(std::vector<HeightTile>& tiles) {
+void KernelRehearsal::remove_spikes(std::vector<HeightTile>& tiles) {
+    // Fewer are as well detail, and change little.
+    constexpr double least_share = 0.001;
+    std::size_t texels = 0;
+    const std::vector<HeightTile> as_stored = tiles;
+    for (HeightTile& tile : tiles) {
+        const std::vector<double> found = relief::remove_spikes(tile, 2.5 * coding_.step());
+        spikes_.insert(spikes_.end(), found.begin(), found.end());
+        texels += tile.values.size();
+    }
+    spike_share_ = static_cast<double>(spikes_.size()) / static_cast<double>(texels);
+    if (spike_share_ >= least_share) return;
+    tiles = as_stored;
+    spikes_.clear();
+    spike_share_ = 0.0;
+}
+
+void KernelRehearsal::find_grain(const std::vector<HeightTile>& tiles, Grain grain) {
     const double rounding = root_mean_square_rounding(tiles, coding_);
-    const HighFrequencies high = high_frequencies(tiles);
-    std::optional<PowerSpectrum> spectrum;
-    if (have_spectrum(tiles)) spectrum.emplace(tiles);
-    const double measured =
-        spectrum ? std::min(high.deviation, spectrum->white_floor()) : high.deviation;
-    const double step = coding_.step();
+    high_ = high_frequencies(tiles);
+    if (have_spectrum(tiles)) spectrum_.emplace(tiles);
+    white_ = spectrum_ ? std::min(high_.deviation, spectrum_->white_floor()) : high_.deviation;
+    const auto beyond_rounding = [&](double deviation) {
+        return std::sqrt(std::max(0.0, deviation * deviation - rounding * rounding));
+    };
     // What little there is beyond rounding may as well be detail; and planes that are rounded make
     // patterns.
-    if (high.is_white && measured > (step > 0.0 ? 1.1 : 1.25) * rounding)
-        noise_ = std::sqrt(measured * measured - rounding * rounding);
-    // A map that is grain for a good part is meant to be so.
-    if (noise_ * noise_ > most_noise * variance_of(tiles)) {
-        noise_ = 0.0;
-        return;
+    const double least = (coding_.step() > 0.0 ? 1.1 : 1.25) * rounding;
+    if (spectrum_) colored_ = spectrum_->grain();
+    if (colored_ && (is_flat(*colored_) || !(colored_->deviation() > least))) colored_.reset();
+    if (colored_)
+        grain_ = beyond_rounding(colored_->deviation());
+    else if (high_.is_white && white_ > least)
+        grain_ = beyond_rounding(white_);
+    if (grain_ == 0.0) return;
+    if (spectrum_) {
+        const NoiseSpectrum noise = colored_ ? *colored_ : NoiseSpectrum::white(white_);
+        is_only_grain_ = spectrum_->excess_over(noise) < least_excess;
     }
+    is_as_stored_ = grain == Grain::detail || (grain == Grain::automatic && is_only_grain_);
+    if (!is_as_stored_) noise_ = grain_;
+}
+
+void KernelRehearsal::restore(std::vector<HeightTile>& tiles) {
+    if (is_as_stored_) return;
+    const double rounding = root_mean_square_rounding(tiles, coding_);
+    const double step = coding_.step();
     // Steps that texels climb one by one or faster leave as much in the highest frequencies as
     // white noise; wider ones next to nothing.
     const bool is_coarse_float = step == 0.0 && coding_.mantissa_bits < 20;
     const double least = step > 0.0 ? 0.3 : is_coarse_float ? 0.0 : 1.25;
-    const bool steps_are_wide = step > 0.0 && high.deviation <= least * rounding;
-    const bool by_spectrum = spectrum && high.is_white && high.deviation > least * rounding;
+    const bool steps_are_wide = step > 0.0 && high_.deviation <= least * rounding;
+    const bool by_spectrum =
+        colored_ || (spectrum_ && high_.is_white && high_.deviation > least * rounding);
     if (!by_spectrum && step == 0.0) return;
-    const double noise = std::max(measured, rounding);
+    const NoiseSpectrum noise =
+        colored_ ? *colored_ : NoiseSpectrum::white(std::max(white_, rounding));
     parallel_for(tiles.size(), 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             if (by_spectrum) {
-                tiles[i] = without_noise(tiles[i], *spectrum, noise);
+                tiles[i] = without_noise(tiles[i], *spectrum_, noise);
                 continue;
             }
+            const HeightTile stored = tiles[i];
             tiles[i] = tile_of(without_steps(image_of(tiles[i]), step));
             if (steps_are_wide) tiles[i] = evened(std::move(tiles[i]));
+            // What was rounded lies within half a step of its code.
+            for (std::size_t texel = 0; texel < stored.values.size(); ++texel) {
+                const double code = stored.values[texel];
+                double& value = tiles[i].values[texel];
+                value = std::clamp(value, code - 0.5 * step, code + 0.5 * step);
+            }
         }
     });
+}
+
+/// Rounding, noise and spikes as the map has them, but not the same ones.
+Image KernelRehearsal::spoilt(const HeightTile& tile, std::uint32_t seed) const {
+    Random random(seed);
+    HeightTile result = tile;
+    const double step = coding_.step();
+    // Codes lie elsewhere: what is left of the old steps must not fit them.
+    const double shift = 0.382 * step;
+    std::vector<double> noise;
+    if (noise_ > 0.0 && colored_) {
+        noise = noise_field(*colored_, tile.width, seed);
+        const double share = noise_ / colored_->deviation();
+        for (double& value : noise)
+            value *= share;
+    }
+    for (std::size_t i = 0; i < result.values.size(); ++i) {
+        double& value = result.values[i];
+        if (!noise.empty())
+            value += noise[i];
+        else if (noise_ > 0.0)
+            value += noise_ * random.normal();
+        if (!spikes_.empty() && random.between(0.0, 1.0) < spike_share_) {
+            const double which = random.between(0.0, static_cast<double>(spikes_.size()));
+            value += spikes_[std::min(spikes_.size() - 1, static_cast<std::size_t>(which))];
+        }
+        if (step > 0.0)
+            value = step * std::floor((value + shift) / step + 0.5) - shift;
+        else
+            value += coding_.error_of(value) * random.normal();
+    }
+    return image_of(result);
 }
 
 void KernelRehearsal::spoil(const std::vector<HeightTile>& tiles, bool destaircased) {
@@ -215,7 +271,7 @@ void KernelRehearsal::spoil(const std::vector<HeightTile>& tiles, bool destairca
     std::vector<std::size_t> beside(tiles.size(), 0);
     parallel_for(tiles.size(), 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
-            const TileSlopes truth = true_slopes(tiles[i], least_cliff);
+            const TileSlopes truth = true_slopes(tiles[i], least_cliff, coding_.has_exact_levels);
             for (std::size_t texel = 0; texel < truth.slopes.size(); ++texel) {
                 const glm::dvec2 slope = truth.slopes[texel] * scale;
                 const bool has_none = truth.beside_cliff[texel] != 0;
@@ -224,7 +280,7 @@ void KernelRehearsal::spoil(const std::vector<HeightTile>& tiles, bool destairca
                                           : glm::normalize(glm::dvec3(-slope.x, slope.y, 1.0)));
                 beside[i] += has_none ? 1 : 0;
             }
-            spoilt_[i] = spoilt(tiles[i], coding_, noise_, static_cast<std::uint32_t>(i));
+            spoilt_[i] = spoilt(tiles[i], static_cast<std::uint32_t>(i));
             if (destaircased && step > 0.0) spoilt_[i] = without_steps(spoilt_[i], step);
         }
     });
@@ -237,15 +293,18 @@ void KernelRehearsal::spoil(const std::vector<HeightTile>& tiles, bool destairca
 }
 
 KernelRehearsal::KernelRehearsal(std::span<const Image> parts, const BumpOptions& options,
-                                 bool destaircased)
+                                 bool destaircased, Grain grain)
     : options_(options) {
     const Image all = joined(parts);
     coding_.depth = height_depth(all);
     if (coding_.depth.bits == 0) coding_.mantissa_bits = mantissa_bits(all);
+    coding_.has_exact_levels = has_exact_levels(coding_.depth, parts[0].bits());
     options_.wrap = Wrap::clamp;
     options_.arithmetic = Arithmetic::float64;
     std::vector<HeightTile> tiles(parts.size());
     std::transform(parts.begin(), parts.end(), tiles.begin(), tile_of);
+    remove_spikes(tiles);
+    find_grain(tiles, grain);
     restore(tiles);
     spoil(tiles, destaircased);
 }
@@ -268,9 +327,11 @@ KernelPrediction KernelRehearsal::predict(Kernel kernel, int radius) const {
     for (const MeanSquare& part : of_parts) {
         all.sum += part.sum;
         all.count += part.count;
+        all.max = std::max(all.max, part.max);
     }
     const double radians = all.count > 0.0 ? std::sqrt(all.sum / all.count) : 0.0;
-    return {kernel, radius, radians * 180.0 / std::numbers::pi};
+    const double degrees = 180.0 / std::numbers::pi;
+    return {kernel, radius, radians * degrees, std::sqrt(all.max) * degrees};
 }
 
 }  // namespace relief

@@ -4,10 +4,12 @@
 /// again as it had been, and measured. Tests: tests/mesh/accuracy/kernel_choice_test.cpp.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "accuracy/height_tile.h"
+#include "accuracy/power_spectrum.h"
 #include "relief/mesh/height_statistics.h"
 #include "relief/mesh/kernel_choice.h"
 
@@ -17,8 +19,12 @@ namespace relief {
 struct HeightCoding {
     HeightDepth depth;
     int mantissa_bits = 24;  ///< Of floats, where there is no step: 11 for half floats.
+    /// A mask or a map of a few terraces: its levels are the heights, not rounded ones.
+    bool has_exact_levels = false;
 
-    [[nodiscard]] double step() const { return depth.bits > 0 ? depth.step : 0.0; }
+    [[nodiscard]] double step() const {
+        return depth.bits > 0 && !has_exact_levels ? depth.step : 0.0;
+    }
     /// Standard deviation of the rounding of a height.
     [[nodiscard]] double error_of(double height) const;
 };
@@ -27,7 +33,8 @@ struct HeightCoding {
 class KernelRehearsal {
   public:
     /// \param parts  one channel each, all of one depth
-    KernelRehearsal(std::span<const Image> parts, const BumpOptions& options, bool destaircased);
+    KernelRehearsal(std::span<const Image> parts, const BumpOptions& options, bool destaircased,
+                    Grain grain);
 
     /// What a kernel does to the spoilt parts.
     [[nodiscard]] KernelPrediction predict(Kernel kernel, int radius) const;
@@ -35,16 +42,34 @@ class KernelRehearsal {
     [[nodiscard]] const HeightCoding& coding() const { return coding_; }
     /// Deviation of the noise beyond rounding.
     [[nodiscard]] double noise() const { return noise_; }
+    /// Deviation of the grain, whether it was taken for noise or for detail.
+    [[nodiscard]] double grain() const { return grain_; }
+    /// Hardly anything in the map is not grain.
+    [[nodiscard]] bool is_only_grain() const { return is_only_grain_; }
+    /// Share of texels that stick out on their own.
+    [[nodiscard]] double spikes() const { return spike_share_; }
     /// Share of texels beside a cliff, where no normal is right and none is judged.
     [[nodiscard]] double walls() const { return walls_; }
 
   private:
+    void remove_spikes(std::vector<HeightTile>& tiles);
+    void find_grain(const std::vector<HeightTile>& tiles, Grain grain);
     void restore(std::vector<HeightTile>& tiles);
+    [[nodiscard]] Image spoilt(const HeightTile& tile, std::uint32_t seed) const;
     void spoil(const std::vector<HeightTile>& tiles, bool destaircased);
 
     BumpOptions options_;
     HeightCoding coding_;
+    double grain_ = 0.0;
     double noise_ = 0.0;
+    bool is_only_grain_ = false;
+    bool is_as_stored_ = false;  ///< Grain is detail: the map is its own truth.
+    std::optional<PowerSpectrum> spectrum_;
+    std::optional<NoiseSpectrum> colored_;  ///< Of noise and rounding, where it is not white.
+    HighFrequencies high_;
+    double white_ = 0.0;  ///< Deviation of noise and rounding, where it is white.
+    double spike_share_ = 0.0;
+    std::vector<double> spikes_;  ///< How far they stick out.
     double walls_ = 0.0;
     std::vector<std::vector<glm::dvec3>> normals_;  ///< 0 where none is right.
     std::vector<Image> spoilt_;

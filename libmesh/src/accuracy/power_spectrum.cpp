@@ -6,8 +6,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
+#include "accuracy/random.h"
 #include "image/border.h"
 #include "image/integration/complex_fft.h"
 
@@ -81,6 +83,41 @@ double frequency(int index, int side) {
 
 }  // namespace
 
+double NoiseSpectrum::at(double x, double y) const {
+    const auto ring = static_cast<std::size_t>(std::hypot(x, y) * side / (2.0 * pi) + 0.5);
+    return rings[std::min(ring, rings.size() - 1)];
+}
+
+double NoiseSpectrum::deviation() const {
+    if (rings.size() == 1) return std::sqrt(rings.front());
+    double power = 0.0;
+    for (int row = 0; row < side; ++row) {
+        for (int column = 0; column < side; ++column)
+            power += at(frequency(column, side), frequency(row, side));
+    }
+    return std::sqrt(power) / side;
+}
+
+std::vector<double> noise_field(const NoiseSpectrum& spectrum, int side, std::uint32_t seed) {
+    Random random(seed);
+    std::vector<Complex> square(static_cast<std::size_t>(side) * static_cast<std::size_t>(side));
+    for (Complex& value : square)
+        value = random.normal();
+    transform_square(square, side, false);
+    for (int row = 0; row < side; ++row) {
+        for (int column = 0; column < side; ++column) {
+            square[static_cast<std::size_t>(row * side + column)] *=
+                std::sqrt(spectrum.at(frequency(column, side), frequency(row, side)));
+        }
+    }
+    transform_square(square, side, true);
+    std::vector<double> field(square.size());
+    std::transform(square.begin(), square.end(), field.begin(), [&](const Complex& value) {
+        return value.real() / (static_cast<double>(side) * side);
+    });
+    return field;
+}
+
 void transform_square(std::vector<Complex>& square, int side, bool back) {
     const ComplexFft transform(static_cast<std::size_t>(side));
     transform_lines(square.data(), side, side, 1, transform, back);
@@ -143,18 +180,138 @@ double PowerSpectrum::white_floor() const {
     return std::sqrt(*middle);
 }
 
-double PowerSpectrum::without_noise(double x, double y, double deviation) const {
+std::vector<double> PowerSpectrum::gains(const NoiseSpectrum& noise) const {
+    // Deviations that chance may reach in a bin, and in all of a ring that stand out in no bin.
     constexpr double chance = 5.0;
-    const Bin& bin = bins_[bin_at(x, y)];
-    const double noise = deviation * deviation;
-    // Half of the coefficients are independent, and the window makes neighbours alike: about one
-    // in four is a draw of its own from an exponential distribution.
-    const double by_chance = noise * (1.0 + chance / std::sqrt(std::max(1.0, bin.count / 4.0)));
-    if (!(bin.power > by_chance)) return 0.0;
-    return std::sqrt((bin.power - noise) / bin.power);
+    constexpr double chance_of_ring = 4.0;
+    // Less may be what the window spreads of strong waves, or a noise spectrum that is too low.
+    constexpr double least_of_ring = 0.25;
+    std::vector<double> result(bins_.size(), 0.0);
+    for (int ring = 0; ring < side_; ++ring) {
+        const double frequency = 2.0 * pi * ring / side_;
+        if (frequency >= noise.lowest_of_noise_alone) break;
+        const double power = noise.at(frequency, 0.0);
+        double rest = 0.0;
+        double count = 0.0;
+        const auto first = static_cast<std::size_t>(ring * sectors);
+        for (std::size_t i = first; i < first + sectors; ++i) {
+            const Bin& bin = bins_[i];
+            // Half of the coefficients are independent, and the window makes neighbors alike: about
+            // one in four is a draw of its own from an exponential distribution.
+            const double draws = std::max(1.0, bin.count / 4.0);
+            // The last term is for the long tail of few draws.
+            if (bin.power > power * (1.0 + chance / std::sqrt(draws) + 2.0 * chance / draws)) {
+                result[i] = std::sqrt((bin.power - power) / bin.power);
+            } else {
+                rest += bin.power * bin.count;
+                count += bin.count;
+            }
+        }
+        if (count == 0.0) continue;
+        rest /= count;
+        // The window makes neighbors in all directions alike.
+        const double least =
+            std::max(least_of_ring, chance_of_ring / std::sqrt(std::max(1.0, count / 8.0)));
+        if (!(rest > power * (1.0 + least))) continue;
+        for (std::size_t i = first; i < first + sectors; ++i) {
+            if (result[i] == 0.0) result[i] = std::sqrt((rest - power) / rest);
+        }
+    }
+    return result;
 }
 
-HeightTile without_noise(const HeightTile& tile, const PowerSpectrum& spectrum, double deviation) {
+double PowerSpectrum::excess_over(const NoiseSpectrum& noise) const {
+    const std::vector<double> gains = this->gains(noise);
+    double excess = 0.0;
+    double power = 0.0;
+    for (std::size_t i = 0; i < bins_.size(); ++i) {
+        const auto ring = static_cast<double>(i / sectors);
+        excess += gains[i] * gains[i] * bins_[i].power * bins_[i].count;
+        power += noise.at(2.0 * pi * ring / side_, 0.0) * bins_[i].count;
+    }
+    return power > 0.0 ? excess / power : std::numeric_limits<double>::infinity();
+}
+
+std::vector<PowerSpectrum::Band> PowerSpectrum::bands() const {
+    constexpr double lowest = 4.0;
+    std::vector<Band> result;
+    for (int i = 0;; ++i) {
+        const double begin = lowest * std::pow(2.0, 0.5 * i);
+        const double end = begin * std::numbers::sqrt2;
+        if (begin > 0.6 * side_) break;
+        std::vector<double> powers;
+        for (int ring = static_cast<int>(std::ceil(begin)); ring < std::min<double>(side_, end);
+             ++ring) {
+            for (int sector = 0; sector < sectors; ++sector) {
+                const Bin& bin = bins_[static_cast<std::size_t>(ring * sectors + sector)];
+                if (bin.count >= 2.0) powers.push_back(bin.power);
+            }
+        }
+        if (powers.empty()) continue;
+        const auto middle = powers.begin() + static_cast<std::ptrdiff_t>(powers.size() / 2);
+        std::nth_element(powers.begin(), middle, powers.end());
+        result.push_back(
+            {std::sqrt(begin * std::min(end, side_ * std::numbers::sqrt2 / 2.0)), *middle});
+    }
+    return result;
+}
+
+std::optional<NoiseSpectrum> PowerSpectrum::grain() const {
+    // The rise of power times squared frequency over at least an octave by which grain is known.
+    constexpr double least_rise = 1.5;
+    constexpr double ripple = 0.8;
+    const std::vector<Band> bands = this->bands();
+    const auto roughness = [&](std::size_t i) {
+        return bands[i].power * bands[i].frequency * bands[i].frequency;
+    };
+    double greatest = least_rise;
+    std::size_t first = bands.size();
+    for (std::size_t valley = 0; valley + 2 < bands.size(); ++valley) {
+        double top = roughness(valley);
+        if (!(top > 0.0)) continue;
+        for (std::size_t i = valley + 1; i < bands.size() && roughness(i) > ripple * top; ++i) {
+            top = std::max(top, roughness(i));
+            if (i < valley + 2 || roughness(i) / roughness(valley) < greatest) continue;
+            greatest = roughness(i) / roughness(valley);
+            first = valley + 1;
+        }
+    }
+    if (first >= bands.size()) return std::nullopt;
+    // Below, by the slope of the lowest octave of grain, which is between blue and pink.
+    const Band& low = bands[std::min(first + 1, bands.size() - 1)];
+    const Band& next = bands[std::min(first + 3, bands.size() - 1)];
+    const double fall = next.frequency > low.frequency
+                            ? std::clamp(std::log(low.power / next.power) /
+                                             std::log(next.frequency / low.frequency),
+                                         -4.0, 1.0)
+                            : 0.0;
+    NoiseSpectrum noise;
+    noise.side = side_;
+    noise.rings.clear();
+    noise.lowest_of_noise_alone = 2.0 * pi * bands[first].frequency / side_;
+    for (int ring = 0; ring < side_; ++ring) {
+        const double f = std::max(1.0, static_cast<double>(ring));
+        if (f <= low.frequency) {
+            noise.rings.push_back(low.power * std::pow(low.frequency / f, fall));
+            continue;
+        }
+        std::size_t above = first + 2;
+        while (above + 1 < bands.size() && bands[above].frequency < f)
+            ++above;
+        if (above >= bands.size() || f >= bands.back().frequency) {
+            noise.rings.push_back(bands.back().power);
+            continue;
+        }
+        const Band& a = bands[above - 1];
+        const Band& b = bands[above];
+        const double w = std::log(f / a.frequency) / std::log(b.frequency / a.frequency);
+        noise.rings.push_back(a.power * std::pow(b.power / a.power, w));
+    }
+    return noise;
+}
+
+HeightTile without_noise(const HeightTile& tile, const PowerSpectrum& spectrum,
+                         const NoiseSpectrum& noise) {
     const int side = 2 * tile.width;
     const int room = tile.width / 2;
     const std::vector<double> rest = without_plane(tile);
@@ -178,10 +335,11 @@ HeightTile without_noise(const HeightTile& tile, const PowerSpectrum& spectrum, 
         }
     }
     transform_square(square, side, false);
+    const std::vector<double> gains = spectrum.gains(noise);
     for (int row = 0; row < side; ++row) {
         for (int column = 0; column < side; ++column) {
             square[static_cast<std::size_t>(row * side + column)] *=
-                spectrum.without_noise(frequency(column, side), frequency(row, side), deviation);
+                gains[spectrum.bin_at(frequency(column, side), frequency(row, side))];
         }
     }
     transform_square(square, side, true);

@@ -92,7 +92,7 @@ TEST(BumpExperiment, TheCheapestWithinABoundIsNoDearerThanNeeded) {
     const BumpExperiment experiment =
         measure_bump(sample_of(field.heights), methods, untimed(field));
     const auto chosen = [&](double degrees, ErrorKind kind) {
-        const BumpMeasurement* one = cheapest_within(experiment, degrees, kind);
+        const BumpMeasurement* one = cheapest_within(experiment, {std::nullopt, degrees, kind});
         return one == nullptr ? std::nullopt : std::optional(one->method);
     };
     // Half a degree: 8 bits do, and a plain kernel.
@@ -107,7 +107,7 @@ TEST(BumpExperiment, TheCheapestWithinABoundIsNoDearerThanNeeded) {
     // Every other within the bound costs as much or more, and every cheaper one is beyond it.
     for (const double bound : {3.0, 0.5, 0.1, 0.01, 1e-3, 1e-4}) {
         for (const ErrorKind kind : {ErrorKind::rms, ErrorKind::max}) {
-            const BumpMeasurement* best = cheapest_within(experiment, bound, kind);
+            const BumpMeasurement* best = cheapest_within(experiment, {std::nullopt, bound, kind});
             for (const BumpMeasurement& one : experiment.measurements) {
                 const double error = kind == ErrorKind::rms ? one.error.rms : one.error.max;
                 const bool is_cheaper =
@@ -117,6 +117,37 @@ TEST(BumpExperiment, TheCheapestWithinABoundIsNoDearerThanNeeded) {
         }
     }
     EXPECT_EQ(truest(experiment, ErrorKind::rms)->method.bits, 32);
+}
+
+TEST(BumpExperiment, TheExpectedErrorIsThatOfTheMapAndWhatIsAdded) {
+    const BumpField field =
+        make_bump_field({"", FieldShape::waves, 32.0, 0.3, FieldCoding::bits8, 1.0, 5}, 256, 256);
+    const int radius = best_gaussian_radius(choose_kernel(field.heights, field.options));
+    const auto methods = bump_methods(radius, std::array{8, 16}, both_arithmetics, as_stored);
+    BumpExperimentOptions options = untimed(field);
+    const BumpExperiment guess = measure_bump(sample_of(field.heights), methods, options);
+    const BumpExperiment known = measure_bump(field, methods, options);
+    EXPECT_GT(guess.reference.own_degrees, 1.0);
+    EXPECT_GT(guess.reference.own_max_degrees, guess.reference.own_degrees);
+    for (std::size_t i = 0; i < methods.size(); ++i) {
+        const ExpectedError error = expected_error(guess.reference, guess.measurements[i]);
+        EXPECT_EQ(error.map, guess.reference.own_degrees);
+        EXPECT_EQ(error.added, guess.measurements[i].error.rms);
+        EXPECT_EQ(error.total(), std::hypot(error.map, error.added));
+        EXPECT_NEAR(error.total() / known.measurements[i].error.rms, 1.0, 0.3) << i;
+    }
+    // The added part of many is far below a limit that no total is within.
+    const double limit = 0.5 * guess.reference.own_degrees;
+    EXPECT_EQ(cheapest_within(guess, {limit, std::nullopt, ErrorKind::rms}), nullptr);
+    EXPECT_NE(cheapest_within(guess, {std::nullopt, limit, ErrorKind::rms}), nullptr);
+    const BumpMeasurement* total =
+        cheapest_within(guess, {1.5 * guess.reference.own_degrees, std::nullopt, ErrorKind::rms});
+    ASSERT_NE(total, nullptr);
+    EXPECT_EQ(total->method.bits, 8);
+    // What is not known is within no limit.
+    BumpExperiment unknown = guess;
+    unknown.reference.own_degrees = std::numeric_limits<double>::quiet_NaN();
+    EXPECT_EQ(cheapest_within(unknown, {90.0, std::nullopt, ErrorKind::rms}), nullptr);
 }
 
 TEST(BumpExperiment, TimesAreTakenInTurnsAndTheEfficientOnesAreMarked) {

@@ -55,7 +55,7 @@ double least_error(const BumpField& field) {
 void expect_promise_kept(const FieldRecipe& recipe, int width, int height, bool destaircased) {
     BumpField field = make_bump_field(recipe, width, height);
     const KernelChoice choice = choose_kernel(field.heights, field.options, destaircased);
-    if (destaircased) field.heights = destaircase(field.heights, {field.options.wrap}).heights;
+    if (destaircased) field.heights = destaircase(field.heights, {*field.options.wrap}).heights;
     const double least = least_error(field);
     EXPECT_LE(error_by(field, choice.kernel, choice.gaussian_radius),
               (destaircased ? promised_destaircased : promised) * least)

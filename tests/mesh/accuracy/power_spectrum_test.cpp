@@ -67,7 +67,8 @@ TEST(PowerSpectrum, TheTransformIsThatOfItsDefinitionAndGoesBack) {
 TEST(PowerSpectrum, NothingIsLeftOfNoiseAndNearlyAllOfWaves) {
     const HeightTile noise[] = {noise_of(0.5, 1), noise_of(0.5, 2), noise_of(0.5, 3)};
     const PowerSpectrum of_noise(noise);
-    EXPECT_LT(root_mean_square(without_noise(noise[0], of_noise, 0.5), 8), 0.08);
+    EXPECT_LT(root_mean_square(without_noise(noise[0], of_noise, NoiseSpectrum::white(0.5)), 8),
+              0.08);
 
     // Noise on a wave of 16 texels: what is left is far closer to the wave.
     const auto wave = [](int x, int y) { return std::sin(0.36 * x + 0.15 * y); };
@@ -77,7 +78,7 @@ TEST(PowerSpectrum, NothingIsLeftOfNoiseAndNearlyAllOfWaves) {
         for (std::size_t i = 0; i < tile.values.size(); ++i)
             tile.values[i] += clean.values[i];
     }
-    HeightTile rest = without_noise(noisy[1], PowerSpectrum(noisy), 0.5);
+    HeightTile rest = without_noise(noisy[1], PowerSpectrum(noisy), NoiseSpectrum::white(0.5));
     for (std::size_t i = 0; i < rest.values.size(); ++i)
         rest.values[i] -= clean.values[i];
     EXPECT_LT(root_mean_square(rest, 8), 0.3);
@@ -88,15 +89,46 @@ TEST(PowerSpectrum, TheFilterIsTheShareOfPowerThatIsNotNoise) {
     const HeightTile noise[] = {noise_of(1.0, 5), noise_of(1.0, 6)};
     const PowerSpectrum spectrum(noise);
     // Of power 1 all round, noise of 0.3 of the deviation leaves 0.91.
+    const std::vector<double> gains = spectrum.gains(NoiseSpectrum::white(0.3));
     double sum = 0.0;
     for (int i = 0; i < 60; ++i)
-        sum += std::pow(spectrum.without_noise(0.3 + 0.04 * i, 1.0, 0.3), 2);
+        sum += std::pow(gains[spectrum.bin_at(0.3 + 0.04 * i, 1.0)], 2);
     EXPECT_NEAR(sum / 60.0, 0.91, 0.05);
-    EXPECT_EQ(spectrum.without_noise(1.0, 1.0, 2.0), 0.0);
+    EXPECT_EQ(spectrum.gains(NoiseSpectrum::white(2.0))[spectrum.bin_at(1.0, 1.0)], 0.0);
+    EXPECT_NEAR(spectrum.excess_over(NoiseSpectrum::white(0.5)), 3.0, 0.2);
+    EXPECT_LT(spectrum.excess_over(NoiseSpectrum::white(1.0)), 0.01);
     EXPECT_NEAR(spectrum.white_floor(), 1.0, 0.1);
     // A pattern on every other texel, however strong, is no white floor.
     const HeightTile pattern[] = {tile_of(64, [](int x, int y) { return (x + y) % 2 * 50.0; })};
     EXPECT_LT(PowerSpectrum(pattern).white_floor(), 1e-9);
+}
+
+TEST(PowerSpectrum, GrainIsWhatFallsMoreSlowlyThanASurface) {
+    const auto wave = [](int x, int y) { return 20.0 * std::sin(0.1 * x + 0.05 * y); };
+    Random random(9);
+    const auto noisy = [&](int x, int y) { return wave(x, y) + random.normal(); };
+    const HeightTile white[] = {tile_of(64, noisy), tile_of(64, noisy)};
+    const auto grain = PowerSpectrum(white).grain();
+    ASSERT_TRUE(grain);
+    EXPECT_NEAR(grain->deviation(), 1.0, 0.1);
+    const HeightTile clean[] = {tile_of(64, wave)};
+    EXPECT_FALSE(PowerSpectrum(clean).grain());
+    // Noise with less power at low frequencies, as sharpening leaves it.
+    NoiseSpectrum blue;
+    blue.side = 64;
+    blue.rings.clear();
+    for (int ring = 0; ring < 64; ++ring)
+        blue.rings.push_back(0.001 * ring * ring);
+    HeightTile colored[] = {tile_of(64, wave), tile_of(64, wave)};
+    for (std::uint32_t i = 0; i < 2; ++i) {
+        const std::vector<double> noise = noise_field(blue, 64, i + 1);
+        for (std::size_t texel = 0; texel < noise.size(); ++texel)
+            colored[i].values[texel] += noise[texel];
+    }
+    const auto found = PowerSpectrum(colored).grain();
+    ASSERT_TRUE(found);
+    EXPECT_NEAR(found->deviation() / blue.deviation(), 1.0, 0.1);
+    EXPECT_LT(found->at(0.8, 0.0), 0.3 * found->at(2.5, 0.0));
 }
 
 }  // namespace

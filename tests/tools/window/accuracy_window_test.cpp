@@ -37,7 +37,7 @@ TEST(AccuracyWindow, AClickOnAMethodTakesItAndThePictureFollows) {
     const json measured = window.wait_for("figures", [](const json& now) {
         return now["accuracy"]["topics"].size() >= 2 && !now["accuracy"]["measuring"];
     });
-    EXPECT_TRUE(is_used(measured, "kernel=sobel3"));
+    EXPECT_TRUE(is_used(measured, "kernel=central7"));
     window.wait_for_rest();
     const auto picture = [&] { return view_on(display->picture(), window.state()["view"]); };
     const Image before = view_on(display->resting_picture(), window.state()["view"]);

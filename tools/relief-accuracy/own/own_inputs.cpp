@@ -99,7 +99,7 @@ std::vector<OwnExperiment> measure_heights(const OwnInput& input, const OwnReque
     bump.strength = request.strength.value_or(bump.strength);
     bump.wrap = request.wrap.value_or(WrapsOrAuto{}).value_or(survey.tiling.wraps());
     taken += fmt::format("a height map of {} bits, {:g} texels high, {} at the border",
-                         map.info().bits, bump.strength, wrap_words(bump.wrap));
+                         map.info().bits, bump.strength, wrap_words(*bump.wrap));
     return {measure_own_heights(parts.sample(survey.parts), {width, height}, bump, options)};
 }
 

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "bump/bump_accuracy_summary.h"
 #include "common/map_choices.h"
@@ -16,17 +17,12 @@
 namespace relief::tools {
 namespace {
 
-using KernelWish = std::optional<Kernel>;
-
-Choices<KernelWish> kernel_or_auto() {
-    Choices<KernelWish> choices = {{"auto", std::nullopt}};
-    for (const auto& [name, kernel] : kernel_choices())
-        choices.emplace_back(name, kernel);
-    return choices;
+bool has_limit(const AccuracyRequest& request) {
+    return request.max_error || request.max_added_error;
 }
 
 bool needs_experiment(const AccuracyRequest& request) {
-    return request.compare || request.max_error.has_value();
+    return request.compare || has_limit(request);
 }
 
 /// The parts for the choice, then those to measure on.
@@ -53,20 +49,63 @@ std::vector<BumpMethod> methods_for(const AccuracyRequest& request, int radius,
     return methods;
 }
 
+/// Why nothing keeps within the limits, and what would help.
+std::string refusal_words(const AccuracyRequest& request, const BumpExperiment& experiment,
+                          ErrorKind kind) {
+    const BumpMeasurement* least = truest(experiment, kind);
+    const ExpectedError error = expected_error(experiment.reference, *least, kind);
+    const char* const kind_words = kind == ErrorKind::rms ? "RMS" : "greatest";
+    const bool steps_may_go = !request.destaircase && experiment.reference.method->destaircased;
+    const char* const closer = steps_may_go ? " (--destaircase comes closer)" : "";
+    if (request.max_added_error && error.added > *request.max_added_error) {
+        return fmt::format(
+            "no way to convert it adds at most {:g} degrees ({}): the least is {:.3g}, with {}{}",
+            *request.max_added_error, kind_words, error.added, method_words(least->method), closer);
+    }
+    if (std::isnan(error.map)) {
+        return fmt::format(
+            "its error cannot be estimated, as it has too few texels: no way to convert it is "
+            "known "
+            "to keep within {:g} degrees (limit what is added by --max-added-error)",
+            *request.max_error);
+    }
+    if (error.map > *request.max_error) {
+        return fmt::format(
+            "no way to convert it keeps within {:g} degrees ({}): the map itself has an expected "
+            "error of {:.3g} ({}), and {} adds {:.3g} (take a better map, or limit what is added "
+            "by "
+            "--max-added-error){}",
+            *request.max_error, kind_words, error.map, experiment.choice.reason,
+            method_words(least->method), error.added, closer);
+    }
+    return fmt::format(
+        "no way to convert it keeps within {:g} degrees ({}): the least is {:.3g}, with {}{}",
+        *request.max_error, kind_words, error.total(), method_words(least->method), closer);
+}
+
+/// What the kernel of --kernel auto depends on, as a finding.
+void report_grain(const KernelChoice& choice, Report& report) {
+    if (!choice.is_ambiguous()) return;
+    const KernelPrediction& other = choice.otherwise->best;
+    const BumpMethod method{other.kernel, other.gaussian_radius};
+    const bool is_noise = choice.noise > 0.0;
+    report.add({"fine grain that may be noise or detail",
+                "map",
+                fmt::format("taken for {}: {:.2g} degrees RMS expected; if it is {}: {:.2g}, and "
+                            "{:.2g} by {} (--grain {})",
+                            is_noise ? "noise" : "detail", choice.rms_degrees,
+                            is_noise ? "detail" : "noise", choice.otherwise->rms_degrees,
+                            other.rms_degrees, kernel_words(method), is_noise ? "detail" : "noise"),
+                1,
+                {0}});
+}
+
 void keep_within(const AccuracyRequest& request, AccuracyFound& found, BumpOptions& bump,
                  NormalMapFormat& format) {
     const ErrorKind kind = request.max_error_kind.value_or(ErrorKind::rms);
-    const BumpMeasurement* kept = cheapest_within(*found.experiment, *request.max_error, kind);
-    if (kept == nullptr) {
-        const BumpMeasurement* least = truest(*found.experiment, kind);
-        const double error = kind == ErrorKind::rms ? least->error.rms : least->error.max;
-        const bool steps_may_go =
-            !request.destaircase && found.experiment->reference.method->destaircased;
-        throw InvalidInput(fmt::format(
-            "no way to convert it keeps within {:g} degrees ({}): the least is {:.3g}, with {}{}",
-            *request.max_error, kind == ErrorKind::rms ? "RMS" : "greatest", error,
-            method_words(least->method), steps_may_go ? " (--destaircase comes closer)" : ""));
-    }
+    const BumpMeasurement* kept =
+        cheapest_within(*found.experiment, {request.max_error, request.max_added_error, kind});
+    if (kept == nullptr) throw InvalidInput(refusal_words(request, *found.experiment, kind));
     found.kept = *kept;
     bump.kernel = kept->method.kernel;
     bump.gaussian_radius = kept->method.gaussian_radius;
@@ -78,11 +117,18 @@ void keep_within(const AccuracyRequest& request, AccuracyFound& found, BumpOptio
 
 void add_accuracy_options(CLI::App& app, AccuracyRequest& request) {
     const std::string group = "Accuracy";
-    add_choice(app, "--kernel", request.kernel, kernel_or_auto(),
+    add_choice(app, "--kernel", request.kernel, kernel_or_auto_choices(),
                "How the slope is taken from neighbouring heights; all give the same depth. auto "
                "looks at bits, noise and detail of the map and takes the truest for it. central5 "
                "and central7 are for smooth maps of 16 bits or float; sobel5, scharr5 and gaussian "
                "smooth steps and noise; forward is half a texel off. Default: auto.")
+        .group(group);
+    const Choices<Grain> grains = {
+        {"auto", Grain::automatic}, {"noise", Grain::noise}, {"detail", Grain::detail}};
+    add_choice(app, "--grain", request.grain, grains,
+               "What --kernel auto takes fine, even grain for: noise, which it smooths away, or "
+               "detail, which it keeps. auto: noise, unless the map holds nothing else. Default: "
+               "auto.")
         .group(group);
     add_switch(app, "--destaircase", request.destaircase,
                "Smooth the steps of maps of few bits away first; no height moves by more than half "
@@ -96,13 +142,18 @@ void add_accuracy_options(CLI::App& app, AccuracyRequest& request) {
         "output and float32 else.")
         .group(group);
     add_number(app, "--max-error", "DEG", request.max_error, {0.0, 180.0, "degrees"},
-               "Take the cheapest kernel, precision and depth whose error, measured on this map, "
-               "stays within DEG degrees of the truest result known; refuse if there is none.")
+               "Take the cheapest kernel, precision and depth whose expected error is at most DEG "
+               "degrees: the error expected from the map itself (noise, rounding) and the error "
+               "that the conversion adds, as root sum of squares. Refuse if there is none.")
+        .group(group);
+    add_number(app, "--max-added-error", "DEG", request.max_added_error, {0.0, 180.0, "degrees"},
+               "The same for the error alone that kernel, precision and depth add to that of the "
+               "map: their distance from the truest result known.")
         .group(group);
     const Choices<ErrorKind> kinds = {{"rms", ErrorKind::rms}, {"max", ErrorKind::max}};
     add_choice(app, "--max-error-kind", request.max_error_kind, kinds,
-               "Whether --max-error is for the root mean square or the greatest error. Default: "
-               "rms.")
+               "Whether --max-error and --max-added-error limit the root mean square or the "
+               "greatest error. Default: rms.")
         .group(group);
     add_switch(app, "--compare", request.compare,
                "Also convert in every way, and print error beside time.")
@@ -110,12 +161,14 @@ void add_accuracy_options(CLI::App& app, AccuracyRequest& request) {
 }
 
 void check(const AccuracyRequest& request, bool slope_moments, bool half) {
-    if (request.max_error_kind && !request.max_error)
+    if (request.max_error_kind && !has_limit(request))
         throw UsageError("--max-error-kind: is for --max-error", "give --max-error DEG");
     if (!needs_experiment(request)) return;
-    if (request.compare && request.max_error)
-        throw UsageError("--compare, --max-error: one converts in every way, the other in one");
-    const std::string option = request.max_error ? "--max-error" : "--compare";
+    const std::string option = request.max_error         ? "--max-error"
+                               : request.max_added_error ? "--max-added-error"
+                                                         : "--compare";
+    if (request.compare && has_limit(request))
+        throw UsageError("--compare, " + option + ": one converts in every way, the other in one");
     if (slope_moments) throw UsageError(option + ", --slope-moments: errors are those of normals");
     if (half) throw UsageError(option + ", --half: errors of half floats are not measured");
 }
@@ -126,7 +179,7 @@ std::vector<ImagePart> parts_wanted(const AccuracyRequest& request, const ImageI
 
 AccuracyFound settle_accuracy(const AccuracyRequest& request, const ImageInfo& map,
                               const std::vector<Image>& parts, const std::vector<int>& depths,
-                              BumpOptions& bump, NormalMapFormat& format) {
+                              BumpOptions& bump, NormalMapFormat& format, Report& report) {
     AccuracyFound found;
     if (request.precision) bump.arithmetic = request.precision;
     if (request.kernel) bump.kernel = *request.kernel;
@@ -134,7 +187,8 @@ AccuracyFound settle_accuracy(const AccuracyRequest& request, const ImageInfo& m
     if (wanted.looked_at.empty()) return found;
     const BumpSample sample = wanted.sample(parts);
     if (!request.kernel) {
-        found.choice = choose_kernel(sample.looked_at, bump, request.destaircase);
+        found.choice = choose_kernel(sample.looked_at, bump, request.destaircase, request.grain);
+        report_grain(*found.choice, report);
         bump.kernel = found.choice->kernel;
         bump.gaussian_radius = found.choice->gaussian_radius;
     }
@@ -143,15 +197,15 @@ AccuracyFound settle_accuracy(const AccuracyRequest& request, const ImageInfo& m
     BumpExperimentOptions options;
     options.bump = bump;
     options.format = format;
+    options.grain = request.grain;
     if (!request.compare) options.repeats = {1, 0};
     const std::vector<int> measured_depths =
-        request.max_error ? depths : std::vector<int>{format.bits};
+        has_limit(request) ? depths : std::vector<int>{format.bits};
     const bool has_steps = found.choice && found.choice->depth.bits > 0 &&
                            found.choice->depth.bits <= 12 && request.compare;
-    found.experiment = measure_bump(
-        sample, methods_for(request, radius, measured_depths, has_steps && !request.max_error),
-        options);
-    if (request.max_error) keep_within(request, found, bump, format);
+    found.experiment =
+        measure_bump(sample, methods_for(request, radius, measured_depths, has_steps), options);
+    if (has_limit(request)) keep_within(request, found, bump, format);
     return found;
 }
 

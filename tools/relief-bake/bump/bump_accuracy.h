@@ -17,7 +17,9 @@ struct AccuracyRequest {
     std::optional<Kernel> kernel;
     std::optional<Arithmetic> precision;
     bool destaircase = false;
-    std::optional<double> max_error;
+    Grain grain = Grain::automatic;
+    std::optional<double> max_error;        ///< Of the map and the conversion together.
+    std::optional<double> max_added_error;  ///< Of the conversion alone.
     std::optional<ErrorKind> max_error_kind;
     bool compare = false;
 };
@@ -30,7 +32,8 @@ struct AccuracyFound {
     double step = 0.0;                         ///< Of steps that were smoothed away; 0: none.
 };
 
-/// --kernel, --precision, --destaircase, --max-error, --max-error-kind, --compare.
+/// --kernel, --grain, --precision, --destaircase, --max-error, --max-added-error,
+/// --max-error-kind, --compare.
 void add_accuracy_options(CLI::App& app, AccuracyRequest& request);
 
 /// \throws UsageError where options contradict each other or have no effect
@@ -44,10 +47,11 @@ std::vector<ImagePart> parts_wanted(const AccuracyRequest& request, const ImageI
 ///
 /// \param parts   parts_wanted()
 /// \param depths  that the file may have: of these, --max-error chooses
+/// \param report  gets a finding where the kernel depends on what the grain of the map is
 /// \throws InvalidInput where nothing keeps within --max-error, saying what comes closest
 AccuracyFound settle_accuracy(const AccuracyRequest& request, const ImageInfo& map,
                               const std::vector<Image>& parts, const std::vector<int>& depths,
-                              BumpOptions& bump, NormalMapFormat& format);
+                              BumpOptions& bump, NormalMapFormat& format, Report& report);
 
 /// Smooths the steps of a map away, where that is asked for and there are any.
 /// \throws InvalidInput if the map is too large to be in memory

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "common/map_choices.h"
@@ -12,12 +13,6 @@
 
 namespace relief::tools {
 namespace {
-
-std::string kernel_words(const BumpMethod& method) {
-    const std::string name = name_of(method.kernel, kernel_choices());
-    return method.kernel == Kernel::gaussian ? fmt::format("{} {}", name, method.gaussian_radius)
-                                             : name;
-}
 
 std::string precision_words(const BumpMethod& method) {
     return method.arithmetic == Arithmetic::float64 ? "float64" : "float32";
@@ -31,16 +26,18 @@ std::vector<std::string> table(const BumpExperiment& experiment) {
     std::stable_sort(rows.begin(), rows.end(),
                      [](const auto* a, const auto* b) { return a->error.rms < b->error.rms; });
     std::vector<std::string> lines = {
-        fmt::format("{:<12} {:<9} {:<4} {:<6} {:>9} {:>9} {:>9} {:>9}", "kernel", "precision",
-                    "bits", "steps", "RMS deg", "max deg", "time", "MPixel/s")};
+        fmt::format("{:<12} {:<9} {:<4} {:<6} {:>9} {:>9} {:>9} {:>9} {:>9}", "kernel", "precision",
+                    "bits", "steps", "RMS deg", "max deg", "with map", "time", "MPixel/s")};
     for (const BumpMeasurement* row : rows) {
-        lines.push_back(fmt::format("{:<12} {:<9} {:<4} {:<6} {:>9.3g} {:>9.3g} {:>9} {:>9.0f} {}",
-                                    kernel_words(row->method), precision_words(row->method),
-                                    row->method.bits, row->method.destaircased ? "smooth" : "as is",
-                                    row->error.rms, row->error.max,
-                                    duration(1000.0 * row->seconds.median),
-                                    row->megapixels_per_second, row->is_efficient ? "*" : ""));
+        lines.push_back(
+            fmt::format("{:<12} {:<9} {:<4} {:<6} {:>9.3g} {:>9.3g} {:>9.3g} {:>9} {:>9.0f} {}",
+                        kernel_words(row->method), precision_words(row->method), row->method.bits,
+                        row->method.destaircased ? "smooth" : "as is", row->error.rms,
+                        row->error.max, expected_error(experiment.reference, *row).total(),
+                        duration(1000.0 * row->seconds.median), row->megapixels_per_second,
+                        row->is_efficient ? "*" : ""));
     }
+    lines.emplace_back("RMS and max: what the conversion adds; with map: RMS expected in all");
     lines.emplace_back("* no other method is both faster and more accurate");
     for (std::string& line : lines)
         line.erase(line.find_last_not_of(' ') + 1);
@@ -53,7 +50,13 @@ std::string where_words(const BumpExperiment& experiment) {
                        experiment.reference.words);
 }
 
-nlohmann::ordered_json measurement_json(const BumpMeasurement& one) {
+/// What is expected of a conversion, from the surface that the map was made of.
+nlohmann::ordered_json expected_json(const ExpectedError& error) {
+    return {{"map", error.map}, {"added", error.added}, {"total", error.total()}};
+}
+
+nlohmann::ordered_json measurement_json(const BumpMeasurement& one,
+                                        const BumpReference& reference) {
     const BumpMethod& method = one.method;
     return {{"kernel", name_of(method.kernel, kernel_choices())},
             {"kernel_radius", method.kernel == Kernel::gaussian
@@ -67,6 +70,7 @@ nlohmann::ordered_json measurement_json(const BumpMeasurement& one) {
               {"mean", one.error.mean},
               {"p99", one.error.p99},
               {"max", one.error.max}}},
+            {"expected_degrees", expected_json(expected_error(reference, one))},
             {"milliseconds",
              {{"median", 1000.0 * one.seconds.median},
               {"p10", 1000.0 * one.seconds.p10},
@@ -75,7 +79,32 @@ nlohmann::ordered_json measurement_json(const BumpMeasurement& one) {
             {"efficient", one.is_efficient}};
 }
 
+/// Of the map and the kernel, in float64 and unrounded.
+std::string expectation_words(const KernelChoice& choice) {
+    if (std::isnan(choice.rms_degrees)) return "unknown";
+    return fmt::format("{:.2g} degrees RMS, {:.2g} at most, by the map and this kernel",
+                       choice.rms_degrees, choice.max_degrees);
+}
+
+nlohmann::ordered_json grain_json(const KernelChoice& choice) {
+    if (!choice.otherwise) return nullptr;
+    const KernelPrediction& best = choice.otherwise->best;
+    return {{"taken_for", choice.noise > 0.0 ? "noise" : "detail"},
+            {"deviation", choice.grain},
+            {"ambiguous", choice.is_ambiguous()},
+            {"otherwise",
+             {{"expected_degrees", choice.otherwise->rms_degrees},
+              {"best_kernel", kernel_words({best.kernel, best.gaussian_radius})},
+              {"best_expected_degrees", best.rms_degrees}}}};
+}
+
 }  // namespace
+
+std::string kernel_words(const BumpMethod& method) {
+    const std::string name = name_of(method.kernel, kernel_choices());
+    return method.kernel == Kernel::gaussian ? fmt::format("{} {}", name, method.gaussian_radius)
+                                             : name;
+}
 
 std::string method_words(const BumpMethod& method) {
     return fmt::format("{} in {}, {} bit{}", kernel_words(method), precision_words(method),
@@ -84,16 +113,24 @@ std::string method_words(const BumpMethod& method) {
 
 void print_accuracy(const AccuracyFound& found) {
     // What keeps within a bound was not taken for being the truest.
-    if (found.choice && !found.kept) print_entry("because", found.choice->reason);
+    if (found.choice && !found.kept) {
+        print_entry("because", found.choice->reason);
+        print_entry("expected", expectation_words(*found.choice));
+    }
     if (found.step > 0.0) {
         print_entry("steps",
                     fmt::format("smoothed away: of 1/{:.0f}, heights moved by half of that at most",
                                 1.0 / found.step));
     }
     if (found.kept) {
-        print_entry("kept", fmt::format("{}: {:.3g} degrees RMS, {:.3g} at most, {:.0f} MPixel/s",
-                                        method_words(found.kept->method), found.kept->error.rms,
-                                        found.kept->error.max, found.kept->megapixels_per_second));
+        const ExpectedError error = expected_error(found.experiment->reference, *found.kept);
+        print_entry("kept", fmt::format("{}: {:.3g} degrees RMS expected",
+                                        method_words(found.kept->method), error.total()));
+        print_entry(
+            "", fmt::format("{:.3g} from the map itself, {:.3g} added by this conversion ({:.3g} "
+                            "at most), {:.0f} MPixel/s",
+                            error.map, error.added, found.kept->error.max,
+                            found.kept->megapixels_per_second));
     }
     if (!found.experiment) return;
     print_entry("errors", where_words(*found.experiment));
@@ -101,7 +138,11 @@ void print_accuracy(const AccuracyFound& found) {
 }
 
 void add_accuracy(const AccuracyFound& found, nlohmann::ordered_json& report) {
-    if (found.choice && !found.kept) report["kernel_reason"] = found.choice->reason;
+    if (found.choice && !found.kept) {
+        report["kernel_reason"] = found.choice->reason;
+        report["expected_degrees"] = found.choice->rms_degrees;
+        report["grain"] = grain_json(*found.choice);
+    }
     report["destaircased_step"] =
         found.step > 0.0 ? nlohmann::ordered_json(found.step) : nlohmann::ordered_json(nullptr);
     if (!found.experiment) return;
@@ -110,10 +151,10 @@ void add_accuracy(const AccuracyFound& found, nlohmann::ordered_json& report) {
                            {"own_degrees", experiment.reference.own_degrees},
                            {"texels", experiment.texels},
                            {"whole", experiment.is_whole}};
-    if (found.kept) report["kept"] = measurement_json(*found.kept);
+    if (found.kept) report["kept"] = measurement_json(*found.kept, experiment.reference);
     nlohmann::ordered_json all = nlohmann::ordered_json::array();
     for (const BumpMeasurement& one : experiment.measurements)
-        all.push_back(measurement_json(one));
+        all.push_back(measurement_json(one, experiment.reference));
     report["comparison"] = all;
 }
 

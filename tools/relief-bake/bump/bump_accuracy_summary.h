@@ -13,6 +13,9 @@ namespace relief::tools {
 /// "gaussian of radius 4 in float32, 16 bit"
 std::string method_words(const BumpMethod& method);
 
+/// "gaussian 4", or the plain name.
+std::string kernel_words(const BumpMethod& method);
+
 /// Lines of the summary: why the kernel, what keeps within the bound, the table of --compare.
 void print_accuracy(const AccuracyFound& found);
 

@@ -17,7 +17,7 @@ namespace relief::tools {
 
 /// How to convert a height map; the same for every map of a call.
 struct BumpRequest {
-    HeightChannel channel = HeightChannel::mean;
+    std::optional<HeightChannel> channel;  ///< Absent: the mean, and a finding for colors.
     bool ignore_alpha = false;
     bool invert = false;
     BumpOptions bump;

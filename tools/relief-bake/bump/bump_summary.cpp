@@ -15,7 +15,7 @@ namespace {
 
 /// "gaussian of radius 2", or the plain name.
 std::string kernel_words(const BumpOptions& bump) {
-    const std::string name = name_of(bump.kernel, kernel_choices());
+    const std::string name = name_of(*bump.kernel, kernel_choices());
     return bump.kernel == Kernel::gaussian
                ? fmt::format("{} of radius {}", name, bump.gaussian_radius)
                : name;
@@ -37,7 +37,7 @@ double megapixels_per_second(const Baked& baked, const Stages& stages) {
 
 /// "clamp", and what the map shows where it decided.
 std::string border_words(const Baked& baked) {
-    const std::string words = wrap_words(baked.bump.wrap) + " at the border";
+    const std::string words = wrap_words(*baked.bump.wrap) + " at the border";
     if (!baked.tiling) return words;
     return fmt::format("{} (across the seams it changes {:.2g} and {:.2g} times as much as inside)",
                        words, baked.tiling->seam_x, baked.tiling->seam_y);
@@ -112,11 +112,11 @@ nlohmann::ordered_json results_json(const Baked& baked, const Stages& stages) {
         {"height", baked.input.height},
         {"by_rows", baked.is_streamed},
         {"transparent", baked.transparent},
-        {"kernel", name_of(bump.kernel, kernel_choices())},
+        {"kernel", name_of(*bump.kernel, kernel_choices())},
         {"kernel_radius", has_radius ? nlohmann::ordered_json(bump.gaussian_radius) : nullptr},
         {"strength", bump.strength},
         {"texel_size", {bump.texel.x, bump.texel.y}},
-        {"wrap", wrap_words(bump.wrap)},
+        {"wrap", wrap_words(*bump.wrap)},
         {"seams", seams_json(baked.tiling)},
         {"content", has_slopes ? "slope moments" : "normals"},
         {"xy_only", baked.format.xy_only},

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "material_overrides.h"
 #include "relief/mesh/height_map.h"
 #include "relief/mesh/image_file.h"
 
@@ -86,6 +87,7 @@ FoundAccuracy measured(const Scene& scene, const ViewOptions& view) {
     bump.strength = view.strength.value_or(bump.strength);
     options.file = view.height_map->filename().string();
     const Image height = height_field(read_image(*view.height_map, ImageUse::data));
+    found.kernel = kernel_shown(view);
     found.topics.push_back(topic_of(measure_own_heights(height, bump, options)));
     return found;
 }
@@ -104,7 +106,7 @@ void SceneAccuracy::measure(const ViewerState& state) {
         } catch (const Cancelled&) {
             throw;
         } catch (const std::exception& error) {
-            return FoundAccuracy{{}, error.what()};
+            return FoundAccuracy{{}, error.what(), {}};
         }
     });
 }
@@ -157,7 +159,7 @@ void SceneAccuracy::begin_next(const ViewerState& state) {
 
 bool SceneAccuracy::is_used(const Variant& variant, const ViewOptions& options) const {
     if (const Kernel* kernel = std::get_if<Kernel>(&variant))
-        return options.kernel.value_or(BumpOptions{}.kernel) == *kernel;
+        return (options.kernel ? options.kernel : found_.kernel) == *kernel;
     const auto chosen = chosen_.find(variant.index());
     return chosen != chosen_.end() && chosen->second == variant;
 }

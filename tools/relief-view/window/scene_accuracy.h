@@ -34,6 +34,7 @@ struct AccuracyTopic {
 struct FoundAccuracy {
     std::vector<AccuracyTopic> topics;
     std::string error;
+    std::optional<Kernel> kernel;  ///< kernel_shown(), where there is a height map.
 };
 
 class SceneAccuracy {

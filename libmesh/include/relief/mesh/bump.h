@@ -34,20 +34,29 @@ struct Wraps {
     bool operator==(const Wraps&) const = default;
 };
 
+/// How heights become slopes. What is absent is settled by the map: see settled_options().
 struct BumpOptions {
-    Kernel kernel = Kernel::sobel3;
-    Wraps wrap;
+    std::optional<Kernel> kernel{};
+    std::optional<Wraps> wrap{};
     /// The height that the value 1.0 stands for, in the unit of `texel`: in texels, unless that is
     /// changed. Within +-1e30; negative turns bumps into dents.
     double strength = 16.0;
     /// Width and height of a texel, from 1e-30 to 1e30. Both 1: `strength` is in texels. Unequal:
     /// texels are not square.
     glm::dvec2 texel{1.0, 1.0};
-    int gaussian_radius = 2;  ///< Of Kernel::gaussian, in texels.
+    int gaussian_radius = 2;  ///< Of Kernel::gaussian, in texels, where the kernel is given.
     /// What slopes and normals are computed in. Unless given: float32 where the result has 8 or 16
     /// bits, else float64.
     std::optional<Arithmetic> arithmetic{};
 };
+
+/// The options with all that was left to the map, as every conversion and every tool settles it.
+///
+/// \param height  as for normals_from_height()
+/// \return kernel (and its radius) by choose_kernel() (kernel_choice.h), wrap by detect_tiling()
+///         (height_statistics.h), where they are absent; the others as they are
+/// \throws InvalidInput as normals_from_height() does
+BumpOptions settled_options(const Image& height, BumpOptions options);
 
 /// Unit normals of a height field, in tangent space: x to the right, y up in the image, z out.
 ///

@@ -52,6 +52,8 @@ struct BumpReference {
     /// What the reference itself is expected to be off the ground that the map was made of: errors
     /// below say nothing about that. 0 where the truth is known.
     double own_degrees = 0.0;
+    /// The same, of the texel that is off most.
+    double own_max_degrees = 0.0;
     std::string words;  ///< All that, for people.
 };
 
@@ -69,7 +71,8 @@ struct BumpExperiment {
 struct BumpExperimentOptions {
     BumpOptions bump;        ///< Strength, texel and wrap.
     NormalMapFormat format;  ///< Of the stored maps, but for their bits.
-    Repeats repeats{5, 1};   ///< `counted` 0: nothing is timed.
+    Grain grain = Grain::automatic;
+    Repeats repeats{5, 1};  ///< `counted` 0: nothing is timed.
 };
 
 /// What is known of a map, which may be too large for memory.
@@ -122,9 +125,27 @@ BumpExperiment measure_bump(const BumpField& field, std::span<const BumpMethod> 
 /// Which error a bound is for.
 enum class ErrorKind { rms, max };
 
-/// The measurement of least cost_of() with an error within the bound; nullptr where there is none.
-const BumpMeasurement* cheapest_within(const BumpExperiment& experiment, double degrees,
-                                       ErrorKind kind);
+/// The error to be expected of a measured method, from the surface that the map was made of.
+///
+/// \param kind  of both parts. Greatest errors seldom meet in one texel, so that their root sum of
+///              squares is an estimate too
+ExpectedError expected_error(const BumpReference& reference, const BumpMeasurement& measurement,
+                             ErrorKind kind = ErrorKind::rms);
+
+/// Limits in degrees for expected_error(); absent: none.
+struct ErrorLimits {
+    std::optional<double> total;
+    std::optional<double> added;
+    ErrorKind kind = ErrorKind::rms;
+
+    /// False where an error is not known.
+    [[nodiscard]] bool hold(const ExpectedError& error) const {
+        return (!total || error.total() <= *total) && (!added || error.added <= *added);
+    }
+};
+
+/// The measurement of least cost_of() within the limits; nullptr where there is none.
+const BumpMeasurement* cheapest_within(const BumpExperiment& experiment, const ErrorLimits& limits);
 
 /// The one of least error; nullptr if nothing was measured.
 const BumpMeasurement* truest(const BumpExperiment& experiment, ErrorKind kind);

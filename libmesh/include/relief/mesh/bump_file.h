@@ -56,6 +56,8 @@ class HeightMapFile {
     struct Survey {
         Tiling tiling;
         std::vector<Image> parts;
+        double colored_share = 0.0;        ///< As in HeightMap.
+        double partial_alpha_share = 0.0;  ///< The same.
     };
     /// Looks at the seams, and takes out parts; a streamed map is read once for both. What a
     /// transparent texel hides counts for neither: in parts, the surface beside goes on there.

@@ -37,6 +37,11 @@ struct HeightMap {
     Image alpha;
     /// 1 where alpha is 0: what colour stands there is no height. Empty where no texel is so.
     std::vector<std::uint8_t> transparent;
+    /// Share of texels whose red, green and blue clearly differ: of a height map none. Of some
+    /// 10000 texels in even distances.
+    double colored_share = 0.0;
+    /// Share of texels whose alpha is neither 0 nor the largest: alpha may be heights. Of the same.
+    double partial_alpha_share = 0.0;
 
     [[nodiscard]] std::size_t transparent_count() const;
 };

@@ -16,6 +16,8 @@
 #include "large_memory.h"
 #include "parallel.h"
 #include "relief/mesh/error.h"
+#include "relief/mesh/height_statistics.h"
+#include "relief/mesh/kernel_choice.h"
 
 namespace relief {
 namespace {
@@ -52,15 +54,15 @@ std::function<const void*(int)> rows_of(std::span<const Sample> samples, int wid
 }
 
 /// From the image as it is; where that has holes, from a copy without.
-void make_image_rows(const Image& height, const BumpOptions& options, const BumpTarget& target,
+void make_image_rows(const Image& height, const BumpOptions& given, const BumpTarget& target,
                      Report& report) {
-    check(height, options);
+    const BumpOptions options = settled_options(height, given);
     HeightRows heights{height.width, height.height, height.bits(), {}};
     std::visit(
         [&](const auto& samples) { heights.row = rows_of(std::span(samples), height.width); },
         height.samples);
     if (make_all_rows(heights, options, target)) return;
-    const std::vector<float> whole = filled_holes(height, options.wrap, report);
+    const std::vector<float> whole = filled_holes(height, *options.wrap, report);
     heights.row = rows_of(std::span(whole), height.width);
     make_all_rows(heights, options, target);
 }
@@ -112,7 +114,18 @@ void check_bump(const BumpOptions& options) {
                                            1.0 / largest_bump_texel, largest_bump_texel));
         }
     }
-    gradient_kernel(options.kernel, options.gaussian_radius);
+    gradient_kernel(options.kernel.value_or(Kernel::gaussian), options.gaussian_radius);
+}
+
+BumpOptions settled_options(const Image& height, BumpOptions options) {
+    check(height, options);
+    if (!options.wrap) options.wrap = detect_tiling(height).wraps();
+    if (!options.kernel) {
+        const KernelChoice choice = choose_kernel(height, options);
+        options.kernel = choice.kernel;
+        options.gaussian_radius = choice.gaussian_radius;
+    }
+    return options;
 }
 
 Image normals_from_height(const Image& height, const BumpOptions& options, Report& report) {

@@ -27,7 +27,7 @@ struct SlopeScales {
 };
 
 GradientKernel kernel_of(const BumpOptions& options) {
-    return gradient_kernel(options.kernel, options.gaussian_radius);
+    return gradient_kernel(*options.kernel, options.gaussian_radius);
 }
 
 SlopeScales scales_of(const HeightRows& heights, const BumpOptions& options) {
@@ -114,9 +114,9 @@ class SlopePieces {
     SlopePieces(VectorTarget vectors, const HeightRows& heights, const BumpOptions& options)
         : vectors_(vectors),
           width_(heights.width),
-          wrap_(options.wrap.x),
+          wrap_(options.wrap->x),
           weights_(kernel_of(options)),
-          rows_(heights, options.wrap.y, static_cast<int>(weights_.radius)),
+          rows_(heights, options.wrap->y, static_cast<int>(weights_.radius)),
           right_scale_(static_cast<Real>(scales_of(heights, options).right)),
           up_scale_(static_cast<Real>(scales_of(heights, options).up)),
           smoothed_(columns_at_once + 2 * static_cast<std::size_t>(weights_.radius)),
@@ -370,7 +370,7 @@ bool make_rows(const HeightRows& heights, const BumpOptions& options, const Bump
     const std::optional<Weights3x3> weights = maker.slopes().weights_3x3();
     const bool is_dithered = target.format.dither != Dither::none;
     if (!weights || !has_few_bits || is_dithered) return make_with(maker, first, last);
-    DirectRowMaker<Sample> direct(vectors, heights, options.wrap, *weights, target, maker);
+    DirectRowMaker<Sample> direct(vectors, heights, *options.wrap, *weights, target, maker);
     return make_with(direct, first, last);
 }
 

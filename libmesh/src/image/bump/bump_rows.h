@@ -42,6 +42,7 @@ struct BumpTarget {
 
 /// Makes rows [first, last), on the calling thread.
 ///
+/// \param options  settled
 /// \return false where a height that counts is not finite: then nothing of the result does
 bool make_bump_rows(const HeightRows& heights, const BumpOptions& options, const BumpTarget& target,
                     int first, int last);

@@ -160,10 +160,14 @@ std::vector<float> filled_holes(const Image& height, const Wraps& wrap, Report& 
                                      : 0.0F;
         }
     });
+    const bool has_heights =
+        std::any_of(distance.begin(), distance.end(), [](std::uint32_t away) { return away == 0; });
+    const char* const outcome = has_heights
+                                    ? "read as the mean of the nearest finite heights"
+                                    : "read as 0, as no height of the map is finite: it is flat";
     for (std::size_t texel = 0; texel < distance.size(); ++texel) {
         if (distance[texel] != 0 && !is_transparent(texel))
-            report.add("non-finite height", "texel", texel,
-                       "read as the mean of the nearest finite heights");
+            report.add("non-finite height", "texel", texel, outcome);
     }
     return whole;
 }

@@ -135,6 +135,37 @@ void take_alpha(const Image& image, HeightMap& map) {
     map.alpha = {image.width, image.height, 1, ColorSpace::data, std::move(alpha)};
 }
 
+/// What the samples show of colors and of alpha, from texels in even distances.
+template <typename Sample>
+void take_shares(const Image& image, HeightMap& map) {
+    // JPEG leaves grey images this far from grey.
+    constexpr double least_difference = 1.0 / 16.0;
+    constexpr std::size_t looked_at = 10000;
+    const std::span<const Sample> samples = image.as<Sample>();
+    const auto channels = static_cast<std::size_t>(image.channels);
+    const std::size_t texels = samples.size() / channels;
+    // An odd distance does not fall into step with the columns of most images.
+    const std::size_t distance = texels / looked_at | 1U;
+    double count = 0.0;
+    double colored = 0.0;
+    double partial = 0.0;
+    for (std::size_t texel = 0; texel < texels; texel += distance) {
+        const Sample* const at = samples.data() + texel * channels;
+        ++count;
+        if (channels >= 3) {
+            const auto [least, greatest] = std::minmax({at[0], at[1], at[2]});
+            const double difference = static_cast<double>(greatest) - static_cast<double>(least);
+            if (difference > least_difference * largest_sample<Sample>) ++colored;
+        }
+        if (has_alpha(image)) {
+            const double alpha = static_cast<double>(at[channels - 1]) / largest_sample<Sample>;
+            if (alpha > 0.0 && alpha < 1.0) ++partial;
+        }
+    }
+    map.colored_share = colored / count;
+    map.partial_alpha_share = partial / count;
+}
+
 }  // namespace
 
 std::size_t HeightMap::transparent_count() const {
@@ -155,6 +186,11 @@ Image height_field(const Image& image, HeightChannel channel) {
 HeightMap height_map(Image&& image, HeightChannel channel) {
     check(image, channel);
     HeightMap map;
+    if (image.channels > 1) {
+        std::visit(
+            [&]<typename Sample>(const std::vector<Sample>&) { take_shares<Sample>(image, map); },
+            image.samples);
+    }
     if (has_alpha(image) && channel != HeightChannel::alpha) {
         std::visit(
             [&]<typename Sample>(const std::vector<Sample>&) { take_alpha<Sample>(image, map); },

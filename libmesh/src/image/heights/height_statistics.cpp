@@ -85,14 +85,20 @@ HeightDepth depth_of(const Heights<float>& heights) {
     }
     if (!(least < greatest))
         return {1, std::isfinite(least) && least != 0.0 ? std::abs(least) : 1.0};
+    // Floats beyond 2^24 steps are multiples of them whatever they stand for.
+    constexpr double most_steps = 0x1p24;
+    const double largest = std::max(std::abs(least), std::abs(greatest));
+    const auto are_on_levels = [&](double levels) {
+        return largest * levels <= most_steps && are_multiples(heights.samples(), 1.0 / levels);
+    };
     for (int bits = 1; bits <= 16; ++bits) {
         for (const double levels : {std::exp2(bits) - 1.0, std::exp2(bits)}) {
-            if (are_multiples(heights.samples(), 1.0 / levels)) return {bits, 1.0 / levels};
+            if (are_on_levels(levels)) return {bits, 1.0 / levels};
         }
     }
     // The mean of three colours of 8 bits.
     constexpr double mean_levels = 3 * 255;
-    if (are_multiples(heights.samples(), 1.0 / mean_levels)) return {10, 1.0 / mean_levels};
+    if (are_on_levels(mean_levels)) return {10, 1.0 / mean_levels};
     return {};
 }
 

@@ -16,6 +16,7 @@
 #include "io/maps/height_window.h"
 #include "parallel.h"
 #include "relief/mesh/error.h"
+#include "relief/mesh/kernel_choice.h"
 #include "relief/mesh/timing.h"
 
 namespace relief {
@@ -26,7 +27,7 @@ double milliseconds_of(const std::function<void()>& work) {
 }
 
 int radius_of(const BumpOptions& options) {
-    return gradient_kernel(options.kernel, options.gaussian_radius).radius;
+    return gradient_kernel(*options.kernel, options.gaussian_radius).radius;
 }
 
 const void* row_of(const Image& image, int row) {
@@ -74,7 +75,7 @@ class MemorySource final : public BandSource {
     void fill(Report& report) {
         Image floats = to_float(map_.heights);
         floats.samples =
-            filled_holes(floats, options_.wrap, report, {map_.transparent, radius_of(options_)});
+            filled_holes(floats, *options_.wrap, report, {map_.transparent, radius_of(options_)});
         whole_ = std::move(floats);
         heights_ = &whole_;
         source_.heights.bits = 32;
@@ -90,7 +91,7 @@ class MemorySource final : public BandSource {
 class FileSource final : public BandSource {
   public:
     FileSource(const HeightMapFile& file, const BumpOptions& options)
-        : file_(file), window_(file, radius_of(options), options.wrap) {
+        : file_(file), window_(file, radius_of(options), *options.wrap) {
         const ImageInfo& info = file.info();
         source_.heights = {info.width, info.height, 32,
                            [this](int row) { return window_.row(row); }};
@@ -145,6 +146,21 @@ void check(const BumpFileFormat& format) {
         throw InvalidInput("slope moments have neither z nor alpha");
 }
 
+/// As settled_options(), of a map that may be too large for memory.
+BumpOptions settled(const HeightMapFile& source, BumpOptions options) {
+    if (options.kernel && options.wrap) return options;
+    std::vector<ImagePart> parts;
+    if (!options.kernel) parts = parts_to_look_at(source.info().width, source.info().height);
+    const HeightMapFile::Survey survey = source.survey(parts);
+    if (!options.wrap) options.wrap = survey.tiling.wraps();
+    if (!options.kernel) {
+        const KernelChoice choice = choose_kernel(survey.parts, options);
+        options.kernel = choice.kernel;
+        options.gaussian_radius = choice.gaussian_radius;
+    }
+    return options;
+}
+
 /// Makes all bands and hands them to the writer. \return without the time to open and to finish
 BumpFileTimes write_bands(BandSource& bands, const HeightMapFile& source,
                           const BumpOptions& options, const BumpFileFormat& format,
@@ -173,11 +189,12 @@ BumpFileTimes write_bands(BandSource& bands, const HeightMapFile& source,
 
 }  // namespace
 
-BumpFileTimes write_bump_file(const HeightMapFile& source, const BumpOptions& options,
+BumpFileTimes write_bump_file(const HeightMapFile& source, const BumpOptions& given,
                               const std::filesystem::path& file, const BumpFileFormat& format,
                               Report& report, const std::function<void(double)>& progress) {
     check(format);
-    check_bump(options);
+    check_bump(given);
+    const BumpOptions options = settled(source, given);
     const ImageInfo& info = source.info();
     ImageRowWriter writer(file, shape_of(format, info.width, info.height), metadata_of(format),
                           format.write);

@@ -103,6 +103,8 @@ void fill_hidden(const Image& transparent, int file_bits, Image& part) {
 HeightMapFile::Survey survey_of(const HeightMap& map, int file_bits,
                                 std::span<const ImagePart> places) {
     HeightMapFile::Survey survey;
+    survey.colored_share = map.colored_share;
+    survey.partial_alpha_share = map.partial_alpha_share;
     for (const ImagePart& place : places)
         survey.parts.push_back(part_of(map.heights, place));
     if (map.transparent.empty()) {
@@ -136,6 +138,7 @@ int HeightMapFile::rows_per_band() const {
 
 HeightMapFile::Survey HeightMapFile::survey(std::span<const ImagePart> parts) const {
     if (!is_streamed_) return survey_of(map_, info_.bits, parts);
+    Survey survey;
     SeamSurvey seams(info_.width, info_.height);
     PartCollector collector(parts, info_.channels == 1 ? info_.bits : 32);
     HeightBandReader reader(*this);
@@ -144,8 +147,13 @@ HeightMapFile::Survey HeightMapFile::survey(std::span<const ImagePart> parts) co
         const HeightMap band = reader.read(band_rows);
         add_rows(seams, band.heights);
         collector.add(band.heights, first);
+        const double share = static_cast<double>(band.heights.height) / info_.height;
+        survey.colored_share += share * band.colored_share;
+        survey.partial_alpha_share += share * band.partial_alpha_share;
     }
-    return {seams.tiling(), std::move(collector).parts()};
+    survey.tiling = seams.tiling();
+    survey.parts = std::move(collector).parts();
+    return survey;
 }
 
 }  // namespace relief

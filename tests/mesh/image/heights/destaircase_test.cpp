@@ -55,7 +55,7 @@ double least_error(const BumpField& field) {
 TEST(Destaircase, NeverMovesAHeightByMoreThanHalfAStep) {
     for (const FieldRecipe& recipe : tuning_fields()) {
         const BumpField field = make_bump_field(recipe, 96, 80);
-        const Destaircased smooth = destaircase(field.heights, {field.options.wrap});
+        const Destaircased smooth = destaircase(field.heights, {*field.options.wrap});
         const Image stored = to_float(field.heights);
         double farthest = 0.0;
         for (std::size_t i = 0; i < stored.sample_count(); ++i) {
@@ -173,7 +173,7 @@ TEST(Destaircase, TheBestKernelGainsOnSmoothMapsAndLosesLittleOnDetailedOnes) {
         if (recipe.coding != FieldCoding::bits8 || recipe.noise > 0.0) continue;
         BumpField field = make_bump_field(recipe, 192, 192);
         const double before = least_error(field);
-        field.heights = destaircase(field.heights, {field.options.wrap}).heights;
+        field.heights = destaircase(field.heights, {*field.options.wrap}).heights;
         const double gain = before / least_error(field);
         const bool is_smooth = recipe.shape == FieldShape::waves && recipe.shortest >= 16.0;
         EXPECT_GT(gain, is_smooth ? 1.2 : 0.85) << recipe.name;

@@ -135,5 +135,12 @@ TEST(HeightNoise, IsTheDeviationOfNoiseOnASmoothMap) {
                 std::sqrt(1.0 / 12.0) / 255.0, 0.15 * std::sqrt(1.0 / 12.0) / 255.0);
 }
 
+TEST(HeightDepth, HugeFloatsAreNoCodes) {
+    Image huge = make_image(4, 1, 1, 32, ColorSpace::data);
+    huge.samples = std::vector<float>{1e38F, -1e38F, 1e38F, -1e38F};
+    EXPECT_EQ(height_depth(huge).bits, 0);
+    EXPECT_EQ(height_depth(huge).step, 0.0);
+}
+
 }  // namespace
 }  // namespace relief

@@ -1,0 +1,402 @@
+// SPDX-License-Identifier: Apache-2.0
+// The choice of a kernel on noisy maps, and the error it expects, against known surfaces. Surfaces
+// and noises come from other generators than those that the choice assumes.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <numbers>
+#include <random>
+
+#include "relief/mesh/bump_fields.h"
+#include "relief/mesh/height_map.h"
+#include "relief/mesh/image_file.h"
+#include "relief/mesh/kernel_choice.h"
+#include "support/shared_data.h"
+
+namespace relief {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr int side = 256;
+constexpr double turn = 2.0 * std::numbers::pi;
+/// Of the best kernel's error, and of the expected error over the true one or the reverse.
+constexpr double promised = 1.5;
+
+struct Surface {
+    std::vector<double> heights;
+    std::vector<glm::dvec3> normals;  ///< NaN where none is judged.
+};
+
+using HeightFunction = std::function<double(double, double)>;
+
+Surface surface_of(const HeightFunction& height, double rms_slope) {
+    Surface surface;
+    std::vector<glm::dvec2> slopes;
+    constexpr double h = 1e-3;
+    double squares = 0.0;
+    for (int y = 0; y < side; ++y) {
+        for (int x = 0; x < side; ++x) {
+            surface.heights.push_back(height(x, y));
+            slopes.emplace_back((height(x + h, y) - height(x - h, y)) / (2.0 * h),
+                                (height(x, y + h) - height(x, y - h)) / (2.0 * h));
+            squares += glm::dot(slopes.back(), slopes.back());
+        }
+    }
+    const double scale = rms_slope / std::sqrt(squares / (side * side));
+    for (double& value : surface.heights)
+        value *= scale;
+    for (const glm::dvec2& slope : slopes) {
+        surface.normals.push_back(
+            glm::normalize(glm::dvec3(-scale * slope.x, scale * slope.y, 1.0)));
+    }
+    return surface;
+}
+
+Surface sines(double rms_slope) {
+    std::mt19937 random(5);
+    std::uniform_real_distribution<double> any(0.0, 1.0);
+    struct Wave {
+        double height, x, y, phase;
+    };
+    std::vector<Wave> waves;
+    for (int i = 0; i < 7; ++i) {
+        const double length = 32.0 * std::pow(5.0, any(random));
+        const double direction = turn * any(random);
+        waves.push_back({length * (0.5 + 0.5 * any(random)), turn / length * std::cos(direction),
+                         turn / length * std::sin(direction), turn * any(random)});
+    }
+    return surface_of(
+        [waves](double x, double y) {
+            double sum = 0.0;
+            for (const Wave& wave : waves)
+                sum += wave.height * std::sin(wave.x * x + wave.y * y + wave.phase);
+            return sum;
+        },
+        rms_slope);
+}
+
+/// Gradient noise in octaves: a rocky surface [Perlin 2002].
+Surface rocks() {
+    const auto octave = [](double x, double y, std::uint32_t seed) {
+        const double left = std::floor(x);
+        const double top = std::floor(y);
+        const auto fade = [](double t) { return t * t * t * (t * (t * 6.0 - 15.0) + 10.0); };
+        const auto corner = [&](double i, double j) {
+            std::minstd_rand random(seed + static_cast<std::uint32_t>(left + i) * 7919U +
+                                    static_cast<std::uint32_t>(top + j) * 104729U);
+            random.discard(3);
+            const double angle = turn * static_cast<double>(random()) / 2147483648.0;
+            return std::cos(angle) * (x - left - i) + std::sin(angle) * (y - top - j);
+        };
+        const double u = fade(x - left);
+        const double above = std::lerp(corner(0, 0), corner(1, 0), u);
+        return std::lerp(above, std::lerp(corner(0, 1), corner(1, 1), u), fade(y - top));
+    };
+    return surface_of(
+        [octave](double x, double y) {
+            return octave(x / 64.0, y / 64.0, 1) + 0.5 * octave(x / 32.0 + 0.3, y / 32.0 + 0.7, 2) +
+                   0.25 * octave(x / 16.0 + 0.6, y / 16.0 + 0.4, 3);
+        },
+        0.3);
+}
+
+/// 1 inside of discs, 0 outside, over an edge of some texels.
+double discs(double x, double y, double edge) {
+    double height = 0.0;
+    std::minstd_rand random(77);
+    std::uniform_real_distribution<double> any(0.0, 1.0);
+    for (int i = 0; i < 20; ++i) {
+        const double distance = std::hypot(x - side * any(random), y - side * any(random));
+        const double t = std::clamp((9.0 + 17.0 * any(random) - distance) / edge + 0.5, 0.0, 1.0);
+        height = std::max(height, t * t * (3.0 - 2.0 * t));
+    }
+    return height;
+}
+
+Surface soft_mask() {
+    return surface_of([](double x, double y) { return discs(x, y, 4.0); }, 0.5);
+}
+
+double deviation_of(const std::vector<double>& values) {
+    double sum = 0.0;
+    double squares = 0.0;
+    for (const double value : values) {
+        sum += value;
+        squares += value * value;
+    }
+    const double mean = sum / static_cast<double>(values.size());
+    return std::sqrt(squares / static_cast<double>(values.size()) - mean * mean);
+}
+
+enum class NoiseKind { white, uniform, quantized, sharpened, blurred, spikes };
+
+/// Noise of deviation 1.
+std::vector<double> noise_of(NoiseKind kind) {
+    std::mt19937 random(11);
+    std::normal_distribution<double> normal;
+    std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+    std::vector<double> noise(static_cast<std::size_t>(side) * side);
+    for (double& value : noise) {
+        const double u = uniform(random);
+        value = kind == NoiseKind::uniform     ? u
+                : kind == NoiseKind::spikes    ? (std::abs(u) < 0.01 ? (u < 0.0 ? -1.0 : 1.0) : 0.0)
+                : kind == NoiseKind::quantized ? std::round(normal(random))
+                                               : normal(random);
+    }
+    if (kind == NoiseKind::sharpened || kind == NoiseKind::blurred) {
+        std::vector<double> blurred = noise;
+        for (const int step : {1, side}) {
+            const std::vector<double> from = blurred;
+            const std::size_t count = from.size();
+            for (std::size_t i = 0; i < count; ++i) {
+                const auto s = static_cast<std::size_t>(step);
+                blurred[i] = 0.5 * from[i] + 0.25 * from[(i + s) % count] +
+                             0.25 * from[(i + count - s) % count];
+            }
+        }
+        for (std::size_t i = 0; i < noise.size(); ++i)
+            noise[i] = kind == NoiseKind::blurred ? blurred[i] : noise[i] - blurred[i];
+    }
+    const double deviation = deviation_of(noise);
+    for (double& value : noise)
+        value /= deviation;
+    return noise;
+}
+
+/// The surface with noise, as a file of 8 or 16 bits or of floats has it.
+BumpField noisy_map(const Surface& surface, NoiseKind kind, double ratio, int bits) {
+    const std::vector<double> noise = noise_of(kind);
+    const double deviation = deviation_of(surface.heights);
+    Image floats = make_image(side, side, 1, 32, ColorSpace::data);
+    for (std::size_t i = 0; i < noise.size(); ++i) {
+        floats.as<float>()[i] =
+            static_cast<float>(surface.heights[i] + ratio * deviation * noise[i]);
+    }
+    BumpField map;
+    map.normals = surface.normals;
+    map.options.wrap = Wrap::clamp;
+    map.options.strength = 1.0;
+    map.options.arithmetic = Arithmetic::float64;
+    if (bits == 32) {
+        map.heights = std::move(floats);
+        return map;
+    }
+    CodedHeights coded = coded_heights(floats, bits);
+    map.heights = std::move(coded.codes);
+    map.options.strength = coded.strength;
+    return map;
+}
+
+double error_by(const BumpField& map, Kernel kernel, int radius) {
+    BumpOptions options = map.options;
+    options.kernel = kernel;
+    options.gaussian_radius = radius;
+    Report report;
+    return field_error(normals_from_height(map.heights, options, report), map).rms;
+}
+
+double least_error(const BumpField& map) {
+    double least = std::numeric_limits<double>::infinity();
+    for (const Kernel kernel : {Kernel::central3, Kernel::sobel3, Kernel::central5,
+                                Kernel::central7, Kernel::sobel5, Kernel::scharr5})
+        least = std::min(least, error_by(map, kernel, 2));
+    for (const int radius : {1, 2, 3, 4, 5, 6, 7, 8, 10, 12, 14, 16, 20, 24, 28, 32, 40})
+        least = std::min(least, error_by(map, Kernel::gaussian, radius));
+    return least;
+}
+
+void expect_promise_kept(const BumpField& map, const std::string& name, bool expects_well = true) {
+    const KernelChoice choice = choose_kernel(map.heights, map.options);
+    const double error = error_by(map, choice.kernel, choice.gaussian_radius);
+    EXPECT_LE(error, promised * least_error(map)) << name << ": " << choice.reason;
+    if (!expects_well) return;
+    EXPECT_LE(choice.rms_degrees, promised * error) << name;
+    EXPECT_GE(choice.rms_degrees, error / promised) << name;
+}
+
+TEST(KernelChoiceOnNoisyMaps, HasNoCliffAtAnyRatioOfNoise) {
+    const Surface surface = sines(0.3);
+    for (const double ratio : {0.1, 0.3, 0.5, 0.6, 0.8, 1.0, 1.5, 2.0}) {
+        const std::string name = "white, ratio " + std::to_string(ratio);
+        expect_promise_kept(noisy_map(surface, NoiseKind::white, ratio, 8), name);
+    }
+    for (const double slope : {0.05, 2.0}) {
+        expect_promise_kept(noisy_map(sines(slope), NoiseKind::white, 0.6, 16),
+                            "slope " + std::to_string(slope));
+    }
+}
+
+struct NoisyCase {
+    NoiseKind kind;
+    double ratio;
+    int bits;
+};
+
+class KernelChoiceOnNoises : public testing::TestWithParam<NoisyCase> {};
+
+TEST_P(KernelChoiceOnNoises, IsNearTheBestAndExpectsTheErrorThatThereIs) {
+    const auto [kind, ratio, bits] = GetParam();
+    expect_promise_kept(noisy_map(sines(0.3), kind, ratio, bits), "sines");
+    // Of noise as smooth as a surface, the error on rough ground is underestimated.
+    expect_promise_kept(noisy_map(rocks(), kind, ratio, bits), "rocks",
+                        kind != NoiseKind::blurred || ratio < 1.0);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Noises, KernelChoiceOnNoises,
+    testing::Values(NoisyCase{NoiseKind::white, 1.0, 32}, NoisyCase{NoiseKind::uniform, 0.6, 16},
+                    NoisyCase{NoiseKind::uniform, 2.0, 8}, NoisyCase{NoiseKind::quantized, 0.8, 8},
+                    NoisyCase{NoiseKind::sharpened, 0.3, 32},
+                    NoisyCase{NoiseKind::sharpened, 1.0, 8}, NoisyCase{NoiseKind::blurred, 0.5, 8},
+                    NoisyCase{NoiseKind::blurred, 2.0, 16}, NoisyCase{NoiseKind::spikes, 0.1, 8},
+                    NoisyCase{NoiseKind::spikes, 1.0, 16}));
+
+TEST(KernelChoiceOnNoisyMaps, AlsoOnMasksWithNoise) {
+    const Surface surface = soft_mask();
+    expect_promise_kept(noisy_map(surface, NoiseKind::white, 0.5, 8), "white");
+    expect_promise_kept(noisy_map(surface, NoiseKind::spikes, 0.5, 8), "spikes");
+}
+
+TEST(KernelChoiceOnNoisyMaps, AlsoOnAPhotographWithNoise) {
+    RELIEF_NEEDS_SHARED(file, "data/textures/bricks_godot/texture_bricks.jpg");
+    // Every other texel of the photograph after a Gaussian, whose derivatives are the true slopes.
+    const Image photo = height_field(read_image(file, ImageUse::data));
+    const std::span<const float> values = photo.as<float>();
+    constexpr int reach = 5;
+    Surface surface;
+    const auto weight = [](int i) { return std::exp(-0.5 * i * i); };
+    for (int y = 0; y < side; ++y) {
+        for (int x = 0; x < side; ++x) {
+            double sum = 0.0;
+            double weights = 0.0;
+            glm::dvec2 slope(0.0);
+            for (int j = -reach; j <= reach; ++j) {
+                for (int i = -reach; i <= reach; ++i) {
+                    const int column = std::clamp(2 * x + i + 200, 0, photo.width - 1);
+                    const int row = std::clamp(2 * y + j + 200, 0, photo.height - 1);
+                    const double w = weight(i) * weight(j);
+                    const double value = 8.0 * values[static_cast<std::size_t>(row) *
+                                                          static_cast<std::size_t>(photo.width) +
+                                                      static_cast<std::size_t>(column)];
+                    sum += w * value;
+                    slope += 2.0 * w * value * glm::dvec2(i, j);
+                    weights += w;
+                }
+            }
+            surface.heights.push_back(sum / weights);
+            slope /= weights;
+            surface.normals.push_back(glm::normalize(glm::dvec3(-slope.x, slope.y, 1.0)));
+        }
+    }
+    for (const double ratio : {0.2, 0.6, 1.0})
+        expect_promise_kept(noisy_map(surface, NoiseKind::white, ratio, 8), std::to_string(ratio));
+}
+
+TEST(KernelChoiceOnMasks, LevelsOfAMaskAreItsHeights) {
+    Surface surface = surface_of([](double x, double y) { return discs(x, y, 1e-9); }, 1.0);
+    Image mask = make_image(side, side, 1, 8, ColorSpace::data);
+    for (int y = 0; y < side; ++y) {
+        for (int x = 0; x < side; ++x) {
+            const auto is_high = [](int column, int row) { return discs(column, row, 1e-9) > 0.5; };
+            const auto texel = static_cast<std::size_t>(y * side + x);
+            mask.as<std::uint8_t>()[texel] = is_high(x, y) ? 255 : 0;
+            surface.normals[texel] = {0.0, 0.0, 1.0};
+            for (const auto& [dx, dy] : {std::pair(1, 0), {-1, 0}, {0, 1}, {0, -1}}) {
+                if (is_high(x + dx, y + dy) != is_high(x, y))
+                    surface.normals[texel].x = std::numeric_limits<double>::quiet_NaN();
+            }
+        }
+    }
+    BumpField map{mask, {}, surface.normals};
+    map.options.wrap = Wrap::clamp;
+    const KernelChoice choice = choose_kernel(map.heights, map.options);
+    EXPECT_EQ(choice.kernel, Kernel::central3) << choice.reason;
+    EXPECT_EQ(choice.rms_degrees, 0.0);
+    EXPECT_EQ(error_by(map, choice.kernel, choice.gaussian_radius), 0.0);
+    EXPECT_THAT(choice.reason, HasSubstr("a few levels, taken for the true heights"));
+}
+
+TEST(KernelChoiceOnMasks, AntialiasedEdgesAreNotBlurred) {
+    const BumpField map = noisy_map(soft_mask(), NoiseKind::white, 0.0, 8);
+    const KernelChoice choice = choose_kernel(map.heights, map.options);
+    EXPECT_NE(choice.kernel, Kernel::gaussian) << choice.reason;
+    EXPECT_LE(error_by(map, choice.kernel, choice.gaussian_radius), promised * least_error(map));
+}
+
+TEST(KernelChoiceOnGrain, SaysWhatFollowsFromBothReadings) {
+    // Nothing but grain: detail, since a map of noise alone would be for nothing.
+    Surface flat{std::vector<double>(static_cast<std::size_t>(side) * side, 0.0),
+                 std::vector<glm::dvec3>(static_cast<std::size_t>(side) * side, {0.0, 0.0, 1.0})};
+    Image grain = make_image(side, side, 1, 8, ColorSpace::data);
+    const std::vector<double> noise = noise_of(NoiseKind::white);
+    for (std::size_t i = 0; i < noise.size(); ++i)
+        grain.as<std::uint8_t>()[i] =
+            static_cast<std::uint8_t>(std::clamp(std::round(128.0 + 25.0 * noise[i]), 0.0, 255.0));
+    BumpField map{grain, {}, flat.normals};
+    map.options.wrap = Wrap::clamp;
+    const KernelChoice detail = choose_kernel(map.heights, map.options);
+    EXPECT_EQ(detail.noise, 0.0);
+    EXPECT_NEAR(255.0 * detail.grain, 25.0, 1.5);
+    EXPECT_NE(detail.kernel, Kernel::gaussian);
+    EXPECT_THAT(detail.reason, HasSubstr("and hardly anything else, is taken for detail"));
+    ASSERT_TRUE(detail.otherwise);
+    EXPECT_TRUE(detail.is_ambiguous());
+    // If it is noise after all, the ground is level: the error is that of all slopes.
+    const double if_noise = error_by(map, detail.kernel, detail.gaussian_radius);
+    EXPECT_NEAR(detail.otherwise->rms_degrees / if_noise, 1.0, 0.1);
+    EXPECT_EQ(detail.otherwise->best.kernel, Kernel::gaussian);
+
+    const KernelChoice asked = choose_kernel(map.heights, map.options, false, Grain::noise);
+    EXPECT_EQ(asked.kernel, Kernel::gaussian);
+    EXPECT_GT(asked.noise, 0.0);
+    EXPECT_LE(error_by(map, asked.kernel, asked.gaussian_radius), promised * least_error(map));
+
+    // Noise on a surface: smoothed, unless it is said to be detail.
+    const BumpField noisy = noisy_map(sines(0.3), NoiseKind::white, 0.6, 8);
+    const KernelChoice smooth = choose_kernel(noisy.heights, noisy.options);
+    EXPECT_TRUE(smooth.is_ambiguous());
+    EXPECT_GT(smooth.otherwise->rms_degrees, 30.0);
+    EXPECT_NE(choose_kernel(noisy.heights, noisy.options, false, Grain::detail).kernel,
+              Kernel::gaussian);
+    // Where there is no grain, nothing depends on it.
+    const BumpField clean = noisy_map(sines(0.3), NoiseKind::white, 0.0, 16);
+    EXPECT_FALSE(choose_kernel(clean.heights, clean.options).otherwise);
+}
+
+TEST(KernelChoiceOnTinyMaps, NoErrorIsExpectedOfAFewTexels) {
+    Image tiny = make_image(2, 2, 1, 8, ColorSpace::data);
+    tiny.samples = std::vector<std::uint8_t>{0, 90, 200, 30};
+    const KernelChoice choice = choose_kernel(tiny, {});
+    EXPECT_TRUE(std::isnan(choice.rms_degrees));
+    EXPECT_THAT(choice.reason, HasSubstr("4 texels say too little to expect an error"));
+}
+
+TEST(DefaultOptions, AreSettledByTheMap) {
+    const BumpField noisy = noisy_map(sines(0.3), NoiseKind::white, 0.3, 8);
+    BumpOptions open;
+    EXPECT_FALSE(open.kernel);
+    EXPECT_FALSE(open.wrap);
+    open.strength = noisy.options.strength;
+    const BumpOptions settled = settled_options(noisy.heights, open);
+    const KernelChoice choice = choose_kernel(noisy.heights, open);
+    EXPECT_EQ(settled.kernel, choice.kernel);
+    EXPECT_EQ(settled.gaussian_radius, choice.gaussian_radius);
+    EXPECT_EQ(settled.wrap, detect_tiling(noisy.heights).wraps());
+    // What is given stays, and conversions settle the rest alike.
+    Report report;
+    EXPECT_EQ(normals_from_height(noisy.heights, open, report).samples,
+              normals_from_height(noisy.heights, settled, report).samples);
+    open.kernel = Kernel::central3;
+    open.wrap = Wrap::mirror;
+    const BumpOptions given = settled_options(noisy.heights, open);
+    EXPECT_EQ(given.kernel, Kernel::central3);
+    EXPECT_EQ(given.wrap, Wraps(Wrap::mirror));
+}
+
+}  // namespace
+}  // namespace relief
