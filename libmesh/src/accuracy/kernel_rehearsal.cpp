@@ -183,7 +183,10 @@ void KernelRehearsal::find_grain(const std::vector<HeightTile>& tiles, Grain gra
     // patterns.
     const double least = (coding_.step() > 0.0 ? 1.1 : 1.25) * rounding;
     if (spectrum_) colored_ = spectrum_->grain();
-    if (colored_ && (is_flat(*colored_) || !(colored_->deviation() > least))) colored_.reset();
+    // Grain is everywhere: rounded ground between cliffs, whose spectrum is uneven too, has none.
+    const bool is_everywhere = high_.deviation > least;
+    if (colored_ && (is_flat(*colored_) || !is_everywhere || !(colored_->deviation() > least)))
+        colored_.reset();
     if (colored_)
         grain_ = beyond_rounding(colored_->deviation());
     else if (high_.is_white && white_ > least)

