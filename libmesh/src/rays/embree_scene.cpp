@@ -352,7 +352,8 @@ void copy_rays(const RayPacket& packet, std::size_t begin, std::size_t count, RT
     RTCRayN* all = reinterpret_cast<RTCRayN*>(&rays);
     constexpr auto size = static_cast<unsigned>(sizeof(rays.tnear) / sizeof(float));
     for (unsigned i = 0; i < size; ++i) {
-        // Embree looks at all rays of a packet, so those that nobody asks for must be harmless.
+        // Where the processor has no packets of this size, Embree ignores which rays are valid. A
+        // ray that ends before it begins meets nothing.
         const std::size_t lane = i < count ? begin + i : begin;
         RTCRayN_org_x(all, size, i) = packet.float_origin[0][lane];
         RTCRayN_org_y(all, size, i) = packet.float_origin[1][lane];
@@ -361,7 +362,7 @@ void copy_rays(const RayPacket& packet, std::size_t begin, std::size_t count, RT
         RTCRayN_dir_y(all, size, i) = packet.float_direction[1][lane];
         RTCRayN_dir_z(all, size, i) = packet.float_direction[2][lane];
         RTCRayN_tnear(all, size, i) = 0.0F;
-        RTCRayN_tfar(all, size, i) = packet.length[lane];
+        RTCRayN_tfar(all, size, i) = i < count ? packet.length[lane] : -1.0F;
         RTCRayN_time(all, size, i) = 0.0F;
         RTCRayN_mask(all, size, i) = 0xffffffff;
         RTCRayN_id(all, size, i) = static_cast<unsigned>(begin) + i;
@@ -535,8 +536,8 @@ void EmbreeScene::find_nearest(RayPacket& packet, std::size_t count) const {
     cast.context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
     cast.packet = &packet;
     cast.tied = &tied;
-    std::fill_n(packet.mesh.begin(), count, RayPacket::nothing);
-    std::fill_n(packet.last.begin(), count, -infinity);
+    packet.mesh.fill(RayPacket::nothing);
+    packet.last.fill(-infinity);
     switch (rays_at_once_) {
         case 1:
             cast_nearest<RTCRayHit>(packet, count, [&](const int*, RTCRayHit& rays) {
