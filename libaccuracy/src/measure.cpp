@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ctime>
 #include <fstream>
 #include <string>
 
@@ -41,8 +42,25 @@ class OneThread {
     unsigned afterwards_;
 };
 
-std::vector<Timing> timings(std::span<const std::function<void()>> works,
-                            const RunOptions& options) {
+/// The processor time of this process and all its threads, in seconds.
+double processor_seconds() {
+    timespec now{};
+    ::clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+    return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+/// What one thread spends on work: the time that other programs have the processor is left out,
+/// which a wall clock would add.
+double processor_seconds_of(const std::function<void()>& work) {
+    constexpr double least = 1e-9;  // Work that waits alone still has a time.
+    const double begin = processor_seconds();
+    work();
+    return std::max(processor_seconds() - begin, least);
+}
+
+/// \param clock  the seconds of a work, by the wall or by the processor
+std::vector<Timing> timings(std::span<const std::function<void()>> works, const RunOptions& options,
+                            double (*clock)(const std::function<void()>&)) {
     std::vector<std::size_t> times;
     for (const std::function<void()>& work : works) {
         check_cancelled();
@@ -50,7 +68,7 @@ std::vector<Timing> timings(std::span<const std::function<void()>> works,
         times.push_back(times_in_a_round(work));
     }
     return rounds_in_turns(works.size(), options, [&](std::size_t i) {
-        const double seconds = seconds_of([&] {
+        const double seconds = clock([&] {
             for (std::size_t repeat = 0; repeat < times[i]; ++repeat)
                 works[i]();
         });
@@ -110,13 +128,13 @@ std::vector<Cost> measure_costs(std::span<const std::function<void()>> works,
     if (!options.is_timed) return costs;
     if (choice.one_thread) {
         const std::vector<Timing> found =
-            on_one_thread(options, [&] { return timings(works, options); });
+            on_one_thread(options, [&] { return timings(works, options, processor_seconds_of); });
         for (std::size_t i = 0; i < works.size(); ++i)
             costs[i].one_thread = found[i];
     }
     set_thread_limit(options.threads);
     if (choice.all_threads) {
-        const std::vector<Timing> found = timings(works, options);
+        const std::vector<Timing> found = timings(works, options, seconds_of);
         for (std::size_t i = 0; i < works.size(); ++i)
             costs[i].all_threads = found[i];
     }

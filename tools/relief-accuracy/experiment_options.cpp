@@ -37,7 +37,7 @@ void add_experiment_options(CLI::App& app, ExperimentOptions& options) {
         .group(group);
     add_value(app, "--repeats", "N",
               "How often each time is taken, in turns with the other methods of its experiment, 3 "
-              "to 1000. Default: 10, by which `compare` can tell a change among 4600 times.",
+              "to 1000; more let `compare` see smaller changes. Default: 10.",
               [&options](const std::string& subject, const std::string& text) {
                   options.repeats = parse_integer(subject, text, 3, most_repeats);
               })
@@ -99,7 +99,10 @@ void hand_over(const ExperimentOptions& options, AccuracyReport report, bool dra
         print_json(json_of(report, options.output.has_value()));
     } else if (!options.general.quiet) {
         if (!options.no_times)
-            fmt::print("* on the efficient frontier: no method here is both as exact and faster\n");
+            fmt::print(
+                "* efficient: no other method here is both as accurate and faster\n"
+                "± half of the range from the 10th to the 90th percentile of the rounds, in "
+                "percent of the median\n");
         print_entry("written", written);
     }
 }

@@ -89,7 +89,8 @@ double MemoryChange::growth() const {
 }
 
 ReportComparison compare_reports(const std::vector<Experiment>& before,
-                                 const std::vector<Experiment>& after, bool same_machine) {
+                                 const std::vector<Experiment>& after, bool same_machine,
+                                 const std::optional<double>& max_ratio) {
     ReportComparison result;
     result.gone = missing_from(after, before);
     result.added = missing_from(before, after);
@@ -118,9 +119,13 @@ ReportComparison compare_reports(const std::vector<Experiment>& before,
         append(result.gone, curves_missing_from(*new_one, old_one));
         append(result.added, curves_missing_from(old_one, *new_one));
     }
-    result.one_thread = common_change(of_kind(pairs, false));
-    result.all_threads = common_change(of_kind(pairs, true));
-    result.times = judged_times(pairs, result.one_thread, result.all_threads, same_machine);
+    for (const bool on_all_threads : {false, true}) {
+        const std::vector<TimedPair> kind = of_kind(pairs, on_all_threads);
+        CommonChange& common = on_all_threads ? result.all_threads : result.one_thread;
+        common = common_change(kind, same_machine, max_ratio);
+        for (TimeChange& change : judged_times(kind, common, same_machine, max_ratio))
+            result.times.push_back(std::move(change));
+    }
     return result;
 }
 

@@ -1,62 +1,124 @@
 // SPDX-License-Identifier: Apache-2.0
-// Times against times: what is more than chance, and more than the machine.
-// Tests: tests/accuracy/compare_reports_test.cpp.
+// Ratios of medians, and how far two runs of one program differ. In logarithms, where slower and
+// faster by the same factor are equally far from 0.
+// Tests: tests/accuracy/compare_times_test.cpp, compare_reports_test.cpp.
 #include "compare/compare_times.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <map>
-#include <random>
 
-#include "relief/accuracy/two_samples.h"
 #include "relief/mesh/timing.h"
 
 namespace relief {
 namespace {
 
-/// Of all changes that are told, so many may be chance.
-constexpr double false_discovery_rate = 0.05;
-/// Less is of no interest, however certain.
+/// Smaller changes are of no interest, however certain.
 constexpr double least_ratio = 1.03;
-/// Of fewer methods neither the middle nor the scatter is known.
+/// Of fewer methods neither the median ratio nor the scatter around it is known.
 constexpr std::size_t fewest_methods = 8;
-/// A ratio counts beyond so many deviations of the others.
-constexpr double deviations = 3.0;
+/// A run is cut into so many parts, in the order in which rounds were taken: as many as passes are
+/// made by default.
+constexpr std::size_t parts_of_a_run = 3;
+/// Probability that a comparison of equal runs reports any change of a single method.
+constexpr double false_alarm = 0.05;
+/// Student's t for 99 % and 2 * (parts_of_a_run - 1) degrees of freedom, for all methods together.
+constexpr double common_deviations = 4.604;
+/// The variance of the median of three normal values, where that of each is 1: 1 - sqrt(3)
+/// / pi. A run of three parts is as slow as the one in the middle.
+constexpr double variance_of_median = 0.4487;
+/// Makes a median absolute deviation the standard deviation of a normal distribution.
+constexpr double normal_by_median = 1.4826;
 
-double middle_of(std::vector<double> values) {
+double median_of(std::vector<double> values) {
     return spread_of(std::move(values)).median;
 }
 
 double log_ratio(const TimedPair& pair) {
-    return std::log(middle_of(pair.after) / middle_of(pair.before));
+    return std::log(median_of(pair.after) / median_of(pair.before));
 }
 
-/// The interval of the middle of all logarithms, resampled by experiment, as a ratio.
-Interval middle_ratio(const std::map<std::string, std::vector<double>>& logs_by_experiment) {
-    constexpr std::size_t resamples = 1000;
-    std::vector<const std::vector<double>*> experiments;
-    std::vector<double> all;
-    for (const auto& [name, logs] : logs_by_experiment) {
-        experiments.push_back(&logs);
-        all.insert(all.end(), logs.begin(), logs.end());
-    }
-    std::mt19937_64 random(20261122);
-    std::vector<double> middles;
-    for (std::size_t i = 0; i < resamples; ++i) {
-        std::vector<double> drawn;
-        for (std::size_t k = 0; k < experiments.size(); ++k) {
-            const std::vector<double>& one = *experiments[random() % experiments.size()];
-            drawn.insert(drawn.end(), one.begin(), one.end());
+/// The standard error of the logarithm of a median: that of a mean times sqrt(pi / 2). By where the
+/// middle 80 % lie, which shows the rounds that were interrupted.
+double error_of_median(const std::vector<double>& rounds) {
+    const Spread spread = spread_of(rounds);
+    constexpr double middle_of_normal = 2.5631;  // Of a normal distribution, in deviations.
+    return 1.2533 * std::log(spread.p90 / spread.p10) / middle_of_normal /
+           std::sqrt(static_cast<double>(rounds.size()));
+}
+
+/// Of how many deviations a single method's ratio must be, so that none of so many equal methods
+/// is reported with probability 1 - false_alarm: a normal value lies beyond k deviations with a
+/// probability of less than exp(-k^2 / 2).
+double deviations_for(std::size_t methods) {
+    return std::sqrt(2.0 * std::log(static_cast<double>(methods) / false_alarm));
+}
+
+/// How far from the median ratio equal methods lie at most, with probability 1 - false_alarm: as
+/// for a normal distribution with their median distance, or, where a tenth of them is farther than
+/// that allows, with exponential tails through the median and the ninth tenth of the distances.
+double reach_of_chance(const std::vector<double>& distances) {
+    const Spread spread = spread_of(distances);
+    const auto methods = static_cast<double>(distances.size());
+    const double decay = (spread.p90 - spread.median) / std::log(5.0);
+    return std::max(deviations_for(distances.size()) * normal_by_median * spread.median,
+                    spread.median + decay * std::log(0.5 * methods / false_alarm));
+}
+
+/// How slow each part of a run was, as the logarithm of the median ratio of all methods.
+std::vector<double> levels_of_parts(const std::vector<TimedPair>& pairs,
+                                    std::vector<double> TimedPair::*run) {
+    std::array<std::vector<double>, parts_of_a_run> logs;
+    for (const TimedPair& pair : pairs) {
+        const std::vector<double>& rounds = pair.*run;
+        const double whole = median_of(rounds);
+        if (rounds.size() < parts_of_a_run) continue;
+        auto begin = rounds.begin();
+        for (std::size_t part = 0; part < parts_of_a_run; ++part) {
+            // As passes share rounds out: the first ones take one more.
+            const std::size_t more = part < rounds.size() % parts_of_a_run ? 1 : 0;
+            const auto end =
+                begin + static_cast<std::ptrdiff_t>(rounds.size() / parts_of_a_run + more);
+            logs.at(part).push_back(std::log(median_of({begin, end}) / whole));
+            begin = end;
         }
-        middles.push_back(middle_of(std::move(drawn)));
     }
-    std::sort(middles.begin(), middles.end());
-    return {.value = std::exp(middle_of(all)),
-            .low = std::exp(middles[resamples / 40]),
-            .high = std::exp(middles[resamples - 1 - resamples / 40])};
+    std::vector<double> levels;
+    for (const std::vector<double>& part : logs) {
+        if (!part.empty()) levels.push_back(median_of(part));
+    }
+    return levels;
 }
 
-/// The lesser of what was measured and what is relative to all, where both say the same.
+/// The standard error of the common ratio by how much the speed of the machine varied within the
+/// runs: parts of one run differ by the machine alone.
+double drift_of(const std::vector<TimedPair>& pairs) {
+    double squares = 0.0;
+    for (const auto run : {&TimedPair::before, &TimedPair::after}) {
+        const std::vector<double> levels = levels_of_parts(pairs, run);
+        double mean = 0.0;
+        for (const double level : levels)
+            mean += level / static_cast<double>(levels.size());
+        for (const double level : levels)
+            squares += (level - mean) * (level - mean);
+    }
+    constexpr double parts = parts_of_a_run;
+    const double variance = squares / (2.0 * (parts - 1.0));
+    return std::sqrt(variance * 2.0 * variance_of_median);
+}
+
+Interval interval_around(double log_value, double half_width) {
+    return {std::exp(log_value), std::exp(log_value - half_width),
+            std::exp(log_value + half_width)};
+}
+
+TimeVerdict verdict_of(double ratio, double resolution, const std::optional<double>& max_ratio) {
+    if (ratio > resolution) return TimeVerdict::slower;
+    if (ratio < 1.0 / resolution) return TimeVerdict::faster;
+    return max_ratio && resolution > *max_ratio ? TimeVerdict::cannot_tell : TimeVerdict::unchanged;
+}
+
+/// The lesser of what was measured and what is relative to all methods, where both agree in sign.
 double counted_ratio(double measured, double relative, bool same_machine) {
     if (!same_machine) return relative;
     if (measured > 1.0 && relative > 1.0) return std::min(measured, relative);
@@ -64,72 +126,58 @@ double counted_ratio(double measured, double relative, bool same_machine) {
     return 1.0;
 }
 
-TimeChange measured_change(const TimedPair& pair, const CommonChange& common, bool same_machine) {
-    TimeChange change;
-    change.experiment = pair.experiment;
-    change.method = pair.method;
-    change.on_all_threads = pair.on_all_threads;
-    change.before = middle_of(pair.before);
-    change.after = middle_of(pair.after);
-    change.ratio = median_ratio(pair.before, pair.after);
-    change.relative = change.ratio.value / (common.is_judged ? common.ratio.value : 1.0);
-    change.counted = counted_ratio(change.ratio.value, change.relative, same_machine);
-    std::vector<double> scaled = pair.after;
-    for (double& seconds : scaled)
-        seconds *= change.counted / change.ratio.value;
-    change.p = mann_whitney_p(pair.before, scaled);
-    return change;
-}
-
-TimeVerdict verdict_of(const TimeChange& change, const TimedPair& pair, const CommonChange& common,
-                       bool is_found, std::size_t tests) {
-    if (std::abs(std::log(change.counted)) <= std::log(common.smallest))
-        return TimeVerdict::unchanged;
-    if (is_found) return change.counted > 1.0 ? TimeVerdict::slower : TimeVerdict::faster;
-    // Had all rounds been on one side, would it have been found as the only one of so many?
-    const double least = least_mann_whitney_p(pair.before.size(), pair.after.size());
-    const bool had_a_chance = least <= false_discovery_rate / static_cast<double>(tests);
-    const bool looks_changed = change.p <= std::max(false_discovery_rate, least);
-    return looks_changed && !had_a_chance ? TimeVerdict::cannot_tell : TimeVerdict::unchanged;
-}
-
 }  // namespace
 
-CommonChange common_change(const std::vector<TimedPair>& pairs) {
+CommonChange common_change(const std::vector<TimedPair>& pairs, bool same_machine,
+                           const std::optional<double>& max_ratio) {
     CommonChange common;
     common.methods = pairs.size();
-    common.smallest = least_ratio;
     if (pairs.empty()) return common;
-    std::map<std::string, std::vector<double>> logs;
+    std::vector<double> logs;
     for (const TimedPair& pair : pairs)
-        logs[pair.experiment].push_back(log_ratio(pair));
-    common.ratio = middle_ratio(logs);
+        logs.push_back(log_ratio(pair));
+    const double middle = median_of(logs);
     common.is_judged = pairs.size() >= fewest_methods;
-    std::vector<double> apart;
-    for (const TimedPair& pair : pairs)
-        apart.push_back(std::abs(log_ratio(pair) - std::log(common.ratio.value)));
-    common.scatter = 1.4826 * middle_of(apart);  // Of a normal distribution: its deviation.
-    if (common.is_judged)
-        common.smallest = std::max(least_ratio, std::exp(deviations * common.scatter));
+    std::vector<double> distances;
+    for (const double one : logs)
+        distances.push_back(std::abs(one - middle));
+    common.scatter = normal_by_median * median_of(distances);
+    common.reach = reach_of_chance(distances);
+    common.drift = drift_of(pairs);
+    // The median of many ratios is known as well as one of them is, divided by the square root.
+    const double own = 1.2533 * common.scatter / std::sqrt(static_cast<double>(pairs.size()));
+    const double half_width = common_deviations * std::hypot(common.drift, own);
+    common.ratio = interval_around(middle, half_width);
+    common.resolution = std::max(least_ratio, std::exp(half_width));
+    if (same_machine && common.is_judged)
+        common.verdict = verdict_of(common.ratio.value, common.resolution, max_ratio);
     return common;
 }
 
 std::vector<TimeChange> judged_times(const std::vector<TimedPair>& pairs,
-                                     const CommonChange& one_thread,
-                                     const CommonChange& all_threads, bool same_machine) {
+                                     const CommonChange& common, bool same_machine,
+                                     const std::optional<double>& max_ratio) {
     std::vector<TimeChange> changes;
-    std::vector<double> p;
-    const auto common = [&](const TimedPair& pair) -> const CommonChange& {
-        return pair.on_all_threads ? all_threads : one_thread;
-    };
+    // Few methods do not show what they have in common: the machine's drift is in each of them.
+    const double deviations = deviations_for(pairs.size());
+    const double of_all = common.is_judged ? common.reach : deviations * common.drift;
+    const double shift = common.is_judged ? common.ratio.value : 1.0;
     for (const TimedPair& pair : pairs) {
-        changes.push_back(measured_change(pair, common(pair), same_machine));
-        p.push_back(changes.back().p);
-    }
-    const std::vector<bool> found = discoveries(p, false_discovery_rate);
-    for (std::size_t i = 0; i < pairs.size(); ++i) {
-        changes[i].verdict =
-            verdict_of(changes[i], pairs[i], common(pairs[i]), found[i], pairs.size());
+        // The scatter of all ratios has the spread of the usual method's rounds in it already.
+        const double own = std::hypot(error_of_median(pair.before), error_of_median(pair.after));
+        const double half_width = std::max(of_all, deviations * own);
+        TimeChange change;
+        change.experiment = pair.experiment;
+        change.method = pair.method;
+        change.on_all_threads = pair.on_all_threads;
+        change.before = median_of(pair.before);
+        change.after = median_of(pair.after);
+        change.ratio = interval_around(log_ratio(pair), half_width);
+        change.relative = change.ratio.value / shift;
+        change.counted = counted_ratio(change.ratio.value, change.relative, same_machine);
+        change.resolution = std::max(least_ratio, std::exp(half_width));
+        change.verdict = verdict_of(change.counted, change.resolution, max_ratio);
+        changes.push_back(std::move(change));
     }
     return changes;
 }

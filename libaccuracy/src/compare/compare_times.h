@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// The part of compare_reports() that judges times. Tests: tests/accuracy/compare_reports_test.cpp.
+/// The part of compare_reports() that judges times. Tests: tests/accuracy/compare_times_test.cpp,
+/// compare_reports_test.cpp.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,12 +21,14 @@ struct TimedPair {
     std::vector<double> after;
 };
 
-/// What these, all on one thread or all on all, have in common.
-CommonChange common_change(const std::vector<TimedPair>& pairs);
+/// What these methods, all on one thread or all on all threads, have in common.
+/// \param max_ratio  as for compare_reports()
+CommonChange common_change(const std::vector<TimedPair>& pairs, bool same_machine,
+                           const std::optional<double>& max_ratio);
 
-/// Judges each against what they have in common; `pairs` of both kinds.
+/// Judges each of them against what they have in common.
 std::vector<TimeChange> judged_times(const std::vector<TimedPair>& pairs,
-                                     const CommonChange& one_thread,
-                                     const CommonChange& all_threads, bool same_machine);
+                                     const CommonChange& common, bool same_machine,
+                                     const std::optional<double>& max_ratio);
 
 }  // namespace relief

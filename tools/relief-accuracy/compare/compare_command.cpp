@@ -30,8 +30,10 @@ ComparedReports compared_reports(const CompareOptions& options) {
     compared.before = read_report(options.before);
     compared.after = read_report(options.after);
     compared.same_machine = may_compare_times(compared.before, compared.after);
+    std::optional<double> max_ratio;
+    if (options.bounds.max_slower) max_ratio = 1.0 + *options.bounds.max_slower / 100.0;
     compared.found = compare_reports(compared.before.experiments, compared.after.experiments,
-                                     compared.same_machine);
+                                     compared.same_machine, max_ratio);
     return compared;
 }
 
@@ -94,9 +96,9 @@ Command add_report_compare_command(CLI::App& tool) {
     const Range range{0.0, std::numeric_limits<double>::max(), "percent"};
     const char* group = "Verdict";
     add_number(app, "--max-slower", "PERCENT", options->bounds.max_slower, range,
-               "Exit with 1 if a method, or the middle of all, takes longer by more than this, "
-               "beyond what chance and the machine's unrest explain, or so few rounds cannot "
-               "tell. With any bound, a method that is gone is beyond it.")
+               "Exit with 1 if a method, or the median of all methods, takes longer by more than "
+               "this, beyond what equal runs differ by; or if the times are too unsteady to tell. "
+               "With any bound, a method that is gone is beyond it.")
         .group(group);
     add_number(app, "--max-error-growth", "PERCENT", options->bounds.max_error_growth, range,
                "Exit with 1 if a figure of a method's error, or a point of a curve, grew by more "

@@ -32,11 +32,10 @@ Json json_of(const Interval& ratio) {
 
 Json json_of(const CommonChange& common) {
     if (common.methods == 0) return {};
-    return {{"methods", common.methods},
-            {"ratio", json_of(common.ratio)},
-            {"scatter", common.scatter},
-            {"smallest", common.smallest},
-            {"judged", common.is_judged}};
+    return {{"methods", common.methods},         {"ratio", json_of(common.ratio)},
+            {"scatter", common.scatter},         {"drift", common.drift},
+            {"resolution", common.resolution},   {"judged", common.is_judged},
+            {"verdict", word_of(common.verdict)}};
 }
 
 Json json_of(const TimeChange& change) {
@@ -48,7 +47,7 @@ Json json_of(const TimeChange& change) {
             {"ratio", json_of(change.ratio)},
             {"relative", change.relative},
             {"counted", change.counted},
-            {"p", change.p},
+            {"resolution", change.resolution},
             {"verdict", word_of(change.verdict)}};
 }
 

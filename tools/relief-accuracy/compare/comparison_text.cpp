@@ -8,10 +8,15 @@
 #include <cmath>
 
 #include "common/text.h"
+#include "relief/mesh/timing.h"
 #include "report_table.h"
 
 namespace relief::tools {
 namespace {
+
+double percent(double ratio) {
+    return 100.0 * (ratio - 1.0);
+}
 
 /// So many lines of a kind are printed, the greatest changes first; the rest is counted.
 constexpr std::size_t most_lines = 20;
@@ -120,21 +125,28 @@ std::vector<std::string> lines_of(const std::vector<Change>& changes) {
     return lines;
 }
 
-/// "all in all 1.02 times as long on one thread (1.00 to 1.04; the middle of 40 methods)", and from
-/// where on a change counts.
-std::string line_of(const CommonChange& common, bool on_all_threads) {
-    std::string text =
-        fmt::format("{:.2f} times as long on {} ({:.2f} to {:.2f}; the middle of {})",
-                    common.ratio.value, threads_of(on_all_threads), common.ratio.low,
-                    common.ratio.high, counted(common.methods, "method"));
-    if (common.is_judged) {
-        text += fmt::format(
-            "; single ones scatter by {:.1f} %, so that changes of less than {:.0f} % do not count",
-            100.0 * (std::exp(common.scatter) - 1.0), 100.0 * (common.smallest - 1.0));
-    } else {
-        text += "; too few methods to tell the machine from the code";
+/// The median and the largest of what must be exceeded for a change of a single method to be seen.
+std::string resolution_words(const ReportComparison& found, bool on_all_threads) {
+    std::vector<double> all;
+    for (const TimeChange& change : found.times) {
+        if (change.on_all_threads == on_all_threads) all.push_back(change.resolution);
     }
-    return text;
+    const double largest = *std::max_element(all.begin(), all.end());
+    return fmt::format(
+        "a change of one method is seen from {:.0f} % on (the median method) to "
+        "{:.0f} % (the least steady one)",
+        percent(spread_of(std::move(all)).median), percent(largest));
+}
+
+/// "1.02 times as long on one thread (1.00 to 1.04; the median of 40 methods)", and from where on a
+/// change is seen.
+std::string line_of(const ReportComparison& found, bool on_all_threads) {
+    const CommonChange& common = on_all_threads ? found.all_threads : found.one_thread;
+    const std::string text = fmt::format(
+        "{:.2f} times as long on {} ({:.2f} to {:.2f}; the median of {}); {}", common.ratio.value,
+        threads_of(on_all_threads), common.ratio.low, common.ratio.high,
+        counted(common.methods, "method"), resolution_words(found, on_all_threads));
+    return common.is_judged ? text : text + "; too few methods to tell the machine from the code";
 }
 
 std::string described(const AccuracyReport& report) {
@@ -151,18 +163,12 @@ bool have_other_opengl(const ComparedReports& compared) {
 
 void print_times(const ReportComparison& found) {
     std::vector<std::string> common;
-    if (found.one_thread.methods > 0) common.push_back(line_of(found.one_thread, false));
-    if (found.all_threads.methods > 0) common.push_back(line_of(found.all_threads, true));
+    if (found.one_thread.methods > 0) common.push_back(line_of(found, false));
+    if (found.all_threads.methods > 0) common.push_back(line_of(found, true));
     if (common.empty()) common.emplace_back("none in common");
     print_entry("times", common);
-    const auto slower = times_that_are(found, TimeVerdict::slower);
-    const auto faster = times_that_are(found, TimeVerdict::faster);
-    const auto unknown = times_that_are(found, TimeVerdict::cannot_tell);
-    print_some("slower", lines_of(slower));
-    print_some("faster", lines_of(faster));
-    print_some("unsure", lines_of(unknown));
-    if (!unknown.empty())
-        print_entry("", "too few rounds to tell these from chance (run both with more --repeats)");
+    print_some("slower", lines_of(times_that_are(found, TimeVerdict::slower)));
+    print_some("faster", lines_of(times_that_are(found, TimeVerdict::faster)));
 }
 
 void print_memory(const ReportComparison& found) {
@@ -176,34 +182,50 @@ void print_memory(const ReportComparison& found) {
     if (!found.memory.empty()) print_entry("", "memory at the most");
 }
 
-double percent(double ratio) {
-    return 100.0 * (ratio - 1.0);
-}
-
 /// What can no longer be judged: a bound is not kept by leaving methods out.
 void add_gone(std::vector<std::string>& lines, const ReportComparison& found) {
     for (const std::string& name : found.gone)
         lines.push_back(name + ": is gone");
 }
 
-/// Changes of a kind beyond the bound.
-void add_slower(std::vector<std::string>& lines, const ReportComparison& found, TimeVerdict verdict,
-                const std::string& words, double bound) {
-    for (const TimeChange& change : times_that_are(found, verdict)) {
+/// Methods that are slower beyond the bound.
+void add_slower(std::vector<std::string>& lines, const ReportComparison& found, double bound) {
+    for (const TimeChange& change : times_that_are(found, TimeVerdict::slower)) {
         if (percent(change.counted) <= bound) continue;
-        lines.push_back(fmt::format("{}: {:.1f} % slower on {} (at most {} %){}", name_of(change),
+        lines.push_back(fmt::format("{}: {:.1f} % slower on {} (at most {} %)", name_of(change),
                                     percent(change.counted), threads_of(change.on_all_threads),
-                                    bound, words));
+                                    bound));
     }
 }
 
-/// Where all became slower together: on one machine that counts too.
-void add_common(std::vector<std::string>& lines, const ComparedReports& compared,
-                const CommonChange& common, bool on_all_threads, double bound) {
-    if (!compared.same_machine || !common.is_judged || common.ratio.low <= 1.0) return;
-    if (percent(common.ratio.value) <= bound) return;
-    lines.push_back(fmt::format("all methods together: {:.1f} % slower on {} (at most {} %)",
-                                percent(common.ratio.value), threads_of(on_all_threads), bound));
+/// Methods whose times cannot show whether the bound is kept: the least steady one, and how many.
+void add_unresolved(std::vector<std::string>& lines, const ReportComparison& found, double bound) {
+    std::vector<TimeChange> unresolved = times_that_are(found, TimeVerdict::cannot_tell);
+    if (unresolved.empty()) return;
+    const TimeChange& worst = *std::max_element(
+        unresolved.begin(), unresolved.end(),
+        [](const TimeChange& a, const TimeChange& b) { return a.resolution < b.resolution; });
+    lines.push_back(fmt::format(
+        "cannot tell whether {} of {} times kept within {} %: of {} on {} only changes beyond "
+        "{:.0f} % are seen (measure both on a quieter machine, or with more --repeats)",
+        unresolved.size(), found.times.size(), bound, name_of(worst),
+        threads_of(worst.on_all_threads), percent(worst.resolution)));
+}
+
+/// On one machine it also counts if all methods became slower together.
+void add_common(std::vector<std::string>& lines, const CommonChange& common, bool on_all_threads,
+                double bound) {
+    if (common.verdict == TimeVerdict::slower && percent(common.ratio.value) > bound) {
+        lines.push_back(fmt::format("all methods together: {:.1f} % slower on {} (at most {} %)",
+                                    percent(common.ratio.value), threads_of(on_all_threads),
+                                    bound));
+    }
+    if (common.verdict == TimeVerdict::cannot_tell) {
+        lines.push_back(fmt::format(
+            "all methods together: cannot tell whether they kept within {} % on {}: the machine's "
+            "own speed varied by more (only changes beyond {:.0f} % are seen)",
+            bound, threads_of(on_all_threads), percent(common.resolution)));
+    }
 }
 
 }  // namespace
@@ -230,7 +252,7 @@ void print_text(const ComparedReports& compared) {
     if (!difference.empty()) {
         print_entry("machine", difference);
         if (!compared.same_machine)
-            print_entry("", "times are judged relative to the middle of all alone");
+            print_entry("", "times are judged relative to the median of all methods only");
         if (have_other_opengl(compared))
             print_entry("",
                         "pictures drawn by OpenGL may differ in their last bits for that alone");
@@ -252,13 +274,10 @@ void print_text(const ComparedReports& compared) {
 std::vector<std::string> beyond(const ComparedReports& compared, const ComparisonBounds& bounds) {
     std::vector<std::string> lines;
     if (bounds.max_slower) {
-        add_common(lines, compared, compared.found.one_thread, false, *bounds.max_slower);
-        add_common(lines, compared, compared.found.all_threads, true, *bounds.max_slower);
-        add_slower(lines, compared.found, TimeVerdict::slower, "", *bounds.max_slower);
-        // What so few rounds cannot tell from chance is no proof that the bound is kept.
-        add_slower(lines, compared.found, TimeVerdict::cannot_tell,
-                   ", as far as so few rounds tell (run both with more --repeats)",
-                   *bounds.max_slower);
+        add_common(lines, compared.found.one_thread, false, *bounds.max_slower);
+        add_common(lines, compared.found.all_threads, true, *bounds.max_slower);
+        add_slower(lines, compared.found, *bounds.max_slower);
+        add_unresolved(lines, compared.found, *bounds.max_slower);
     }
     if (bounds.max_error_growth) {
         for (const ErrorChange& change : errors_that(compared.found, true)) {

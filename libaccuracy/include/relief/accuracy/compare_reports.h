@@ -2,18 +2,21 @@
 /// \file
 /// What became faster or slower, more or less exact, between two runs of the same experiments.
 ///
-/// *Errors* come out the same in each run: whatever differs by more than rounding is a change.
-/// *Times* do not. One counts as changed only if all of this holds:
-/// - the rounds of both runs differ in rank, with at most 5 % of all that is found being chance
-///   (two_samples.h);
-/// - by at least 3 %, and by more than three times what the other methods' ratios scatter: two runs
-///   of one program differ by how memory lies and what else the machine does, which the rounds of
-///   one run do not show;
-/// - as measured, and also relative to the middle of all methods: a machine that was slower changes
-///   all alike. Of the two the lesser is told. From one machine to another only the second counts.
+/// *Errors* are the same in each run: whatever differs by more than rounding is a change.
 ///
-/// What this cannot see: a busy moment of the machine as long as all rounds of an experiment looks
-/// like a change of its methods. Passes spread them (passes.h).
+/// *Times* are not. What counts is the ratio of the medians of the rounds, where it lies outside of
+/// what two runs of one program may differ by:
+/// - a method by the scatter of the ratios of all methods, which shows how far equal runs differ,
+///   and by the spread of its own rounds; the bound widens with the number of methods, so that in
+///   95 of 100 comparisons of equal runs none is reported;
+/// - all methods together by the machine's drift, which the parts of each run show.
+/// A method counts as measured and relative to the median of all methods as well: a machine that
+/// was slower changes all alike. The smaller of the two is reported. From one machine to another
+/// only the second counts.
+///
+/// Where a bound is given that is closer than the times can resolve, the verdict is cannot_tell:
+/// nothing proves that the bound is kept. Load that lasts for one whole run and not for the other
+/// looks like a change of all methods.
 /// Tests: tests/accuracy/compare_reports_test.cpp.
 #pragma once
 
@@ -23,15 +26,21 @@
 #include <vector>
 
 #include "relief/accuracy/experiment.h"
-#include "relief/accuracy/two_samples.h"
 
 namespace relief {
 
 enum class TimeVerdict {
-    unchanged,  ///< Nothing beyond chance.
+    unchanged,  ///< No change beyond what equal runs differ by.
     slower,
     faster,
-    cannot_tell,  ///< Alone it would count; so few rounds cannot show it among so many methods.
+    cannot_tell,  ///< No change is seen, but one beyond the bound would not be seen either.
+};
+
+/// A ratio and the range that two runs of one program leave open.
+struct Interval {
+    double value = 1.0;
+    double low = 1.0;
+    double high = 1.0;
 };
 
 /// How the time of one method changed.
@@ -41,20 +50,23 @@ struct TimeChange {
     bool on_all_threads = false;
     double before = 0.0;  ///< Medians, in seconds.
     double after = 0.0;
-    Interval ratio;         ///< Of the medians, as measured: more than 1 is slower.
-    double relative = 1.0;  ///< The same, divided by that of the middle of all.
-    double counted = 1.0;   ///< What is judged.
-    double p = 1.0;         ///< Of chance alone doing so, were there only this method.
+    Interval ratio;           ///< Of the medians, as measured: more than 1 is slower.
+    double relative = 1.0;    ///< The same, divided by the median ratio of all methods.
+    double counted = 1.0;     ///< The ratio that is judged.
+    double resolution = 1.0;  ///< Ratios between 1 / this and this may be chance.
     TimeVerdict verdict = TimeVerdict::unchanged;
 };
 
-/// What all methods have in common, on one thread or on all.
+/// What all methods have in common, on one thread or on all threads.
 struct CommonChange {
     std::size_t methods = 0;
-    Interval ratio;  ///< The middle of all; resampled by experiment, whose methods share much.
-    double scatter = 0.0;    ///< Of the logarithms of single ones around it, as a deviation.
-    double smallest = 1.0;   ///< Ratios between 1 / this and this do not count.
-    bool is_judged = false;  ///< There were enough methods to know the middle and the scatter.
+    Interval ratio;           ///< The median ratio of all methods.
+    double scatter = 0.0;     ///< Of the logarithms of their ratios around it, as a deviation.
+    double reach = 0.0;       ///< How far from it chance takes a single one, in logarithms.
+    double drift = 0.0;       ///< Standard error of its logarithm by the drift within the runs.
+    double resolution = 1.0;  ///< Ratios between 1 / this and this may be chance.
+    bool is_judged = false;   ///< There were enough methods to know the median and the scatter.
+    TimeVerdict verdict = TimeVerdict::unchanged;
 };
 
 /// One figure of an error. NaN: no usable result.
@@ -107,7 +119,10 @@ struct ReportComparison {
 };
 
 /// \param same_machine  whether times may be compared as measured
+/// \param max_ratio     a bound of how many times as long methods may take; where chance may be
+///                      larger, verdicts are cannot_tell. Absent: there is none
 ReportComparison compare_reports(const std::vector<Experiment>& before,
-                                 const std::vector<Experiment>& after, bool same_machine);
+                                 const std::vector<Experiment>& after, bool same_machine,
+                                 const std::optional<double>& max_ratio = {});
 
 }  // namespace relief

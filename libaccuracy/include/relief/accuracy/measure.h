@@ -39,7 +39,9 @@ struct CostChoice {
 ///                 how often it was run
 /// \param options  its repeats are those that count; a work of less than 4 milliseconds is repeated
 ///                 within a round until it takes that, and the time is divided
-/// \return in the order of the works; nothing measured where options.is_timed is false
+/// \return in the order of the works; nothing measured where options.is_timed is false. Times on
+///         one thread are those of the processor, so that other programs do not add to them; times
+///         on all threads are those of the wall clock
 ///
 /// The thread limit is options.threads afterwards. Memory is what the process held
 /// resident at the most, as Linux counts it, beyond what it held before: pages, not bytes.
