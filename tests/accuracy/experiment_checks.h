@@ -66,6 +66,8 @@ inline void expect_whole(const std::vector<Experiment>& all, Subject subject) {
              {one.title, one.question, one.truth, one.input, one.error_unit, one.item, one.finding})
             EXPECT_FALSE(text.empty());
         EXPECT_EQ(one.question.back(), '?');
+        // What was not timed is no part of a sentence.
+        EXPECT_EQ(one.finding.find("not timed"), std::string::npos) << one.finding;
         EXPECT_GT(one.items, 0.0);
         EXPECT_FALSE(one.measurements.empty());
         std::set<std::string> methods;

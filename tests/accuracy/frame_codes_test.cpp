@@ -102,14 +102,16 @@ TEST(FrameExperiments, ErrorsAreThoseOfTheEncodings) {
     EXPECT_GT(floats.error.max, 1e-7) << "float has an error too";
     EXPECT_EQ(floats.cost.stored_bytes, 28.0);
     EXPECT_THAT(experiment.finding,
-                HasSubstr("in 4 bytes angle10, best is nearest: 0.082 degrees"));
-    EXPECT_THAT(experiment.finding, HasSubstr("in 8 bytes quaternion16, best is nearest: 0.0005"));
+                HasSubstr("in 4 bytes 'angle10, best' has the least error, 0.082 degrees"));
+    EXPECT_THAT(experiment.finding,
+                HasSubstr("in 8 bytes 'quaternion16, best' has the least error, 0.0005"));
 }
 
 TEST(FrameExperiments, WritingSaysWhatTheBestCodesBring) {
     const Experiment experiment = frame_writing_experiment(quick_untimed());
-    EXPECT_THAT(experiment.finding,
-                HasSubstr("brings in 4 bytes, degrees RMS: octahedral8 0.44 to 0.35; quat"));
+    EXPECT_THAT(
+        experiment.finding,
+        HasSubstr("changes the error in 4 bytes, degrees RMS: octahedral8 0.44 to 0.35; quat"));
 }
 
 }  // namespace

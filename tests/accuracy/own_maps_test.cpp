@@ -9,6 +9,7 @@
 
 #include "bump/bump_words.h"
 #include "experiment_checks.h"
+#include "measured_methods.h"
 #include "relief/accuracy/own.h"
 #include "relief/mesh/analytic_heights.h"
 #include "relief/mesh/bump_fields.h"
@@ -55,6 +56,45 @@ TEST(OwnHeights, AreThoseOfTheBumpExperiment) {
     EXPECT_THAT(own.command(), HasSubstr("relief-bake bump map.png OUT.exr --strength "));
     EXPECT_THAT(own.command(), HasSubstr(" --kernel central7 --precision float64 --wrap repeat"));
     EXPECT_THAT(own.experiment.truth, HasSubstr("nothing can know exactly"));
+    EXPECT_EQ(own.experiment.reference_error, same.reference.own_degrees);
+    const ExpectedError expected = found(own, "sobel3, float32, 8 bit").expected.value();
+    EXPECT_EQ(expected.map, same.reference.own_degrees);
+    EXPECT_EQ(expected.added, found(own, "sobel3, float32, 8 bit").error.rms);
+}
+
+/// Waves of 8 bits in noise: the map itself is degrees off, whatever is done with it.
+BumpField noisy_waves() {
+    FieldRecipe recipe;
+    recipe.shape = FieldShape::waves;
+    recipe.shortest = 16.0;
+    recipe.coding = FieldCoding::bits8;
+    recipe.noise = 0.1;
+    return make_bump_field(recipe, 128, 128);
+}
+
+TEST(OwnHeights, AreHeldToABoundWithTheErrorOfTheMapItself) {
+    const BumpField field = noisy_waves();
+    OwnOptions options = untimed_map();
+    options.wish.max_error = 0.5;
+    const OwnExperiment own = measure_own_heights(field.heights, field.options, options);
+    const double map_error = own.experiment.reference_error.value();
+    ASSERT_GT(map_error, 0.5) << "the field must be noisy enough for this test";
+    // Methods are within half a degree of the best one known, which is no help.
+    EXPECT_LT(truest(own.experiment)->error.rms, 0.5);
+    EXPECT_EQ(own.recommendation.method, std::nullopt);
+    EXPECT_THAT(own.recommendation.words, HasSubstr("no method is within 0.5 degrees: the least "));
+    EXPECT_THAT(own.recommendation.words, HasSubstr(" (the map itself "));
+}
+
+TEST(OwnHeights, WithoutTimesAreHeldToABoundByTheFewestBytes) {
+    const BumpField field = waves(FieldCoding::bits8);
+    OwnOptions options = untimed_map();
+    options.wish.max_error = 5.0;
+    const OwnExperiment own = measure_own_heights(field.heights, field.options, options);
+    ASSERT_TRUE(own.recommendation.method.has_value()) << own.recommendation.words;
+    const Measurement& taken = own.experiment.measurements[*own.recommendation.method];
+    EXPECT_EQ(taken.cost.stored_bytes, 3.0);
+    EXPECT_THAT(taken.method, HasSubstr("float32, 8 bit"));
 }
 
 TEST(OwnHeights, OfFewBitsAreAlsoSmoothed) {
@@ -143,19 +183,29 @@ TEST(OwnNormalMaps, AreComparedWithWhatTheFileHolds) {
     format.bits = 8;
     const Image map = encode_normal_map(normals_of(waves(FieldCoding::float32)), format, report);
     const Image normals = decode_normal_map(map, Green::up, FlatCode::half, report);
-    const OwnExperiment own = measure_own_normals(normals, 8, untimed_map());
+    const OwnExperiment own = measure_own_normals(normals, {.bits = 8}, untimed_map());
     EXPECT_LE(found(own, "xyz float").error.max, 1e-4);
     // Vectors are made unit before they become codes again: most codes stay, not all.
     EXPECT_GT(found(own, "xyz 8 bit").error.rms, 0.0);
     EXPECT_LT(found(own, "xyz 8 bit").error.rms, 0.1);
     EXPECT_GT(found(own, "xy 8 bit").error.rms, found(own, "xyz 8 bit").error.rms);
-    EXPECT_EQ(own.command(), "relief-bake convert map.png OUT.png --bits 16 --zero-code 127.5");
+    // To keep the file costs nothing: no method that writes more bytes is recommended.
+    EXPECT_EQ(found(own, "as it is").error.max, 0.0);
+    EXPECT_EQ(found(own, "as it is").error.count, 96U * 96U);
+    EXPECT_EQ(found(own, "as it is").cost.stored_bytes, 3.0);
+    EXPECT_EQ(own.command(), "relief-bake convert map.png OUT.png");
     EXPECT_THAT(own.experiment.truth, HasSubstr("in 8 bits"));
+    // Rounding to codes of 2 / 255 alone: half a code evenly spread on two axes.
+    const double rounding = 180.0 / std::numbers::pi / 127.5 / std::sqrt(6.0);
+    EXPECT_NEAR(own.experiment.reference_error.value(), rounding, 1e-12);
+    EXPECT_THAT(own.recommendation.words,
+                HasSubstr("as it is: 0.183 degrees RMS expected (the rounding of the file itself "
+                          "0.183, this method adds 0) at 3 bytes"));
 }
 
 TEST(OwnNormalMaps, AreOffByWhatTheirBitsHold) {
     const OwnExperiment own =
-        measure_own_normals(normals_of(waves(FieldCoding::float32)), 32, untimed_map());
+        measure_own_normals(normals_of(waves(FieldCoding::float32)), {.bits = 32}, untimed_map());
     // A code of 8 bits is 2 / 255: half of one along each axis at the most, and of 16 bits 257
     // times less.
     const double eight = found(own, "xyz 8 bit").error.rms;
@@ -177,7 +227,7 @@ TEST(OwnNormalMaps, OfCodesThatCannotHoldThemAreAsFarOffAsTheyMustBe) {
                                 -std::sin(glm::radians(below)));
     }
     const OwnExperiment own =
-        measure_own_normals(image_of_normals(directions, 32), 32, untimed_map());
+        measure_own_normals(image_of_normals(directions, 32), {.bits = 32}, untimed_map());
     // What 16 bits keep of x and y, 2^-16, says little about a z that is what remains: 0.01 degrees
     // so near to the horizon.
     const ErrorFigures lost = found(own, "xy 16 bit").error;

@@ -43,8 +43,8 @@ TEST(Recommended, IsTheKnee) {
     EXPECT_EQ(found.method, 2U);
     EXPECT_EQ(found.next, 3U);
     EXPECT_EQ(found.words,
-              "good: 0.05 degrees RMS at 41.0 ms; the next better (best) takes 3 times as long for "
-              "0.01 degrees less");
+              "good: 0.05 degrees RMS at 41.0 ms; the next more accurate (best) takes 3 times as "
+              "long for 0.01 degrees less");
 }
 
 TEST(Recommended, TakesTheTruerAsLongAsTheCubeOfTheGainPaysForIt) {
@@ -56,7 +56,7 @@ TEST(Recommended, TakesTheTruerAsLongAsTheCubeOfTheGainPaysForIt) {
     EXPECT_EQ(second_for(0.079).method, 1U);
     EXPECT_EQ(second_for(0.081).method, 0U);
     EXPECT_EQ(second_for(0.079).next, std::nullopt);
-    EXPECT_THAT(second_for(0.079).words, HasSubstr("none is truer"));
+    EXPECT_THAT(second_for(0.079).words, HasSubstr("no other method is more accurate"));
 }
 
 TEST(Recommended, OfAlikeOnesTheSmallestIsTaken) {
@@ -69,19 +69,19 @@ TEST(Recommended, OfAlikeOnesTheSmallestIsTaken) {
     EXPECT_EQ(recommended(experiment, {}).method, 1U);
 }
 
-TEST(Recommended, ANextOneThatCostsTheSameIsSaidToTakeHardlyLonger) {
+TEST(Recommended, ANextOneThatCostsTheSameIsSaidToTakeAboutAsLong) {
     RecommendationRule rule;
     rule.wish.max_error = 0.5;
     EXPECT_EQ(
         recommended(experiment_of({measured("a", 0.5, 0.0100), measured("b", 0.4, 0.0101)}), rule)
             .words,
-        "a: 0.5 degrees RMS at 10.0 ms; the next better (b) takes hardly longer for 0.1 "
+        "a: 0.5 degrees RMS at 10.0 ms; the next more accurate (b) takes about as long for 0.1 "
         "degrees less");
 }
 
 TEST(Recommended, WhatTheTruthIsNotKnownBetterThanIsNotPaidFor) {
     RecommendationRule rule;
-    rule.own_error = 2.0;  // 2.24 and 2.0004: 1.4 times the cost at most, and "good" takes 4.1.
+    rule.unseen_error = 2.0;  // 2.24 and 2.0004: 1.4 times the cost at most, and "good" takes 4.1.
     EXPECT_EQ(recommended(usual(), rule).method, 0U);
 }
 
@@ -96,7 +96,7 @@ TEST(Recommended, KeepsWithinAnError) {
     rule.wish.max_error = 0.01;
     const Recommendation none = recommended(usual(), rule);
     EXPECT_EQ(none.method, std::nullopt);
-    EXPECT_EQ(none.words, "none keeps within 0.01 degrees: the least is 0.12, with best");
+    EXPECT_EQ(none.words, "no method is within 0.01 degrees: the least is 0.12, with best");
 }
 
 TEST(Recommended, KeepsWithinATime) {
@@ -107,11 +107,11 @@ TEST(Recommended, KeepsWithinATime) {
     EXPECT_EQ(recommended(usual(), rule).method, 0U);
     rule.wish.max_seconds = 0.001;
     EXPECT_EQ(recommended(usual(), rule).words,
-              "none keeps within 1.00 ms: the fastest takes 10.0 ms, with rough");
+              "no method is within 1.00 ms: the fastest takes 10.0 ms, with rough");
     rule.wish.max_seconds = 0.1;
     rule.wish.max_error = 0.045;
     EXPECT_EQ(recommended(usual(), rule).words,
-              "none keeps within 0.045 degrees and 100 ms: that error takes 123 ms, with best");
+              "no method is within 0.045 degrees and 100 ms: that error takes 123 ms, with best");
 }
 
 TEST(Recommended, LeavesOutWhatCannotBeTaken) {
@@ -137,16 +137,62 @@ TEST(Recommended, GoesByBytesWhereThoseAreDear) {
     rule.wish.max_seconds = 1e-9;  // Of no effect.
     const Recommendation found = recommended(experiment, rule);
     EXPECT_EQ(found.words,
-              "good: 0.05 degrees RMS at 8 bytes; the next better (best) takes 28 bytes for 0.01 "
-              "degrees less");
+              "good: 0.05 degrees RMS at 8 bytes; the next more accurate (best) takes 28 bytes for "
+              "0.01 degrees less");
 }
 
-TEST(Recommended, WithoutTimesIsTheTruest) {
+TEST(Recommended, CountsTheErrorOfTheReferenceToo) {
+    Experiment experiment = usual();
+    experiment.reference_error = 0.12;
+    RecommendationRule rule;
+    rule.reference = "the map itself";
+    // "good" adds 0.05: 0.13 in all. "best" adds 0.04: 0.1265.
+    rule.wish.max_error = 0.131;
+    Recommendation found = recommended(experiment, rule);
+    EXPECT_EQ(found.method, 2U);
+    EXPECT_EQ(found.words,
+              "good: 0.13 degrees RMS expected (the map itself 0.12, this method adds 0.05) at "
+              "41.0 ms; the next more accurate (best) takes 3 times as long for 0.01 degrees less");
+    rule.wish.max_error = 0.128;
+    EXPECT_EQ(recommended(experiment, rule).method, 3U);
+    rule.wish.max_error = 0.125;  // Beyond what each method adds, yet less than can be expected.
+    found = recommended(experiment, rule);
+    EXPECT_EQ(found.method, std::nullopt);
+    EXPECT_EQ(found.words,
+              "no method is within 0.125 degrees: the least is 0.126, with best (the map itself "
+              "0.12)");
+    // As an error that nobody sees, it makes the accurate ones worth less.
+    experiment.reference_error = 2.0;
+    EXPECT_EQ(recommended(experiment, {}).method, 0U);
+}
+
+TEST(Recommended, WithoutTimesTakesTheFewestBytesThenTheLeastWork) {
+    Experiment experiment =
+        experiment_of({measured("large", 0.01, 0.1), measured("work", 0.2, 0.1),
+                       measured("least", 0.3, 0.1), measured("rough", 2.0, 0.1)});
+    const std::vector<double> bytes = {6.0, 3.0, 3.0, 3.0};
+    for (std::size_t i = 0; i < bytes.size(); ++i) {
+        experiment.measurements[i].cost = {};
+        experiment.measurements[i].cost.stored_bytes = bytes[i];
+    }
+    const std::vector<double> natural_costs = {5.0, 20.0, 10.0, 1.0};
+    RecommendationRule rule;
+    rule.natural_costs = natural_costs;
+    rule.wish.max_error = 0.5;
+    EXPECT_EQ(recommended(experiment, rule).method, 2U);
+    rule.wish.max_error = 0.25;
+    EXPECT_EQ(recommended(experiment, rule).method, 1U);
+    rule.wish.max_error = 0.1;
+    EXPECT_EQ(recommended(experiment, rule).method, 0U);
+}
+
+TEST(Recommended, WithoutTimesAndBoundsIsTheMostAccurate) {
     Experiment experiment = usual();
     for (Measurement& one : experiment.measurements)
         one.cost = {};
     EXPECT_EQ(recommended(experiment, {}).method, 3U);
-    EXPECT_EQ(recommended(experiment, {}).words, "best: 0.04 degrees RMS; none is truer");
+    EXPECT_EQ(recommended(experiment, {}).words,
+              "best: 0.04 degrees RMS; no other method is more accurate");
 }
 
 }  // namespace

@@ -26,16 +26,19 @@ TEST(Sweeps, FindWhereEachMethodBreaks) {
     EXPECT_EQ(curves[2].breaks_at, 100.0);
     EXPECT_TRUE(std::isnan(curves[2].points[1].error)) << "half a result is none";
     EXPECT_EQ(sweeps.breaks(),
-              "Larger: lost breaks at 100, growing breaks at 1e+04, all others hold.");
+              "Larger (size): lost fails from 100 on, growing fails from 1e+04 on, all others are "
+              "within the limit.");
     EXPECT_EQ(sweeps.figures(0).count, 8U);
     EXPECT_EQ(sweeps.figures(2).undefined, 3U);
 }
 
-TEST(Sweeps, SayThatAllHoldOrNone) {
+TEST(Sweeps, SayThatAllAreWithinTheLimitOrNone) {
     Sweeps sweeps({"a", "b"}, 1.0);
     sweeps.add("x", "Good", "x", 1, 1, [](std::size_t, double) { return std::vector{0.5F}; });
     sweeps.add("y", "Bad", "y", 1, 1, [](std::size_t, double) { return std::vector{5.0F}; });
-    EXPECT_EQ(sweeps.breaks(), "Good: all hold. Bad: a and b break at 1, none holds.");
+    EXPECT_EQ(sweeps.breaks(),
+              "Good (x): all are within the limit. Bad (y): a and b fail from 1 on, none is within "
+              "the limit everywhere.");
 }
 
 }  // namespace

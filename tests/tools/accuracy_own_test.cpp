@@ -3,8 +3,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+
 #include <nlohmann/json.hpp>
 
+#include "relief/mesh/image_file.h"
 #include "tools/refusal.h"
 #include "tools/workplace.h"
 
@@ -99,7 +105,132 @@ TEST(AccuracyOwn, ABoundThatNothingKeepsIsExitOne) {
     EXPECT_EQ(workplace.run(line + "90").exit_code, 0);
     const ProgramResult strict = workplace.run(line + "0");
     EXPECT_EQ(strict.exit_code, 1);
-    EXPECT_THAT(strict.out, HasSubstr("none keeps within 0 degrees: the least is "));
+    EXPECT_THAT(strict.out, HasSubstr("no method is within 0 degrees: the least is "));
+}
+
+TEST(AccuracyOwn, ABoundIsHeldAgainstTheErrorOfTheMapToo) {
+    const Workplace workplace;
+    const std::string line =
+        "relief-accuracy own data/bricks-height.png --quick --no-times --json --max-error ";
+    const json experiment = json::parse(workplace.run(line + "90").out)["experiments"][0];
+    const auto map_error = experiment["reference_error"].get<double>();
+    ASSERT_GT(map_error, 0.5);
+    double least_added = 180.0;
+    for (const json& one : experiment["measurements"]) {
+        const json& expected = one["expected_error"];
+        EXPECT_EQ(expected["map"], experiment["reference_error"]);
+        EXPECT_EQ(expected["added"], one["error"]["rms"]);
+        EXPECT_NEAR(expected["total"].get<double>(),
+                    std::hypot(map_error, one["error"]["rms"].get<double>()), 1e-9);
+        least_added = std::min(least_added, one["error"]["rms"].get<double>());
+    }
+    // A method that adds less than half a degree does not make the map better than it is.
+    ASSERT_LT(least_added, 0.5);
+    const ProgramResult bounded = workplace.run(line + "0.5");
+    EXPECT_EQ(bounded.exit_code, 1);
+    const auto finding = json::parse(bounded.out)["experiments"][0]["finding"].get<std::string>();
+    EXPECT_THAT(finding, HasSubstr("no method is within 0.5 degrees"));
+    EXPECT_THAT(finding, HasSubstr("(the map itself "));
+}
+
+/// Texels of smooth bumps, 0 to 1.
+double bump_at(int x, int y) {
+    return 0.5 + 0.2 * std::sin(0.2 * x) + 0.2 * std::sin(0.15 * y + 0.1 * x);
+}
+
+Image image_of_bumps(int channels, const std::function<double(int channel, double bump)>& value) {
+    constexpr int side = 64;
+    Image image = make_image(side, side, channels, 8, ColorSpace::data);
+    for (int y = 0; y < side; ++y) {
+        for (int x = 0; x < side; ++x) {
+            for (int channel = 0; channel < channels; ++channel) {
+                image.as<std::uint8_t>()[static_cast<std::size_t>((y * side + x) * channels +
+                                                                  channel)] =
+                    static_cast<std::uint8_t>(255.0 * value(channel, bump_at(x, y)));
+            }
+        }
+    }
+    return image;
+}
+
+TEST(AccuracyOwn, SaysThatAPhotographIsHardlyAHeightMap) {
+    const Workplace workplace;
+    const auto in_color = [](int channel, double bump) {
+        return channel == 0 ? bump : channel == 1 ? bump * bump : 0.2;
+    };
+    write_image(workplace / "photo.png", image_of_bumps(3, in_color));
+    const ProgramResult photo = workplace.run("relief-accuracy own photo.png --quick --no-times");
+    ASSERT_EQ(photo.exit_code, 0) << photo.error;
+    EXPECT_THAT(photo.out, HasSubstr("photo.png: a height map of 8 bits"));
+    EXPECT_THAT(photo.out, HasSubstr("findings  4096 x texel whose red, green and blue differ"));
+    const json found =
+        json::parse(workplace.run("relief-accuracy own photo.png --quick --no-times --json").out);
+    EXPECT_EQ(found["experiments"][0]["input_findings"].size(), 1U);
+    write_image(workplace / "grey.png", image_of_bumps(3, [](int, double bump) { return bump; }));
+    EXPECT_THAT(workplace.run("relief-accuracy own grey.png --quick --no-times").out,
+                HasSubstr("findings  none\n"));
+}
+
+TEST(AccuracyOwn, MeasuresHeightsInAlpha) {
+    const Workplace workplace;
+    const auto in_alpha = [](int channel, double bump) {
+        return channel == 3 ? bump : channel == 0 ? 0.9 : 0.3;
+    };
+    write_image(workplace / "packed.png", image_of_bumps(4, in_alpha));
+    write_image(workplace / "alone.png", image_of_bumps(1, [](int, double bump) { return bump; }));
+    const std::string options = " --quick --no-times --json --image heights";
+    const json blind = json::parse(
+        workplace.run("relief-accuracy own packed.png" + options).out)["experiments"][0];
+    EXPECT_THAT(blind["input_findings"].dump(),
+                HasSubstr("texel whose alpha differs from the first one's"));
+    const json packed =
+        json::parse(workplace.run("relief-accuracy own packed.png --channel alpha" + options).out);
+    const json& in_packed = packed["experiments"][0];
+    const json alone =
+        json::parse(workplace.run("relief-accuracy own alone.png" + options).out)["experiments"][0];
+    EXPECT_EQ(packed["command"],
+              "relief-accuracy own packed.png --image heights --channel alpha --quick --no-times");
+    EXPECT_TRUE(in_packed["input_findings"].empty());
+    // The heights of a packed map are floats, so that arithmetic rounds in other places.
+    EXPECT_NEAR(measurement(in_packed, "sobel3, float64, 16 bit")["error"]["rms"].get<double>(),
+                measurement(alone, "sobel3, float64, 16 bit")["error"]["rms"].get<double>(), 1e-4);
+    EXPECT_GT(measurement(alone, "sobel3, float64, 16 bit")["error"]["rms"].get<double>(), 1e-3);
+    const auto finding = in_packed["finding"].get<std::string>();
+    EXPECT_THAT(finding, HasSubstr(" --channel alpha"));
+    const std::string command = finding.substr(finding.find("relief-bake bump packed.png OUT."));
+    const std::string extension = command.substr(command.find("OUT.") + 3, 4);
+    const std::string done =
+        std::string(command).replace(command.find("OUT."), 7, "out" + extension);
+    EXPECT_EQ(workplace.run(done).exit_code, 0) << done;
+}
+
+TEST(AccuracyOwn, SaysWhichHeightsAreNotFinite) {
+    const Workplace workplace;
+    Image heights = to_float(image_of_bumps(1, [](int, double bump) { return bump; }));
+    heights.as<float>()[70] = std::numeric_limits<float>::quiet_NaN();
+    heights.as<float>()[900] = std::numeric_limits<float>::infinity();
+    write_image(workplace / "nan.exr", heights);
+    const ProgramResult result = workplace.run("relief-accuracy own nan.exr --quick --no-times");
+    ASSERT_EQ(result.exit_code, 0) << result.error;
+    EXPECT_THAT(result.out, HasSubstr("findings  2 x non-finite height (texel 70, 900): "));
+}
+
+TEST(AccuracyOwn, KeepsANormalMapAsItIs) {
+    const Workplace workplace;
+    ASSERT_EQ(workplace.run("relief-bake bump data/bricks-height.png map.png --bits 8").exit_code,
+              0);
+    const json experiment =
+        json::parse(workplace.run("relief-accuracy own map.png --quick --no-times --json")
+                        .out)["experiments"][0];
+    const json& kept = measurement(experiment, "as it is");
+    EXPECT_EQ(kept["error"]["max"], 0.0);
+    EXPECT_EQ(kept["cost"]["stored_bytes"], 3.0);
+    const auto finding = experiment["finding"].get<std::string>();
+    EXPECT_THAT(finding, testing::StartsWith("as it is: "));
+    EXPECT_THAT(finding, testing::EndsWith("To do it: relief-bake convert map.png OUT.png"));
+    ASSERT_EQ(workplace.run("relief-bake convert map.png out.png").exit_code, 0);
+    EXPECT_TRUE(read_image(workplace / "out.png", ImageUse::data).samples ==
+                read_image(workplace / "map.png", ImageUse::data).samples);
 }
 
 class OwnRefusal : public testing::TestWithParam<Refused> {};
@@ -122,6 +253,8 @@ INSTANTIATE_TEST_SUITE_P(
                             "square.obj: given twice"},
                     Refused{"relief-accuracy own square.obj --strength 3", 2,
                             "--strength: is for height maps, and there is none"},
+                    Refused{"relief-accuracy own square.obj --channel alpha", 2,
+                            "--channel: is for height maps, and there is none"},
                     Refused{"relief-accuracy own square.obj --size 64", 2,
                             "--size: is for a pair, --high and --low, and there is none"},
                     Refused{"relief-accuracy own square.obj --max-error-kind max", 2,

@@ -55,6 +55,9 @@ TEST(AccuracyJson, ReadsBackAsTheSame) {
         EXPECT_EQ(is.measurements[i].error, was.measurements[i].error);
         EXPECT_EQ(is.measurements[i].cost, was.measurements[i].cost);
     }
+    EXPECT_EQ(is.reference_error, 0.6);
+    EXPECT_NEAR(is.measurements[1].expected.value().total(), 0.65, 1e-12);
+    EXPECT_THAT(is.input_findings, SizeIs(1));
     EXPECT_TRUE(std::isnan(is.charts[0].curves[0].points[0].error));
     EXPECT_EQ(is.charts[0].curves[0].points[1].x, 0.001);
 }
@@ -149,15 +152,17 @@ TEST(AccuracyTable, MarksTheFrontierAndAlignsItsColumns) {
     EXPECT_THAT(
         table,
         HasSubstr(
-            "                  RMS   mean  99 %   max  undefined     PSNR  1 thread           all"
-            "        memory  stored\n"
-            "  * exact, slow     0      0     0     0                       1.00 ms  ±8 %  500 µs"
-            "  ±0 %  4.1 kB   2.5 B\n"
-            "    near         0.25  0.125   0.5  0.75          2  40.0 dB    500 µs  ±8 %  250 µs"
-            "  ±0 %  4.1 kB   2.5 B\n"
+            "  expected: of the reference itself 0.6 and of the method, as the root of the sum of "
+            "squares\n"
+            "                  RMS   mean  99 %   max  undefined  expected     PSNR  1 thread      "
+            "     all        memory  stored\n"
+            "  * exact, slow     0      0     0     0                  0.6            1.00 ms  ±8 %"
+            "  500 µs  ±0 %  4.1 kB   2.5 B\n"
+            "    near         0.25  0.125   0.5  0.75          2      0.65  40.0 dB    500 µs  ±8 %"
+            "  250 µs  ±0 %  4.1 kB   2.5 B\n"
             "  near: It is not far.\n"));
     EXPECT_THAT(table,
-                HasSubstr("    near: - at 1e-06, 0.25 at 1, order -0.10 (expected 0), breaks "
+                HasSubstr("    near: - at 1e-06, 0.25 at 1, order -0.10 (in theory 0), breaks "
                           "at 1e-06\n"));
     Experiment untimed = sample_report().experiments[0];
     for (Measurement& one : untimed.measurements)

@@ -60,9 +60,15 @@ Json json_of(const Measurement& one) {
     Json choices = Json::object();
     for (const auto& [choice, value] : one.choices)
         choices[choice] = value;
-    return {{"method", one.method},          {"choices", choices},
-            {"error", json_of(one.error)},   {"cost", json_of(one.cost)},
-            {"efficient", one.is_efficient}, {"note", one.note}};
+    Json json = {{"method", one.method},          {"choices", choices},
+                 {"error", json_of(one.error)},   {"cost", json_of(one.cost)},
+                 {"efficient", one.is_efficient}, {"note", one.note}};
+    if (one.expected) {
+        json["expected_error"] = {{"map", one.expected->map},
+                                  {"added", one.expected->added},
+                                  {"total", one.expected->total()}};
+    }
+    return json;
 }
 
 Json json_of(const Curve& curve) {
@@ -126,8 +132,10 @@ Json json_of(const Experiment& one, bool has_files) {
                  {"items", one.items},
                  {"command", one.command},
                  {"finding", one.finding},
+                 {"input_findings", one.input_findings},
                  {"measurements", Json::array()},
                  {"charts", Json::array()}};
+    if (one.reference_error) json["reference_error"] = *one.reference_error;
     for (const Measurement& measurement : one.measurements)
         json["measurements"].push_back(json_of(measurement));
     for (const Chart& chart : one.charts)

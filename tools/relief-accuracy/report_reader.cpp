@@ -77,6 +77,9 @@ Measurement measurement_at(const JsonPlace& place) {
     one.cost = cost_at(place.at("cost"));
     one.is_efficient = place.at("efficient").boolean();
     one.note = place.at("note").text();
+    if (const auto expected = place.find("expected_error")) {
+        one.expected = ExpectedError{expected->at("map").number(), expected->at("added").number()};
+    }
     return one;
 }
 
@@ -120,6 +123,11 @@ Experiment experiment_at(const JsonPlace& place) {
     one.items = place.at("items").number();
     one.command = place.at("command").text();
     one.finding = place.at("finding").text();
+    if (const auto error = place.find("reference_error")) one.reference_error = error->number();
+    if (const auto findings = place.find("input_findings")) {
+        for (const JsonPlace& finding : findings->elements())
+            one.input_findings.push_back(finding.text());
+    }
     std::set<std::string> methods;
     for (const JsonPlace& measurement : place.at("measurements").elements()) {
         one.measurements.push_back(measurement_at(measurement));

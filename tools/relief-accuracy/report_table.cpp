@@ -73,9 +73,9 @@ std::string median_of(const std::optional<Timing>& timing) {
 
 std::vector<TextColumn> columns_of(const Experiment& experiment) {
     std::vector<TextColumn> columns = {
-        {"", {}, true},    {"RMS", {}},    {"mean", {}},     {"99 %", {}}, {"max", {}},
-        {"undefined", {}}, {"PSNR", {}},   {"1 thread", {}}, {"", {}},     {"all", {}},
-        {"", {}},          {"memory", {}}, {"stored", {}}};
+        {"", {}, true},    {"RMS", {}},      {"mean", {}},   {"99 %", {}},     {"max", {}},
+        {"undefined", {}}, {"expected", {}}, {"PSNR", {}},   {"1 thread", {}}, {"", {}},
+        {"all", {}},       {"", {}},         {"memory", {}}, {"stored", {}}};
     for (const Measurement& one : experiment.measurements) {
         const ErrorFigures& error = one.error;
         const std::vector<std::string> cells = {
@@ -85,6 +85,7 @@ std::vector<TextColumn> columns_of(const Experiment& experiment) {
             table_number(error.p99),
             table_number(error.max),
             error.undefined > 0 ? fmt::to_string(error.undefined) : "",
+            one.expected ? table_number(one.expected->total()) : "",
             error.psnr ? fmt::format("{:.1f} dB", *error.psnr) : "",
             median_of(one.cost.one_thread),
             spread_of(one.cost.one_thread),
@@ -144,7 +145,7 @@ std::string line_of(const Curve& curve) {
                             curve.points.back().x);
     }
     if (curve.order) text += fmt::format(", order {:.2f}", *curve.order);
-    if (curve.expected_order) text += fmt::format(" (expected {:.3g})", *curve.expected_order);
+    if (curve.expected_order) text += fmt::format(" (in theory {:.3g})", *curve.expected_order);
     if (curve.breaks_at) text += fmt::format(", breaks at {:.3g}", *curve.breaks_at);
     return text;
 }
@@ -156,6 +157,12 @@ std::string table_of(const Experiment& experiment) {
         fmt::format("{}: {}\n  {}\n", experiment.id, experiment.title, experiment.question);
     text += fmt::format("  input  {}\n  truth  {}\n  error  {}\n", experiment.input,
                         experiment.truth, experiment.error_unit);
+    if (experiment.reference_error) {
+        text += fmt::format(
+            "  expected: of the reference itself {:.3g} and of the method, as the root of the sum "
+            "of squares\n",
+            *experiment.reference_error);
+    }
     text += rows_of(experiment);
     text += notes_of(experiment);
     for (const Chart& chart : experiment.charts) {

@@ -54,10 +54,10 @@ std::string words_on_arithmetic(const Experiment& experiment) {
                 ratios.push_back(median_seconds(in_float) / median_seconds(in_double));
         }
     }
-    std::string text = fmt::format("float32 moves no RMS by more than {:.2g} degrees", apart);
+    std::string text = fmt::format("float32 changes no RMS by more than {:.2g} degrees", apart);
     if (!ratios.empty())
-        text +=
-            fmt::format(", for {:.2f} of the time (median of kernels)", spread_of(ratios).median);
+        text += fmt::format(" and takes {:.2f} times as long (median of the kernels)",
+                            spread_of(ratios).median);
     return text + ".";
 }
 

@@ -120,9 +120,14 @@ PicturePair pair_of(const std::string& title, const std::string& method, const I
     return {title, method, "as it should be", picture, to_srgb(truth, 8)};
 }
 
-std::string frame_words(const Measurement& measurement) {
-    const double seconds = median_seconds(measurement);
-    return std::isnan(seconds) ? "not timed" : fmt::format("{:.2g} ms", 1e3 * seconds);
+std::string frame_times(std::initializer_list<NamedMeasurement> methods) {
+    std::vector<std::string> times;
+    for (const auto& [name, measurement] : methods) {
+        const double seconds = median_seconds(measurement);
+        if (std::isnan(seconds)) return "";
+        times.push_back(fmt::format("{:.2g} ms ({})", 1e3 * seconds, name));
+    }
+    return fmt::format(" Median frame times: {}.", fmt::join(times, ", "));
 }
 
 }  // namespace relief

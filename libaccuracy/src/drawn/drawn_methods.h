@@ -4,6 +4,7 @@
 /// should be. Tests: tests/accuracy/drawn_methods_test.cpp.
 #pragma once
 
+#include <initializer_list>
 #include <memory>
 #include <span>
 #include <string>
@@ -68,8 +69,14 @@ double drawn_error(const Drawing& drawing, const DrawnMethod& method, const Imag
 PicturePair pair_of(const std::string& title, const std::string& method, const Image& picture,
                     const Image& truth);
 
-/// The median frame of a measurement in words, "1.2 ms"; "not timed" without one. Of the time by
-/// which methods are efficient: on one thread, where that was measured.
-std::string frame_words(const Measurement& measurement);
+/// A method as a sentence names it.
+struct NamedMeasurement {
+    std::string name;
+    const Measurement& measurement;
+};
+
+/// " Median frame times: 1.2 ms (stored), 3.4 ms (derived)."; empty where one was not timed. On one
+/// thread where that was measured, as mark_efficient() takes times.
+std::string frame_times(std::initializer_list<NamedMeasurement> methods);
 
 }  // namespace relief

@@ -121,9 +121,9 @@ std::string normals_finding(const Experiment& experiment) {
                 ratios.push_back(median_seconds(in_float) / median_seconds(in_double));
         }
     }
-    text += fmt::format(" float32 moves no RMS by more than {:.2g} degrees", apart);
+    text += fmt::format(" float32 changes no RMS by more than {:.2g} degrees", apart);
     if (!ratios.empty())
-        text += fmt::format(", for {:.2f} of the time (median of weightings)",
+        text += fmt::format(" and takes {:.2f} times as long (median of the weightings)",
                             spread_of(ratios).median);
     return text + ".";
 }

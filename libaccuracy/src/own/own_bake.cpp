@@ -71,7 +71,7 @@ OwnExperiment measure_own_bake(const Baker& baker, int size, const OwnOptions& o
             if (options.run.is_timed) methods.back().known_time = Timing{found[way].seconds[f]};
         }
     }
-    finish(own, std::move(methods), CostKind::time, unseen_degrees, options);
+    finish(own, std::move(methods), {CostKind::time, unseen_degrees}, options);
     return own;
 }
 

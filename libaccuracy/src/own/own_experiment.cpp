@@ -30,23 +30,28 @@ void tell_finding(OwnExperiment& own) {
     if (!own.command().empty()) own.experiment.finding += " To do it: " + own.command();
 }
 
-void finish(OwnExperiment& own, std::vector<OwnMethod> methods, CostKind cost, double own_error,
+void finish(OwnExperiment& own, std::vector<OwnMethod> methods, const OwnRule& rule,
             const OwnOptions& options) {
     const ProgressStage stage("measuring");
     std::vector<MeasuredMethod> measured;
     std::vector<unsigned char> choosable;
+    std::vector<double> natural_costs;
     for (OwnMethod& method : methods) {
         measured.push_back(std::move(method.measured));
         choosable.push_back(method.command.empty() ? 0 : 1);
+        natural_costs.push_back(method.natural_cost);
         own.commands.push_back(std::move(method.command));
     }
     measure_methods(measured, options.run, options.costs, own.experiment);
     for (std::size_t i = 0; i < methods.size(); ++i) {
-        if (methods[i].known_time)
-            own.experiment.measurements[i].cost.all_threads = methods[i].known_time;
+        Measurement& one = own.experiment.measurements[i];
+        if (methods[i].known_time) one.cost.all_threads = methods[i].known_time;
+        if (own.experiment.reference_error && one.error.count > 0)
+            one.expected = ExpectedError{*own.experiment.reference_error, one.error.rms};
     }
     mark_efficient(own.experiment);
-    own.recommendation = recommended(own.experiment, {options.wish, cost, own_error, choosable});
+    own.recommendation = recommended(own.experiment, {options.wish, rule.cost, rule.unseen_error,
+                                                      choosable, natural_costs, rule.reference});
     tell_finding(own);
 }
 

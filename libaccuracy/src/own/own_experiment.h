@@ -21,6 +21,14 @@ struct OwnMethod {
     MeasuredMethod measured;
     std::string command{};
     std::optional<Timing> known_time{};  ///< On all threads, taken elsewhere.
+    double natural_cost = 0.0;           ///< RecommendationRule::natural_costs.
+};
+
+/// How one of the methods is recommended.
+struct OwnRule {
+    CostKind cost = CostKind::time;
+    double unseen_error = 0.0;  ///< Degrees; RecommendationRule::unseen_error.
+    std::string reference{};    ///< What Experiment::reference_error is the error of.
 };
 
 /// An experiment about the file: id "own/FILE/TOPIC", title "TITLE of FILE", unit degrees.
@@ -28,8 +36,8 @@ OwnExperiment own_experiment(Subject subject, const std::string& topic, const st
                              const OwnOptions& options);
 
 /// Times the methods, and recommends one of those that have a command; that becomes the finding.
-/// \param own_error  what the truth is not known better than, in degrees
-void finish(OwnExperiment& own, std::vector<OwnMethod> methods, CostKind cost, double own_error,
+/// Experiment::reference_error must have its value before.
+void finish(OwnExperiment& own, std::vector<OwnMethod> methods, const OwnRule& rule,
             const OwnOptions& options);
 
 /// The finding is the recommendation, with the command that does it.

@@ -48,7 +48,7 @@ std::string command_of(const BumpMethod& method, const BumpOptions& bump,
     command += " --precision " + word_of(method.arithmetic);
     if (method.bits != 32) command += fmt::format(" --bits {}", method.bits);
     if (method.destaircased) command += " --destaircase";
-    return command + " --wrap " + words_of(*bump.wrap);
+    return command + " --wrap " + words_of(*bump.wrap) + options.height_arguments;
 }
 
 /// Steps are smoothed away where there are any; one arithmetic and depth shows what that does.
@@ -82,6 +82,7 @@ OwnExperiment measure_own_heights(const BumpSample& sample, glm::ivec2 size,
     experiment.question = "Which kernel is truest on this map, and what does it cost?";
     experiment.truth =
         fmt::format("The map's own best: {}. {}.", found.reference.words, choice.reason);
+    experiment.reference_error = found.reference.own_degrees;
     experiment.input = found.is_whole ? fmt::format("{} x {} texels", size.x, size.y)
                                       : fmt::format("{} texels in nine parts of {} x {}",
                                                     found.texels, size.x, size.y);
@@ -92,8 +93,9 @@ OwnExperiment measure_own_heights(const BumpSample& sample, glm::ivec2 size,
         measured.push_back({measured_method(one.method, figures_of(one.error)),
                             command_of(one.method, bump, options)});
         measured.back().measured.work = work_of(one.method, sample, bump);
+        measured.back().natural_cost = cost_of(one.method);
     }
-    finish(own, std::move(measured), CostKind::time, found.reference.own_degrees, options);
+    finish(own, std::move(measured), {.reference = "the map itself"}, options);
     return own;
 }
 

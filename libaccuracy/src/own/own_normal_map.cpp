@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <cmath>
+#include <glm/trigonometric.hpp>
 #include <string_view>
 
 #include "own/own_experiment.h"
@@ -23,6 +25,27 @@ void add_angles(const Image& found, const Image& expected, std::vector<float>& d
         degrees.push_back(static_cast<float>(
             degrees_between({a[i], a[i + 1], a[i + 2]}, {b[i], b[i + 1], b[i + 2]})));
     }
+}
+
+/// The root mean square of what rounding to codes of so many bits alone does to a normal, degrees:
+/// errors of up to half a code across two axes, spread evenly. 0 of floats.
+double rounding_degrees(int bits) {
+    if (bits >= 32) return 0.0;
+    const double code = 2.0 / (std::exp2(bits) - 1.0);
+    return glm::degrees(code * std::sqrt(2.0 / 12.0));
+}
+
+/// The file as it is: `relief-bake convert` keeps every code if it is asked for nothing else.
+OwnMethod as_it_is(const NormalMapOnFile& file, std::size_t texels, const OwnOptions& options) {
+    OwnMethod method;
+    method.measured.name = "as it is";
+    method.measured.choices = {
+        {"layout", "as it is"}, {"bits", fmt::format("{} bit", file.bits)}, {"rounding", "none"}};
+    method.measured.stored_bytes = file.channels * file.bits / 8.0;
+    method.measured.error = figures_of(angle_distribution(std::vector<float>(texels, 0.0F)));
+    method.measured.note = "every code is kept; no time of its own";
+    method.command = fmt::format("relief-bake convert {} OUT{}", options.arguments, file.extension);
+    return method;
 }
 
 /// Of relief-bake convert, which writes x, y and z in whole codes or floats; empty for others.
@@ -49,8 +72,8 @@ std::string command_of(const NormalCode& code, const OwnOptions& options) {
 
 }  // namespace
 
-OwnExperiment measure_own_normals(const Image& normals, int bits, const OwnOptions& options,
-                                  std::int64_t most_texels) {
+OwnExperiment measure_own_normals(const Image& normals, const NormalMapOnFile& file,
+                                  const OwnOptions& options, std::int64_t most_texels) {
     OwnExperiment own =
         own_experiment(Subject::storage, "normal-map", "Storage of the normals", options);
     std::vector<Image> parts;
@@ -61,13 +84,15 @@ OwnExperiment measure_own_normals(const Image& normals, int bits, const OwnOptio
         experiment.items += static_cast<double>(part.width) * part.height;
     experiment.question = "In how few bits can these normals be stored?";
     experiment.truth = fmt::format(
-        "The normals as the file holds them, in {} bits. What was lost before it was written, "
-        "nothing can tell.",
-        bits);
+        "The normals as the file holds them, in {} bits. What was lost before it was written is "
+        "unknown, but for the rounding to these bits.",
+        file.bits);
+    if (file.bits < 32) experiment.reference_error = rounding_degrees(file.bits);
     experiment.input = fmt::format("{} x {} texels", normals.width, normals.height);
     if (parts.size() > 1) experiment.input += fmt::format(", {:.0f} of them", experiment.items);
     experiment.item = "texel";
-    std::vector<OwnMethod> methods;
+    std::vector<OwnMethod> methods = {
+        as_it_is(file, static_cast<std::size_t>(experiment.items), options)};
     for (const NormalCode& code : normal_codes()) {
         OwnMethod method;
         method.measured.name = code.name;
@@ -84,7 +109,8 @@ OwnExperiment measure_own_normals(const Image& normals, int bits, const OwnOptio
         method.command = command_of(code, options);
         methods.push_back(std::move(method));
     }
-    finish(own, std::move(methods), CostKind::bytes, unseen_degrees, options);
+    finish(own, std::move(methods),
+           {CostKind::bytes, unseen_degrees, "the rounding of the file itself"}, options);
     return own;
 }
 

@@ -6,6 +6,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <optional>
 
 #include "analytic_words.h"
 #include "normals/normal_methods.h"
@@ -23,8 +25,9 @@ namespace {
 struct CornerTruth {
     std::vector<std::uint32_t> corners;
     std::vector<glm::dvec3> normals;
-    double own_degrees = 0.0;
+    std::optional<double> own_degrees{};  ///< What it is itself off, where it is an estimate.
     std::string words;
+    double unjudged = 0.0;  ///< Share of the places looked at without a known normal.
     bool is_enough = true;  ///< To recommend something.
 };
 
@@ -36,12 +39,17 @@ CornerTruth by_surface(const Mesh& mesh, const OwnCreases& creases) {
     truth.words = fmt::format(
         "A smooth surface fitted through the vertices (degree 4, three rings of triangles; {}). "
         "Known at {} of {} places looked at; at the others there are too few neighbours, or no "
-        "smooth surface. There it is itself known to {:.2g} degrees. It takes the vertices for "
-        "points of the surface, and cannot judge models whose vertices are not.",
+        "smooth surface. Where it is known, it has an expected error of {:.2g} degrees itself. It "
+        "takes the vertices for points of the surface, and cannot judge models whose vertices are "
+        "not.",
         creases.words, fitted.corners.size(), fitted.places, fitted.own_degrees);
     constexpr std::size_t fewest = 16;
     truth.is_enough = fitted.corners.size() >= std::max(fewest, fitted.places / 10);
     truth.own_degrees = fitted.own_degrees;
+    if (fitted.places > 0) {
+        truth.unjudged =
+            1.0 - static_cast<double>(fitted.corners.size()) / static_cast<double>(fitted.places);
+    }
     truth.corners = std::move(fitted.corners);
     truth.normals = std::move(fitted.normals);
     return truth;
@@ -92,23 +100,49 @@ std::vector<glm::vec3> with_creases(const NormalMethod& method, const Mesh& mesh
 std::vector<OwnMethod> methods_on(const Mesh& mesh, const OwnCreases& creases,
                                   const CornerTruth& truth, const OwnOptions& options) {
     std::vector<OwnMethod> methods;
-    for (const NormalMethod& method : normal_methods(both_arithmetics)) {
+    // In double alone: relief-mesh computes in it, and has no option for another arithmetic.
+    for (const NormalMethod& method : normal_methods(std::array{Arithmetic::float64})) {
         const auto normals = [method, &mesh, &creases] {
             return creases.has_any() ? with_creases(method, mesh, creases) : method.normals(mesh);
         };
         OwnMethod own;
-        own.measured = {.name = method.name(),
-                        .choices = method.choices(),
+        own.measured = {.name = std::string(method.weighting),
+                        .choices = {{"weighting", std::string(method.weighting)}},
                         .error = errors_of(normals(), creases.has_any(), mesh, truth),
                         .work = [normals] { normals(); }};
-        // What the tool computes in.
-        if (method.arithmetic == Arithmetic::float64) {
-            own.command = fmt::format("relief-mesh process {} -o OUT.glb --normals {}{}",
-                                      options.arguments, method.weighting, creases.option);
-        }
+        own.command = fmt::format("relief-mesh process {} -o OUT.glb --normals {}{}",
+                                  options.arguments, method.weighting, creases.option);
         methods.push_back(std::move(own));
     }
     return methods;
+}
+
+/// Says which methods the reference cannot tell from the recommended one, and how many vertices no
+/// method was judged at.
+void add_caveats(OwnExperiment& own, const CornerTruth& truth, const OwnCreases& creases) {
+    if (!own.recommendation.method) return;
+    std::string& words = own.recommendation.words;
+    const std::size_t taken = *own.recommendation.method;
+    const std::vector<Measurement>& all = own.experiment.measurements;
+    std::vector<std::string> alike;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        const double difference = std::abs(all[i].error.rms - all[taken].error.rms);
+        if (i != taken && !own.commands[i].empty() && difference < truth.own_degrees.value_or(0.0))
+            alike.push_back(all[i].method);
+    }
+    if (!alike.empty()) {
+        words += fmt::format(
+            "; not told apart from {}, whose errors differ from it by less than the {:.2g} degrees "
+            "of the fitted surface itself",
+            fmt::join(alike, ", "), *truth.own_degrees);
+    }
+    constexpr double worth_saying = 0.05;
+    if (truth.unjudged < worth_saying) return;
+    words += fmt::format(
+        "; {:.0f} % of the vertices are not judged, as no smooth surface goes "
+        "through them",
+        100.0 * truth.unjudged);
+    if (!creases.has_any()) words += " (if the mesh has hard edges, try --crease 40)";
 }
 
 }  // namespace
@@ -130,7 +164,7 @@ OwnExperiment own_normals(const Mesh& mesh, const std::string& whole,
     std::vector<OwnMethod> methods = methods_on(mesh, creases, truth, options);
     if (!is_file && !mesh.normals.empty()) {
         methods.push_back({{.name = "the file's own",
-                            .choices = {{"weighting", "file"}, {"arithmetic", "file"}},
+                            .choices = {{"weighting", "file"}},
                             .error = errors_of(mesh.normals, false, mesh, truth),
                             .note = "as they are stored; no time"},
                            {}});
@@ -139,13 +173,16 @@ OwnExperiment own_normals(const Mesh& mesh, const std::string& whole,
         for (OwnMethod& method : methods)
             method.command.clear();
     }
-    finish(own, std::move(methods), CostKind::time, truth.own_degrees, options);
-    if (!truth.is_enough) {
+    experiment.reference_error = truth.own_degrees;
+    finish(own, std::move(methods), {.reference = "the fitted surface itself"}, options);
+    if (truth.is_enough) {
+        add_caveats(own, truth, creases);
+    } else {
         own.recommendation.words =
             "no recommendation: the mesh is too coarse, or too rough, for a smooth surface to be "
             "fitted through it; its own normals can be the measure (--truth file)";
-        tell_finding(own);
     }
+    tell_finding(own);
     return own;
 }
 

@@ -136,7 +136,7 @@ OwnExperiment from_gradients(const Mesh& mesh, const std::vector<Basis>& bases,
         // What bakers and renderers agree on is not given up for a better average.
         if (basis.name != "mikktspace") methods.back().command.clear();
     }
-    finish(own, std::move(methods), CostKind::time, 0.0, options);
+    finish(own, std::move(methods), {}, options);
     if (own.recommendation.method) {
         const Measurement& taken = experiment.measurements[*own.recommendation.method];
         own.recommendation.words = fmt::format(
@@ -173,7 +173,7 @@ OwnExperiment from_mikktspace(const Mesh& mesh, const std::vector<Basis>& bases,
         }
         methods.push_back(method_of(basis, std::move(degrees)));
     }
-    finish(own, std::move(methods), CostKind::time, 0.0, options);
+    finish(own, std::move(methods), {}, options);
     const Measurement* nearest = nullptr;
     for (const Measurement& one : experiment.measurements) {
         if (one.method == convention.name || one.error.undefined > 0) continue;
@@ -231,7 +231,7 @@ OwnExperiment stored_frames(const Mesh& mesh, const CornerTangents& tangents,
             word_of(code.encoding), code.rounding_word());
         methods.push_back(std::move(method));
     }
-    finish(own, std::move(methods), CostKind::bytes, unseen_degrees, options);
+    finish(own, std::move(methods), {CostKind::bytes, unseen_degrees}, options);
     return own;
 }
 

@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <limits>
+#include <tuple>
 #include <vector>
 
 #include "measured_methods.h"
@@ -18,10 +19,11 @@ namespace {
 /// Those that may be taken, with what the rule looks at.
 struct Candidate {
     std::size_t index = 0;
-    double error = 0.0;    ///< RMS.
-    double bounded = 0.0;  ///< What a bound is for.
-    double cost = 0.0;     ///< Seconds or bytes; all 0 where nobody knows.
+    double error = 0.0;    ///< RMS that the method adds.
+    double bounded = 0.0;  ///< What a bound is for: the reference's own error included.
+    double cost = 0.0;     ///< Seconds or bytes; all 0 where none is known.
     double bytes = 0.0;    ///< Stored.
+    double natural = 0.0;  ///< RecommendationRule::natural_costs.
 };
 
 double cost_of(const Measurement& measurement, CostKind kind) {
@@ -30,14 +32,16 @@ double cost_of(const Measurement& measurement, CostKind kind) {
 
 std::vector<Candidate> candidates_of(const Experiment& experiment, const RecommendationRule& rule) {
     std::vector<Candidate> all;
+    const double reference = experiment.reference_error.value_or(0.0);
     bool is_measured = false;
     for (std::size_t i = 0; i < experiment.measurements.size(); ++i) {
         const Measurement& one = experiment.measurements[i];
         if (!rule.choosable.empty() && rule.choosable[i] == 0) continue;
         if (one.error.undefined > 0 || one.error.count == 0 || !std::isfinite(one.error.rms))
             continue;
-        all.push_back({i, one.error.rms, one.error.*(rule.wish.figure), cost_of(one, rule.cost),
-                       one.cost.stored_bytes});
+        all.push_back({i, one.error.rms, std::hypot(reference, one.error.*(rule.wish.figure)),
+                       cost_of(one, rule.cost), one.cost.stored_bytes,
+                       rule.natural_costs.empty() ? 0.0 : rule.natural_costs[i]});
         is_measured = is_measured || std::isfinite(all.back().cost);
     }
     if (is_measured) {
@@ -66,15 +70,16 @@ bool is_truer(const Candidate& a, const Candidate& b) {
     return a.error != b.error ? a.error < b.error : a.cost < b.cost;
 }
 bool is_cheaper(const Candidate& a, const Candidate& b) {
-    return a.cost != b.cost ? a.cost < b.cost : a.error < b.error;
+    return std::tie(a.cost, a.bytes, a.natural, a.error) <
+           std::tie(b.cost, b.bytes, b.natural, b.error);
 }
 
 /// Times are hardly known better than this.
 constexpr double alike = 1.1;
 
-const Candidate* knee_of(const std::vector<Candidate>& all, double own_error) {
+const Candidate* knee_of(const std::vector<Candidate>& all, double floor) {
     const auto worth = [&](const Candidate& one) {
-        return std::pow(std::hypot(one.error, own_error), 3.0) * one.cost;
+        return std::pow(std::hypot(one.error, floor), 3.0) * one.cost;
     };
     // Untimed, costs are all 0 and so is each product: then what decides is the error.
     const auto is_better = [&](const Candidate& a, const Candidate& b) {
@@ -97,14 +102,15 @@ std::vector<Candidate> kept_of(std::vector<Candidate> all, const Wish& wish, Cos
     return all;
 }
 
-const Candidate* taken_of(const std::vector<Candidate>& kept, const RecommendationRule& rule) {
+const Candidate* taken_of(const Experiment& experiment, const std::vector<Candidate>& kept,
+                          const RecommendationRule& rule) {
     if (rule.wish.max_error) return first_of(kept, is_cheaper);
     if (rule.wish.max_seconds && rule.cost == CostKind::time) return first_of(kept, is_truer);
-    return knee_of(kept, rule.own_error);
+    return knee_of(kept, std::hypot(experiment.reference_error.value_or(0.0), rule.unseen_error));
 }
 
-/// The least error among the efficient ones that err less.
-const Candidate* next_truer(const std::vector<Candidate>& all, const Candidate& taken) {
+/// The one of the largest error among the efficient ones that are more accurate.
+const Candidate* next_more_accurate(const std::vector<Candidate>& all, const Candidate& taken) {
     std::vector<Price> prices;
     for (const Candidate& one : all)
         prices.push_back({one.error, one.cost});
@@ -125,20 +131,27 @@ std::string words_of(const Experiment& experiment, const RecommendationRule& rul
                      const Candidate& taken, const Candidate* next) {
     const auto& all = experiment.measurements;
     const std::string& unit = experiment.error_unit;
-    std::string words =
-        fmt::format("{}: {:.3g} {} RMS", all[taken.index].method, taken.error, unit);
+    std::string words = all[taken.index].method + ": ";
+    if (experiment.reference_error) {
+        words += fmt::format("{:.3g} {} RMS expected ({} {:.3g}, this method adds {:.3g})",
+                             std::hypot(*experiment.reference_error, taken.error), unit,
+                             rule.reference, *experiment.reference_error, taken.error);
+    } else {
+        words += fmt::format("{:.3g} {} RMS", taken.error, unit);
+    }
     if (taken.cost > 0.0) words += " at " + cost_words(taken.cost, rule.cost);
-    if (next == nullptr) return words + "; none is truer";
+    if (next == nullptr) return words + "; no other method is more accurate";
     const double less = taken.error - next->error;
     const std::string gain = fmt::format("{:.2g} {} less", less, unit);
     const std::string& name = all[next->index].method;
-    if (!(taken.cost > 0.0)) return words + fmt::format("; the next better ({}): {}", name, gain);
+    if (!(taken.cost > 0.0))
+        return words + fmt::format("; the next more accurate ({}): {}", name, gain);
     const double times = next->cost / taken.cost;
     const std::string price = rule.cost == CostKind::bytes
                                   ? fmt::format("takes {}", cost_words(next->cost, rule.cost))
-                              : times < 1.05 ? std::string("takes hardly longer")
+                              : times < 1.05 ? std::string("takes about as long")
                                              : fmt::format("takes {:.2g} times as long", times);
-    return words + fmt::format("; the next better ({}) {} for {}", name, price, gain);
+    return words + fmt::format("; the next more accurate ({}) {} for {}", name, price, gain);
 }
 
 std::string refusal_words(const Experiment& experiment, const RecommendationRule& rule,
@@ -152,21 +165,24 @@ std::string refusal_words(const Experiment& experiment, const RecommendationRule
         const Candidate* least = first_of(
             all, [](const Candidate& a, const Candidate& b) { return a.bounded < b.bounded; });
         if (!(least->bounded <= *wish.max_error)) {
-            return fmt::format("none keeps within {:g} {}: the least is {:.3g}, with {}",
-                               *wish.max_error, experiment.error_unit, least->bounded,
-                               name(*least));
+            std::string words =
+                fmt::format("no method is within {:g} {}: the least is {:.3g}, with {}",
+                            *wish.max_error, experiment.error_unit, least->bounded, name(*least));
+            if (experiment.reference_error && *experiment.reference_error > 0.0)
+                words += fmt::format(" ({} {:.3g})", rule.reference, *experiment.reference_error);
+            return words;
         }
         Wish error_alone = wish;
         error_alone.max_seconds.reset();
         const std::vector<Candidate> true_enough = kept_of(all, error_alone, rule.cost);
         const Candidate* cheapest = first_of(true_enough, is_cheaper);
-        return fmt::format("none keeps within {:g} {} and {}: that error takes {}, with {}",
+        return fmt::format("no method is within {:g} {} and {}: that error takes {}, with {}",
                            *wish.max_error, experiment.error_unit,
                            seconds_in_words(*wish.max_seconds), seconds_in_words(cheapest->cost),
                            name(*cheapest));
     }
     const Candidate* cheapest = first_of(all, is_cheaper);
-    return fmt::format("none keeps within {}: the fastest takes {}, with {}",
+    return fmt::format("no method is within {}: the fastest takes {}, with {}",
                        seconds_in_words(*wish.max_seconds), seconds_in_words(cheapest->cost),
                        name(*cheapest));
 }
@@ -177,12 +193,12 @@ Recommendation recommended(const Experiment& experiment, const RecommendationRul
     const std::vector<Candidate> all = candidates_of(experiment, rule);
     const std::vector<Candidate> kept = kept_of(all, rule.wish, rule.cost);
     Recommendation result;
-    const Candidate* taken = taken_of(kept, rule);
+    const Candidate* taken = taken_of(experiment, kept, rule);
     if (taken == nullptr) {
         result.words = refusal_words(experiment, rule, all);
         return result;
     }
-    const Candidate* next = next_truer(all, *taken);
+    const Candidate* next = next_more_accurate(all, *taken);
     result.method = taken->index;
     if (next != nullptr) result.next = next->index;
     result.words = words_of(experiment, rule, *taken, next);

@@ -132,10 +132,11 @@ Experiment highlight_experiment(const Drawing& drawing, const RunOptions& option
         "Both lack the glow around GGX's highlights: Blinn's are FLIP {:.3f} (RMS) off those of "
         "the metal, Phong's of the same width {:.3f}. An exponent taken over from the other model "
         "without the factor of 4 makes "
-        "{:.3f} of Blinn's and {:.3f} of Phong's. Frames took {} by Phong, {} by Blinn-Phong and "
-        "{} by GGX itself.",
-        rms(2), rms(0), rms(3), rms(1), frame_words(experiment.measurements[0]),
-        frame_words(experiment.measurements[2]), frame_words(experiment.measurements[4]));
+        "{:.3f} of Blinn's and {:.3f} of Phong's.",
+        rms(2), rms(0), rms(3), rms(1));
+    experiment.finding += frame_times({{"Phong", experiment.measurements[0]},
+                                       {"Blinn-Phong", experiment.measurements[2]},
+                                       {"GGX", experiment.measurements[4]}});
     return experiment;
 }
 

@@ -52,12 +52,11 @@ std::string interpolation_finding(const Experiment& experiment) {
         return method_in(experiment, name_on_torus(lighting_choices.at(choice).name, around));
     };
     return fmt::format(
-        "With {} triangles, flat shading is off by FLIP {:.3f} (RMS), Gouraud's by {:.3f} and "
-        "Phong's by {:.3f}; Gouraud's needs {} triangles to come to {:.3f}. Frames took {}, {} and "
-        "{}.",
-        torus_triangles(24), at(0, 24).error.rms, at(1, 24).error.rms, at(2, 24).error.rms,
-        torus_triangles(96), at(1, 96).error.rms, frame_words(at(0, 24)), frame_words(at(1, 24)),
-        frame_words(at(2, 24)));
+               "With {} triangles, flat shading is off by FLIP {:.3f} (RMS), Gouraud's by {:.3f} "
+               "and Phong's by {:.3f}; Gouraud's needs {} triangles to come to {:.3f}.",
+               torus_triangles(24), at(0, 24).error.rms, at(1, 24).error.rms, at(2, 24).error.rms,
+               torus_triangles(96), at(1, 96).error.rms) +
+           frame_times({{"flat", at(0, 24)}, {"Gouraud", at(1, 24)}, {"Phong", at(2, 24)}});
 }
 
 }  // namespace

@@ -69,11 +69,12 @@ Experiment reflection_experiment(const Drawing& drawing, const RunOptions& optio
     const auto& found = experiment.measurements;
     experiment.finding = fmt::format(
         "The mirror is FLIP {:.3f} (RMS) off with {} a face, {:.3f} with {} and {:.3f} with {}, "
-        "which take {:.2g}, {:.2g} and {:.2g} MB; frames took {}, {} and {}.",
+        "which take {:.2g}, {:.2g} and {:.2g} MB.",
         found[1].error.rms, all[1].name, found[3].error.rms, all[3].name, found.back().error.rms,
         all.back().name, all[1].stored_bytes * 1e-6, all[3].stored_bytes * 1e-6,
-        all.back().stored_bytes * 1e-6, frame_words(found[1]), frame_words(found[3]),
-        frame_words(found.back()));
+        all.back().stored_bytes * 1e-6);
+    experiment.finding += frame_times(
+        {{all[1].name, found[1]}, {all[3].name, found[3]}, {all.back().name, found.back()}});
     return experiment;
 }
 

@@ -57,9 +57,10 @@ Experiment unit_normal_experiment(const RunOptions& options) {
     measure_formulas(unit_normal_methods(samples), samples.true_radiances(), options, experiment);
     experiment.charts = {chart_by_turn()};
     experiment.finding = fmt::format(
-        "Where corners' normals are {} degrees apart, light from the interpolated normal as it is "
-        "is {:.2g} (RMS; at most {:.2g}) too dark or bright, of {:.2g} at the most; one step of "
-        "Newton's leaves {:.2g}, a square root {:.1g}.",
+        "Where corners' normals are {} degrees apart, the interpolated normal without "
+        "normalization gives light with an RMS error of {:.2g} (at most {:.2g}), where the "
+        "brightest light is {:.2g}; one Newton step reduces the RMS error to {:.2g}, a square root "
+        "to {:.1g}.",
         degrees, experiment.measurements[0].error.rms, experiment.measurements[0].error.max,
         samples.brightest(), experiment.measurements[1].error.rms,
         experiment.measurements[2].error.rms);

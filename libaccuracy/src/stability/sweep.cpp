@@ -10,14 +10,14 @@
 namespace relief {
 namespace {
 
-/// Those that break at each value, as words.
+/// The methods that fail from each value on, in words.
 std::string breaks_of(const Chart& chart) {
     std::map<double, std::vector<std::string>> broken;
     for (const Curve& curve : chart.curves) {
         if (curve.breaks_at) broken[*curve.breaks_at].push_back(curve.method);
     }
-    std::string text = chart.title + ": ";
-    if (broken.empty()) return text + "all hold";
+    std::string text = fmt::format("{} ({}): ", chart.title, chart.x_label);
+    if (broken.empty()) return text + "all are within the limit";
     std::size_t count = 0;
     for (const auto& [value, methods] : broken) {
         count += methods.size();
@@ -27,10 +27,10 @@ std::string breaks_of(const Chart& chart) {
         // Powers of ten: of counts as people write them.
         const std::string where =
             value < 1e4 ? fmt::format("{:g}", value) : fmt::format("{:.0e}", value);
-        text += fmt::format(" break{} at {}, ", methods.size() == 1 ? "s" : "", where);
+        text += fmt::format(" fail{} from {} on, ", methods.size() == 1 ? "s" : "", where);
     }
-    if (count == chart.curves.size()) return text + "none holds";
-    return text + "all others hold";
+    if (count == chart.curves.size()) return text + "none is within the limit everywhere";
+    return text + "all others are within the limit";
 }
 
 }  // namespace
@@ -83,7 +83,8 @@ void measure_swept(std::vector<MeasuredMethod> methods, const Sweeps& sweeps,
     experiment.error_unit = "degrees";
     measure_methods(methods, options, {.all_threads = false, .memory = false}, experiment);
     experiment.charts = sweeps.charts();
-    experiment.finding = fmt::format("Beyond {} degree: {}", broken_degrees, sweeps.breaks());
+    experiment.finding = fmt::format("A method fails where its RMS error exceeds {} degree. {}",
+                                     broken_degrees, sweeps.breaks());
 }
 
 }  // namespace relief

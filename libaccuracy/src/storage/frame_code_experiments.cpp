@@ -11,7 +11,7 @@
 namespace relief {
 namespace {
 
-/// "in 4 bytes angle10, best is nearest: 0.08 degrees RMS, 0.21 at most; ..."
+/// "in 4 bytes 'angle10, best' has the least error, 0.08 degrees RMS, 0.21 at most; ..."
 std::string frame_code_finding(const Experiment& experiment) {
     std::vector<std::string> parts;
     for (const double bytes : {4.0, 8.0}) {
@@ -21,13 +21,14 @@ std::string frame_code_finding(const Experiment& experiment) {
             if (best == nullptr || one.error.rms < best->error.rms) best = &one;
         }
         if (best == nullptr) continue;
-        parts.push_back(fmt::format("in {} bytes {} is nearest: {:.2g} degrees RMS, {:.2g} at most",
-                                    bytes, best->method, best->error.rms, best->error.max));
+        parts.push_back(
+            fmt::format("in {} bytes '{}' has the least error, {:.2g} degrees RMS, {:.2g} at most",
+                        bytes, best->method, best->error.rms, best->error.max));
     }
-    return fmt::format("Of a frame's 28 bytes most can go: {}.", fmt::join(parts, "; "));
+    return fmt::format("A frame of floats takes 28 bytes; {}.", fmt::join(parts, "; "));
 }
 
-/// "Looking for the best codes, degrees RMS: octahedral8 0.44 to 0.35 in 3 times the time; ..."
+/// "Searching for the best codes changes ...: octahedral8 0.44 to 0.35 and takes 3 times as long"
 std::string price_of_best(const Experiment& experiment) {
     std::vector<std::string> parts;
     const auto& all = experiment.measurements;
@@ -38,11 +39,12 @@ std::string price_of_best(const Experiment& experiment) {
         std::string part = fmt::format("{} {:.2g} to {:.2g}", value_of(all[i], "encoding"),
                                        all[i].error.rms, all[i + 1].error.rms);
         const double times = median_seconds(all[i + 1]) / median_seconds(all[i]);
-        if (times > 0.0) part += fmt::format(" in {:.1f} times the time", times);
+        if (times > 0.0) part += fmt::format(" and takes {:.1f} times as long", times);
         parts.push_back(std::move(part));
     }
-    return fmt::format("What looking for the best codes brings in 4 bytes, degrees RMS: {}.",
-                       fmt::join(parts, "; "));
+    return fmt::format(
+        "Searching for the best codes changes the error in 4 bytes, degrees RMS: {}.",
+        fmt::join(parts, "; "));
 }
 
 Experiment on_even_frames(std::size_t count) {

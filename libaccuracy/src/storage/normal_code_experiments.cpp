@@ -35,7 +35,7 @@ Experiment of_texels(const std::string& id, std::size_t texels) {
     return experiment;
 }
 
-/// "in 2 bytes octahedral 2 x 8 bit, best is nearest: 0.32 degrees RMS, 0.66 at most; ..."
+/// "The least errors: in 2 bytes 'octahedral 2 x 8 bit, best', 0.32 degrees RMS, 0.66 at most; ..."
 std::string best_by_size(const Experiment& experiment) {
     std::vector<std::string> parts;
     for (const double bytes : {2.0, 3.0, 4.0, 6.0}) {
@@ -44,10 +44,10 @@ std::string best_by_size(const Experiment& experiment) {
             if (one.cost.stored_bytes != bytes) continue;
             if (best == nullptr || one.error.rms < best->error.rms) best = &one;
         }
-        parts.push_back(fmt::format("in {} bytes {}: {:.2g} degrees RMS, {:.2g} at most", bytes,
+        parts.push_back(fmt::format("in {} bytes '{}', {:.2g} degrees RMS, {:.2g} at most", bytes,
                                     best->method, best->error.rms, best->error.max));
     }
-    return fmt::format("What is nearest {}.", fmt::join(parts, "; "));
+    return fmt::format("The least errors: {}.", fmt::join(parts, "; "));
 }
 
 /// "8 bits with zero at 128 have an error of 0.18 degrees RMS if they are read so, but of 0.37 ..."

@@ -91,14 +91,16 @@ std::string frames_finding(const Experiment& experiment) {
         return method_in(experiment, name_on_torus(frames, around));
     };
     return fmt::format(
-        "With {} triangles pictures are off by FLIP {:.3f} (RMS) with stored frames and {:.3f} "
-        "with derived ones, with {} by {:.3f} and {:.3f}; frames of {} triangles took {} and {}, "
-        "and {} without a normal map.",
-        torus_triangles(drawn_slices[0]), at("stored", drawn_slices[0]).error.rms,
-        at("derived", drawn_slices[0]).error.rms, torus_triangles(drawn_slices[2]),
-        at("stored", drawn_slices[2]).error.rms, at("derived", drawn_slices[2]).error.rms,
-        torus_triangles(middle_slices), frame_words(at("stored", middle_slices)),
-        frame_words(at("derived", middle_slices)), frame_words(at("no normal map", middle_slices)));
+               "With {} triangles pictures are off by FLIP {:.3f} (RMS) with stored frames and "
+               "{:.3f} with derived ones, with {} by {:.3f} and {:.3f}.",
+               torus_triangles(drawn_slices[0]), at("stored", drawn_slices[0]).error.rms,
+               at("derived", drawn_slices[0]).error.rms, torus_triangles(drawn_slices[2]),
+               at("stored", drawn_slices[2]).error.rms, at("derived", drawn_slices[2]).error.rms) +
+           frame_times({{fmt::format("stored, {} triangles", torus_triangles(middle_slices)),
+                         at("stored", middle_slices)},
+                        {fmt::format("derived, {} triangles", torus_triangles(middle_slices)),
+                         at("derived", middle_slices)},
+                        {"no normal map", at("no normal map", middle_slices)}});
 }
 
 }  // namespace

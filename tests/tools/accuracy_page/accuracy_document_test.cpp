@@ -18,8 +18,12 @@
 namespace relief::tools {
 namespace {
 
-/// Of each experiment, as "`normals/torus-jittered`, torus, ... 8192 triangles": RMS by method.
-using Page = std::map<std::string, std::map<std::string, std::string>>;
+struct PageRow {
+    std::string rms;
+    std::string line;  ///< All of it.
+};
+/// Of each experiment, as "`normals/torus-jittered`, torus, ... 8192 triangles": rows by method.
+using Page = std::map<std::string, std::map<std::string, PageRow>>;
 
 std::string without_bold(std::string text) {
     std::erase(text, '*');
@@ -29,7 +33,7 @@ std::string without_bold(std::string text) {
 Page numbers_of_the_page() {
     std::ifstream file(test::source_directory() / "docs/accuracy.md");
     Page page;
-    std::map<std::string, std::string>* rows = nullptr;
+    std::map<std::string, PageRow>* rows = nullptr;
     for (std::string line; std::getline(file, line);) {
         if (line.starts_with("`")) rows = &page[line.substr(0, line.rfind("; errors in "))];
         if (rows == nullptr || !line.starts_with("| ") || line.starts_with("| |")) continue;
@@ -38,7 +42,8 @@ Page numbers_of_the_page() {
         std::string rms;
         std::getline(cells, method, '|');
         std::getline(cells, rms, '|');
-        (*rows)[without_bold(method.substr(0, method.size() - 1))] = rms.substr(1, rms.size() - 2);
+        (*rows)[without_bold(method.substr(0, method.size() - 1))] = {rms.substr(1, rms.size() - 2),
+                                                                      line};
     }
     return page;
 }
@@ -69,7 +74,12 @@ TEST_P(AccuracyDocumentOf, ASubjectHoldsTheErrorsThatAreMeasured) {
         for (const Measurement& measurement : one.measurements) {
             const auto row = shown->second.find(measurement.method);
             if (row == shown->second.end()) continue;
-            EXPECT_NEAR(std::stod(row->second), measurement.error.rms, tolerance_of(row->second))
+            const std::size_t undefined = measurement.error.undefined;
+            EXPECT_EQ(row->second.line.find(std::to_string(undefined) + " (") != std::string::npos,
+                      undefined > 0)
+                << one.id << ": " << measurement.method << " must show what has no result";
+            EXPECT_NEAR(std::stod(row->second.rms), measurement.error.rms,
+                        tolerance_of(row->second.rms))
                 << one.id << ": " << measurement.method
                 << " (run relief-accuracy and scripts/accuracy-page again)";
             ++compared;
@@ -114,8 +124,8 @@ TEST(AccuracyDocument, HoldsTheErrorsOfTheSamplesInData) {
             for (const auto& measurement : one["measurements"]) {
                 const auto row = shown->second.find(measurement["method"].get<std::string>());
                 if (row == shown->second.end()) continue;
-                EXPECT_NEAR(std::stod(row->second), measurement["error"]["rms"].get<double>(),
-                            tolerance_of(row->second))
+                EXPECT_NEAR(std::stod(row->second.rms), measurement["error"]["rms"].get<double>(),
+                            tolerance_of(row->second.rms))
                     << command << ": " << measurement["method"];
                 ++compared;
             }

@@ -69,7 +69,7 @@ TEST_F(ReportHtml, TablesCanBeReadWithoutAScript) {
     EXPECT_THAT(page_, HasSubstr("<td>0.123</td><td>0.0900</td><td>0.300</td><td>5</td><td>0</td>"
                                  "<td>2.00 ms <small>1.90–2.20 ms</small></td>"
                                  "<td>1.20 ms <small>1.10–1.30 ms</small></td><td>2.0 MB</td>"));
-    EXPECT_THAT(page_, HasSubstr("<td>–</td><td>–</td><td>–</td><td>–</td><td>100</td>"
+    EXPECT_THAT(page_, HasSubstr("<td>–</td><td>–</td><td>–</td><td>–</td><td>100 (100 %)</td>"
                                  "<td>500 µs <small>500–600 µs</small></td>"))
         << "what has no error still has its time";
     EXPECT_EQ(count(R"(<span class="efficient")"), 2U);
@@ -81,7 +81,29 @@ TEST_F(ReportHtml, ANoteThatAllMethodsShareIsSaidOnce) {
         one["note"] = "drawn by <llvmpipe>";
     page_ = report_html(report_, folder_.path());
     EXPECT_EQ(count("drawn by &lt;llvmpipe&gt;"), 1U);
-    EXPECT_THAT(page_, HasSubstr("lie. drawn by &lt;llvmpipe&gt;</caption>"));
+    EXPECT_THAT(page_, HasSubstr(". drawn by &lt;llvmpipe&gt;</caption>"));
+}
+
+TEST_F(ReportHtml, UndefinedResultsStandInTheirRowWithTheirShare) {
+    EXPECT_THAT(page_, HasSubstr(">undefined</th>"));
+    EXPECT_THAT(page_, HasSubstr("<td>0.0500</td><td>2 (2 %)</td>"));
+    EXPECT_THAT(page_, HasSubstr("Undefined results are counted, and left out of the other"));
+}
+
+TEST_F(ReportHtml, BothPartsOfAnErrorAndFindingsStandInTheSummary) {
+    auto& own = report_["experiments"][1];
+    own["finding"] = "xyz: 0.5 degrees RMS expected (the map itself 0.3, this method adds 0.4).";
+    own["input_findings"] = {"2 x non-finite height (texel 5, 17): read as <0>"};
+    own["measurements"][0]["expected_error"] = {{"map", 0.3}, {"added", 0.4}, {"total", 0.5}};
+    page_ = report_html(report_, folder_.path());
+    const std::string summary =
+        page_.substr(page_.find("heading-summary"),
+                     page_.find("class=\"machine\"") - page_.find("heading-summary"));
+    EXPECT_THAT(summary, HasSubstr("expected (the map itself 0.3, this method adds 0.4)"));
+    EXPECT_THAT(summary, HasSubstr("(texel 5, 17): read as &lt;0&gt;"));
+    EXPECT_THAT(page_, HasSubstr(">expected</th>"));
+    EXPECT_THAT(page_, HasSubstr("<td>0.500</td>"));
+    EXPECT_THAT(page_, HasSubstr("Expected is the error of the reference itself and that of"));
 }
 
 TEST_F(ReportHtml, ColumnsThatSayNothingAreLeftOut) {
@@ -91,7 +113,8 @@ TEST_F(ReportHtml, ColumnsThatSayNothingAreLeftOut) {
     EXPECT_THAT(article, HasSubstr("<td>1.25 B</td>"));
     EXPECT_THAT(article, Not(HasSubstr("one thread")));
     EXPECT_THAT(article, Not(HasSubstr("PSNR")));
-    EXPECT_THAT(article, Not(HasSubstr("no result")));
+    EXPECT_THAT(article, Not(HasSubstr(">undefined</th>")));
+    EXPECT_THAT(article, Not(HasSubstr(">expected</th>")));
     EXPECT_EQ(count(">PSNR, dB</th>"), 1U);
 }
 

@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "commands.h"
+#include "common/map_choices.h"
 #include "common/quoted.h"
 #include "common/text.h"
 #include "experiment_options.h"
@@ -83,6 +84,12 @@ std::string short_table(const OwnExperiment& own) {
     return table_of(shown);
 }
 
+/// What is wrong with an input, or in doubt: of its first experiment, as all share the input.
+std::vector<std::string> findings_of(const std::vector<OwnExperiment>& found) {
+    if (found.empty() || found.front().experiment.input_findings.empty()) return {"none"};
+    return found.front().experiment.input_findings;
+}
+
 OwnOptions own_options(const OwnCommandOptions& options, Stages& stages) {
     OwnOptions own;
     own.run = run_options(options.how);
@@ -109,7 +116,10 @@ ExitCode run(const OwnCommandOptions& options) {
         std::string taken;
         std::vector<OwnExperiment> found = measure(input, options.request, own, taken);
         stages.clear_progress();
-        if (prints_tables(options.how)) print_entry("input", input.file.string() + ": " + taken);
+        if (prints_tables(options.how)) {
+            print_entry("input", input.file.string() + ": " + taken);
+            print_entry("findings", findings_of(found));
+        }
         for (OwnExperiment& one : found) {
             if (prints_tables(options.how)) fmt::print("\n{}", short_table(one));
             keeps_wish = keeps_wish && one.recommendation.method.has_value();
@@ -156,6 +166,10 @@ void add_input_options(CLI::App& app, OwnRequest& request) {
     add_number(app, "--strength", "S", request.strength, {-1e6, 1e6, "texels"},
                "Of height maps: the height in texels that the value 1.0 stands for. Default: 16.")
         .group(image);
+    add_choice(app, "--channel", request.channel, height_channel_choices(),
+               "Of height maps, what of a color is the height, as for relief-bake bump; the image "
+               "is then one of heights. Default: mean, with a finding where the channels differ.")
+        .group(image);
     request.wrap.reset();
     add_value(app, "--wrap", "WORD",
               "Of height maps, what lies beyond the border: repeat, clamp, mirror, or auto, by "
@@ -174,7 +188,10 @@ void add_input_options(CLI::App& app, OwnRequest& request) {
 void add_wish_options(CLI::App& app, OwnCommandOptions& options) {
     const char* group = "What to recommend; neither: where more time buys little";
     add_number(app, "--max-error", "DEG", options.max_error, {0.0, 180.0, "degrees"},
-               "The cheapest method that errs no more; exit 1 where an experiment has none.")
+               "The cheapest method whose expected error is within this: what the map or model "
+               "itself is expected to be off, and what the method adds. Without times, the one "
+               "that stores the fewest bytes, then the one of the fewest operations. Exit 1 where "
+               "an experiment has none.")
         .group(group);
     const Choices<BoundKind> kinds = {
         {"rms", BoundKind::rms}, {"p99", BoundKind::p99}, {"max", BoundKind::max}};
@@ -182,7 +199,7 @@ void add_wish_options(CLI::App& app, OwnCommandOptions& options) {
                "Which error that is: root mean square, 99 of 100, or the greatest. Default: rms.")
         .group(group);
     add_number(app, "--max-time", "MS", options.max_milliseconds, {0.0, 1e9, "milliseconds"},
-               "The truest method that takes no longer.")
+               "The most accurate method that takes no longer.")
         .group(group);
 }
 

@@ -6,9 +6,12 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <glm/trigonometric.hpp>
 #include <set>
 
+#include "common/findings.h"
+#include "common/map_choices.h"
 #include "common/map_models.h"
 #include "common/model_file.h"
 #include "common/normal_map_input.h"
@@ -86,9 +89,57 @@ ImageKind kind_shown(const std::filesystem::path& file) {
                                                                        : ImageKind::normals;
 }
 
+/// What speaks against colors being heights: channels that differ, an alpha that varies.
+void add_color_findings(const Image& image, Report& report) {
+    // What JPEG makes of grey.
+    constexpr float tolerance = 4.0F / 255.0F;
+    const Image floats = to_float(image);
+    const std::span<const float> samples = floats.as<float>();
+    const auto channels = static_cast<std::size_t>(image.channels);
+    for (std::size_t texel = 0; texel < samples.size() / channels; ++texel) {
+        const auto colors = samples.subspan(texel * channels, channels);
+        if (channels >= 3) {
+            const auto [least, greatest] = std::minmax({colors[0], colors[1], colors[2]});
+            if (greatest - least > tolerance) {
+                report.add("texel whose red, green and blue differ", "texel", texel,
+                           "their mean is taken for the height, which a photograph or a texture "
+                           "of packed masks does not hold (--channel takes one of them)");
+            }
+        }
+        if (channels % 2 == 0 &&
+            std::abs(colors[channels - 1] - samples[channels - 1]) > tolerance) {
+            report.add("texel whose alpha differs from the first one's", "texel", texel,
+                       "alpha is left out (--channel alpha takes it for the height)");
+        }
+    }
+}
+
+void add_non_finite(const Image& heights, Report& report) {
+    if (heights.bits() != 32) return;
+    const std::span<const float> all = heights.as<float>();
+    for (std::size_t texel = 0; texel < all.size(); ++texel) {
+        if (!std::isfinite(all[texel]))
+            report.add("non-finite height", "texel", texel,
+                       "read as the mean of the nearest finite heights");
+    }
+}
+
+/// What is wrong with a height map, or in doubt; nothing is known of one too large for memory.
+std::vector<std::string> height_findings(const HeightMapFile& map, const OwnRequest& request) {
+    Report report;
+    if (!map.is_streamed()) {
+        if (!request.channel && map.info().channels > 1)
+            add_color_findings(read_image(map.path(), ImageUse::data), report);
+        add_non_finite(map.map().heights, report);
+    }
+    Findings findings;
+    findings.add("", report);
+    return findings.lines();
+}
+
 std::vector<OwnExperiment> measure_heights(const OwnInput& input, const OwnRequest& request,
-                                           const OwnOptions& options, std::string& taken) {
-    const HeightMapFile map(input.file);
+                                           OwnOptions options, std::string& taken) {
+    const HeightMapFile map(input.file, {request.channel.value_or(HeightChannel::mean)});
     const int width = map.info().width;
     const int height = map.info().height;
     const BumpSampleParts parts = {
@@ -100,7 +151,22 @@ std::vector<OwnExperiment> measure_heights(const OwnInput& input, const OwnReque
     bump.wrap = request.wrap.value_or(WrapsOrAuto{}).value_or(survey.tiling.wraps());
     taken += fmt::format("a height map of {} bits, {:g} texels high, {} at the border",
                          map.info().bits, bump.strength, wrap_words(*bump.wrap));
-    return {measure_own_heights(parts.sample(survey.parts), {width, height}, bump, options)};
+    if (request.channel) {
+        const std::string name = name_of(*request.channel, height_channel_choices());
+        taken += fmt::format(", of its channel {}", name);
+        options.height_arguments = " --channel " + name;
+    }
+    std::vector<OwnExperiment> all = {
+        measure_own_heights(parts.sample(survey.parts), {width, height}, bump, options)};
+    all.front().experiment.input_findings = height_findings(map, request);
+    return all;
+}
+
+/// The extension of a format that relief-bake writes and that holds the same codes.
+std::string lossless_extension(const std::filesystem::path& file, int bits) {
+    const std::string own = extension_of(file);
+    if (bits == 32) return own == ".tif" || own == ".tiff" ? own : ".exr";
+    return own == ".tif" || own == ".tiff" ? own : ".png";
 }
 
 std::vector<OwnExperiment> measure_normals(const OwnInput& input, const OwnOptions& options,
@@ -110,17 +176,26 @@ std::vector<OwnExperiment> measure_normals(const OwnInput& input, const OwnOptio
     const Image normals =
         decode_normal_map(map.image, map.green.value_or(Green::up), map.flat, report);
     taken += fmt::format("a normal map of {} bits: {}", map.image.bits(), map.words);
-    return {measure_own_normals(normals, map.image.bits(), options,
-                                options.run.is_quick ? quick_texels : texels_to_measure)};
+    const NormalMapOnFile stored = {map.image.bits(), map.image.channels,
+                                    lossless_extension(input.file, map.image.bits())};
+    std::vector<OwnExperiment> all = {measure_own_normals(
+        normals, stored, options, options.run.is_quick ? quick_texels : texels_to_measure)};
+    Findings findings;
+    findings.add("", report);
+    all.front().experiment.input_findings = findings.lines();
+    return all;
 }
 
 std::vector<OwnExperiment> measure_image(const OwnInput& input, const OwnRequest& request,
                                          const OwnOptions& options, std::string& taken) {
-    const ImageKind kind = request.image_kind ? *request.image_kind : kind_shown(input.file);
+    const bool is_told = request.image_kind || request.channel;
+    const ImageKind kind = request.image_kind ? *request.image_kind
+                           : request.channel  ? ImageKind::heights
+                                              : kind_shown(input.file);
     std::vector<OwnExperiment> all = kind == ImageKind::heights
                                          ? measure_heights(input, request, options, taken)
                                          : measure_normals(input, options, taken);
-    if (!request.image_kind)
+    if (!is_told)
         taken +=
             kind == ImageKind::heights ? " (else: --image normals)" : " (else: --image heights)";
     return all;
@@ -144,6 +219,7 @@ void check_effects(const OwnRequest& request, const std::vector<OwnInput>& input
     need(images, request.image_kind.has_value(), "--image", "images");
     need(heights, request.strength.has_value(), "--strength", "height maps");
     need(heights, request.wrap.has_value(), "--wrap", "height maps");
+    need(heights, request.channel.has_value(), "--channel", "height maps");
 }
 
 }  // namespace
@@ -188,6 +264,8 @@ std::string words_of(const OwnRequest& request) {
         words += *request.truth == NormalTruth::file ? " --truth file" : " --truth surface";
     if (request.crease_degrees) words += fmt::format(" --crease {:g}", *request.crease_degrees);
     if (request.strength) words += fmt::format(" --strength {:g}", *request.strength);
+    if (request.channel)
+        words += " --channel " + name_of(*request.channel, height_channel_choices());
     if (request.wrap && request.wrap->is_settled())
         words += " --wrap " + wrap_words(request.wrap->value_or({}));
     if (request.size) words += fmt::format(" --size {}", *request.size);

@@ -11,6 +11,7 @@
 
 #include "common/wrap_option.h"
 #include "relief/accuracy/own.h"
+#include "relief/mesh/height_map.h"
 
 namespace relief::tools {
 
@@ -24,6 +25,7 @@ struct OwnRequest {
     std::optional<NormalTruth> truth;
     std::optional<double> crease_degrees;
     std::optional<double> strength;
+    std::optional<HeightChannel> channel;
     std::optional<WrapsOrAuto> wrap;
     std::optional<int> size;
 };

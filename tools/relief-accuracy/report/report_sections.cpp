@@ -157,6 +157,14 @@ std::string command_html(const ordered_json& experiment) {
     return command.empty() ? "" : fmt::format("<code class=\"command\">{}</code>", command);
 }
 
+/// What is wrong with the input, or in doubt: a line for each.
+std::string findings_html(const ordered_json& experiment) {
+    std::string html;
+    for (const ordered_json& finding : experiment.value("input_findings", ordered_json::array()))
+        html += (html.empty() ? "" : "<br>") + html_escaped(finding.get<std::string>());
+    return html;
+}
+
 std::string experiment_html(const ordered_json& experiment, std::size_t index,
                             const std::filesystem::path& folder) {
     const std::string finding = text_of(experiment, "finding");
@@ -172,6 +180,7 @@ std::string experiment_html(const ordered_json& experiment, std::size_t index,
                 counted(experiment.at("measurements").size(), "method")) +
             entry("Ground truth", text_of(experiment, "truth")) +
             entry("Input", text_of(experiment, "input")) +
+            entry("Findings", findings_html(experiment)) +
             entry("To repeat", command_html(experiment)) + "</dl>\n";
     if (!experiment.at("measurements").empty())
         html +=
@@ -228,8 +237,10 @@ std::string summary_html(const ordered_json& report) {
             if (place == findings_shown && left > 1)
                 html += fmt::format("</ul>\n<details><summary>{} more</summary>\n<ul>\n", left);
             const ordered_json& experiment = report.at("experiments")[subject.experiments[place]];
-            html += fmt::format("<li>{} <span>{}</span></li>\n", link_to(experiment),
-                                text_of(experiment, "finding"));
+            const std::string findings = findings_html(experiment);
+            html += fmt::format("<li>{} <span>{}</span>{}</li>\n", link_to(experiment),
+                                text_of(experiment, "finding"),
+                                findings.empty() ? "" : "<br><strong>" + findings + "</strong>");
         }
         html += subject.experiments.size() > findings_shown + 1 ? "</ul></details></section>\n"
                                                                 : "</ul></section>\n";

@@ -56,6 +56,17 @@ HtmlColumn time_column(const std::string& head, const std::string& path) {
             [path](const ordered_json& measurement) { return timing_cell(measurement, path); }};
 }
 
+/// How many results have no error: "128826 (35 %)" of all.
+HtmlColumn undefined_column() {
+    const std::string path = "/error/undefined";
+    return {"undefined", path, [path](const ordered_json& measurement) {
+                const double undefined = number_at(measurement, path).value_or(0.0);
+                const double all = undefined + number_at(measurement, "/error/count").value_or(0.0);
+                if (undefined == 0.0) return std::string("0");
+                return fmt::format("{:.0f} ({:.2g} %)", undefined, 100.0 * undefined / all);
+            }};
+}
+
 /// Whether any measurement has a number other than 0 there.
 bool says_something(const ordered_json& measurements, const std::string& path) {
     return std::any_of(measurements.begin(), measurements.end(), [&](const ordered_json& one) {
@@ -67,12 +78,13 @@ std::vector<HtmlColumn> columns_of(const ordered_json& measurements) {
     std::vector<HtmlColumn> columns = {
         column("RMS", "/error/rms", number_text), column("mean", "/error/mean", number_text),
         column("99 %", "/error/p99", number_text), column("max", "/error/max", number_text)};
-    for (const HtmlColumn& optional : {column("PSNR, dB", "/error/psnr", number_text),
-                                       column("no result", "/error/undefined", number_text),
-                                       time_column("one thread", "/cost/one_thread"),
-                                       time_column("all threads", "/cost/all_threads"),
-                                       column("memory", "/cost/peak_bytes", bytes_text),
-                                       column("stored", "/cost/stored_bytes", bytes_text)}) {
+    for (const HtmlColumn& optional :
+         {column("PSNR, dB", "/error/psnr", number_text), undefined_column(),
+          column("expected", "/expected_error/total", number_text),
+          time_column("one thread", "/cost/one_thread"),
+          time_column("all threads", "/cost/all_threads"),
+          column("memory", "/cost/peak_bytes", bytes_text),
+          column("stored", "/cost/stored_bytes", bytes_text)}) {
         if (says_something(measurements, optional.path)) columns.push_back(optional);
     }
     return columns;
@@ -86,6 +98,25 @@ std::string common_note(const ordered_json& measurements) {
         std::all_of(measurements.begin(), measurements.end(),
                     [&](const ordered_json& one) { return one.value("note", "") == note; });
     return is_common ? note : "";
+}
+
+/// What the columns and marks of a table mean, of those that it has.
+std::string caption_words(const ordered_json& measurements, const std::string& common_note) {
+    std::string words;
+    if (says_something(measurements, "/error/undefined"))
+        words += "Undefined results are counted, and left out of the other figures. ";
+    if (says_something(measurements, "/expected_error/total"))
+        words +=
+            "Expected is the error of the reference itself and that of the method, as the root of "
+            "the sum of squares. ";
+    if (says_something(measurements, "/cost/one_thread/median") ||
+        says_something(measurements, "/cost/all_threads/median"))
+        words +=
+            "Times are medians, with the range from the 10th to the 90th percentile; ◆ marks "
+            "methods that no other one beats in both error and time. ";
+    if (says_something(measurements, "/cost/stored_bytes"))
+        words += "Stored is the size of one result (a vertex's frame, a texel). ";
+    return words + html_escaped(common_note);
 }
 
 std::string method_cell(const ordered_json& measurement, bool has_note) {
@@ -151,9 +182,10 @@ std::string measurements_table(const ordered_json& experiment) {
         rows += "</tr>\n";
     }
     return fmt::format(
-        "<table class=\"measurements\"><caption>Errors in {}. Times are medians, with where the "
-        "middle 80 % lie. {}</caption>\n<thead><tr>{}</tr></thead>\n<tbody>\n{}</tbody></table>\n",
-        html_escaped(experiment.value("error_unit", "")), html_escaped(common), head, rows);
+        "<table class=\"measurements\"><caption>Errors in {}. {}</caption>\n"
+        "<thead><tr>{}</tr></thead>\n<tbody>\n{}</tbody></table>\n",
+        html_escaped(experiment.value("error_unit", "")), caption_words(measurements, common), head,
+        rows);
 }
 
 std::string chart_table(const ordered_json& chart) {

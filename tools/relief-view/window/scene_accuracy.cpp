@@ -36,7 +36,7 @@ std::string choice_of(const Measurement& measurement, const std::string& name) {
 std::optional<Variant> use_of(const Measurement& one) {
     const std::string arithmetic = choice_of(one, "arithmetic");
     for (const auto& [topic, choice, as_computed] :
-         {std::tuple("normals", "weighting", "float64"), std::tuple("tangents", "basis", ""),
+         {std::tuple("normals", "weighting", ""), std::tuple("tangents", "basis", ""),
           std::tuple("kernel", "kernel", "float32")}) {
         const std::string word = choice_of(one, choice);
         if (word.empty() || arithmetic != as_computed) continue;

@@ -16,6 +16,7 @@
 
 #include "relief/mesh/angle_distribution.h"
 #include "relief/mesh/image.h"
+#include "relief/mesh/kernel_choice.h"
 #include "relief/mesh/timing.h"
 
 namespace relief {
@@ -75,6 +76,8 @@ struct Measurement {
     std::vector<std::pair<std::string, std::string>> choices{};
     ErrorFigures error{};
     Cost cost{};
+    /// Where the reference has an error of its own (Experiment::reference_error): both parts.
+    std::optional<ExpectedError> expected{};
     bool is_efficient = false;  ///< On the frontier of RMS error against time (mark_efficient()).
     std::string note{};         ///< What a reader ought to know of it; mostly empty.
 };
@@ -122,8 +125,10 @@ struct Experiment {
     std::string id{};  ///< The same in every run: "normals/torus-jittered".
     Subject subject = Subject::normals;
     std::string title{};
-    std::string question{};    ///< One sentence that ends with a question mark.
-    std::string truth{};       ///< What errors are counted from, and how that is known.
+    std::string question{};  ///< One sentence that ends with a question mark.
+    std::string truth{};     ///< What errors are counted from, and how that is known.
+    /// The error that this reference itself is expected to have, RMS; absent: none, or unknown.
+    std::optional<double> reference_error{};
     std::string input{};       ///< "torus, jittered, 64 x 64 cells: 8192 triangles"
     std::string error_unit{};  ///< "degrees", "FLIP"
     std::string item{};        ///< What work is counted in: "triangle", "texel", "pixel"
@@ -136,14 +141,14 @@ struct Experiment {
     std::vector<PicturePair> pictures{};
     /// What follows, in a sentence or two that name numbers; made from the measurements.
     std::string finding{};
+    /// What is wrong with the input, or in doubt, and what was done about it: one sentence each.
+    std::vector<std::string> input_findings{};
 };
 
 /// How thoroughly experiments are run.
 struct RunOptions {
     /// Small inputs: all subjects in about a minute for each pass, on two cores.
     bool is_quick = false;
-    /// Ten rounds of two runs can show that one time of 4600 changed, those on one thread and on
-    /// all counted apart (least_mann_whitney_p()).
     Repeats repeats{10, 1};
     /// False: errors alone, which are the same on every machine but for what OpenGL draws.
     bool is_timed = true;

@@ -33,7 +33,9 @@ struct OwnOptions {
     CostChoice costs;  ///< Windows that draw meanwhile leave one_thread out: it is process-wide.
     std::string file;  ///< As titles name it.
     std::string arguments;  ///< As commands name it, or both of a pair: "'old vase.obj'".
-    std::string command;    ///< What repeats it all: "relief-accuracy own vase.obj".
+    /// What commands on height maps say of the file besides: " --channel alpha".
+    std::string height_arguments;
+    std::string command;  ///< What repeats it all: "relief-accuracy own vase.obj".
     Wish wish;
     /// Of the normal maps that heights are converted to: bits, and whether steps of coarse heights
     /// are smoothed away as well (in 16 bits).
@@ -68,11 +70,11 @@ struct OwnMeshOptions {
     std::size_t most_triangles = std::size_t{1} << 20;  ///< Of more, eight runs are taken.
 };
 
-/// Normals: every weighting in both arithmetics. With texture coordinates also tangents, from the
-/// image's own direction on each triangle and from MikkTSpace's; and both in few bytes.
+/// Normals: every weighting, in double as relief-mesh computes them. With texture coordinates also
+/// tangents, from the image's own direction on each triangle and from MikkTSpace's; and both in few
+/// bytes.
 /// \throws InvalidInput if the mesh is not valid or has no triangle, or if its own normals are
-/// asked
-///         for and it has none
+///         asked for and it has none
 std::vector<OwnExperiment> measure_own_mesh(const Mesh& mesh, const OwnMeshOptions& mesh_options,
                                             const OwnOptions& options);
 
@@ -86,10 +88,17 @@ OwnExperiment measure_own_heights(const Image& height, const BumpOptions& bump,
                                   const OwnOptions& options,
                                   std::int64_t most_texels = texels_to_measure);
 
-/// Ways to store a normal map, from the normals that its file holds.
+/// How a file stores a normal map.
+struct NormalMapOnFile {
+    int bits = 8;  ///< Of each channel.
+    int channels = 3;
+    std::string extension = ".png";  ///< Of a format that can hold the same codes.
+};
+
+/// Ways to store a normal map, from the normals that its file holds; to keep the file is one.
 /// \param normals  three float channels, as decode_normal_map() gives them
-/// \param bits     of the file
-OwnExperiment measure_own_normals(const Image& normals, int bits, const OwnOptions& options,
+OwnExperiment measure_own_normals(const Image& normals, const NormalMapOnFile& file,
+                                  const OwnOptions& options,
                                   std::int64_t most_texels = texels_to_measure);
 
 /// Samples and codes of a map baked from one mesh for another, from the mean of many samples.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Which of the methods of an experiment to take, and what the next better one would cost.
+/// Which of the methods of an experiment to take, and what the next more accurate one would cost.
 /// Tests: tests/accuracy/recommend_test.cpp.
 #pragma once
 
@@ -27,33 +27,39 @@ struct Wish {
 struct RecommendationRule {
     Wish wish;
     CostKind cost = CostKind::time;
-    /// What errors are not known better than, or nobody sees: it is added to each, as squares.
-    double own_error = 0.0;
-    /// For each measurement, whether it may be taken; empty: all.
+    /// An error that nobody sees. The knee adds it to each error, as squares.
+    double unseen_error = 0.0;
+    /// For each measurement, whether it may be recommended; empty: all.
     std::span<const unsigned char> choosable;
+    /// For each measurement, what it costs by its own nature (such as operations a texel); it
+    /// decides between methods of equal size where nothing was timed. Empty: unknown.
+    std::span<const double> natural_costs;
+    /// What Experiment::reference_error is the error of: "the map itself".
+    std::string reference = "the reference itself";
 };
 
 struct Recommendation {
-    std::optional<std::size_t> method;  ///< Of the measurements; absent: none keeps the wish.
-    /// The next truer one that is efficient among those that may be taken; absent: none is truer.
+    std::optional<std::size_t> method;  ///< Of the measurements; absent: none is within the limits.
+    /// The next more accurate one that is efficient among those that may be recommended.
     std::optional<std::size_t> next;
-    /// "scharr3, float32, 16 bit: 0.05 degrees RMS at 41.0 ms; the next better (...) takes 3 times
-    /// as long for 0.01 degrees less". Or what comes closest to the wish.
+    /// "scharr3, float32, 16 bit: 0.05 degrees RMS at 41.0 ms; the next more accurate (...) takes 3
+    /// times as long for 0.01 degrees less". Or what comes closest to the request.
     std::string words;
 };
 
-/// The method to take.
+/// The method to take. The error that counts is Experiment::reference_error and what the method
+/// adds, as the root of the sum of squares.
 ///
-/// - With `max_error`: the cheapest that keeps within it (and within max_seconds, if told).
-/// - With `max_seconds` alone: the truest that keeps within it.
-/// - With neither, the knee: of the efficient ones that of the least error^3 x cost, so that a
-/// truer
-///   one is worth up to as many times the cost as the cube of how many times it errs less. 1.25
-///   times less error is worth twice the cost, half the error eight times. Of those within a tenth
-///   of that, as times are hardly known better, the one that stores the fewest bytes.
+/// - With `max_error`: the cheapest whose error is within it (and its time within max_seconds, if
+///   that is given). Where nothing was timed, the one that stores the fewest bytes; of these the
+///   one of least natural cost.
+/// - With `max_seconds` alone: the most accurate of those within it.
+/// - With neither, the knee: of the efficient ones that of the least error^3 x cost, so that half
+///   the error is worth eight times the cost. Of those within a tenth of that, as times are hardly
+///   known better, the one that stores the fewest bytes. Where nothing was timed, the most
+///   accurate.
 ///
-/// Measurements with undefined results are never taken. Of equal ones the first is. Where nothing
-/// was timed, all cost the same: the truest is taken.
+/// Measurements with undefined results are never taken. Ties: the first method wins.
 Recommendation recommended(const Experiment& experiment, const RecommendationRule& rule);
 
 }  // namespace relief
