@@ -141,7 +141,7 @@ TEST(CompareReports, FindsNothingInTwoRunsOfTheSameOnABusyMachine) {
         EXPECT_FALSE(methods_that_are(result, TimeVerdict::cannot_tell).empty());
     }
     EXPECT_LE(false_alarms, 16) << "5 %, and two deviations of such a count";
-    EXPECT_LE(false_alarms_of_all, 5) << "1 %, and two deviations of such a count";
+    EXPECT_LE(false_alarms_of_all, 1) << "0.1 %, and two deviations of such a count";
 }
 
 TEST(CompareReports, FindsWhatTakesTwiceAsLongOnABusyMachineOrCannotTell) {
@@ -159,9 +159,9 @@ TEST(CompareReports, FindsWhatTakesTwiceAsLongOnABusyMachineOrCannotTell) {
                     change.verdict == TimeVerdict::cannot_tell);
     }
     EXPECT_LT(found, 40) << "a quarter of the rounds are interrupted";
-    // Where a tenth of them are, and the speed wanders by a tenth, it is found.
+    // Where one in twenty is, and the speed wanders by a tenth, it is mostly found.
     constexpr Simulation less_busy{
-        .rounds = 10, .noise = 0.08, .between = 0.02, .drift = 0.1, .interrupted = 0.1};
+        .rounds = 10, .noise = 0.08, .between = 0.02, .drift = 0.1, .interrupted = 0.05};
     found = 0;
     for (int trial = 0; trial < 40; ++trial) {
         const std::vector<Experiment> before = simulated(random, less_busy);
@@ -171,7 +171,7 @@ TEST(CompareReports, FindsWhatTakesTwiceAsLongOnABusyMachineOrCannotTell) {
                      ? 1
                      : 0;
     }
-    EXPECT_GE(found, 32);
+    EXPECT_GE(found, 28);
 }
 
 TEST(CompareReports, AMethodWhoseRoundsScatterIsNotWithinABound) {

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -84,8 +85,8 @@ TEST(CommonChange, DriftsByHowMuchThePartsOfTheRunsDiffer) {
     const CommonChange restless = common_of(restless_by(1.2));
     EXPECT_NEAR(restless.ratio.value, 1.2, logarithm_rounding);
     EXPECT_NEAR(restless.drift, std::sqrt(0.00045 * 2.0 * 0.4487), logarithm_rounding);
-    EXPECT_NEAR(restless.ratio.low, 1.2 * std::exp(-4.604 * restless.drift), logarithm_rounding);
-    EXPECT_NEAR(restless.ratio.high, 1.2 * std::exp(4.604 * restless.drift), logarithm_rounding);
+    EXPECT_NEAR(restless.ratio.low, 1.2 * std::exp(-8.610 * restless.drift), logarithm_rounding);
+    EXPECT_NEAR(restless.ratio.high, 1.2 * std::exp(8.610 * restless.drift), logarithm_rounding);
     EXPECT_EQ(restless.verdict, TimeVerdict::slower);
     EXPECT_EQ(common_of(restless_by(1.08)).verdict, TimeVerdict::unchanged);
     EXPECT_EQ(common_change(restless_by(1.08), true, 1.05).verdict, TimeVerdict::cannot_tell);
@@ -128,22 +129,23 @@ TEST(JudgedTimes, CountARatioBeyondWhatTheOthersScatterAlone) {
 
 TEST(JudgedTimes, CountARatioBeyondTheTailsOfTheOthers) {
     std::vector<TimedPair> pairs;
-    for (const double one : {0.0, 0.01, -0.01, 0.0, 0.01, -0.01, 0.01, 0.2, -0.2, 0.4}) {
+    for (const double one :
+         {0.0, 0.01, -0.01, 0.01, -0.01, 0.01, -0.01, 0.2, -0.2, 0.2, -0.2, 0.6, -0.6}) {
         TimedPair pair = pair_of_ratio("experiment", 1.0);
         pair.before.assign(9, 1.0);
         pair.after.assign(9, std::exp(one));
         pairs.push_back(pair);
     }
     const CommonChange common = common_of(pairs);
-    // The median is 0.005, so that distances are 0.005 (5), 0.015 (2), 0.195, 0.205 and 0.395:
-    // their median is 0.01, and nine tenths are below 0.224.
-    const double decay = (0.224 - 0.01) / std::log(5.0);
-    EXPECT_NEAR(common.reach, 0.01 + decay * std::log(0.5 * 10.0 / 0.05), 1e-12);
+    // The median distance of 13 is 0.01, and only two are farther than 0.2; as for a normal
+    // distribution with that median, they would reach 0.05 only.
+    const double decay = (0.2 - 0.01) / std::log(0.5 * 13.0 / 2.0);
+    EXPECT_NEAR(common.reach, 0.01 + decay * std::log(0.5 * 13.0 / 0.05), 1e-12);
     for (const TimeChange& change : judged_times(pairs, common, true, {}))
         EXPECT_EQ(change.verdict, TimeVerdict::unchanged) << change.ratio.value;
 }
 
-TEST(JudgedTimes, AddTheSpreadOfAMethodsOwnRounds) {
+TEST(JudgedTimes, NeedRoundsThatDoNotOverlap) {
     TimedPair restless{"experiment", "restless", false, {}, std::vector<double>(9, 1.0)};
     for (int i = -4; i <= 4; ++i)
         restless.before.push_back(std::exp(0.1 * i));
@@ -156,9 +158,9 @@ TEST(JudgedTimes, AddTheSpreadOfAMethodsOwnRounds) {
     // A tenth of nine values lies 0.8 of the way from the least to the next.
     const double p10 = 0.2 * std::exp(-0.4) + 0.8 * std::exp(-0.3);
     const double p90 = 0.8 * std::exp(0.3) + 0.2 * std::exp(0.4);
-    const double deviation = 1.2533 * std::log(p90 / p10) / 2.5631 / 3.0;
-    EXPECT_NEAR(std::log(changes.back().resolution),
-                std::sqrt(2.0 * std::log(9.0 / 0.05)) * deviation, 1e-12);
+    // Whether slower or faster: the middle 80 % of its rounds reach so far from their median.
+    EXPECT_NEAR(std::log(changes.back().resolution), std::max(std::log(p90), -std::log(p10)),
+                1e-12);
 }
 
 }  // namespace

@@ -22,8 +22,9 @@ constexpr std::size_t fewest_methods = 8;
 constexpr std::size_t parts_of_a_run = 3;
 /// Probability that a comparison of equal runs reports any change of a single method.
 constexpr double false_alarm = 0.05;
-/// Student's t for 99 % and 2 * (parts_of_a_run - 1) degrees of freedom, for all methods together.
-constexpr double common_deviations = 4.604;
+/// Student's t for 99.9 % and 2 * (parts_of_a_run - 1) degrees of freedom, for all methods
+/// together: so wide because neighboring parts of a run are more alike than two runs.
+constexpr double common_deviations = 8.610;
 /// The variance of the median of three normal values, where that of each is 1: 1 - sqrt(3)
 /// / pi. A run of three parts is as slow as the one in the middle.
 constexpr double variance_of_median = 0.4487;
@@ -38,13 +39,14 @@ double log_ratio(const TimedPair& pair) {
     return std::log(median_of(pair.after) / median_of(pair.before));
 }
 
-/// The standard error of the logarithm of a median: that of a mean times sqrt(pi / 2). By where the
-/// middle 80 % lie, which shows the rounds that were interrupted.
-double error_of_median(const std::vector<double>& rounds) {
-    const Spread spread = spread_of(rounds);
-    constexpr double middle_of_normal = 2.5631;  // Of a normal distribution, in deviations.
-    return 1.2533 * std::log(spread.p90 / spread.p10) / middle_of_normal /
-           std::sqrt(static_cast<double>(rounds.size()));
+/// How large the logarithm of a ratio must be for the middle 80 % of the rounds of both runs not to
+/// overlap. Rounds that other programs interrupt now and then have two typical lengths, between
+/// which a median jumps; a standard error does not show that.
+double overlap_of_rounds(const TimedPair& pair) {
+    const Spread before = spread_of(pair.before);
+    const Spread after = spread_of(pair.after);
+    return std::max(std::log(before.p90 / before.median * after.median / after.p10),
+                    std::log(before.median / before.p10 * after.p90 / after.median));
 }
 
 /// Of how many deviations a single method's ratio must be, so that none of so many equal methods
@@ -55,14 +57,20 @@ double deviations_for(std::size_t methods) {
 }
 
 /// How far from the median ratio equal methods lie at most, with probability 1 - false_alarm: as
-/// for a normal distribution with their median distance, or, where a tenth of them is farther than
-/// that allows, with exponential tails through the median and the ninth tenth of the distances.
-double reach_of_chance(const std::vector<double>& distances) {
-    const Spread spread = spread_of(distances);
-    const auto methods = static_cast<double>(distances.size());
-    const double decay = (spread.p90 - spread.median) / std::log(5.0);
-    return std::max(deviations_for(distances.size()) * normal_by_median * spread.median,
-                    spread.median + decay * std::log(0.5 * methods / false_alarm));
+/// for a normal distribution with their median distance, or, where more are farther than that
+/// allows, with exponential tails. A tenth of the methods, or two, may have changed and have no say
+/// in it.
+double reach_of_chance(std::vector<double> distances) {
+    std::sort(distances.begin(), distances.end());
+    const std::size_t count = distances.size();
+    const std::size_t farther = std::max<std::size_t>(count / 10, 2);
+    const double median = median_of(distances);
+    if (count <= 2 * farther) return deviations_for(count) * normal_by_median * median;
+    const auto methods = static_cast<double>(count);
+    const double decay = (distances[count - 1 - farther] - median) /
+                         std::log(0.5 * methods / static_cast<double>(farther));
+    return std::max(deviations_for(count) * normal_by_median * median,
+                    median + decay * std::log(0.5 * methods / false_alarm));
 }
 
 /// How slow each part of a run was, as the logarithm of the median ratio of all methods.
@@ -159,13 +167,11 @@ std::vector<TimeChange> judged_times(const std::vector<TimedPair>& pairs,
                                      const std::optional<double>& max_ratio) {
     std::vector<TimeChange> changes;
     // Few methods do not show what they have in common: the machine's drift is in each of them.
-    const double deviations = deviations_for(pairs.size());
-    const double of_all = common.is_judged ? common.reach : deviations * common.drift;
+    const double of_all =
+        common.is_judged ? common.reach : deviations_for(pairs.size()) * common.drift;
     const double shift = common.is_judged ? common.ratio.value : 1.0;
     for (const TimedPair& pair : pairs) {
-        // The scatter of all ratios has the spread of the usual method's rounds in it already.
-        const double own = std::hypot(error_of_median(pair.before), error_of_median(pair.after));
-        const double half_width = std::max(of_all, deviations * own);
+        const double half_width = std::max(of_all, overlap_of_rounds(pair));
         TimeChange change;
         change.experiment = pair.experiment;
         change.method = pair.method;

@@ -7,8 +7,8 @@
 /// *Times* are not. What counts is the ratio of the medians of the rounds, where it lies outside of
 /// what two runs of one program may differ by:
 /// - a method by the scatter of the ratios of all methods, which shows how far equal runs differ,
-///   and by the spread of its own rounds; the bound widens with the number of methods, so that in
-///   95 of 100 comparisons of equal runs none is reported;
+///   and by its own rounds, of which the middle 80 % must not overlap; the bound widens with the
+///   number of methods, so that in 95 of 100 comparisons of equal runs none is reported;
 /// - all methods together by the machine's drift, which the parts of each run show.
 /// A method counts as measured and relative to the median of all methods as well: a machine that
 /// was slower changes all alike. The smaller of the two is reported. From one machine to another
