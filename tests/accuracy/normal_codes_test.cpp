@@ -278,8 +278,8 @@ TEST(NormalCodeExperiments, HaveTheErrorsOfThePage) {
 TEST(NormalCodeExperiments, SayWhatIsNearestInSoManyBytes) {
     const Experiment sphere = normal_reading_experiment(quick_untimed());
     EXPECT_EQ(sphere.measurements.size(), normal_codes().size());
-    EXPECT_THAT(sphere.finding, HasSubstr("in 2 bytes octahedral 2 x 8 bit, best: 0.3"));
-    EXPECT_THAT(sphere.finding, HasSubstr("in 4 bytes octahedral 2 x 16 bit, best: 0.001"));
+    EXPECT_THAT(sphere.finding, HasSubstr("in 2 bytes 'octahedral 2 x 8 bit, best', 0.3"));
+    EXPECT_THAT(sphere.finding, HasSubstr("in 4 bytes 'octahedral 2 x 16 bit, best', 0.001"));
 }
 
 }  // namespace

@@ -63,7 +63,9 @@ HtmlColumn undefined_column() {
                 const double undefined = number_at(measurement, path).value_or(0.0);
                 const double all = undefined + number_at(measurement, "/error/count").value_or(0.0);
                 if (undefined == 0.0) return std::string("0");
-                return fmt::format("{:.0f} ({:.2g} %)", undefined, 100.0 * undefined / all);
+                const double percent = 100.0 * undefined / all;
+                return percent < 9.95 ? fmt::format("{:.0f} ({:.2g} %)", undefined, percent)
+                                      : fmt::format("{:.0f} ({:.0f} %)", undefined, percent);
             }};
 }
 
