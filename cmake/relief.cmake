@@ -91,40 +91,83 @@ add_library(relief_precompiled OBJECT ${CMAKE_CURRENT_LIST_DIR}/precompiled.cpp)
 target_link_libraries(relief_precompiled PRIVATE relief_flags glm::glm fmt::fmt)
 relief_precompile(relief_precompiled)
 
-# What every test runs under, for set_tests_properties too. Half of drawing with software OpenGL is compiling
-# shaders, mostly those of the test before: Mesa's cache of compiled ones is on, as it is for users, but in the
-# build's own folder, which scripts/test empties first. Mesa's leaks are not ours. With OpenImageIO's 261
-# libraries in the process, LeakSanitizer's own tracer can crash ("Tracer caught signal 11") in the
-# hook by which it follows thread-local storage: that is off. Two kinds of environment, because
-# gtest_discover_tests takes lists apart.
-set(leak_options suppressions=${PROJECT_SOURCE_DIR}/tests/support/lsan.supp:print_suppressions=0)
-set(test_seconds 300)
+# What every test runs under. Half of drawing with software OpenGL is compiling shaders, mostly those of the
+# test before: Mesa's cache of compiled ones is on, as it is for users, but in the build's own folder, which
+# scripts/test empties first. Mesa's leaks are not ours. With OpenImageIO's 261 libraries in the process,
+# LeakSanitizer's own tracer can crash ("Tracer caught signal 11") in the hook by which it follows thread-local
+# storage: that is off.
+set(RELIEF_TEST_ENVIRONMENT
+    MESA_SHADER_CACHE_DIR=${PROJECT_BINARY_DIR}/shader-cache
+    LSAN_OPTIONS=intercept_tls_get_addr=0:suppressions=${PROJECT_SOURCE_DIR}/tests/support/lsan.supp:print_suppressions=0)
+# The time limit of one test case.
+set(RELIEF_TEST_CASE_SECONDS 300)
 if(RELIEF_SANITIZE OR RELIEF_TSAN)
-    set(test_seconds 900)
+    set(RELIEF_TEST_CASE_SECONDS 900)
 endif()
-set(RELIEF_TEST_PROPERTIES
-    TIMEOUT ${test_seconds} ENVIRONMENT MESA_SHADER_CACHE_DIR=${PROJECT_BINARY_DIR}/shader-cache ENVIRONMENT_MODIFICATION
-    LSAN_OPTIONS=set:intercept_tls_get_addr=0:${leak_options})
+set(RELIEF_TEST_LABELS unit gl cli window docs)
 
 if(RELIEF_TSAN)
-    set(RELIEF_TEST_PROPERTIES
-        TIMEOUT ${test_seconds} ENVIRONMENT
-        TSAN_OPTIONS=suppressions=${PROJECT_SOURCE_DIR}/tests/support/tsan.supp)
+    list(APPEND RELIEF_TEST_ENVIRONMENT
+         TSAN_OPTIONS=suppressions=${PROJECT_SOURCE_DIR}/tests/support/tsan.supp)
 endif()
 
-# relief_add_tests(NAME sources... [LIBRARIES ...]): one GoogleTest program; each test
-# is a ctest entry called NAME/Suite.Test. A test that calls GTEST_SKIP shows as "Skipped" there.
+# relief_add_tests(NAME sources... [LIBRARIES ...] [LABEL gl] [SLOW patterns...] [ALONE patterns...] [CLI patterns...]):
+# one GoogleTest program.
+#
+# Every case has the label LABEL, by default `unit`, except those whose "Suite.Case" fits a pattern (with *
+# and ?) listed below UNIT, GL, CLI, WINDOW or DOCS. Cases that fit a pattern below SLOW run only with
+# `scripts/test --all`. Cases that fit a pattern below ALONE have a process to themselves; others share it.
+#
+# scripts/run-tests runs the programs. ctest has one entry for each program and label, which calls it.
 function(relief_add_tests name)
-    cmake_parse_arguments(ARG "" "" "LIBRARIES" ${ARGN})
+    string(TOUPPER "${RELIEF_TEST_LABELS}" labels)
+    cmake_parse_arguments(ARG "" "LABEL" "LIBRARIES;SLOW;ALONE;${labels}" ${ARGN})
+    if(NOT ARG_LABEL)
+        set(ARG_LABEL unit)
+    endif()
+    if(NOT ARG_LABEL IN_LIST RELIEF_TEST_LABELS)
+        message(FATAL_ERROR "${name}: the label ${ARG_LABEL} is not one of ${RELIEF_TEST_LABELS}")
+    endif()
     add_executable(${name} ${ARG_UNPARSED_ARGUMENTS})
     set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${RELIEF_TEST_DIRECTORY})
     target_link_libraries(${name} PRIVATE relief_flags relief_test_support ${ARG_LIBRARIES}
-                                          GTest::gmock GTest::gtest_main)
+                                          relief_test_main GTest::gmock GTest::gtest)
     relief_precompile(${name} LIKE relief_test_precompiled)
-    gtest_discover_tests(
-        ${name}
-        TEST_PREFIX ${name}/
-        NO_PRETTY_VALUES
-        DISCOVERY_MODE PRE_TEST
-        PROPERTIES ${RELIEF_TEST_PROPERTIES})
+
+    set(used ${ARG_LABEL})
+    set(patterns "")
+    foreach(key ${RELIEF_TEST_LABELS} slow alone)
+        string(TOUPPER ${key} upper)
+        if(ARG_${upper})
+            list(JOIN ARG_${upper} "\", \"" list)
+            list(APPEND patterns "\"${key}\": [\"${list}\"]")
+            list(APPEND used ${key})
+        endif()
+    endforeach()
+    list(JOIN patterns ", " patterns)
+    set_property(
+        GLOBAL APPEND
+        PROPERTY RELIEF_TEST_PROGRAMS
+                 "{\"name\": \"${name}\", \"path\": \"$<TARGET_FILE:${name}>\", \"label\": \"${ARG_LABEL}\", \"patterns\": {${patterns}}}")
+    list(REMOVE_ITEM used alone)
+    list(REMOVE_DUPLICATES used)
+    foreach(label ${used})
+        add_test(NAME ${name}.${label} COMMAND ${PROJECT_SOURCE_DIR}/scripts/run-tests ${PROJECT_BINARY_DIR}
+                                               --program ${name} --labels ${label} --jobs 1)
+        set_tests_properties(${name}.${label} PROPERTIES LABELS ${label} SKIP_RETURN_CODE 77 TIMEOUT 7200)
+    endforeach()
+endfunction()
+
+# Writes tests/test-programs.json in the build folder, which scripts/run-tests reads.
+function(relief_write_test_programs)
+    get_property(programs GLOBAL PROPERTY RELIEF_TEST_PROGRAMS)
+    list(JOIN programs ",\n    " programs)
+    set(variables "")
+    foreach(variable ${RELIEF_TEST_ENVIRONMENT})
+        string(REGEX REPLACE "^([^=]+)=(.*)$" "\"\\1\": \"\\2\"" entry "${variable}")
+        list(APPEND variables "${entry}")
+    endforeach()
+    list(JOIN variables ",\n    " variables)
+    file(GENERATE OUTPUT ${RELIEF_TEST_DIRECTORY}/test-programs.json
+         CONTENT "{\"case_seconds\": ${RELIEF_TEST_CASE_SECONDS},\n\"environment\": {\n    ${variables}},\n\"programs\": [\n    ${programs}]}\n")
 endfunction()
