@@ -13,13 +13,18 @@ namespace {
 
 using testing::HasSubstr;
 
-Experiment quick(const std::string& title) {
-    const RunOptions options = quick_untimed();
-    return run_titled(bump_plan(options), title);
+/// Run once for all tests of a process.
+const std::vector<Experiment>& quick_experiments() {
+    static const std::vector<Experiment> all = bump_experiments(quick_untimed());
+    return all;
+}
+
+const Experiment& quick(const std::string& title) {
+    return titled(quick_experiments(), title);
 }
 
 TEST(BumpExperiments, AreWhole) {
-    expect_whole(bump_experiments(quick_untimed()), Subject::bump);
+    expect_whole(quick_experiments(), Subject::bump);
 }
 
 TEST(BumpExperiments, HaveTheErrorsOfThePage) {

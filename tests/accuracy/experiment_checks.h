@@ -24,10 +24,10 @@ inline RunOptions quick_untimed() {
     return options;
 }
 
-/// Runs one experiment of a plan.
-inline Experiment run_titled(const std::vector<PlannedExperiment>& plan, const std::string& title) {
-    for (const PlannedExperiment& one : plan) {
-        if (one.title == title) return run_planned(std::span(&one, 1), {}).front();
+/// The experiment with this title.
+inline const Experiment& titled(const std::vector<Experiment>& all, const std::string& title) {
+    for (const Experiment& one : all) {
+        if (one.title == title) return one;
     }
     throw std::runtime_error("no experiment " + title);
 }

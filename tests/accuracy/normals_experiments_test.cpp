@@ -15,13 +15,18 @@ namespace {
 
 using testing::HasSubstr;
 
-Experiment quick(const std::string& title) {
-    const RunOptions options = quick_untimed();
-    return run_titled(normals_plan(options), title);
+/// Run once for all tests of a process.
+const std::vector<Experiment>& quick_experiments() {
+    static const std::vector<Experiment> all = normals_experiments(quick_untimed());
+    return all;
+}
+
+const Experiment& quick(const std::string& title) {
+    return titled(quick_experiments(), title);
 }
 
 TEST(NormalsExperiments, AreWhole) {
-    expect_whole(normals_experiments(quick_untimed()), Subject::normals);
+    expect_whole(quick_experiments(), Subject::normals);
 }
 
 TEST(NormalsExperiments, HaveTheErrorsOfThePage) {
@@ -39,7 +44,7 @@ TEST(NormalsExperiments, HaveTheErrorsOfThePage) {
 }
 
 TEST(NormalsExperiments, FloatVotesMoveNothingThatMatters) {
-    for (const Experiment& experiment : normals_experiments(quick_untimed())) {
+    for (const Experiment& experiment : quick_experiments()) {
         if (experiment.id == "normals/fans") continue;
         for (const char* weighting : {"uniform", "area", "max"}) {
             const double in_double =
@@ -53,7 +58,7 @@ TEST(NormalsExperiments, FloatVotesMoveNothingThatMatters) {
 
 TEST(NormalsExperiments, ErrorsFallAtTheOrderOfTheory) {
     std::size_t checked = 0;
-    for (const Experiment& experiment : normals_experiments(quick_untimed())) {
+    for (const Experiment& experiment : quick_experiments()) {
         for (const Chart& chart : experiment.charts) {
             for (const Curve& curve : chart.curves) {
                 if (!curve.expected_order) continue;

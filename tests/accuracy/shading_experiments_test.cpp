@@ -2,6 +2,8 @@
 // What the experiments on pictures find, in the order in which it is known to lie.
 #include <gtest/gtest.h>
 
+#include <memory>
+
 #include "experiment_checks.h"
 #include "measured_methods.h"
 #include "shading/shading_experiments.h"
@@ -14,17 +16,19 @@ const RunOptions untimed = test::quick_untimed();
 
 class DrawnExperiment : public ::testing::Test {
   protected:
+    static void SetUpTestSuite() { drawing_ = std::make_unique<Drawing>(); }
+    static void TearDownTestSuite() { drawing_.reset(); }
     void SetUp() override {
-        if (!drawing_.is_there()) GTEST_SKIP() << "no OpenGL";
+        if (!drawing_->is_there()) GTEST_SKIP() << "no OpenGL";
     }
-    [[nodiscard]] const Drawing& drawing() const { return drawing_; }
+    [[nodiscard]] static const Drawing& drawing() { return *drawing_; }
 
     static double rms(const Experiment& experiment, const std::string& method) {
         return method_in(experiment, method).error.rms;
     }
 
   private:
-    Drawing drawing_;
+    inline static std::unique_ptr<Drawing> drawing_;  ///< One for all tests of the suite.
 };
 
 TEST_F(DrawnExperiment, OnInterpolationRanksPhongGouraudFlat) {

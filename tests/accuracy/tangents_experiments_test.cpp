@@ -13,13 +13,18 @@ namespace {
 
 using testing::HasSubstr;
 
-Experiment quick(const std::string& title) {
-    const RunOptions options = quick_untimed();
-    return run_titled(tangents_plan(options), title);
+/// Run once for all tests of a process.
+const std::vector<Experiment>& quick_experiments() {
+    static const std::vector<Experiment> all = tangents_experiments(quick_untimed());
+    return all;
+}
+
+const Experiment& quick(const std::string& title) {
+    return titled(quick_experiments(), title);
 }
 
 TEST(TangentsExperiments, AreWhole) {
-    expect_whole(tangents_experiments(quick_untimed()), Subject::tangents);
+    expect_whole(quick_experiments(), Subject::tangents);
 }
 
 TEST(TangentsExperiments, HaveTheErrorsOfThePage) {

@@ -30,6 +30,6 @@ void for_random_features(std::size_t count, const std::function<void(const Featu
 
 /// A small set of canonical features in which every value of every field meets every value of every
 /// other field that it can meet (as far as 40,000 random sets tell); greedy, in a fixed order.
-std::vector<Features> covering_features();
+const std::vector<Features>& covering_features();
 
 }  // namespace relief::test

@@ -114,7 +114,9 @@ void for_random_features(std::size_t count, const std::function<void(const Featu
         visit(random_features(random));
 }
 
-std::vector<Features> covering_features() {
+namespace {
+
+std::vector<Features> make_covering_features() {
     std::set<Features> canonical_sets;
     for_random_features(40000, [&](const Features& f) { canonical_sets.insert(canonical(f)); });
     std::vector<Candidate> candidates;
@@ -138,6 +140,13 @@ std::vector<Features> covering_features() {
         }
     }
     return chosen;
+}
+
+}  // namespace
+
+const std::vector<Features>& covering_features() {
+    static const std::vector<Features> all = make_covering_features();
+    return all;
 }
 
 }  // namespace relief::test

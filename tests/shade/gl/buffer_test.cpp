@@ -13,7 +13,7 @@ namespace relief::gl {
 namespace {
 
 class Buffers : public test::GlTest {};
-RELIEF_ON_EACH_BACKEND(Buffers);
+RELIEF_ON_DEFAULT_BACKEND(Buffers);
 
 std::vector<std::byte> bytes_of(const std::vector<float>& values) {
     const auto bytes = std::as_bytes(std::span(values));

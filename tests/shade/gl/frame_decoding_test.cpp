@@ -22,7 +22,7 @@ namespace relief::gl {
 namespace {
 
 class FrameDecoding : public test::GlTest {};
-RELIEF_ON_EACH_BACKEND(FrameDecoding);
+RELIEF_ON_DEFAULT_BACKEND(FrameDecoding);
 
 /// What stands in the page's blocks of GLSL.
 std::string shown_shaders() {

@@ -13,7 +13,7 @@ namespace relief::gl {
 namespace {
 
 class Handles : public test::GlTest {};
-RELIEF_ON_EACH_BACKEND(Handles);
+RELIEF_ON_DEFAULT_BACKEND(Handles);
 
 /// A buffer is one for OpenGL only once it has been bound.
 GLuint bound(const Api& api, const Buffer& buffer) {

@@ -19,7 +19,7 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
 class Programs : public test::GlTest {};
-RELIEF_ON_EACH_BACKEND(Programs);
+RELIEF_ON_DEFAULT_BACKEND(Programs);
 
 constexpr const char* vertex_shader = R"(#version 330 core
 in vec3 position_object;

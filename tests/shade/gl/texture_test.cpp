@@ -31,7 +31,7 @@ using ::testing::Pointwise;
 using ::testing::VariantWith;
 
 class Textures : public test::GlTest {};
-RELIEF_ON_EACH_BACKEND(Textures);
+RELIEF_ON_DEFAULT_BACKEND(Textures);
 
 /// Of a division by 255 or 65535, of which drivers make a multiplication: one bit of a float.
 constexpr float rounding = 0x1p-24F;

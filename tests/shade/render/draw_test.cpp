@@ -10,18 +10,13 @@
 namespace relief::test {
 
 void DrawTest::SetUp() {
-    context_ = context_if_installed(Backend::osmesa);
-    if (!context_) context_ = context_if_installed(Backend::egl);
-    if (!context_) GTEST_SKIP() << "neither OSMesa nor EGL is installed";
+    context_ = shared_context(default_backend());
+    if (context_ == nullptr) context_ = shared_context(Backend::egl);
+    if (context_ == nullptr) GTEST_SKIP() << "neither OSMesa nor EGL is installed";
 }
 
 void DrawTest::TearDown() {
-    if (!context_) return;
-    for (const gl::DebugMessage& message : context_->api().take_messages()) {
-        ADD_FAILURE() << "OpenGL: " << message.text;
-    }
-    EXPECT_EQ(context_->api().live_names(), 0U);
-    context_.reset();
+    if (context_ != nullptr) expect_clean_context();
 }
 
 Frame DrawTest::render(const Scene& scene, const FrameSettings& settings) const {

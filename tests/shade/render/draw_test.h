@@ -13,10 +13,11 @@
 
 namespace relief::test {
 
-/// One context a test; skipped with a word where no backend is installed. A GL name that outlives
-/// the test, or a complaint of the driver, fails it.
+/// The tests of a suite share a context; skipped where no backend is installed. A test that does
+/// not leave the context clean (expect_clean_context()) fails.
 class DrawTest : public ::testing::Test {
   protected:
+    static void TearDownTestSuite() { release_shared_context(); }
     void SetUp() override;
     void TearDown() override;
 
@@ -31,7 +32,7 @@ class DrawTest : public ::testing::Test {
     [[nodiscard]] Image radiance(const Scene& scene, int width, int height) const;
 
   private:
-    std::unique_ptr<Context> context_;
+    const Context* context_ = nullptr;
 };
 
 /// The colour of a pixel, from the upper left; 8-bit samples as codes, float as they are.

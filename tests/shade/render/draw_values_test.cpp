@@ -115,7 +115,7 @@ TEST(ClipFromWorld, PutsNearAndFarAtTheEndsOfDepth) {
 }
 
 class DrawUniforms : public test::GlTest {};
-RELIEF_ON_EACH_BACKEND(DrawUniforms);
+RELIEF_ON_DEFAULT_BACKEND(DrawUniforms);
 
 TEST_P(DrawUniforms, HaveAValueForEveryPlannedName) {
     ProgramCache cache(api());

@@ -17,7 +17,7 @@ namespace relief {
 namespace {
 
 class Programs : public test::GlTest {};
-RELIEF_ON_EACH_BACKEND(Programs);
+RELIEF_ON_DEFAULT_BACKEND(Programs);
 
 std::vector<std::string> names(const std::vector<gl::ActiveVariable>& variables) {
     std::vector<std::string> result;
