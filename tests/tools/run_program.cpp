@@ -11,9 +11,13 @@
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
+#include <map>
 #include <stdexcept>
+#include <string_view>
+#include <utility>
 
 #include "support/shared_data.h"
+#include "tools/linked_tools.h"
 
 namespace relief::test {
 namespace {
@@ -61,7 +65,101 @@ int exit_code_of(pid_t child, const std::function<bool()>& is_time, int signal) 
     return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
 }
 
+/// By name.
+std::map<std::string, ToolEntry>& linked_tools() {
+    static std::map<std::string, ToolEntry> tools;
+    return tools;
+}
+
+/// Another working directory for its lifetime.
+class WorkingDirectory {
+  public:
+    explicit WorkingDirectory(const std::filesystem::path& folder)
+        : before_(std::filesystem::current_path()) {
+        std::filesystem::current_path(folder);
+    }
+    ~WorkingDirectory() {
+        std::error_code ignored;
+        std::filesystem::current_path(before_, ignored);
+    }
+    WorkingDirectory(const WorkingDirectory&) = delete;
+    WorkingDirectory& operator=(const WorkingDirectory&) = delete;
+
+  private:
+    std::filesystem::path before_;
+};
+
+/// A stream that writes to memory.
+class MemoryStream {
+  public:
+    MemoryStream() : stream_(::open_memstream(&text_, &size_)) {
+        if (stream_ == nullptr) throw std::runtime_error("open_memstream failed");
+    }
+    ~MemoryStream() {
+        std::fclose(stream_);
+        std::free(text_);
+    }
+    MemoryStream(const MemoryStream&) = delete;
+    MemoryStream& operator=(const MemoryStream&) = delete;
+
+    [[nodiscard]] std::FILE* stream() const { return stream_; }
+    [[nodiscard]] std::string text() const {
+        std::fflush(stream_);
+        return {text_, size_};
+    }
+
+  private:
+    char* text_ = nullptr;
+    std::size_t size_ = 0;
+    std::FILE* stream_;
+};
+
+ProgramResult run_linked(const ToolEntry& entry, const std::vector<std::string>& words,
+                         const std::filesystem::path& folder) {
+    const WorkingDirectory in(folder);
+    const MemoryStream out;
+    const MemoryStream err;
+    const int code = entry({words.begin() + 1, words.end()}, out.stream(), err.stream());
+    return {code, out.text(), err.text()};
+}
+
 }  // namespace
+
+bool link_tool(const std::string& name, const ToolEntry& entry) {
+    linked_tools()[name] = entry;
+    return true;
+}
+
+std::optional<std::vector<std::string>> plain_words(const std::string& line) {
+    constexpr std::string_view special = "|&;<>()$`\\*?[]#~!\n\t";
+    constexpr std::string_view special_in_quotes = "$`\\";
+    std::vector<std::string> words;
+    bool in_word = false;
+    char quote = 0;
+    for (const char letter : line) {
+        if (quote != 0) {
+            if (letter == quote)
+                quote = 0;
+            else if (quote == '"' && special_in_quotes.find(letter) != std::string_view::npos)
+                return std::nullopt;
+            else
+                words.back() += letter;
+        } else if (letter == ' ') {
+            in_word = false;
+        } else if (special.find(letter) != std::string_view::npos) {
+            return std::nullopt;
+        } else {
+            if (!in_word) words.emplace_back();
+            in_word = true;
+            if (letter == '\'' || letter == '"')
+                quote = letter;
+            else
+                words.back() += letter;
+        }
+    }
+    if (quote != 0 || words.empty() || words[0].find('=') != std::string::npos) return std::nullopt;
+    return words;
+}
 
 std::string ProgramResult::first_error_line() const {
     return error.substr(0, error.find('\n'));
@@ -99,9 +197,18 @@ ProgramResult run_program(const std::vector<std::string>& words,
     return run_program_until(words, folder, nullptr, 0);
 }
 
-ProgramResult run_line(const std::string& line, const std::filesystem::path& folder) {
+ProgramResult run_shell(const std::string& line, const std::filesystem::path& folder) {
     const std::string script = fmt::format("PATH='{}':\"$PATH\"\n{}", RELIEF_BIN_DIRECTORY, line);
     return run_program({"/bin/sh", "-c", script}, folder);
+}
+
+ProgramResult run_line(const std::string& line, const std::filesystem::path& folder) {
+    const std::optional<std::vector<std::string>> words = plain_words(line);
+    if (words) {
+        const auto linked = linked_tools().find(std::filesystem::path((*words)[0]).filename());
+        if (linked != linked_tools().end()) return run_linked(linked->second, *words, folder);
+    }
+    return run_shell(line, folder);
 }
 
 }  // namespace relief::test

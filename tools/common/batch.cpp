@@ -10,6 +10,7 @@
 #include <mutex>
 #include <optional>
 
+#include "common/console.h"
 #include "common/text.h"
 #include "parallel.h"
 
@@ -45,7 +46,7 @@ class Spokesman {
         : app_(app),
           outcomes_(outcomes),
           quiet_(quiet),
-          shows_progress_(!quiet && isatty(STDERR_FILENO) == 1) {
+          shows_progress_(!quiet && is_err_terminal()) {
         show_progress();
     }
     ~Spokesman() { clear_progress(); }
@@ -68,16 +69,16 @@ class Spokesman {
         if (!outcome.done)
             complain(app_, outcome.error);
         else if (!quiet_)
-            fmt::print("{}\n", outcome.done->line);
+            fmt::print(out(), "{}\n", outcome.done->line);
     }
     void show_progress() const {
         if (!shows_progress_ || finished_ == outcomes_.size()) return;
-        std::fflush(stdout);
-        fmt::print(stderr, "\r\033[Kfile {} of {} ...", finished_ + 1, outcomes_.size());
-        std::fflush(stderr);
+        std::fflush(out());
+        fmt::print(err(), "\r\033[Kfile {} of {} ...", finished_ + 1, outcomes_.size());
+        std::fflush(err());
     }
     void clear_progress() const {
-        if (shows_progress_) fmt::print(stderr, "\r\033[K");
+        if (shows_progress_) fmt::print(err(), "\r\033[K");
     }
 
     const CLI::App& app_;

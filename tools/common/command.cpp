@@ -11,13 +11,35 @@
 #include <csignal>
 #include <cstdio>
 #include <memory>
+#include <sstream>
 
+#include "common/console.h"
 #include "common/help_format.h"
 #include "file_replacement.h"
 #include "near_names.h"
+#include "relief/mesh/threads.h"
 
 namespace relief::tools {
 namespace {
+
+/// The streams of the tool that is running.
+struct Console {
+    std::FILE* out = stdout;
+    std::FILE* err = stderr;
+};
+Console console;
+
+/// Prints to other streams for its lifetime.
+class ConsoleScope {
+  public:
+    ConsoleScope(std::FILE* out, std::FILE* err) : before_(console) { console = {out, err}; }
+    ~ConsoleScope() { console = before_; }
+    ConsoleScope(const ConsoleScope&) = delete;
+    ConsoleScope& operator=(const ConsoleScope&) = delete;
+
+  private:
+    Console before_;
+};
 
 std::vector<std::string> option_names(const CLI::App& app) {
     std::vector<std::string> names;
@@ -83,8 +105,8 @@ UsageError usage_error(const CLI::App& root, const CLI::ParseError& error) {
 /// "relief-mesh: error: TEXT", named after the tool whichever of its commands speaks.
 void print_message(const CLI::App& app, const std::string& severity, const std::string& text) {
     const CLI::App* parent = app.get_parent();
-    std::fflush(stdout);
-    fmt::print(stderr, "{}: {}: {}\n", parent == nullptr ? app.get_name() : parent->get_name(),
+    std::fflush(out());
+    fmt::print(err(), "{}: {}: {}\n", parent == nullptr ? app.get_name() : parent->get_name(),
                severity, text);
 }
 
@@ -106,19 +128,22 @@ int report_failure(const CLI::App& root, const std::string& text) {
 }
 
 /// Parses and runs; throws what there is to report.
-int parse_and_run(CLI::App& root, const std::vector<Command>& commands, int argc,
-                  const char* const* argv) {
+int parse_and_run(CLI::App& root, const std::vector<Command>& commands,
+                  const std::vector<std::string>& arguments) {
     try {
-        root.parse(argc, argv);
+        root.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));
     } catch (const CLI::Success& request) {  // --help and --version
-        return root.exit(request);
+        std::ostringstream text;
+        const int code = root.exit(request, text, text);
+        fmt::print(out(), "{}", text.str());
+        return code;
     } catch (const CLI::ParseError& error) {
         throw usage_error(root, error);
     }
     for (const Command& command : commands) {
         if (!command.app->parsed()) continue;
         const ExitCode code = command.run();
-        if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0)
+        if (std::fflush(out()) != 0 || std::ferror(out()) != 0)
             throw FileError("standard output", "cannot be written");
         return static_cast<int>(code);
     }
@@ -134,6 +159,18 @@ void take_signals() {
 }
 
 }  // namespace
+
+std::FILE* out() {
+    return console.out;
+}
+
+std::FILE* err() {
+    return console.err;
+}
+
+bool is_err_terminal() {
+    return ::isatty(::fileno(err())) == 1;
+}
 
 FileError failure(const std::filesystem::path& file, const std::string& problem,
                   const std::string& remedy) {
@@ -156,7 +193,7 @@ void make_folder(const std::filesystem::path& folder) {
                     std::filesystem::exists(name) ? "exists, but is no folder" : error.message());
 }
 
-Stages::Stages(bool quiet) : show_(!quiet && isatty(STDERR_FILENO) == 1) {}
+Stages::Stages(bool quiet) : show_(!quiet && is_err_terminal()) {}
 
 double Stages::milliseconds(std::string_view name) const {
     double sum = 0;
@@ -182,21 +219,21 @@ void Stages::show_progress(const std::string& name, double part, const std::stri
     const int percent = static_cast<int>(part * 100);
     if (!show_ || percent == shown_percent_) return;
     shown_percent_ = percent;
-    fmt::print(stderr, "\r\033[K{} {} %{}{} ...", name, percent, more.empty() ? "" : ", ", more);
-    std::fflush(stderr);
+    fmt::print(err(), "\r\033[K{} {} %{}{} ...", name, percent, more.empty() ? "" : ", ", more);
+    std::fflush(err());
 }
 
 void Stages::clear_progress() const {
     if (!show_) return;
-    fmt::print(stderr, "\r\033[K");
-    std::fflush(stderr);
+    fmt::print(err(), "\r\033[K");
+    std::fflush(err());
 }
 
 Stages::Running::Running(Stages& stages, const std::string& name, const std::string& shown)
     : stages_(stages), index_(stages.index_of(name)) {
     if (stages.show_) {
-        fmt::print(stderr, "\r\033[K{} ...", shown);
-        std::fflush(stderr);
+        fmt::print(err(), "\r\033[K{} ...", shown);
+        std::fflush(err());
     }
 }
 
@@ -233,6 +270,13 @@ void complain(const CLI::App& app, const std::string& text) {
 
 int run_tool(const Tool& tool, int argc, const char* const* argv) {
     take_signals();
+    return run_tool(tool, std::vector<std::string>(argv + 1, argv + argc), stdout, stderr);
+}
+
+int run_tool(const Tool& tool, const std::vector<std::string>& arguments, std::FILE* out,
+             std::FILE* err) {
+    const ConsoleScope streams(out, err);
+    set_thread_limit(0);
     CLI::App root(tool.sentence, tool.name);
     root.formatter(std::make_shared<HelpFormat>());
     root.set_version_flag("--version", tool.name + " " + version(), "Print the version and leave.");
@@ -243,7 +287,7 @@ int run_tool(const Tool& tool, int argc, const char* const* argv) {
     if (!root.get_subcommands({}).empty()) root.require_subcommand(1);
 
     try {
-        return parse_and_run(root, commands, argc, argv);
+        return parse_and_run(root, commands, arguments);
     } catch (const UsageError& error) {
         return report(root, error);
     } catch (const std::bad_alloc&) {

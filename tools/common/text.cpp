@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Words for numbers, and the lines of a summary. Tests: tests/tools/text_test.cpp.
 #include "common/text.h"
+#include "common/console.h"
 
 #include <fmt/format.h>
 
@@ -74,7 +75,7 @@ std::string extension_of(const std::filesystem::path& file) {
 }
 
 void print_entry(const std::string& label, const std::string& text) {
-    fmt::print("{:<10}{}\n", label, text);
+    fmt::print(out(), "{:<10}{}\n", label, text);
 }
 
 void print_entry(const std::string& label, const std::vector<std::string>& lines) {
@@ -83,7 +84,7 @@ void print_entry(const std::string& label, const std::vector<std::string>& lines
 }
 
 void print_json(const nlohmann::ordered_json& json) {
-    fmt::print("{}", dumped(json));
+    fmt::print(out(), "{}", dumped(json));
 }
 
 void write_json(const std::filesystem::path& file, const nlohmann::ordered_json& json) {

@@ -7,6 +7,9 @@
 
 namespace relief::tools {
 
+/// The whole tool, for main() and for tests that run it in their own process.
+Tool relief_accuracy();
+
 Command add_run_command(CLI::App& tool);
 Command add_own_command(CLI::App& tool);
 Command add_report_compare_command(CLI::App& tool);

@@ -6,6 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "common/console.h"
 #include "common/text.h"
 #include "parallel.h"
 #include "relief/mesh/threads.h"
@@ -99,10 +100,10 @@ void hand_over(const ExperimentOptions& options, AccuracyReport report, bool dra
         print_json(json_of(report, options.output.has_value()));
     } else if (!options.general.quiet) {
         if (!options.no_times)
-            fmt::print(
-                "* efficient: no other method here is both as accurate and faster\n"
-                "± half of the range from the 10th to the 90th percentile of the rounds, in "
-                "percent of the median\n");
+            fmt::print(out(),
+                       "* efficient: no other method here is both as accurate and faster\n"
+                       "± half of the range from the 10th to the 90th percentile of the rounds, in "
+                       "percent of the median\n");
         print_entry("written", written);
     }
 }

@@ -1,13 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// relief-accuracy: what accuracy costs in time. Each command stands in its own file.
-// Tests: tests/tools/accuracy_run_test.cpp.
 #include "commands.h"
 
 int main(int argc, char** argv) {
-    using namespace relief::tools;
-    return run_tool(
-        {"relief-accuracy",
-         "Says what accuracy costs: each method's error beside the time that it takes.",
-         {add_run_command, add_own_command, add_report_compare_command, add_page_command}},
-        argc, argv);
+    return relief::tools::run_tool(relief::tools::relief_accuracy(), argc, argv);
 }

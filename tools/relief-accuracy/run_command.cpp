@@ -10,6 +10,7 @@
 
 #include "accuracy_report.h"
 #include "commands.h"
+#include "common/console.h"
 #include "common/text.h"
 #include "experiment_options.h"
 #include "relief/accuracy/passes.h"
@@ -90,10 +91,10 @@ std::vector<Experiment> run_pass(const std::vector<Subject>& subjects,
         stages.clear_progress();
         for (Experiment& experiment : found) {
             experiment.command = command_for(subject, options);
-            if (prints) fmt::print("{}\n", table_of(experiment));
+            if (prints) fmt::print(out(), "{}\n", table_of(experiment));
             all.push_back(std::move(experiment));
         }
-        std::fflush(stdout);
+        std::fflush(out());
     }
     return all;
 }

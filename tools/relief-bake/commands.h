@@ -7,6 +7,9 @@
 
 namespace relief::tools {
 
+/// The whole tool, for main() and for tests that run it in their own process.
+Tool relief_bake();
+
 Command add_bump_command(CLI::App& tool);
 Command add_map_check_command(CLI::App& tool);
 Command add_heights_command(CLI::App& tool);

@@ -7,6 +7,9 @@
 
 namespace relief::tools {
 
+/// The whole tool, for main() and for tests that run it in their own process.
+Tool relief_mesh();
+
 Command add_process_command(CLI::App& tool);
 Command add_info_command(CLI::App& tool);
 Command add_check_command(CLI::App& tool);

@@ -1,14 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// relief-mesh: what can be done to a mesh file. Each command stands in its own file.
-// Tests: tests/tools/relief_mesh_test.cpp.
 #include "commands.h"
 
 int main(int argc, char** argv) {
-    using namespace relief::tools;
-    return run_tool(
-        {"relief-mesh",
-         "Gives meshes normals, tangents and other resolutions; says what is in them, and wrong.",
-         {add_process_command, add_decimate_command, add_subdivide_command, add_info_command,
-          add_check_command, add_compare_command, add_conformance_command}},
-        argc, argv);
+    return relief::tools::run_tool(relief::tools::relief_mesh(), argc, argv);
 }

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "common/console.h"
 #include "common/text.h"
 #include "effects_text.h"
 
@@ -52,7 +53,7 @@ void print_costs(const EffectCosts& costs, const ViewOptions& options) {
     for (const EffectCost& cost : costs.effects)
         width = std::max(width, cost.effect.size());
     for (const EffectCost& cost : costs.effects) {
-        fmt::print("  {:<{}}  {:+8.2f} ms  {}\n", cost.effect, width, -cost.milliseconds,
+        fmt::print(out(), "  {:<{}}  {:+8.2f} ms  {}\n", cost.effect, width, -cost.milliseconds,
                    change_in_words(cost.change, peak_of(options)));
     }
 }
@@ -232,11 +233,11 @@ void print_shaders(const Scene& scene, const FramePlan& plan) {
     const std::vector<ShaderListing> listings = shader_listings(plan);
     for (std::size_t i = 0; i < listings.size(); ++i) {
         const ShaderListing& listing = listings[i];
-        fmt::print("{}// Program {} of {}: {}\n", i == 0 ? "" : "\n", i + 1, listings.size(),
+        fmt::print(out(), "{}// Program {} of {}: {}\n", i == 0 ? "" : "\n", i + 1, listings.size(),
                    describe(listing.features));
         for (const std::size_t draw : listing.draws)
-            fmt::print("// draws {}\n", draw_heading(scene, plan.draws[draw]));
-        fmt::print("// from {}\n\n// Vertex shader\n{}\n// Fragment shader\n{}",
+            fmt::print(out(), "// draws {}\n", draw_heading(scene, plan.draws[draw]));
+        fmt::print(out(), "// from {}\n\n// Vertex shader\n{}\n// Fragment shader\n{}",
                    fmt::join(listing.files, ", "), listing.vertex, listing.fragment);
     }
 }

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "common/console.h"
 #include "common/text.h"
 #include "relief/shade/planned_inputs.h"
 
@@ -32,7 +33,7 @@ void print_table(const Table& reasons) {
     for (const EffectReason& reason : reasons)
         width = std::max(width, reason.effect.size());
     for (const EffectReason& reason : reasons) {
-        fmt::print("  {:<3}  {:<{}}  {}\n", reason.on ? "on" : "off", reason.effect, width,
+        fmt::print(out(), "  {:<3}  {:<{}}  {}\n", reason.on ? "on" : "off", reason.effect, width,
                    reason.reason);
     }
 }
@@ -110,7 +111,7 @@ std::string draw_heading(const Scene& scene, const DrawPlan& draw) {
 }
 
 void print_effects(const Scene& scene, const FramePlan& plan) {
-    fmt::print("Whole frame\n");
+    fmt::print(out(), "Whole frame\n");
     print_table(joined(plan.reasons, pass_rows(plan)));
     std::vector<Table> tables;
     for (const DrawPlan& draw : plan.draws)
@@ -124,7 +125,7 @@ void print_effects(const Scene& scene, const FramePlan& plan) {
             told[j] = true;
             ++alike;
         }
-        fmt::print("\n{}{}\n", draw_heading(scene, plan.draws[i]),
+        fmt::print(out(), "\n{}{}\n", draw_heading(scene, plan.draws[i]),
                    alike > 1 ? fmt::format(" (and {} alike)", counted(alike - 1, "draw")) : "");
         print_table(tables[i]);
     }

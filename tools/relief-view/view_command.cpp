@@ -9,6 +9,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "common/console.h"
 #include "common/findings.h"
 #include "common/report_options.h"
 #include "common/text.h"
@@ -107,7 +108,7 @@ Drawn draw(const ViewOptions& options, const FrameSettings& settings, ComposedSc
 ExitCode run(const CLI::App& app, ViewOptions& options) {
     settle(options);
     if (options.list_bindings) {
-        fmt::print("{}", bindings_text());
+        fmt::print(out(), "{}", bindings_text());
         return ExitCode::done;
     }
     set_thread_limit(options.general.threads);
@@ -145,7 +146,7 @@ ExitCode run(const CLI::App& app, ViewOptions& options) {
         if (options.effects.print_shaders) json["shaders"] = shaders_json(plan);
         print_json(json);
     } else if (drawn && !options.general.quiet) {
-        if (options.explain_effects || options.effects.print_shaders) fmt::print("\n");
+        if (options.explain_effects || options.effects.print_shaders) fmt::print(out(), "\n");
         print_summary(options, composed, *drawn, findings, stages);
         if (options.debug.health_markers) print_entry("markers", legend(markers));
         print_measures(drawn->measures, options, drawn->frame);

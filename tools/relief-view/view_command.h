@@ -7,6 +7,9 @@
 
 namespace relief::tools {
 
+/// The whole tool, for main() and for tests that run it in their own process.
+Tool relief_view();
+
 Command add_view_command(CLI::App& tool);
 
 }  // namespace relief::tools

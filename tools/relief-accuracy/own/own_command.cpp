@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "commands.h"
+#include "common/console.h"
 #include "common/map_choices.h"
 #include "common/quoted.h"
 #include "common/text.h"
@@ -121,12 +122,12 @@ ExitCode run(const OwnCommandOptions& options) {
             print_entry("findings", findings_of(found));
         }
         for (OwnExperiment& one : found) {
-            if (prints_tables(options.how)) fmt::print("\n{}", short_table(one));
+            if (prints_tables(options.how)) fmt::print(out(), "\n{}", short_table(one));
             keeps_wish = keeps_wish && one.recommendation.method.has_value();
             report.experiments.push_back(std::move(one.experiment));
         }
-        if (prints_tables(options.how)) fmt::print("\n");
-        std::fflush(stdout);
+        if (prints_tables(options.how)) fmt::print(out(), "\n");
+        std::fflush(out());
     }
     hand_over(options.how, std::move(report), false);
     const bool has_wish = options.max_error || options.max_milliseconds;

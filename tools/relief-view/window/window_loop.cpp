@@ -9,6 +9,7 @@
 #include <chrono>
 #include <cstdio>
 
+#include "common/console.h"
 #include "file_replacement.h"
 #include "window/comparison.h"
 #include "window/dropped_files.h"
@@ -75,7 +76,7 @@ class WindowLoop {
         // A size that an option asked for is for this time.
         if (!state_.options().size_given) system_.note_place(layout_);
         if (const std::string problem = remembered_.remember(layout_); !problem.empty())
-            fmt::print(stderr, "relief-view: warning: {}\n", problem);
+            fmt::print(err(), "relief-view: warning: {}\n", problem);
     }
 
   private:

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+// A test program with cases of every outcome, for the test of scripts/run-tests.
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+
+namespace {
+
+int set_ups = 0;
+
+class SharedFixture : public testing::Test {
+  protected:
+    static void SetUpTestSuite() { ++set_ups; }
+};
+
+TEST_F(SharedFixture, First) {
+    EXPECT_EQ(set_ups, 1);
+}
+
+TEST_F(SharedFixture, Second) {
+    EXPECT_EQ(set_ups, 1);
+}
+
+TEST(Sample, Passes) {}
+
+TEST(Sample, Fails) {
+    EXPECT_EQ(1, 2) << "the reason";
+}
+
+TEST(Sample, IsSkipped) {
+    GTEST_SKIP() << "something is missing";
+}
+
+TEST(Crash, Before) {}
+
+TEST(Crash, Crashes) {
+    std::abort();
+}
+
+TEST(Crash, After) {}
+
+TEST(Exit, LeavesTheProgram) {
+    ::_exit(0);
+}
+
+TEST(Exit, After) {}
+
+TEST(Endless, DoesNotEnd) {
+    for (;;)
+        ::pause();
+}
+
+TEST(Endless, After) {}
+
+/// Fails in the first process that runs it.
+TEST(Flaky, FailsOnce) {
+    const char* mark = std::getenv("RUN_TESTS_SAMPLE_MARK");
+    ASSERT_NE(mark, nullptr);
+    const bool is_first = !std::filesystem::exists(mark);
+    std::ofstream(mark) << "was here";
+    EXPECT_FALSE(is_first);
+}
+
+TEST(Environment, IsChanged) {
+    ::setenv("RUN_TESTS_SAMPLE_LEFT_BEHIND", "1", 1);
+}
+
+TEST(SlowOnes, Slow) {}
+
+}  // namespace
