@@ -96,12 +96,6 @@ std::unique_ptr<Display> Display::open() {
     return display;
 }
 
-const Display* Display::shared() {
-    static const std::unique_ptr<Display> one = open();
-    if (one) one->act("mousemove 640 400");
-    return one.get();
-}
-
 Image Display::picture() const {
     const std::string bytes = contents_of(folder_ / "Xvfb_screen0");
     const std::size_t begin = word(bytes, 0) + 12 * word(bytes, 19);  // Header, colour map.

@@ -36,9 +36,8 @@ class ChildProcess {
 
 class Display {
   public:
-    /// The display that all tests of a process share, with the pointer in its middle; null where
-    /// Xvfb or xdotool is not installed.
-    static const Display* shared();
+    /// One on a free number; nothing where Xvfb or xdotool is not installed.
+    static std::unique_ptr<Display> open();
 
     [[nodiscard]] const std::string& name() const { return name_; }  ///< ":1234"
 
@@ -52,7 +51,6 @@ class Display {
 
   private:
     Display() = default;
-    static std::unique_ptr<Display> open();
 
     TemporaryDirectory folder_;
     std::unique_ptr<ChildProcess> server_;
@@ -82,6 +80,6 @@ std::string contents_of(const std::filesystem::path& file);
 }  // namespace relief::test
 
 /// Opens a display as `variable`, or skips the test with a word.
-#define RELIEF_NEEDS_DISPLAY(variable)                                             \
-    const relief::test::Display* const variable = relief::test::Display::shared(); \
+#define RELIEF_NEEDS_DISPLAY(variable)                                                     \
+    const std::unique_ptr<relief::test::Display> variable = relief::test::Display::open(); \
     if (!variable) GTEST_SKIP() << "needs Xvfb and xdotool"

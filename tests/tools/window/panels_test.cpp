@@ -26,8 +26,8 @@ class Panel : public testing::Test {
   protected:
     /// \return false: there is no display, and the test is to be skipped
     bool open(const std::string& words, const std::string& panel) {
-        display_ = Display::shared();
-        if (display_ == nullptr) return false;
+        display_ = Display::open();
+        if (!display_) return false;
         window_ = std::make_unique<ViewerWindow>(*display_, workplace_, words);
         window_->wait_for_rest();
         set_open("Effects", false);
@@ -66,14 +66,14 @@ class Panel : public testing::Test {
         display_->act("keydown Return sleep 0.4 keyup Return");
     }
 
-    const Display& display() { return *display_; }
+    Display& display() { return *display_; }
     ViewerWindow& window() { return *window_; }
     Workplace& workplace() { return workplace_; }
     const json& state() { return state_; }
 
   private:
     Workplace workplace_;
-    const Display* display_ = nullptr;
+    std::unique_ptr<Display> display_;
     std::unique_ptr<ViewerWindow> window_;
     json state_;
 };
