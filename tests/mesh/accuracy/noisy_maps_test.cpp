@@ -179,6 +179,15 @@ BumpField noisy_map(const Surface& surface, NoiseKind kind, double ratio, int bi
     }
     BumpField map;
     map.normals = surface.normals;
+    // At a clamped border, slopes are one-sided and noisier: not what is expected of the map.
+    for (int i = 0; i < side * side; ++i) {
+        constexpr int margin = 8;
+        const int nearest =
+            std::min({i % side, i / side, side - 1 - i % side, side - 1 - i / side});
+        if (nearest < margin) {
+            map.normals[static_cast<std::size_t>(i)].x = std::numeric_limits<double>::quiet_NaN();
+        }
+    }
     map.options.wrap = Wrap::clamp;
     map.options.strength = 1.0;
     map.options.arithmetic = Arithmetic::float64;
