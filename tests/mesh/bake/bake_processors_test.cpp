@@ -76,7 +76,7 @@ Mesh shuffled(Mesh mesh, unsigned seed) {
     return mesh;
 }
 
-Mesh joined(Mesh mesh, const Mesh& more) {
+Mesh merged(Mesh mesh, const Mesh& more) {
     const auto first = static_cast<std::uint32_t>(mesh.positions.size());
     mesh.positions.insert(mesh.positions.end(), more.positions.begin(), more.positions.end());
     mesh.normals.insert(mesh.normals.end(), more.normals.begin(), more.normals.end());
@@ -134,7 +134,7 @@ std::vector<Model> models() {
     all.push_back({"sphere", faceted(make_sphere(12, 6), 4), make_sphere(12, 6), 36});
     all.push_back(
         {"sphere in a finer one", faceted(make_sphere(16, 8), 5), make_sphere(24, 12), 40});
-    const Mesh twice = joined(faceted(steps(4), 6), faceted(steps(4), 7));
+    const Mesh twice = merged(faceted(steps(4), 6), faceted(steps(4), 7));
     all.push_back({"steps, each triangle twice in other colors", twice, make_quad(), 20});
     Mesh turned = faceted(make_quad(4), 8);
     for (glm::uvec3& triangle : turned.triangles)
@@ -142,7 +142,7 @@ std::vector<Model> models() {
     for (glm::vec3& normal : turned.normals)
         normal = -normal;
     all.push_back(
-        {"sheet with two faces", joined(faceted(make_quad(4), 9), turned), make_quad(), 20});
+        {"sheet with two faces", merged(faceted(make_quad(4), 9), turned), make_quad(), 20});
     return all;
 }
 

@@ -27,11 +27,11 @@ std::string threads_of(bool on_all_threads) {
     return on_all_threads ? "all threads" : "one thread";
 }
 
-std::string name_of(const TimeChange& change) {
+std::string change_name(const TimeChange& change) {
     return fmt::format("{}: {}", change.experiment, change.method);
 }
 
-std::string name_of(const ErrorChange& change) {
+std::string change_name(const ErrorChange& change) {
     if (change.chart.empty()) return fmt::format("{}: {}", change.experiment, change.method);
     return fmt::format("{}, chart {}: {}", change.experiment, change.chart, change.method);
 }
@@ -43,7 +43,7 @@ std::string result_text(double value) {
 /// "storage/frames: angle16: 1.21 times (1.15 to 1.27), 550 µs then 666 µs on one thread"
 std::string line_of(const TimeChange& change) {
     std::string text = fmt::format(
-        "{}: {:.2f} times ({:.2f} to {:.2f}), {} then {} on {}", name_of(change),
+        "{}: {:.2f} times ({:.2f} to {:.2f}), {} then {} on {}", change_name(change),
         change.ratio.value, change.ratio.low, change.ratio.high, seconds_in_words(change.before),
         seconds_in_words(change.after), threads_of(change.on_all_threads));
     if (std::abs(std::log(change.relative / change.ratio.value)) > 0.01)
@@ -63,7 +63,7 @@ std::string line_of(const ErrorChange& change) {
     for (const FigureChange& one : worst)
         figures.push_back(fmt::format("{} {} then {}", one.figure, result_text(one.before),
                                       result_text(one.after)));
-    return fmt::format("{}: {}{}", name_of(change), fmt::join(figures, ", "),
+    return fmt::format("{}: {}{}", change_name(change), fmt::join(figures, ", "),
                        more > 0 ? fmt::format(" and {} more", more) : "");
 }
 
@@ -192,7 +192,7 @@ void add_gone(std::vector<std::string>& lines, const ReportComparison& found) {
 void add_slower(std::vector<std::string>& lines, const ReportComparison& found, double bound) {
     for (const TimeChange& change : times_that_are(found, TimeVerdict::slower)) {
         if (percent(change.counted) <= bound) continue;
-        lines.push_back(fmt::format("{}: {:.1f} % slower on {} (at most {} %)", name_of(change),
+        lines.push_back(fmt::format("{}: {:.1f} % slower on {} (at most {} %)", change_name(change),
                                     percent(change.counted), threads_of(change.on_all_threads),
                                     bound));
     }
@@ -208,7 +208,7 @@ void add_unresolved(std::vector<std::string>& lines, const ReportComparison& fou
     lines.push_back(fmt::format(
         "cannot tell whether {} of {} times kept within {} %: of {} on {} only changes beyond "
         "{:.0f} % are seen (measure both on a quieter machine, or with more --repeats)",
-        unresolved.size(), found.times.size(), bound, name_of(worst),
+        unresolved.size(), found.times.size(), bound, change_name(worst),
         threads_of(worst.on_all_threads), percent(worst.resolution)));
 }
 
@@ -283,9 +283,9 @@ std::vector<std::string> beyond(const ComparedReports& compared, const Compariso
         for (const ErrorChange& change : errors_that(compared.found, true)) {
             const FigureChange& worst = change.worst();
             if (100.0 * worst.growth() <= *bounds.max_error_growth) continue;
-            lines.push_back(fmt::format("{}: {} {} then {} (at most {} % more)", name_of(change),
-                                        worst.figure, result_text(worst.before),
-                                        result_text(worst.after), *bounds.max_error_growth));
+            lines.push_back(fmt::format(
+                "{}: {} {} then {} (at most {} % more)", change_name(change), worst.figure,
+                result_text(worst.before), result_text(worst.after), *bounds.max_error_growth));
         }
     }
     if (bounds.max_memory_growth) {
