@@ -155,6 +155,7 @@ HardCase staircase_case() {
               const BumpField field = make_bump_field(
                   {"", FieldShape::waves, 120.0, 0.3, FieldCoding::bits8_dim, 0.0, 10}, 256, 256);
               BumpOptions options = field.options;
+              options.kernel = Kernel::sobel3;
               Report report;
               const double sobel =
                   field_error(normals_from_height(field.heights, options, report), field).rms;

@@ -51,7 +51,7 @@ TEST(Interruption, LeavesTheOldFileAndNothingElseAndDiesByTheSignal) {
     }
 }
 
-TEST(Interruption, OfABakeOfSeveralMapsLeavesThoseThatAreComplete) {
+TEST(Interruption, OfABakeOfSeveralMapsLeavesNone) {
     const Workplace place;
     place.write("low.obj",
                 "v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n"
@@ -60,15 +60,9 @@ TEST(Interruption, OfABakeOfSeveralMapsLeavesThoseThatAreComplete) {
         const ProgramResult result = run_program_until(
             {"relief-bake", "mesh", "low.obj", "low.obj", "out/<material>.png", "--size", "2048",
              "--padding", padding},
-            place / ".",
-            [&] {
-                return std::filesystem::exists(place / "out/A.png") && is_writing(place / "out");
-            },
-            SIGINT);
+            place / ".", [&] { return is_writing(place / "out"); }, SIGINT);
         EXPECT_EQ(result.exit_code, 128 + SIGINT) << result.error;
-        EXPECT_EQ(place.outputs(), "A.png");
-        EXPECT_EQ(read_image_info(place / "out/A.png").width, 2048);
-        std::filesystem::remove(place / "out/A.png");
+        EXPECT_EQ(place.outputs(), "");
     }
 }
 

@@ -75,7 +75,9 @@ TEST_F(BakeAccuracy, RaisesSamplesAndBitsUntilTheErrorIsKept) {
 }
 
 TEST_F(BakeAccuracy, KeepsToWhatIsTold) {
-    const json bits = baked("--max-error 0.2 --bits 8");
+    // Directions in the plane y = 0 have no exact code in 8 bits, so that rounding alone is 0.25
+    // degrees.
+    const json bits = baked("--max-error 0.3 --bits 8");
     EXPECT_EQ(bits["kept"]["bits"], 8);
     const json samples = baked("--max-error 5 --samples 16");
     EXPECT_EQ(samples["kept"]["samples"], 16);

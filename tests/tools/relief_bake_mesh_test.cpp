@@ -50,7 +50,7 @@ TEST(MeshBakeCommand, BakesNormalsAndSaysWhatItDid) {
                                       "          low.obj: 2 triangles\n"
                                       "rays      from 0.385 outside to 0.385 inside (found); the "
                                       "surface lies 0.25 to 0.25 outside\n"
-                                      "          64 for 32 samples"));
+                                      "          32 for 32 samples"));
     EXPECT_THAT(result.out, HasSubstr("map       8 x 4: 32 texels baked, 0 missed\n"
                                       "coded     tangent space, by MikkTSpace's tangents, 16 bit, "
                                       "zero at 32767.5 of 65535 (as glTF and engines decode; flat "

@@ -133,7 +133,7 @@ TEST_F(Verify, TurnedGreenIsNamedAndItsRemedyHelps) {
     bake();
     const double as_baked = check("out/map.png")["error"]["rms"].get<double>();
     change([](std::uint16_t&, std::uint16_t& green, std::uint16_t&) {
-        green = static_cast<std::uint16_t>(65536 - green);
+        green = static_cast<std::uint16_t>(65535 - green);
     });
     int exit_code = -1;
     const json surface = check("out/map.png", "--strict", &exit_code);

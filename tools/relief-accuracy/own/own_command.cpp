@@ -215,7 +215,7 @@ Command add_own_command(CLI::App& tool) {
     add_experiment_options(app, options->how);
     set_examples(
         app, {"relief-accuracy own data/vase.obj --quick",
-              "relief-accuracy own data/bricks-height.png --strength 12 --max-error 0.5 --quick",
+              "relief-accuracy own data/bricks-height.png --strength 12 --max-error 2 --quick",
               "relief-mesh subdivide data/vase.obj out/high.obj --levels 2",
               "relief-accuracy own --high out/high.obj --low data/vase.obj --size 64 --repeats 3",
               "relief-accuracy own data/vase.obj --crease 40 --no-times --output out/vase"});

@@ -251,7 +251,7 @@ TEST(ImageFile, AFailingDiskLeavesTheOldFileAndNoHalfOne) {
     const TemporaryDirectory folder;
     const Image image = pattern<std::uint16_t>(200, 200, 3, ColorSpace::data);
     const Image floats = pattern<float>(200, 200, 3, ColorSpace::linear);
-    std::signal(SIGXFSZ, SIG_IGN);
+    const auto old_action = std::signal(SIGXFSZ, SIG_IGN);
     rlimit before{};
     ::getrlimit(RLIMIT_FSIZE, &before);
     for (const char* name : {"a.png", "a.tif", "a.exr", "a.hdr"}) {
@@ -263,6 +263,7 @@ TEST(ImageFile, AFailingDiskLeavesTheOldFileAndNoHalfOne) {
         ::setrlimit(RLIMIT_FSIZE, &before);
         EXPECT_EQ(bytes_of(folder / name), "old") << name;
     }
+    std::signal(SIGXFSZ, old_action);
     const auto files = std::filesystem::directory_iterator(folder.path());
     EXPECT_EQ(std::distance(begin(files), end(files)), 4);
 }
