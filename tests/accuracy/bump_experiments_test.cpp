@@ -35,7 +35,7 @@ TEST(BumpExperiments, HaveTheErrorsOfThePage) {
     EXPECT_NEAR(measurement_of(detailed, "central7, float64").error.rms, 2.3, 0.05);
     EXPECT_NEAR(measurement_of(detailed, "scharr3, float64, steps smoothed away").error.rms, 1.4,
                 0.05);
-    EXPECT_THAT(detailed.finding, HasSubstr("is closest, 1.3 degrees RMS. float32 moves"));
+    EXPECT_THAT(detailed.finding, HasSubstr("is closest, 1.3 degrees RMS. float32 changes"));
     EXPECT_THAT(detailed.finding, HasSubstr("On this map --kernel auto takes sobel3."));
     const Experiment noisy = quick("Bump: noise 0.03, float");
     EXPECT_EQ(noisy.measurements.size(), 26U);

@@ -341,10 +341,14 @@ TEST_F(BumpFile, MapsReadByRowsRefuseWhatNeedsTheWholeMap) {
     Image heights = noise(20, 11, 1, 32);
     heights.as<float>()[105] = std::numeric_limits<float>::infinity();
     const std::filesystem::path holes = written(heights, "h.exr");
+    BumpOptions options;  // Nothing is chosen by the map, which would read parts of it first.
+    options.kernel = Kernel::sobel3;
+    options.wrap = Wrap::repeat;
     const auto refusal = [&](const std::filesystem::path& file) {
         Report report;
         return message_of<FileError>([&] {
-            write_bump_file(HeightMapFile(file, by_rows(40)), {}, folder_ / "n.png", {}, report);
+            write_bump_file(HeightMapFile(file, by_rows(40)), options, folder_ / "n.png", {},
+                            report);
         });
     };
     EXPECT_EQ(refusal(holes), holes.string() +
