@@ -350,14 +350,18 @@ TEST(ConvertCommand, CountsNormalsOfOtherLengthsAndTexelsWithoutDirection) {
         std::vector<std::uint8_t>{128, 128, 255, 128, 128, 200, 128, 128, 128, 0, 128, 128};
     write_image(workplace / "map.png", map);
     const ProgramResult result = workplace.run(
-        "relief-bake convert map.png out/n.png --normalize --strict --input-zero-code 128 "
-        "--report out/r.json");
+        "relief-bake convert map.png out/n.png --normalize --strict --report out/r.json");
     EXPECT_EQ(result.exit_code, 3);
     const json report = json::parse(workplace.read("out/r.json"));
-    EXPECT_EQ(report["input_lengths"]["least"], 0.0);
-    EXPECT_NEAR(report["input_lengths"]["greatest"].get<double>(), 1.0, 1e-12);
-    EXPECT_NEAR(report["input_lengths"]["mean"].get<double>(), (2.0 + 72.0 / 127) / 4, 1e-12);
-    EXPECT_THAT(result.out, HasSubstr("made of length 1 (was 0.642, from 0.000 to 1.000)\n"));
+    // With zero at 127.5, code 128 is 1 / 255.
+    const double off_zero = 1.0 / 255.0;
+    const auto length = [&](double z) { return std::sqrt(2.0 * off_zero * off_zero + z * z); };
+    const double gray = std::sqrt(3.0) * off_zero;
+    EXPECT_NEAR(report["input_lengths"]["least"].get<double>(), gray, 1e-6);
+    EXPECT_NEAR(report["input_lengths"]["greatest"].get<double>(), length(1.0), 1e-6);
+    EXPECT_NEAR(report["input_lengths"]["mean"].get<double>(),
+                (2.0 * length(1.0) + length(145.0 / 255.0) + gray) / 4, 1e-6);
+    EXPECT_THAT(result.out, HasSubstr("made of length 1 (was 0.644, from 0.007 to 1.000)\n"));
     const json findings = report["findings"];
     ASSERT_EQ(findings.size(), 2U);
     EXPECT_EQ(findings[0]["kind"], "normal not of unit length");

@@ -68,6 +68,21 @@ void encode(const Image& normals, const NormalMapFormat& format, Image& result, 
     });
 }
 
+/// Whether a texel holds only codes next to zero, where zero lies between two codes: its vector is
+/// then no longer than rounding makes one. With FlatCode::middle such a texel decodes to exactly
+/// zero.
+template <typename Sample>
+bool has_no_direction(const Sample* sample, FlatCode flat) {
+    if constexpr (std::is_same_v<Sample, float>) {
+        return false;
+    } else {
+        constexpr Sample lower = std::numeric_limits<Sample>::max() / 2;
+        return flat == FlatCode::half && std::all_of(sample, sample + 3, [](Sample code) {
+                   return static_cast<Sample>(code - lower) <= 1;
+               });
+    }
+}
+
 template <typename Sample>
 void decode(const Image& map, Green green, FlatCode flat, FlatTexels texels,
             std::span<float> normals, Report& report) {
@@ -81,6 +96,7 @@ void decode(const Image& map, Green green, FlatCode flat, FlatTexels texels,
         Direction direction{coding.decoded(sample[0]), coding.decoded(sample[1]) * up,
                             coding.decoded(sample[2])};
         if (exact.is_flat(sample[0], sample[1])) direction.x = direction.y = 0.0;
+        if (has_no_direction(sample, flat)) direction = {0.0, 0.0, 0.0};
         if (!make_unit(direction))
             found.add("normal without direction", "texel", texel, "read as flat");
         store(direction, &normals[texel * 3]);
