@@ -7,9 +7,11 @@
 
 #include "common/normalized_or.glsl"
 
-// GGX's D times pi.
+// GGX's D times pi. A normal map may turn the normal away from the half vector; n.h then counts as
+// 0. Its square alone would mirror the lobe to the other side of the surface.
 float facets(vec3 normal_world, vec3 half_world, float alpha_squared) {
     float n_dot_h = dot(normal_world, half_world);
+    if (!(n_dot_h > 0.0)) return alpha_squared;
     vec3 across = cross(normal_world, half_world);
     float spread = dot(across, across) + alpha_squared * n_dot_h * n_dot_h;
     return alpha_squared / (spread * spread);

@@ -266,6 +266,18 @@ TEST(ReferenceShading, OfMetallicRoughnessIsAppendixB) {
     expect_near(in_the_middle(scene), 3.0 * n_dot_l * ((1.0 - f) * 0.75 * b + f * (pi * d * v)));
 }
 
+/// The normal is turned away from the eye and from the half vector: n.v = -0.6 and n.h = -0.88
+/// count as 0.
+TEST(ReferenceShading, OfMetallicRoughnessTakesNegativeCosinesAsZero) {
+    Material material;
+    material.metallic_roughness = MetallicRoughness{glm::vec3(1.0F), 1.0F, 0.5F, {}};
+    Scene scene = square(material);
+    scene.meshes[0].edit().normals.assign(4, glm::vec3(0.8F, 0.0F, -0.6F));
+    scene.directional_lights = {{{0.28F, 0.0F, 0.96F}, glm::vec3(1.0F)}};
+    // n.l pi D V f with pi D = alpha^2, V = 1 / (2 n.l alpha), f = 1 and alpha = 0.5^2.
+    expect_near(in_the_middle(scene), glm::dvec3(0.5 * 0.25));
+}
+
 TEST(ReferenceShading, OfMetallicRoughnessReadsGreenAndBlue) {
     Material material;
     material.metallic_roughness = MetallicRoughness{{0.5F, 0.25F, 1.0F}, 0.5F, 1.0F, Texture{0}};

@@ -313,6 +313,19 @@ TEST_F(HardCases, ANormalBentBehindTheSurfaceIsFiniteByEveryModel) {
     }
 }
 
+/// The normal is turned away from the eye, and further from the half vector: n.v = -0.6 and
+/// n.h = -0.88 count as 0. The square of n.h would give 1.6.
+TEST_F(HardCases, AMetalTurnedAwayFromTheHalfVectorShowsNoHighlightOfTheOtherSide) {
+    Scene scene = lit_square();
+    scene.materials[0].metallic_roughness =
+        MetallicRoughness{glm::vec3(1.0F), 1.0F, 0.5F, std::nullopt};
+    scene.meshes[0].edit().normals.assign(4, glm::vec3(0.8F, 0.0F, -0.6F));
+    scene.directional_lights = {{{0.28F, 0.0F, 0.96F}, glm::vec3(1.0F)}};
+    const double alpha = 0.5 * 0.5;
+    // n.l alpha^2 V with V = 1 / (2 n.l alpha): white metal mirrors all colors.
+    EXPECT_NEAR(pixel(finite_radiance(scene, 17), 8, 8).r, alpha / 2.0, 1e-5);
+}
+
 TEST_F(HardCases, AMetalLitFromExactlyBehindTheEyesLineIsFinite) {
     Scene scene = lit_square();
     scene.materials[0].metallic_roughness =

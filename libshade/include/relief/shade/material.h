@@ -120,7 +120,7 @@ struct MetallicRoughness {
 ///
 /// glTF's model, with b = base_color * tint, m metallic, roughness r, alpha = r^2,
 /// c = b (1 - m), f0 = mix(0.04, b, m), Schlick's f = f0 + (1 - f0) (1 - v.h)^5, and D and V GGX's
-/// distribution and height-correlated visibility:
+/// distribution and height-correlated visibility, in which n.v and n.h below 0 count as 0:
 ///
 ///     radiance = sum_i L max(n.l, 0) ((1 - f) c + f pi D V)
 ///              + occlusion (scene.ambient (c + f0) + (1 - f0 A - B) c E(n)
