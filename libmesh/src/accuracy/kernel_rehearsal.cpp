@@ -183,8 +183,12 @@ void KernelRehearsal::find_grain(const std::vector<HeightTile>& tiles, Grain gra
     // patterns.
     const double least = (coding_.step() > 0.0 ? 1.1 : 1.25) * rounding;
     if (spectrum_) colored_ = spectrum_->grain();
-    // Grain is everywhere: rounded ground between cliffs, whose spectrum is uneven too, has none.
-    const bool is_everywhere = high_.deviation > least;
+    // Grain is everywhere. Edges have as much power in a few places: most of the map is smoother
+    // than noise of their spectrum would be, and a fifth of its texels tells the deviation.
+    constexpr double least_share_of_noise = 0.5;
+    const bool is_everywhere =
+        high_.deviation > least &&
+        (!colored_ || high_.deviation > least_share_of_noise * colored_->high_deviation());
     if (colored_ && (is_flat(*colored_) || !is_everywhere || !(colored_->deviation() > least)))
         colored_.reset();
     if (colored_)
@@ -220,14 +224,13 @@ void KernelRehearsal::restore(std::vector<HeightTile>& tiles) {
                 tiles[i] = without_noise(tiles[i], *spectrum_, noise);
                 continue;
             }
-            const HeightTile stored = tiles[i];
             tiles[i] = tile_of(without_steps(image_of(tiles[i]), step));
-            if (steps_are_wide) tiles[i] = evened(std::move(tiles[i]));
-            // What was rounded lies within half a step of its code.
-            for (std::size_t texel = 0; texel < stored.values.size(); ++texel) {
-                const double code = stored.values[texel];
+            if (!steps_are_wide) continue;
+            const HeightTile even = evened(tiles[i]);
+            // What is left of the steps is less than half of one: edges stay.
+            for (std::size_t texel = 0; texel < even.values.size(); ++texel) {
                 double& value = tiles[i].values[texel];
-                value = std::clamp(value, code - 0.5 * step, code + 0.5 * step);
+                value = std::clamp(even.values[texel], value - 0.5 * step, value + 0.5 * step);
             }
         }
     });

@@ -98,6 +98,24 @@ double NoiseSpectrum::deviation() const {
     return std::sqrt(power) / side;
 }
 
+double NoiseSpectrum::high_deviation() const {
+    if (rings.size() == 1) return deviation();
+    double power = 0.0;
+    double gain = 0.0;
+    // The mask (1 -2 1), three times over both axes.
+    const auto response = [](double f) { return std::pow(2.0 - 2.0 * std::cos(f), 6.0); };
+    for (int row = 0; row < side; ++row) {
+        const double y = frequency(row, side);
+        for (int column = 0; column < side; ++column) {
+            const double x = frequency(column, side);
+            const double weight = response(x) * response(y);
+            power += weight * at(x, y);
+            gain += weight;
+        }
+    }
+    return std::sqrt(power / gain);
+}
+
 std::vector<double> noise_field(const NoiseSpectrum& spectrum, int side, std::uint32_t seed) {
     Random random(seed);
     std::vector<Complex> square(static_cast<std::size_t>(side) * static_cast<std::size_t>(side));

@@ -37,6 +37,9 @@ struct NoiseSpectrum {
     [[nodiscard]] double at(double x, double y) const;
     /// Standard deviation of the noise.
     [[nodiscard]] double deviation() const;
+    /// The deviation that high_frequencies() finds by its narrower mask in such noise, where it is
+    /// Gaussian and the same everywhere. White noise has its own deviation.
+    [[nodiscard]] double high_deviation() const;
 };
 
 /// Noise of this spectrum on a square of `side` texels, which it tiles.
