@@ -143,7 +143,10 @@ std::vector<ImagePart> parts_to_look_at(int width, int height) {
     }
     const int least = std::min({width, height, largest_side});
     const int side = static_cast<int>(std::bit_floor(static_cast<unsigned>(least)));
-    const auto places = [&](int length) { return (length - 1) / side + 1; };
+    // Parts that overlap by more than half have the same noise, which would look like detail.
+    const auto places = [&](int length) {
+        return 2 * length < 3 * side ? 1 : (length - 1) / side + 1;
+    };
     // A long and narrow map is looked at in as many places.
     int rows = std::min(places(height), most_each_way);
     const int columns = std::min(places(width), most_each_way * most_each_way / rows);
