@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <cstdlib>
+#include <optional>
 #include <random>
 #include <string>
 
@@ -23,14 +24,21 @@ using test::sized;
 class Environment {
   public:
     Environment(const char* name, const std::string& value) : name_(name) {
+        if (const char* before = std::getenv(name)) before_ = before;
         setenv(name, value.c_str(), 1);
     }
-    ~Environment() { unsetenv(name_); }
+    ~Environment() {
+        if (before_)
+            setenv(name_, before_->c_str(), 1);
+        else
+            unsetenv(name_);
+    }
     Environment(const Environment&) = delete;
     Environment& operator=(const Environment&) = delete;
 
   private:
     const char* name_;
+    std::optional<std::string> before_;
 };
 
 std::vector<std::string> instruction_sets() {
