@@ -49,8 +49,8 @@ double processor_seconds() {
     return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
-/// What one thread spends on work: the time that other programs have the processor is left out,
-/// which a wall clock would add.
+/// Measures the processor time of one thread, which excludes the time of other programs; a wall
+/// clock includes it.
 double processor_seconds_of(const std::function<void()>& work) {
     constexpr double least = 1e-9;  // Work that waits alone still has a time.
     const double begin = processor_seconds();

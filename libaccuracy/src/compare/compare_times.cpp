@@ -15,7 +15,7 @@ namespace {
 
 /// Smaller changes are of no interest, however certain.
 constexpr double least_ratio = 1.03;
-/// Of fewer methods neither the median ratio nor the scatter around it is known.
+/// With fewer methods, the median ratio and the scatter around it cannot be estimated.
 constexpr std::size_t fewest_methods = 8;
 /// A run is cut into so many parts, in the order in which rounds were taken: as many as passes are
 /// made by default.
@@ -49,9 +49,9 @@ double overlap_of_rounds(const TimedPair& pair) {
                     std::log(before.median / before.p10 * after.p90 / after.median));
 }
 
-/// Of how many deviations a single method's ratio must be, so that none of so many equal methods
-/// is reported with probability 1 - false_alarm: a normal value lies beyond k deviations with a
-/// probability of less than exp(-k^2 / 2).
+/// The number of deviations that a single method's ratio must exceed, so that none of so many
+/// equal methods is reported with probability 1 - false_alarm: a normal value lies beyond k
+/// deviations with a probability of less than exp(-k^2 / 2).
 double deviations_for(std::size_t methods) {
     return std::sqrt(2.0 * std::log(static_cast<double>(methods) / false_alarm));
 }
@@ -73,7 +73,7 @@ double reach_of_chance(std::vector<double> distances) {
                     median + decay * std::log(0.5 * methods / false_alarm));
 }
 
-/// How slow each part of a run was, as the logarithm of the median ratio of all methods.
+/// Returns the logarithm of the median time ratio of all methods for each part of a run.
 std::vector<double> levels_of_parts(const std::vector<TimedPair>& pairs,
                                     std::vector<double> TimedPair::*run) {
     std::array<std::vector<double>, parts_of_a_run> logs;

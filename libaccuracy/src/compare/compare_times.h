@@ -21,8 +21,8 @@ struct TimedPair {
     std::vector<double> after;
 };
 
-/// What these methods, all on one thread or all on all threads, have in common.
-/// \param max_ratio  as for compare_reports()
+/// Computes the change that these methods share. All are timed on one thread, or all on all
+/// threads. \param max_ratio  as for compare_reports()
 CommonChange common_change(const std::vector<TimedPair>& pairs, bool same_machine,
                            const std::optional<double>& max_ratio);
 

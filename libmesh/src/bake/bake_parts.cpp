@@ -32,7 +32,7 @@ double diagonal(const Bounds& box) {
     return glm::distance(glm::dvec3(box.max), glm::dvec3(box.min));
 }
 
-/// How far rays may run from the low mesh.
+/// The longest distance of rays from the low mesh.
 double reach_of(const BakeOptions& options, double cage_reach, double low_diagonal) {
     if (options.cage != nullptr)
         return std::max(cage_reach, options.max_distance.value_or(cage_reach));

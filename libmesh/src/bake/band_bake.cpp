@@ -275,7 +275,7 @@ class Piece {
         if (work_.options.measures_missed && line.outside >= 0.0) measure_missed(line, seen);
     }
 
-    /// What lies nearest to a missed texel, outwards and inwards.
+    /// The nearest surfaces of a missed texel, outwards and inwards.
     void measure_missed(const ProjectionLine& line, const SeenSurface& seen) {
         const RayScene& scene = seen.high.scene();
         const RayHit outwards = scene.nearest({line.point, line.outward, 0.0, seen.extent});

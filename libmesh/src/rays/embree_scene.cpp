@@ -30,8 +30,8 @@ struct EmbreeScene::MeshOfScene {
     std::span<const glm::uvec3> triangles;
     std::uint32_t name = 0;
     EmbreeSpace space;
-    /// What Embree takes for one shape: a triangle, or two that follow each other and share an
-    /// edge. Twice the number of the first triangle, plus 1 for two.
+    /// Embree sees each entry as one shape: a triangle, or two that follow each other and share an
+    /// edge. An entry is twice the index of the first triangle, plus 1 for two triangles.
     std::vector<std::uint32_t> shapes{};
 
     [[nodiscard]] std::uint32_t first_of(std::uint32_t shape) const { return shapes[shape] / 2; }
@@ -52,10 +52,10 @@ namespace {
 using MeshOfScene = EmbreeScene::MeshOfScene;
 using Corners = std::array<glm::dvec3, 3>;
 
-/// By how much boxes are larger than their triangles, and rays longer than told, in Embree's space.
-/// Of its floats, origins are rounded by 4.8e-7 (they are at most 11 away), directions by 3e-8 for
-/// each unit of length, and boxes by 6e-8. Embree's tests of boxes add 2^-22 of the distance from
-/// the origin, and 2^-24 of the origin. Together that makes less than 4e-6 within the scene.
+/// Boxes are larger than their triangles, and rays longer than requested, by this much in Embree's
+/// space. Embree's floats round origins by 4.8e-7 (they are at most 11 away), directions by 3e-8
+/// for each unit of length, and boxes by 6e-8. Embree's tests of boxes add 2^-22 of the distance
+/// from the origin, and 2^-24 of the origin. Together that makes less than 4e-6 within the scene.
 constexpr double margin = 8e-6;
 /// Hits this near to each other are equally near, in Embree's space: what doubles leave of
 /// distances along a ray, with a factor of 1000 for triangles that the ray grazes.
@@ -70,7 +70,7 @@ constexpr double too_far_away = 1e10;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// Of one call of Embree. The context comes first, as Embree casts.
+/// The state of one call of Embree. The context comes first, because Embree passes its address.
 struct Cast {
     RTCIntersectContext context;
     RayPacket* packet;
@@ -210,7 +210,8 @@ void meet_nearest(const RTCIntersectFunctionNArguments* arguments) {
         RayPacket& packet = *cast.packet;
         if (hit.distance <= packet.until[lane])
             packet.last[lane] = std::max(packet.last[lane], hit.distance);
-        // What lies further away is of no interest, but for errors of Embree's floats.
+        // Hits that are farther away are not needed; the margin covers the errors of Embree's
+        // floats.
         const double end = std::max(hit.distance, packet.until[lane]);
         const double from_start = (end - packet.start[lane]) * packet.scale[lane];
         lanes.far[i] = std::min(lanes.far[i], static_cast<float>(from_start + 3.0 * margin));
@@ -410,7 +411,7 @@ void cast_any(RayPacket& packet, std::size_t count, const Call& call) {
 
 using Place = std::array<std::tuple<double, double, double>, 3>;
 
-/// Where a triangle comes in the order of places.
+/// Returns the key that orders triangles by the positions of their corners.
 Place place_of(const Corners& corners) {
     Place place;
     for (std::size_t i = 0; i < 3; ++i)

@@ -70,7 +70,7 @@ struct alignas(64) RayPacket {
     [[nodiscard]] RayFrame frame(std::size_t lane) const;
 };
 
-/// How much time is spent on making a scene ready. Hits are the same.
+/// How thoroughly a scene is built. Hits are the same.
 enum class SceneBuild {
     thorough,  ///< For many rays.
     fast,      ///< A third of the time; each ray takes a fifth longer.

@@ -85,7 +85,7 @@ std::string short_table(const OwnExperiment& own) {
     return table_of(shown);
 }
 
-/// What is wrong with an input, or in doubt: of its first experiment, as all share the input.
+/// Returns the findings on an input, from its first experiment, because all share the input.
 std::vector<std::string> findings_of(const std::vector<OwnExperiment>& found) {
     if (found.empty() || found.front().experiment.input_findings.empty()) return {"none"};
     return found.front().experiment.input_findings;

@@ -89,7 +89,8 @@ ImageKind kind_shown(const std::filesystem::path& file) {
                                                                        : ImageKind::normals;
 }
 
-/// What speaks against colors being heights: channels that differ, an alpha that varies.
+/// Reports signs that an image is a picture and no height map: channels that differ, or an alpha
+/// that varies.
 void add_color_findings(const Image& image, Report& report) {
     // What JPEG makes of grey.
     constexpr float tolerance = 4.0F / 255.0F;
@@ -124,7 +125,7 @@ void add_non_finite(const Image& heights, Report& report) {
     }
 }
 
-/// What is wrong with a height map, or in doubt; nothing is known of one too large for memory.
+/// Returns the findings on a height map; none for a map that is too large for memory.
 std::vector<std::string> height_findings(const HeightMapFile& map, const OwnRequest& request) {
     Report report;
     if (!map.is_streamed()) {

@@ -157,7 +157,7 @@ std::string command_html(const ordered_json& experiment) {
     return command.empty() ? "" : fmt::format("<code class=\"command\">{}</code>", command);
 }
 
-/// What is wrong with the input, or in doubt: a line for each.
+/// Formats the findings on the input, one line each.
 std::string findings_html(const ordered_json& experiment) {
     std::string html;
     for (const ordered_json& finding : experiment.value("input_findings", ordered_json::array()))

@@ -83,7 +83,7 @@ std::string refusal_words(const AccuracyRequest& request, const BumpExperiment& 
         *request.max_error, kind_words, error.total(), method_words(least->method), closer);
 }
 
-/// What the kernel of --kernel auto depends on, as a finding.
+/// Reports what the choice of --kernel auto depends on, as a finding.
 void report_grain(const KernelChoice& choice, Report& report) {
     if (!choice.is_ambiguous()) return;
     const KernelPrediction& other = choice.otherwise->best;

@@ -50,7 +50,7 @@ std::string where_words(const BumpExperiment& experiment) {
                        experiment.reference.words);
 }
 
-/// What is expected of a conversion, from the surface that the map was made of.
+/// Returns the expected error of a conversion against the surface that the map was made of.
 nlohmann::ordered_json expected_json(const ExpectedError& error) {
     return {{"map", error.map}, {"added", error.added}, {"total", error.total()}};
 }
@@ -79,7 +79,7 @@ nlohmann::ordered_json measurement_json(const BumpMeasurement& one,
             {"efficient", one.is_efficient}};
 }
 
-/// Of the map and the kernel, in float64 and unrounded.
+/// Returns the expected error of the map and the kernel, in float64 and without rounding.
 std::string expectation_words(const KernelChoice& choice) {
     if (std::isnan(choice.rms_degrees)) return "unknown";
     return fmt::format("{:.2g} degrees RMS, {:.2g} at most, by the map and this kernel",

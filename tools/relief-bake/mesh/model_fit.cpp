@@ -71,7 +71,7 @@ std::string unit_words(double size_ratio) {
     return "";
 }
 
-/// What went wrong when the models were exported, as far as their boxes show it; or empty.
+/// Names the likely mistake of the export, as far as the boxes show it; empty if none fits.
 std::string cause_words(const BakeFit& fit) {
     if (fit.low.empty() || fit.high.empty()) return "";
     const std::string units = unit_words(fit.size_ratio);
@@ -136,7 +136,7 @@ std::string clipped_words(const ClippedRays& clipped, const std::string& remedy)
     return words;
 }
 
-/// What the rays of missed texels found beyond their length, or from behind.
+/// Describes the hits of missed texels that lie beyond the ray length or are seen from behind.
 std::vector<std::string> ray_lines(const MeshBakeRequest& request, const BakeResult& result) {
     std::vector<std::string> lines;
     if (result.clipped_outside.texels > 0) {

@@ -57,7 +57,7 @@ struct TimeChange {
     TimeVerdict verdict = TimeVerdict::unchanged;
 };
 
-/// What all methods have in common, on one thread or on all threads.
+/// The change that all methods share, on one thread or on all threads.
 struct CommonChange {
     std::size_t methods = 0;
     Interval ratio;           ///< The median ratio of all methods.

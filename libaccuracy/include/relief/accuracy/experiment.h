@@ -76,7 +76,7 @@ struct Measurement {
     std::vector<std::pair<std::string, std::string>> choices{};
     ErrorFigures error{};
     Cost cost{};
-    /// Where the reference has an error of its own (Experiment::reference_error): both parts.
+    /// Both parts of the error, if the reference has an error (Experiment::reference_error).
     std::optional<ExpectedError> expected{};
     bool is_efficient = false;  ///< On the frontier of RMS error against time (mark_efficient()).
     std::string note{};         ///< What a reader ought to know of it; mostly empty.
@@ -141,7 +141,7 @@ struct Experiment {
     std::vector<PicturePair> pictures{};
     /// What follows, in a sentence or two that name numbers; made from the measurements.
     std::string finding{};
-    /// What is wrong with the input, or in doubt, and what was done about it: one sentence each.
+    /// Problems and doubts about the input and how they were handled, one sentence each.
     std::vector<std::string> input_findings{};
 };
 

@@ -33,7 +33,7 @@ struct OwnOptions {
     CostChoice costs;  ///< Windows that draw meanwhile leave one_thread out: it is process-wide.
     std::string file;  ///< As titles name it.
     std::string arguments;  ///< As commands name it, or both of a pair: "'old vase.obj'".
-    /// What commands on height maps say of the file besides: " --channel alpha".
+    /// Further arguments for commands on height maps, such as " --channel alpha".
     std::string height_arguments;
     std::string command;  ///< What repeats it all: "relief-accuracy own vase.obj".
     Wish wish;

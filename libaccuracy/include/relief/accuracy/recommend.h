@@ -34,7 +34,7 @@ struct RecommendationRule {
     /// For each measurement, what it costs by its own nature (such as operations a texel); it
     /// decides between methods of equal size where nothing was timed. Empty: unknown.
     std::span<const double> natural_costs;
-    /// What Experiment::reference_error is the error of: "the map itself".
+    /// Names the source of Experiment::reference_error, such as "the map itself".
     std::string reference = "the reference itself";
 };
 

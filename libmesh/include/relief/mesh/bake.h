@@ -108,8 +108,8 @@ struct BakeOptions : BakeMapOptions {
     std::optional<double> offset;
     std::optional<double> max_distance;
     BackFaces back_faces = BackFaces::skip;
-    /// Whether the boxes of the high and the low meshes may differ in size by more than
-    /// max_size_ratio times; see BakeMismatch.
+    /// Accepts boxes of the high and the low meshes that differ in size by more than max_size_ratio
+    /// times; see BakeMismatch.
     bool allow_size_mismatch = false;
     /// How many maps like this one will be baked: many are worth more time to make ready. It
     /// changes nothing else.

@@ -34,7 +34,8 @@ struct Wraps {
     bool operator==(const Wraps&) const = default;
 };
 
-/// How heights become slopes. What is absent is settled by the map: see settled_options().
+/// Options for the conversion of heights to slopes. The map decides absent ones: see
+/// settled_options().
 struct BumpOptions {
     std::optional<Kernel> kernel{};
     std::optional<Wraps> wrap{};

@@ -22,7 +22,8 @@ struct ExpectedError {
     /// What the map itself leaves uncertain (noise, rounding, detail finer than its texels): the
     /// error expected of the best conversion known.
     double map = 0.0;
-    /// What a conversion adds (kernel, arithmetic, bits): its distance from that best one.
+    /// The error that a conversion adds (kernel, arithmetic, bits): its distance from that best
+    /// one.
     double added = 0.0;
     /// Root of the sum of squares: the parts are taken to be independent.
     [[nodiscard]] double total() const { return std::hypot(map, added); }
@@ -36,14 +37,14 @@ struct KernelPrediction {
     double max_degrees = 0.0;  ///< Greatest error of a texel looked at.
 };
 
-/// What fine, even grain in a height map is taken for: the map alone cannot tell noise from sand.
+/// How fine, even grain in a height map is interpreted. The map alone cannot tell noise from sand.
 enum class Grain {
     automatic,  ///< Noise, unless the map holds nothing but grain.
     noise,
     detail,
 };
 
-/// What follows if the grain of a map is not what it was taken for.
+/// The consequences if the grain of a map was interpreted wrongly.
 struct OtherReading {
     double rms_degrees = 0.0;  ///< Expected error of the kernel that was chosen.
     KernelPrediction best;     ///< The kernel to choose then.
@@ -61,12 +62,12 @@ struct KernelChoice {
     HeightDepth depth;   ///< Of what was looked at.
     double noise = 0.0;  ///< Deviation of the noise beyond rounding, in the unit of heights.
     double grain = 0.0;  ///< The same of all grain: that of the noise, or of what is detail.
-    /// Where there is grain: what follows if it is detail instead of noise, or the reverse.
+    /// For maps with grain: the consequences if it is detail instead of noise, or the reverse.
     std::optional<OtherReading> otherwise;
     double spikes = 0.0;  ///< Share of texels that stick out on their own, taken for noise.
     double walls = 0.0;   ///< Share of texels beside a cliff.
 
-    /// The reading of the grain decides: under the other one, another kernel is far truer.
+    /// Whether another kernel has a far smaller error under the other interpretation of the grain.
     [[nodiscard]] bool is_ambiguous() const {
         return otherwise && otherwise->rms_degrees > 1.0 &&
                otherwise->rms_degrees > 1.5 * otherwise->best.rms_degrees;
