@@ -135,6 +135,21 @@ TEST(Tangents, DifferBetweenCornersOfAVertexWhereTheTextureIsMirrored) {
     }
 }
 
+TEST(Tangents, KeepTheirHandednessWhereUContinuesAcrossAMirroredTexture) {
+    // All tangents are equal, so that only the sign separates the corners of a vertex in the
+    // middle.
+    Mesh mesh = test::grid(2);
+    for (glm::vec2& texcoord : mesh.texcoords)
+        texcoord.y = std::abs(texcoord.y - 0.5F);
+    const auto tangents = tangents_of(mesh);
+    for (std::size_t corner = 0; corner < tangents.size(); ++corner) {
+        const glm::uvec3& triangle = mesh.triangles[corner / 3];
+        const float y = mesh.positions[triangle.x].y + mesh.positions[triangle.y].y +
+                        mesh.positions[triangle.z].y;
+        EXPECT_EQ(tangents[corner], glm::vec4(1, 0, 0, y > 1.5F ? -1 : 1)) << corner;
+    }
+}
+
 TEST(Tangents, AreTheSameForSeveralCopiesOfAVertex) {
     Mesh mesh = test::grid(3);
     for (std::size_t i = 0; i < mesh.positions.size(); ++i)
