@@ -853,6 +853,54 @@ TEST(EffectPlan, HasEachEffectOnOneSideOfEachPartOfItsCondition) {
     }
 }
 
+TEST(EffectPlan, NamesWhatDecided) {
+    using namespace boundaries;
+    struct Decision {
+        const char* effect;
+        std::vector<Change> changes;
+        const char* reason;
+    };
+    const std::vector<Decision> decisions = {
+        {"alpha mask", {}, "material 'body' is opaque"},
+        {"alpha mask", {masked}, "material 'body' is covered everywhere"},
+        {"alpha mask",
+         {masked, translucent},
+         "material 'body' has holes where alpha is below its cutoff"},
+        {"alpha blending", {blended}, "material 'body' is covered everywhere"},
+        {"alpha blending",
+         {blended, translucent},
+         "material 'body' lets through what is behind it"},
+        {"no falloff", {constant_light}, "no lamp falls off with distance"},
+        {"no falloff", {point_light}, "every lamp falls off with the squared distance"},
+        {"no falloff", {point_light, constant_light}, "some lamps fall off with distance"},
+        {"mixed falloff", {point_light}, "all lamps follow one law"},
+        {"mixed falloff", {constant_light}, "all lamps follow one law"},
+        {"mixed falloff",
+         {point_light, constant_light},
+         "some lamps fall off with distance and some do not"},
+        {"ambient", {}, "the scene has no ambient light"},
+        {"ambient", {ambient}, "material 'body' scatters ambient light"},
+        {"ambient", {ambient, black_surface}, "material 'body' scatters none"},
+        {"ambient", {ambient, black_surface, physical}, "material 'body' scatters ambient light"},
+        {"environment light", {}, "the scene has no environment"},
+        {"environment light", {environment}, "the environment is not to light surfaces"},
+        {"environment light", {environment, scattered, black_surface}, "material 'body' is black"},
+        {"refraction", {}, "material 'body' lets nothing through"},
+        {"refraction", {transmitting}, "the scene has no environment"},
+        {"mirror reflection", {}, "material 'body' reflects nothing"},
+        {"mirror reflection", {mirror}, "the scene has no environment"},
+        {"ACES tone mapping", {}, "radiance above 1 is shown as 1"},
+        {"ACES tone mapping", {reinhard}, "the scene asks for another curve"},
+    };
+    for (const Decision& decision : decisions) {
+        Frame frame;
+        for (const Change& change : decision.changes)
+            change(frame);
+        const FramePlan plan = plan_effects(frame.scene, frame.settings);
+        EXPECT_EQ(reason(plan.draws.at(0).reasons, decision.effect).reason, decision.reason);
+    }
+}
+
 TEST(FeaturesOf, AgreeWithThePlan) {
     const Scene scene = lit_scene(gray());
     EXPECT_EQ(features_of(scene, scene.materials[0], scene.meshes[0]), features(scene));
