@@ -246,6 +246,13 @@ TEST(NormalMapCheck, LooksAtChannelsAndBorders) {
         wide.as<std::uint16_t>()[i] = static_cast<std::uint16_t>(map.as<std::uint8_t>()[i] * 257);
     EXPECT_THAT(conditions_of(check_normal_map(wide)), testing::Contains(bits_unused));
 
+    // A step of blue at the border is no seam: only x and y are directions that a neighbor
+    // continues.
+    Image ramp = map;
+    for (std::size_t texel = 0; texel < 64UL * 64UL; ++texel)
+        ramp.as<std::uint8_t>()[texel * 3 + 2] = static_cast<std::uint8_t>(190 + texel % 64);
+    EXPECT_EQ(check_normal_map(ramp).tiling.seam_x, check_normal_map(map).tiling.seam_x);
+
     // Half of a map that tiles along y only.
     Image half = make_image(23, 64, 3, 8, ColorSpace::data);
     for (std::size_t row = 0; row < 64; ++row) {

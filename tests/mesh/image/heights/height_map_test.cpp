@@ -109,6 +109,20 @@ TEST(HeightMap, SaysWhichTexelsAreTransparent) {
         << "alpha that is the height hides nothing";
 }
 
+TEST(FilledHoles, OneFiniteHeightInACornerFillsTheWholeMap) {
+    for (const std::size_t corner : {0, 2, 3, 5}) {
+        Image heights = make_image(3, 2, 1, 32, ColorSpace::data);
+        for (float& height : heights.as<float>())
+            height = std::numeric_limits<float>::quiet_NaN();
+        heights.as<float>()[corner] = 0.5F;
+        for (const Wrap wrap : {Wrap::repeat, Wrap::mirror, Wrap::clamp}) {
+            Report report;
+            EXPECT_THAT(filled_holes(heights, wrap, report), Each(0.5F)) << corner;
+            EXPECT_EQ(report.count("non-finite height"), 5U);
+        }
+    }
+}
+
 TEST(FilledHoles, TransparentTexelsTakeTheHeightsBesideThemAsFarAsAKernelReaches) {
     // A plateau of 5 in a sea of garbage that is transparent.
     Image heights = make_image(9, 9, 1, 32, ColorSpace::data);
