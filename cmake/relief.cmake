@@ -107,35 +107,50 @@ if(RELIEF_TSAN)
          TSAN_OPTIONS=suppressions=${PROJECT_SOURCE_DIR}/tests/support/tsan.supp)
 endif()
 
-# relief_add_tests(NAME sources... [LIBRARIES ...] [LABEL gl] [SLOW patterns...] [ALONE patterns...] [CLI patterns...]):
-# one GoogleTest program.
+# relief_add_tests(NAME sources... [LIBRARIES ...] [SLOW patterns...] [ALONE patterns...] [CLI patterns...]):
+# a group of test cases, compiled as an object library. relief_add_test_program() links groups to programs.
 #
-# Every case has the label LABEL, by default `unit`, except those whose "Suite.Case" fits a pattern (with *
-# and ?) listed below UNIT, GL, CLI, WINDOW or DOCS. Cases that fit a pattern below SLOW run only with
-# `scripts/test --all`. Cases that fit a pattern below ALONE have a process to themselves; others share it.
-#
-# scripts/run-tests runs the programs. ctest has one entry for each program and label, which calls it.
+# Cases whose "Suite.Case" fits a pattern (with * and ?) listed below UNIT, GL, CLI, WINDOW or DOCS have that
+# label instead of their program's. Cases that fit a pattern below SLOW run only with `scripts/test --all`.
+# Cases that fit a pattern below ALONE have a process to themselves; others share it.
 function(relief_add_tests name)
     string(TOUPPER "${RELIEF_TEST_LABELS}" labels)
-    cmake_parse_arguments(ARG "" "LABEL" "LIBRARIES;SLOW;ALONE;${labels}" ${ARGN})
-    if(NOT ARG_LABEL)
-        set(ARG_LABEL unit)
-    endif()
-    if(NOT ARG_LABEL IN_LIST RELIEF_TEST_LABELS)
-        message(FATAL_ERROR "${name}: the label ${ARG_LABEL} is not one of ${RELIEF_TEST_LABELS}")
-    endif()
-    add_executable(${name} ${ARG_UNPARSED_ARGUMENTS})
-    set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${RELIEF_TEST_DIRECTORY})
-    target_link_libraries(${name} PRIVATE relief_flags relief_test_support ${ARG_LIBRARIES}
-                                          relief_test_main GTest::gmock GTest::gtest)
+    cmake_parse_arguments(ARG "" "" "LIBRARIES;SLOW;ALONE;${labels}" ${ARGN})
+    add_library(${name} OBJECT ${ARG_UNPARSED_ARGUMENTS})
+    target_link_libraries(${name} PRIVATE relief_flags relief_test_support ${ARG_LIBRARIES} GTest::gmock
+                                          GTest::gtest)
     relief_precompile(${name} LIKE relief_test_precompiled)
+    foreach(key ${labels} SLOW ALONE)
+        set_target_properties(${name} PROPERTIES RELIEF_${key}_CASES "${ARG_${key}}")
+    endforeach()
+endfunction()
+
+# relief_add_test_program(NAME LABEL label GROUPS groups... [OBJECTS libraries...]): one GoogleTest program. Its
+# cases have the label `label` if they fit no pattern of their group. Object libraries that the groups need are
+# named again, because CMake does not pass on their object files.
+#
+# scripts/run-tests runs the programs. ctest has one entry for each program and label, which calls it.
+function(relief_add_test_program name)
+    cmake_parse_arguments(ARG "" "LABEL" "GROUPS;OBJECTS" ${ARGN})
+    if(NOT ARG_LABEL IN_LIST RELIEF_TEST_LABELS)
+        message(FATAL_ERROR "${name}: the label '${ARG_LABEL}' is not one of ${RELIEF_TEST_LABELS}")
+    endif()
+    add_executable(${name})
+    set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${RELIEF_TEST_DIRECTORY})
+    target_link_libraries(${name} PRIVATE ${ARG_GROUPS} ${ARG_OBJECTS} relief_test_main)
 
     set(used ${ARG_LABEL})
     set(patterns "")
     foreach(key ${RELIEF_TEST_LABELS} slow alone)
         string(TOUPPER ${key} upper)
-        if(ARG_${upper})
-            list(JOIN ARG_${upper} "\", \"" list)
+        set(cases "")
+        foreach(group ${ARG_GROUPS})
+            get_target_property(group_cases ${group} RELIEF_${upper}_CASES)
+            list(APPEND cases ${group_cases})
+        endforeach()
+        list(REMOVE_DUPLICATES cases)
+        if(cases)
+            list(JOIN cases "\", \"" list)
             list(APPEND patterns "\"${key}\": [\"${list}\"]")
             list(APPEND used ${key})
         endif()

@@ -16,8 +16,8 @@
 namespace relief {
 namespace {
 
-class Programs : public test::GlTest {};
-RELIEF_ON_DEFAULT_BACKEND(Programs);
+class RendererPrograms : public test::GlTest {};
+RELIEF_ON_DEFAULT_BACKEND(RendererPrograms);
 
 std::vector<std::string> names(const std::vector<gl::ActiveVariable>& variables) {
     std::vector<std::string> result;
@@ -26,7 +26,7 @@ std::vector<std::string> names(const std::vector<gl::ActiveVariable>& variables)
     return result;
 }
 
-TEST_P(Programs, OfACoveringSetTakeExactlyWhatIsPlanned) {
+TEST_P(RendererPrograms, OfACoveringSetTakeExactlyWhatIsPlanned) {
     for (const Features& f : test::covering_features()) {
         SCOPED_TRACE(describe(f));
         ProgramCache cache(api());
@@ -41,7 +41,7 @@ TEST_P(Programs, OfACoveringSetTakeExactlyWhatIsPlanned) {
     }
 }
 
-TEST_P(Programs, AreSharedByEqualFeatures) {
+TEST_P(RendererPrograms, AreSharedByEqualFeatures) {
     ProgramCache cache(api());
     Features f;
     f.directional_lights = 1;
@@ -53,7 +53,7 @@ TEST_P(Programs, AreSharedByEqualFeatures) {
     EXPECT_EQ(cache.size(), 2U);
 }
 
-TEST_P(Programs, NameTheFileAndLineOfAnError) {
+TEST_P(RendererPrograms, NameTheFileAndLineOfAnError) {
     const test::TemporaryDirectory folder;
     const test::ScopedVariable variable("RELIEF_SHADER_DIR", folder.path().c_str());
     std::filesystem::create_directories(folder / "scatter");
