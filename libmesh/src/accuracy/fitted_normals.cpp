@@ -11,8 +11,8 @@
 #include <optional>
 
 #include "geometry/corners.h"
-#include "geometry/normals/normal_sums.h"
-#include "geometry/normals/smooth_fans.h"
+#include "geometry/normal_sums.h"
+#include "geometry/smooth_fans.h"
 #include "geometry/weld.h"
 #include "parallel.h"
 #include "relief/mesh/direction_error.h"

@@ -11,12 +11,12 @@
 
 namespace relief {
 
-/// The first corner, counted 3 to a triangle, that names a vertex that is not there.
+/// Index of the first corner (3 per triangle) that refers to a vertex that does not exist.
 std::optional<std::size_t> corner_beyond(std::span<const glm::uvec3> triangles,
                                          std::size_t vertex_count);
 
-/// \throws InvalidInput if corners are too many for 32-bit numbers, or naming the first offence:
-/// "triangle 7 names vertex 12, but there are only 8"
+/// \throws InvalidInput if the corners are too many for 32-bit indices, or for the first invalid
+/// index: "triangle 7 names vertex 12, but there are only 8"
 void check_triangles(std::span<const glm::uvec3> triangles, std::size_t vertex_count);
 
 }  // namespace relief

@@ -46,17 +46,17 @@ inline std::uint32_t vertex_of(Corner corner, std::span<const glm::uvec3> triang
 /// The corners at every vertex, ascending.
 class CornersByVertex {
   public:
-    /// A counting sort of the corners of all triangles.
+    /// Counting sort of the corners of all triangles.
     CornersByVertex(std::size_t vertex_count, std::span<const glm::uvec3> triangles)
         : CornersByVertex(vertex_count, triangles, [](std::size_t) { return true; }) {}
 
-    /// The same of the triangles for which `counts(index)`.
+    /// Considers only the triangles for which `counts(index)` is true.
     template <typename Counts>
     CornersByVertex(std::size_t vertex_count, std::span<const glm::uvec3> triangles,
                     const Counts& counts)
         : first_(vertex_count + 1, 0) {
-        // Parts of the triangles count their own corners at each vertex first, so that each knows
-        // where its corners go.
+        // Each part of the triangles first counts its corners at each vertex, which gives the
+        // position of its corners.
         const std::size_t parts = parts_for(vertex_count, triangles.size());
         const auto for_triangles = [&](std::size_t part, const auto& body) {
             const std::size_t end = triangles.size() * (part + 1) / parts;
@@ -104,8 +104,7 @@ class CornersByVertex {
     }
 
   private:
-    /// One for each thread, where there is enough to do; not so many that their counts take more
-    /// memory than the corners.
+    /// One part per thread, limited so that the counts take no more memory than the corners.
     static std::size_t parts_for(std::size_t vertex_count, std::size_t triangle_count) {
         constexpr std::size_t worth_a_thread = 100'000;
         const std::size_t most = 2 * triangle_count / std::max<std::size_t>(vertex_count, 1);
@@ -113,7 +112,7 @@ class CornersByVertex {
                                        thread_count());
     }
 
-    std::vector<std::uint32_t> first_;  ///< Where each vertex's corners begin; one more at the end.
+    std::vector<std::uint32_t> first_;  ///< Index of each vertex's first corner, and the end.
     std::vector<Corner> corners_;
 };
 

@@ -22,30 +22,30 @@ bool is_finite(const glm::vec<N, T>& vector) {
     return true;
 }
 
-/// The unit vector along `vector`, or zero where it has no direction (zero or not finite).
+/// Normalizes `vector`. Returns zero if it has no direction (zero or not finite).
 inline glm::dvec3 direction_or_zero(const glm::dvec3& vector) {
     const double length = glm::length(vector);
     return length > 0.0 && std::isfinite(length) ? vector / length : glm::dvec3(0.0);
 }
 
-/// What is left of `vector` in the plane with this unit normal (or all of it if `normal` is zero).
+/// Projects `vector` onto the plane with this unit normal. Returns `vector` if the normal is zero.
 inline glm::dvec3 in_plane(const glm::dvec3& vector, const glm::dvec3& normal) {
     return vector - normal * glm::dot(normal, vector);
 }
 
-/// The angle between two vectors of any length, 0 to pi; by atan2, which is exact where acos is
+/// Angle between two vectors of any length, 0 to pi. Uses atan2, which is accurate where acos is
 /// not.
 inline double angle_between(const glm::dvec3& a, const glm::dvec3& b) {
     return std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b));
 }
 
-/// Rounded to float; -0 becomes +0, so that equal directions have equal bits.
+/// Rounds to float. -0 becomes +0, so that equal directions have equal bits.
 inline glm::vec3 rounded(const glm::dvec3& vector) {
     return glm::vec3(vector) + 0.0F;
 }
 
-/// A unit vector perpendicular to a normal of any length, by a fixed rule: the x axis, or if the
-/// normal is near that the y axis, turned into the plane of the normal.
+/// Returns a unit vector perpendicular to a normal of any length by a fixed rule: the x axis, or
+/// the y axis if the normal is near the x axis, projected onto the plane of the normal.
 inline glm::vec3 perpendicular_to(const glm::vec3& normal) {
     constexpr double near_axis = 0.9;
     const glm::dvec3 unit = direction_or_zero(glm::dvec3(normal));
@@ -54,7 +54,7 @@ inline glm::vec3 perpendicular_to(const glm::vec3& normal) {
     return rounded(direction_or_zero(in_plane(axis, unit)));
 }
 
-/// The order in which terms are added: by value.
+/// Order in which terms are added: by value.
 inline bool comes_before(const glm::dvec3& a, const glm::dvec3& b) {
     if (a.x != b.x) return a.x < b.x;
     if (a.y != b.y) return a.y < b.y;

@@ -12,12 +12,12 @@
 
 namespace relief {
 
-/// Each set is known by its smallest element.
+/// The representative of each set is its smallest element.
 class DisjointSets {
   public:
     explicit DisjointSets(std::size_t count = 0) { reset(count); }
 
-    /// So many elements, each alone.
+    /// Starts with `count` sets of one element.
     void reset(std::size_t count) {
         parents_.resize(count);
         std::iota(parents_.begin(), parents_.end(), 0U);

@@ -32,9 +32,9 @@ void check_options(const Mesh& mesh, const FrameOptions& options) {
     }
 }
 
-/// Splits vertices where the values at their corners differ, then stores these by vertex; a vertex
-/// without a corner gets what `isolated` says. -0 becomes +0, so that it cannot tell vertices
-/// apart.
+/// Splits vertices whose corners have different values, then stores the values by vertex. A vertex
+/// without a corner gets the value of `isolated`. -0 becomes +0, so that it does not distinguish
+/// vertices.
 template <typename T, typename Isolated>
 void store_corners(FramedMesh& framed, const std::vector<T>& values,
                    std::vector<T> Mesh::*attribute, const Isolated& isolated) {
@@ -55,7 +55,7 @@ void store_corners(FramedMesh& framed, const std::vector<T>& values,
     }
 }
 
-/// Normals of corners become normals of vertices, which are split for it.
+/// Stores corner normals as vertex normals and splits vertices as needed.
 void store_corner_normals(FramedMesh& framed, const std::vector<glm::vec3>& at_corners,
                           Report& report) {
     store_corners(framed, at_corners, &Mesh::normals, [&](std::size_t vertex) {
@@ -74,7 +74,7 @@ void make_flat(FramedMesh& framed, Report& report) {
     store_corner_normals(framed, at_corners, report);
 }
 
-/// The weighting of a mode that averages; absent where it is to be chosen.
+/// Weighting of an averaging mode; absent for automatic weighting.
 std::optional<NormalWeight> weight_of(NormalMode mode) {
     switch (mode) {
         case NormalMode::uniform:
@@ -157,7 +157,7 @@ void report_kept(std::span<const glm::vec3> normals, bool repaired, Report& repo
     }
 }
 
-/// Only what is broken changes; other vertices keep their bits.
+/// Repairs only invalid normals. Other vertices keep their bits.
 void repair_kept(Mesh& mesh, const FrameOptions& options, Report& report) {
     std::vector<glm::vec3> averaged;
     Report rest;
@@ -222,8 +222,8 @@ void make_tangents(FramedMesh& framed, TangentMode mode, Report& report) {
     });
 }
 
-/// What keeping tangents comes to: they belong to the normals they were made for, so with new
-/// normals a mesh that has tangents gets new ones, if its texture coordinates allow.
+/// Resolves `keep` for tangents. Tangents belong to the normals from which they were computed, so a
+/// mesh with new normals gets new tangents if it has texture coordinates.
 TangentMode resolved_tangents(const Mesh& mesh, TangentMode tangents, NormalMode normals,
                               Report& report) {
     const bool outdated = tangents == TangentMode::keep && normals != NormalMode::keep;

@@ -1,14 +1,52 @@
 // SPDX-License-Identifier: Apache-2.0
+// Every index against the number of vertices. First the largest, which reads as fast as memory
+// gives; only where that is too large, one by one.
 // Checking a mesh, and its bounds.
+//
+// Positions, normals and tangents of a mesh in another space. Source: the matrix of cofactors is
+// the inverse transpose but for a factor, and defined where that is not.
 #include "relief/mesh/mesh.h"
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <utility>
+
 #include "geometry/check_triangles.h"
 #include "geometry/direction.h"
 #include "relief/mesh/error.h"
+#include "relief/mesh/mesh_part.h"
+#include "relief/mesh/placed.h"
 
 namespace relief {
+std::optional<std::size_t> corner_beyond(std::span<const glm::uvec3> triangles,
+                                         std::size_t vertex_count) {
+    glm::uvec3 largest(0);
+    for (const glm::uvec3& triangle : triangles)
+        largest = glm::max(largest, triangle);
+    if (triangles.empty() || std::max({largest.x, largest.y, largest.z}) < vertex_count)
+        return std::nullopt;
+    for (std::size_t corner = 0;; ++corner) {
+        if (triangles[corner / 3][static_cast<int>(corner % 3)] >= vertex_count) return corner;
+    }
+}
+
+void check_triangles(std::span<const glm::uvec3> triangles, std::size_t vertex_count) {
+    constexpr std::size_t most = std::numeric_limits<std::uint32_t>::max() / 3;
+    if (triangles.size() > most) {
+        throw InvalidInput(fmt::format(
+            "there are {} triangles, but no more than {} can be numbered", triangles.size(), most));
+    }
+    const std::optional<std::size_t> corner = corner_beyond(triangles, vertex_count);
+    if (!corner) return;
+    throw InvalidInput(
+        fmt::format("triangle {} names vertex {}, but there are only {}", *corner / 3,
+                    triangles[*corner / 3][static_cast<int>(*corner % 3)], vertex_count));
+}
+
 namespace {
 
 void check_length(const Mesh& mesh, std::size_t length, std::string_view attribute) {
@@ -56,6 +94,122 @@ void validate(const Mesh& mesh) {
         throw InvalidInput(fmt::format("there are {} smoothing groups, but {} triangles",
                                        mesh.smoothing_groups.size(), mesh.triangles.size()));
     }
+}
+
+namespace {
+
+constexpr std::uint32_t not_in_part = 0xffffffff;
+
+/// New index of each vertex, in the original order.
+std::vector<std::uint32_t> numbered(const Mesh& mesh, std::span<const std::uint32_t> triangles) {
+    std::vector<std::uint32_t> numbers(mesh.positions.size(), not_in_part);
+    for (const std::uint32_t triangle : triangles) {
+        if (triangle >= mesh.triangles.size())
+            throw InvalidInput(fmt::format("there is no triangle {}", triangle));
+        for (int corner = 0; corner < 3; ++corner)
+            numbers[mesh.triangles[triangle][corner]] = 0;
+    }
+    std::uint32_t next = 0;
+    for (std::uint32_t& number : numbers) {
+        if (number != not_in_part) number = next++;
+    }
+    return numbers;
+}
+
+template <typename Value>
+std::vector<Value> used(const std::vector<Value>& values,
+                        const std::vector<std::uint32_t>& numbers) {
+    std::vector<Value> result;
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        if (numbers[i] != not_in_part) result.push_back(values[i]);
+    }
+    return result;
+}
+
+/// Material ranges of the triangles, with adjacent equal ranges joined.
+std::vector<MaterialRange> ranges_of(const Mesh& mesh, std::span<const std::uint32_t> triangles) {
+    std::vector<MaterialRange> result;
+    if (mesh.material_ranges.empty()) return result;
+    for (std::uint32_t i = 0; i < triangles.size(); ++i) {
+        const auto after =
+            std::upper_bound(mesh.material_ranges.begin(), mesh.material_ranges.end(), triangles[i],
+                             [](std::uint32_t triangle, const MaterialRange& range) {
+                                 return triangle < range.first_triangle + range.triangle_count;
+                             });
+        if (result.empty() || result.back().material != after->material)
+            result.push_back({i, 0, after->material});
+        ++result.back().triangle_count;
+    }
+    return result;
+}
+
+}  // namespace
+
+Mesh part_of(const Mesh& mesh, std::span<const std::uint32_t> triangles) {
+    validate(mesh);
+    const std::vector<std::uint32_t> numbers = numbered(mesh, triangles);
+    Mesh part;
+    part.name = mesh.name;
+    part.positions = used(mesh.positions, numbers);
+    part.normals = used(mesh.normals, numbers);
+    part.texcoords = used(mesh.texcoords, numbers);
+    part.tangents = used(mesh.tangents, numbers);
+    part.colors = used(mesh.colors, numbers);
+    part.triangles.reserve(triangles.size());
+    for (const std::uint32_t triangle : triangles) {
+        const glm::uvec3 corners = mesh.triangles[triangle];
+        part.triangles.emplace_back(numbers[corners.x], numbers[corners.y], numbers[corners.z]);
+        if (!mesh.smoothing_groups.empty())
+            part.smoothing_groups.push_back(mesh.smoothing_groups[triangle]);
+    }
+    part.material_ranges = ranges_of(mesh, triangles);
+    return part;
+}
+
+namespace {
+
+/// Linear part in double precision, scaled so that tiny and huge transforms keep their digits.
+glm::dmat3 directions_from(const glm::mat4& matrix) {
+    glm::dmat3 linear(matrix);
+    double largest = 0.0;
+    for (int column = 0; column < 3; ++column) {
+        for (int row = 0; row < 3; ++row)
+            largest = std::max(largest, std::abs(linear[column][row]));
+    }
+    return largest > 0.0 ? linear / largest : glm::dmat3(1.0);
+}
+
+glm::dmat3 normals_from(const glm::dmat3& linear) {
+    const glm::dmat3 cofactors(glm::cross(linear[1], linear[2]), glm::cross(linear[2], linear[0]),
+                               glm::cross(linear[0], linear[1]));
+    return glm::determinant(linear) < 0.0 ? -cofactors : cofactors;
+}
+
+glm::vec3 turned(const glm::dmat3& transform, const glm::vec3& direction) {
+    const glm::dvec3 result = transform * glm::dvec3(direction);
+    const double length = glm::length(result);
+    return length > 0.0 ? glm::vec3(result / length) : direction;
+}
+
+}  // namespace
+
+Mesh placed(Mesh mesh, const glm::mat4& world_from_object) {
+    const glm::dmat4 matrix(world_from_object);
+    const glm::dmat3 tangents = directions_from(world_from_object);
+    const glm::dmat3 normals = normals_from(tangents);
+    const bool mirrors = glm::determinant(tangents) < 0.0;
+    for (glm::vec3& position : mesh.positions)
+        position = glm::vec3(matrix * glm::dvec4(position, 1.0));
+    for (glm::vec3& normal : mesh.normals)
+        normal = turned(normals, normal);
+    for (glm::vec4& tangent : mesh.tangents) {
+        tangent = glm::vec4(turned(tangents, glm::vec3(tangent)), mirrors ? -tangent.w : tangent.w);
+    }
+    if (mirrors) {
+        for (glm::uvec3& triangle : mesh.triangles)
+            std::swap(triangle.y, triangle.z);
+    }
+    return mesh;
 }
 
 }  // namespace relief

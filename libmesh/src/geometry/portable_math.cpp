@@ -13,18 +13,19 @@
 namespace relief::portable {
 namespace {
 
-/// An angle less a multiple of a quarter turn: from -pi/4 to pi/4.
+/// Remainder of an angle modulo a quarter turn, from -pi/4 to pi/4.
 struct Reduced {
     double angle;
     int quarters;
 };
 
-/// pi/2 in three parts, of which the first two have 33 bits: their products with a count are exact.
+/// pi/2 as a sum of three terms. The first two have 33 bits, so their products with an integer are
+/// exact.
 Reduced reduced(double x) {
     constexpr double first = 0x1.921fb544p+0;
     constexpr double second = 0x1.0b4611a6p-34;
     constexpr double third = 0x1.3198a2e037073p-69;
-    // Beyond that products with a count are no longer exact. The remainder is, of a rounded turn.
+    // For larger values the products are not exact. The remainder is that of a rounded turn.
     if (!(std::abs(x) <= 1e5)) x = std::fmod(x, 2.0 * std::numbers::pi);
     if (std::isnan(x)) return {x, 0};
     const double count = std::floor(x * (2.0 / std::numbers::pi) + 0.5);
@@ -47,7 +48,7 @@ constexpr auto taylor_coefficients() {
     return all;
 }
 
-/// Up to x^17: what is left out is less than 1e-19.
+/// Terms up to x^17. The truncation error is less than 1e-19.
 double sine_series(double x) {
     constexpr auto coefficients = taylor_coefficients<17>();
     const double square = x * x;
@@ -79,7 +80,7 @@ double sine_of(const Reduced& reduced) {
     }
 }
 
-constexpr double ln2_first = 0x1.62e42feep-1;  // Of 32 bits.
+constexpr double ln2_first = 0x1.62e42feep-1;  // It has 32 bits.
 constexpr double ln2_second = 0x1.a39ef35793c76p-33;
 
 }  // namespace

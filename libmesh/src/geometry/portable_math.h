@@ -13,7 +13,7 @@ namespace relief::portable {
 double sin(double x);
 double cos(double x);
 
-/// -pi to pi; 0 for (0, 0).
+/// Range -pi to pi; 0 for (0, 0).
 double atan2(double y, double x);
 
 /// \param x  up to 700

@@ -15,16 +15,16 @@
 namespace relief {
 namespace {
 
-constexpr int most_parts = 4096;
+constexpr int max_parts = 4096;
 
 void check_count(const char* thing, int count, int least) {
-    if (count < least || count > most_parts) {
+    if (count < least || count > max_parts) {
         throw InvalidInput(
-            fmt::format("{} are {}, but must be within [{}, {}]", thing, count, least, most_parts));
+            fmt::format("{} are {}, but must be within [{}, {}]", thing, count, least, max_parts));
     }
 }
 
-/// Two counter-clockwise triangles for every cell of a rows x columns lattice of vertices, row 0
+/// Adds two counter-clockwise triangles for every cell of a grid of rows x columns vertices, row 0
 /// on top.
 void add_cells(Mesh& mesh, std::uint32_t first_vertex, std::uint32_t columns, std::uint32_t rows) {
     for (std::uint32_t row = 0; row + 1 < rows; ++row) {
@@ -37,12 +37,12 @@ void add_cells(Mesh& mesh, std::uint32_t first_vertex, std::uint32_t columns, st
     }
 }
 
-/// The angle of a step of a full turn; the last is the first again.
+/// Angle of a step of a full turn. The last step equals the first.
 double turn(int step, int steps) {
     return step == steps ? 0.0 : full_turn * step / steps;
 }
 
-/// A disc at this height that faces up or down.
+/// Adds a disc at this height that faces up or down.
 void add_disc(Mesh& mesh, double height, int slices) {
     const auto center = static_cast<std::uint32_t>(mesh.positions.size());
     const auto add = [&](double x, double z) {
@@ -110,7 +110,7 @@ Mesh make_sphere(int slices, int stacks) {
 Mesh make_cube() {
     Mesh mesh;
     mesh.name = "cube";
-    // Each face: its outward normal, and the directions of the texture's right and up on it.
+    // For each face: outward normal, and the directions of the texture's right and up.
     struct Face {
         glm::vec3 normal, right, up;
     };
@@ -142,7 +142,7 @@ Mesh make_torus(float tube_radius, int slices, int sides) {
     Mesh mesh;
     mesh.name = "torus";
     for (int side = 0; side <= sides; ++side) {
-        const double around = turn(side, sides);  // From the inner side over the top.
+        const double around = turn(side, sides);  // It runs from the inner side over the top.
         for (int slice = 0; slice <= slices; ++slice) {
             const double along = turn(slice, slices);
             const glm::dvec3 outwards(std::sin(along), 0.0, std::cos(along));

@@ -19,7 +19,7 @@
 namespace relief {
 namespace {
 
-/// An order of floats in which only equal ones are equal: -0 is +0, NaNs go by their bits.
+/// Total order of floats: -0 equals +0, NaNs are ordered by their bits.
 std::uint32_t ordinal(float value) {
     const auto bits = std::bit_cast<std::uint32_t>(value + 0.0F);
     return (bits & 0x80000000U) != 0 ? ~bits : bits | 0x80000000U;

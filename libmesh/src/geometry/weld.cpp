@@ -1,17 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
 // Exact welding by open-addressed hash tables, one for each value of the hash's upper bits.
 // Vertices enter them in ascending order, so that the first of a class, the one that stays in the
-// table, is the one with the smallest index. Tests: tests/mesh/geometry/weld_test.cpp.
-#include "geometry/weld.h"
-
+// table, is the one with the smallest index.
+// A grid of cells so small that all within one are near each other: a cell is joined as a whole,
+// and two cells at the first pair of vertices that is near. Cells are told apart by whole numbers
+// held in double, which stay apart for as long as floats do.
 #include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <unordered_map>
 #include <utility>
 
+#include "geometry/direction.h"
+#include "geometry/disjoint_sets.h"
+#include "geometry/weld.h"
 #include "large_memory.h"
 #include "parallel.h"
 #include "progress_stage.h"
@@ -65,7 +70,7 @@ class Buckets {
   public:
     explicit Buckets(std::span<const std::uint32_t> hashes)
         : shift_(32 -
-                 std::min(most_bits, static_cast<int>(std::bit_width(hashes.size() / usual_size)))),
+                 std::min(max_bits, static_cast<int>(std::bit_width(hashes.size() / usual_size)))),
           first_((std::size_t(1) << (32 - shift_)) + 1, 0) {
         reserve_to_fill(entries_, hashes.size());
         entries_.resize(hashes.size());
@@ -86,7 +91,7 @@ class Buckets {
 
   private:
     static constexpr std::size_t usual_size = 4096;
-    static constexpr int most_bits = 10;
+    static constexpr int max_bits = 10;
 
     [[nodiscard]] std::size_t bucket_of(std::uint32_t hash) const {
         return shift_ == 32 ? 0 : hash >> shift_;
@@ -199,6 +204,101 @@ std::vector<glm::uvec3> welded_triangles(std::span<const glm::uvec3> triangles,
         }
     });
     return welded;
+}
+
+namespace {
+
+using CellKey = std::array<double, 3>;
+
+struct HashOfCell {
+    std::size_t operator()(const CellKey& key) const {
+        std::size_t hash = 0;
+        for (const double number : key)
+            hash = (hash ^ std::hash<double>{}(number)) * 0x9e3779b97f4a7c15ULL + (hash >> 31);
+        return hash;
+    }
+};
+
+/// Cells in order of their first vertex, and what is in them.
+struct Cells {
+    std::unordered_map<CellKey, std::uint32_t, HashOfCell> index;
+    std::vector<CellKey> keys;
+    std::vector<std::vector<std::uint32_t>> vertices;
+};
+
+Cells cells_of(std::span<const glm::vec3> positions, double size) {
+    Cells cells;
+    cells.index.reserve(positions.size());
+    for (std::size_t i = 0; i < positions.size(); ++i) {
+        if (!is_finite(positions[i])) continue;
+        CellKey key;
+        for (std::size_t k = 0; k < 3; ++k)
+            key[k] = std::floor(positions[i][static_cast<int>(k)] / size) + 0.0;
+        const auto [found, is_new] =
+            cells.index.try_emplace(key, static_cast<std::uint32_t>(cells.keys.size()));
+        if (is_new) {
+            cells.keys.push_back(key);
+            cells.vertices.emplace_back();
+        }
+        cells.vertices[found->second].push_back(static_cast<std::uint32_t>(i));
+    }
+    return cells;
+}
+
+bool any_near(std::span<const glm::vec3> positions, std::span<const std::uint32_t> some,
+              std::span<const std::uint32_t> others, double tolerance) {
+    return std::any_of(some.begin(), some.end(), [&](std::uint32_t a) {
+        return std::any_of(others.begin(), others.end(), [&](std::uint32_t b) {
+            return glm::distance(glm::dvec3(positions[a]), glm::dvec3(positions[b])) <= tolerance;
+        });
+    });
+}
+
+/// Half of the cells that may hold something near, so that each pair is looked at once.
+std::vector<CellKey> offsets_onwards() {
+    constexpr int reach = 2;  // The tolerance is sqrt(3) cells long.
+    std::vector<CellKey> offsets;
+    for (int x = -reach; x <= reach; ++x) {
+        for (int y = -reach; y <= reach; ++y) {
+            for (int z = -reach; z <= reach; ++z) {
+                if (std::array{x, y, z} > std::array{0, 0, 0})
+                    offsets.push_back({double(x), double(y), double(z)});
+            }
+        }
+    }
+    return offsets;
+}
+
+}  // namespace
+
+std::vector<std::uint32_t> weld_near_positions(std::span<const glm::vec3> positions,
+                                               double tolerance) {
+    // A little less than sqrt(3) to the tolerance, so that rounding joins none that are too far.
+    const double size = tolerance / 1.7320509;
+    const Cells cells = cells_of(positions, size);
+    DisjointSets sets(positions.size());
+    for (const std::vector<std::uint32_t>& together : cells.vertices) {
+        for (const std::uint32_t vertex : together)
+            sets.join(together.front(), vertex);
+    }
+    const std::vector<CellKey> onwards = offsets_onwards();
+    for (std::size_t c = 0; c < cells.keys.size(); ++c) {
+        const std::vector<std::uint32_t>& here = cells.vertices[c];
+        for (const CellKey& offset : onwards) {
+            const CellKey& key = cells.keys[c];
+            const auto there = cells.index.find(
+                {key[0] + offset[0] + 0.0, key[1] + offset[1] + 0.0, key[2] + offset[2] + 0.0});
+            if (there == cells.index.end() || there->second == c) continue;
+            const std::vector<std::uint32_t>& others = cells.vertices[there->second];
+            if (sets.find(here.front()) == sets.find(others.front())) continue;
+            if (any_near(positions, here, others, tolerance))
+                sets.join(here.front(), others.front());
+        }
+    }
+    std::vector<std::uint32_t> representatives(positions.size());
+    for (std::size_t i = 0; i < positions.size(); ++i)
+        representatives[i] = sets.find(static_cast<std::uint32_t>(i));
+    return representatives;
 }
 
 }  // namespace relief

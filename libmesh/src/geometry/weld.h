@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Which vertices are the same one, stored several times: the one home of exact welding.
+/// Welding: which vertices are equal, exactly or within a distance.
 ///
-/// Vertices are equal when all their numbers are equal as numbers: +0 equals -0, an infinity equals
-/// itself, and a vertex with a NaN in it equals no other. No tolerance. Linear expected time.
-/// Tests: tests/mesh/geometry/weld_test.cpp.
+/// Exact welding compares numbers: +0 equals -0, an infinity equals itself, and a vertex with a NaN
+/// equals no other. Expected time is linear.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +12,6 @@
 #include <vector>
 
 namespace relief {
-
 /// For every vertex, the smallest index of a vertex with an equal position (its position class).
 std::vector<std::uint32_t> weld_positions(std::span<const glm::vec3> positions);
 
@@ -45,5 +43,17 @@ Groups groups_of(std::span<const std::uint32_t> representatives);
 /// Triangles over class representatives instead of over vertices.
 std::vector<glm::uvec3> welded_triangles(std::span<const glm::uvec3> triangles,
                                          std::span<const std::uint32_t> representatives);
+
+/// For every vertex, the smallest index of one that it is joined with.
+///
+/// Vertices are joined if they are no further apart than `tolerance`, or joined with the same one:
+/// so a chain of near ones is all one, whatever order they come in. Those that are not finite
+/// are alone. Distances are taken in double.
+///
+/// Time: near-linear where few vertices lie within a tolerance of each other, as a tolerance for
+/// seams should have it; quadratic in those that crowd at just that distance.
+/// \param tolerance  finite and above 0
+std::vector<std::uint32_t> weld_near_positions(std::span<const glm::vec3> positions,
+                                               double tolerance);
 
 }  // namespace relief

@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Which vertices are near enough to count as one.
-#include "geometry/weld_near.h"
+#include "geometry/weld.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <limits>
 #include <random>
-
-#include "geometry/weld.h"
 
 namespace relief {
 namespace {

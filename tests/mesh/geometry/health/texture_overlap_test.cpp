@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Which triangles share texels: by hand, against a search through all pairs, and in crowds.
-#include "geometry/health/texture_overlap.h"
+#include "topology/texture_overlap.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

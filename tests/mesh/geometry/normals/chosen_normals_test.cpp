@@ -27,7 +27,7 @@ TEST(ChosenNormals, AreMaxWhereNothingFoldsOver) {
 }
 
 TEST(ChosenNormals, AreAreaAroundAFoldAndMaxElsewhere) {
-    // A flat grid with one vertex pulled over its neighbour: the triangles turned over are the
+    // A flat grid with one vertex pulled over its neighbor: the triangles turned over are the
     // small ones, which Max's weights listen to most.
     Mesh mesh = test::grid(8);
     const std::size_t pulled = 4 * 9 + 4;

@@ -333,7 +333,7 @@ TEST(VertexNormals, ApproachTheSphereAtSecondOrder) {
 }
 
 TEST(VertexNormals, AFanOfAMillionTrianglesIsSummedExactly) {
-    // A flat fan: every vote is the same, whatever the number.
+    // A flat fan: every contribution is the same, whatever the number.
     const std::uint32_t count = 1000000;
     std::vector<glm::vec3> positions = {{0, 0, 0}};
     std::vector<glm::uvec3> triangles;

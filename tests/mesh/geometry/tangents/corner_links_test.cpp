@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Neighbours across edges, in the plain case and where an edge has more than two triangles.
-#include "geometry/tangents/corner_links.h"
+#include "geometry/tangent_signs.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -43,9 +43,9 @@ Links links_of(const std::vector<glm::uvec3>& triangles, const std::vector<Gradi
     return links;
 }
 
-/// The neighbour of triangle `t` across its edge `i` (from corner i to the next), or -1. Both ends
+/// The neighbor of triangle `t` across its edge `i` (from corner i to the next), or -1. Both ends
 /// of the edge must agree on it.
-int neighbour(const Links& links, std::uint32_t t, std::uint32_t i) {
+int neighbor(const Links& links, std::uint32_t t, std::uint32_t i) {
     const Corner corner = links.across[3 * t + i];
     const Corner other_end = links.across_previous[3 * t + (i + 1) % 3];
     const int found = corner == no_corner ? -1 : static_cast<int>(triangle_of(corner));
@@ -72,30 +72,30 @@ TEST(CornerLinks, AtACrowdedEdgeTrianglesOfOneHandednessPairFirst) {
     // Edge 0-1: two leave vertex 0 (up, down), two arrive (down, up).
     const std::vector<glm::uvec3> triangles = {{0, 1, 2}, {0, 1, 3}, {1, 0, 4}, {1, 0, 5}};
     const Links links = links_of(triangles, {upright, mirrored, mirrored, upright});
-    EXPECT_EQ(neighbour(links, 0, 0), 3);
-    EXPECT_EQ(neighbour(links, 1, 0), 2);
-    EXPECT_EQ(neighbour(links, 2, 0), 1);
-    EXPECT_EQ(neighbour(links, 3, 0), 0);
+    EXPECT_EQ(neighbor(links, 0, 0), 3);
+    EXPECT_EQ(neighbor(links, 1, 0), 2);
+    EXPECT_EQ(neighbor(links, 2, 0), 1);
+    EXPECT_EQ(neighbor(links, 3, 0), 0);
 }
 
 TEST(CornerLinks, AmongEqualsTheSmallerThirdVerticesPairWhateverTheOrder) {
     const std::vector<glm::uvec3> triangles = {{0, 1, 3}, {0, 1, 2}, {1, 0, 5}, {1, 0, 4}};
     const Links links = links_of(triangles, {upright, upright, upright, upright});
-    EXPECT_EQ(neighbour(links, 1, 0), 3);
-    EXPECT_EQ(neighbour(links, 0, 0), 2);
+    EXPECT_EQ(neighbor(links, 1, 0), 3);
+    EXPECT_EQ(neighbor(links, 0, 0), 2);
 }
 
 TEST(CornerLinks, ATriangleWithoutGradientTakesWhatIsLeft) {
     const std::vector<glm::uvec3> triangles = {{0, 1, 2}, {1, 0, 3}, {1, 0, 4}, {0, 1, 5}};
     const Links links = links_of(triangles, {upright, upright, no_gradient, mirrored});
-    EXPECT_EQ(neighbour(links, 0, 0), 1);
-    EXPECT_EQ(neighbour(links, 2, 0), 3);
+    EXPECT_EQ(neighbor(links, 0, 0), 1);
+    EXPECT_EQ(neighbor(links, 2, 0), 3);
 }
 
 TEST(CornerLinks, TheThirdTriangleOnAnEdgeIsLeftAlone) {
     const Links links = links_of({{0, 1, 2}, {1, 0, 3}, {0, 1, 4}}, {upright, upright, upright});
-    EXPECT_EQ(neighbour(links, 0, 0), 1);
-    EXPECT_EQ(neighbour(links, 2, 0), -1);
+    EXPECT_EQ(neighbor(links, 0, 0), 1);
+    EXPECT_EQ(neighbor(links, 2, 0), -1);
 }
 
 TEST(CornerLinks, ARepeatedTriangleIsKnownByItsTwinInAnyRotation) {
@@ -104,9 +104,9 @@ TEST(CornerLinks, ARepeatedTriangleIsKnownByItsTwinInAnyRotation) {
     const Links links = links_of(triangles, {upright, upright, upright, upright, mirrored});
     // The one that starts at its smallest vertex counts, wherever it stands.
     EXPECT_THAT(links.twin, ElementsAre(1, 1, 1, 3, 4));
-    EXPECT_EQ(neighbour(links, 1, 0), 3);
-    EXPECT_EQ(neighbour(links, 3, 0), 1);
-    EXPECT_EQ(neighbour(links, 0, 2), -1);
+    EXPECT_EQ(neighbor(links, 1, 0), 3);
+    EXPECT_EQ(neighbor(links, 3, 0), 1);
+    EXPECT_EQ(neighbor(links, 0, 2), -1);
 }
 
 TEST(CornerLinks, BothEndsOfEveryEdgeAgreeHoweverCrowdedItIs) {
@@ -124,12 +124,12 @@ TEST(CornerLinks, BothEndsOfEveryEdgeAgreeHoweverCrowdedItIs) {
                                        no_gradient}[(triangle.x + triangle.y + triangle.z) % 3]);
         }
         const Links links = links_of(triangles, kinds);
-        int neighbours = 0;
+        int neighbors = 0;
         for (std::uint32_t t = 0; t < triangles.size(); ++t) {
             for (std::uint32_t i = 0; i < 3; ++i)
-                neighbours += neighbour(links, t, i) >= 0 ? 1 : 0;
+                neighbors += neighbor(links, t, i) >= 0 ? 1 : 0;
         }
-        EXPECT_GT(neighbours, 0);
+        EXPECT_GT(neighbors, 0);
     }
 }
 

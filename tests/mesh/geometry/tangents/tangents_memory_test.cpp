@@ -13,7 +13,7 @@
 namespace {
 
 std::atomic<std::size_t> in_use{0};
-std::atomic<std::size_t> most_in_use{0};
+std::atomic<std::size_t> max_used{0};
 
 // Before every block, its size; as much as keeps what follows aligned.
 constexpr std::size_t header = 64;
@@ -23,8 +23,8 @@ void* counted_new(std::size_t size) {
     if (block == nullptr) throw std::bad_alloc();
     *static_cast<std::size_t*>(block) = size;
     const std::size_t now = in_use += size;
-    std::size_t most = most_in_use;
-    while (now > most && !most_in_use.compare_exchange_weak(most, now)) {
+    std::size_t most = max_used;
+    while (now > most && !max_used.compare_exchange_weak(most, now)) {
     }
     return static_cast<std::byte*>(block) + header;
 }
@@ -59,12 +59,12 @@ std::size_t bytes_of(const Mesh& mesh) {
 /// Peak of input, output and all between, over input and output.
 double peak_ratio(const Mesh& mesh) {
     const std::size_t before = in_use;
-    most_in_use = before;
+    max_used = before;
     Report report;
     const auto tangents =
         mikktspace_tangents(mesh.positions, mesh.normals, mesh.texcoords, mesh.triangles, report);
     const std::size_t needed = bytes_of(mesh) + tangents.size() * sizeof(glm::vec4);
-    return static_cast<double>(bytes_of(mesh) + most_in_use - before) / static_cast<double>(needed);
+    return static_cast<double>(bytes_of(mesh) + max_used - before) / static_cast<double>(needed);
 }
 
 TEST(TangentMemory, IsAtMostHalfAsMuchAgainAsInputAndOutput) {

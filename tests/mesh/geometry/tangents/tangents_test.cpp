@@ -270,7 +270,7 @@ TEST(Tangents, ATriangleWithoutGradientTakesItsNeighboursFrames) {
 TEST(Tangents, ATriangleWithoutGradientHasTheHandednessOfMostOfItsNeighbours) {
     for (int sides = 0; sides < 8; ++sides) {
         SCOPED_TRACE(sides);
-        // The middle triangle's texture lies on a line; each neighbour's third corner above or
+        // The middle triangle's texture lies on a line; each neighbor's third corner above or
         // below it.
         Mesh mesh;
         mesh.positions = {{0, 0, 0}, {2, 0, 0}, {1, 2, 0}, {1, -1, 0}, {3, 2, 0}, {-1, 2, 0}};
@@ -371,7 +371,7 @@ Mesh bevelled() {
         mesh.triangles.emplace_back(first, first + 1, first + 2);
         mesh.triangles.emplace_back(first, first + 2, first + 3);
     };
-    // The large face has the shared normal at its edge to the bevel, so that they are neighbours.
+    // The large face has the shared normal at its edge to the bevel, so that they are neighbors.
     quad({{{-10, 0, 0}, {0, 0, 0}, {0, 10, 0}, {-10, 10, 0}}}, up,
          {{{0, 0}, {1, 0}, {1, -1}, {0, -1}}});
     quad({{{0, 0, 0}, {0.1F, 0, -0.1F}, {0.1F, 10, -0.1F}, {0, 10, 0}}}, slanted,
@@ -407,7 +407,7 @@ TEST(Tangents, LengyelsAddUpGradientsWhateverTheirTrianglesAreTo) {
     EXPECT_EQ(tangents[0], tangents[3]);
     EXPECT_LE(degrees_between(tangents[0], {1, 3, 0}), float_degrees);
     EXPECT_EQ(tangents[0].w, 1.0F);
-    EXPECT_NE(tangents_of(mesh)[0], tangents_of(mesh)[3]) << "which are no neighbours";
+    EXPECT_NE(tangents_of(mesh)[0], tangents_of(mesh)[3]) << "which are no neighbors";
 }
 
 TEST(Tangents, LengyelsKeepHandednessesApart) {
@@ -449,7 +449,7 @@ TEST(Tangents, ATriangleOnALineInSpaceKeepsItsTexturesDirection) {
 
 TEST(Tangents, ATextureThatRunsAlongTheNormalIsCounted) {
     Mesh mesh = test::grid(2);
-    // At the middle vertex u runs along the normal; its neighbours have nothing else to offer.
+    // At the middle vertex u runs along the normal; its neighbors have nothing else to offer.
     mesh.normals[4] = {1, 0, 0};
     Report report;
     const auto tangents = tangents_of(mesh, report);
@@ -519,7 +519,7 @@ TEST(Tangents, WrongLengthsAndIndicesAreRefused) {
                     testing::StrEq("triangle 1 names vertex 4, but there are only 4")));
 }
 
-/// Shapes on which searching for neighbours, recursion or comparing sets takes quadratic time.
+/// Shapes on which searching for neighbors, recursion or comparing sets takes quadratic time.
 Mesh crowded(int kind, std::uint32_t count) {
     Mesh mesh;
     const auto add = [&](glm::vec3 position, glm::vec2 texcoord) {

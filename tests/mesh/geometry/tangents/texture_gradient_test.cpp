@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What single triangles say: by hand, at every scale that a float has, and where they say nothing.
-#include "geometry/tangents/texture_gradient.h"
+#include "geometry/texture_gradient.h"
 
 #include <gtest/gtest.h>
 

@@ -5,8 +5,8 @@
 
 #include <algorithm>
 
-#include "geometry/topology/topology.h"
 #include "geometry/weld.h"
+#include "topology/topology.h"
 
 namespace relief::test {
 

@@ -11,7 +11,6 @@
 #include <numbers>
 #include <random>
 
-#include "geometry/topology/topology.h"
 #include "geometry/weld.h"
 #include "relief/mesh/error.h"
 #include "relief/mesh/mesh_file.h"
@@ -20,6 +19,7 @@
 #include "support/shapes.h"
 #include "support/shared_data.h"
 #include "topology/boundary_edges.h"
+#include "topology/topology.h"
 
 namespace relief {
 namespace {

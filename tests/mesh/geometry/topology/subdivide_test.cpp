@@ -10,13 +10,13 @@
 #include <limits>
 #include <numbers>
 
-#include "geometry/topology/topology.h"
 #include "geometry/weld.h"
 #include "relief/mesh/error.h"
 #include "support/angle.h"
 #include "support/message_of.h"
 #include "support/shapes.h"
 #include "topology/boundary_edges.h"
+#include "topology/topology.h"
 
 namespace relief {
 namespace {
@@ -35,7 +35,7 @@ TEST(Subdivide, ATetrahedronByHand) {
     ASSERT_EQ(fine.positions.size(), 10U);
     ASSERT_EQ(fine.triangles.size(), 16U);
     EXPECT_TRUE(fine.normals.empty()) << "there were none";
-    // Three neighbours weigh 3/16 each; their sum is minus the vertex: 7/16 - 3/16.
+    // Three neighbors weigh 3/16 each; their sum is minus the vertex: 7/16 - 3/16.
     for (int v = 0; v < 4; ++v)
         EXPECT_LT(glm::length(fine.positions[v] - tetrahedron.positions[v] * 0.25F),
                   subdivide_rounding);
@@ -104,7 +104,7 @@ TEST(Subdivide, AFinerSphereIsNearerToTheSphereByTheSecondOrder) {
         const Mesh fine = subdivided(test::sphere(slices, slices / 2), 2, {}, report);
         double most = 0.0;
         for (const glm::vec3& p : fine.positions) {
-            if (std::abs(p.y) > 0.7F) continue;  // Poles have as many neighbours as slices.
+            if (std::abs(p.y) > 0.7F) continue;  // Poles have as many neighbors as slices.
             most = std::max(most, std::abs(1.0 - glm::length(glm::dvec3(p))));
         }
         errors.push_back(most);
@@ -137,7 +137,7 @@ TEST(Subdivide, ASeamIsSmoothInPlaceAndExactInTheTexture) {
 }
 
 TEST(Subdivide, AHubOfManySpokesReadsNoWeightsBeyondTheTable) {
-    // OpenMesh's own table ends at 50 neighbours.
+    // OpenMesh's own table ends at 50 neighbors.
     constexpr unsigned spokes = 200;
     Mesh hub;
     hub.positions.emplace_back(0.0F, 1.0F, 0.0F);
@@ -148,7 +148,7 @@ TEST(Subdivide, AHubOfManySpokesReadsNoWeightsBeyondTheTable) {
     }
     Report report;
     const Mesh fine = subdivided(hub, 1, {}, report);
-    // alpha = (40 - (3 + 2 cos(2 pi / n))^2) / 64, n neighbours at height 0 around the axis.
+    // alpha = (40 - (3 + 2 cos(2 pi / n))^2) / 64, n neighbors at height 0 around the axis.
     const double turn = 3.0 + 2.0 * std::cos(2.0 * std::numbers::pi / spokes);
     EXPECT_NEAR(fine.positions[0].y, 1.0 - (40.0 - turn * turn) / 64.0, subdivide_rounding);
     EXPECT_NEAR(fine.positions[0].x, 0.0, subdivide_rounding);

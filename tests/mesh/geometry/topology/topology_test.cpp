@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The surface that a mesh is: neighbours, cuts, and what takes no part. Whatever the triangles, the
+// The surface that a mesh is: neighbors, cuts, and what takes no part. Whatever the triangles, the
 // outcome is a manifold: every edge has at most two triangles, every vertex one fan.
-#include "geometry/topology/topology.h"
+#include "topology/topology.h"
 
 #include <gtest/gtest.h>
 

@@ -1,0 +1,620 @@
+// SPDX-License-Identifier: Apache-2.0
+// Sums the weighted normals of all triangles at their vertices, and rounds the sums.
+//
+// Triangles are processed in blocks: corners are gathered into arrays, contributions are computed
+// on whole vector registers and then added at the vertices. The limit is memory: 24 bytes of
+// indices and sums per triangle.
+//
+// Derivation of the error bound, in units u = 2^-53 of relative rounding: edges have an error of u,
+// so an area vector has an error of less than 8 u times the largest product of two edges. The error
+// of a factor (normal_contributions.h) changes the contribution by less than 24 u times the factor
+// times that product. Adding n contributions in any order changes the sum by n u times the sum of
+// their lengths. A unit vector has the sum's error divided by its length, plus 4 u from
+// normalizing. The code allows twice that. Contributions computed in float count as exact: only
+// their addition rounds.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <exception>
+#include <limits>
+#include <mutex>
+
+#include "geometry/check_triangles.h"
+#include "geometry/direction.h"
+#include "geometry/normal_contributions.h"
+#include "geometry/normal_sums.h"
+#include "large_memory.h"
+#include "parallel.h"
+#include "progress_stage.h"
+#include "relief/mesh/threads.h"
+#include "vector_targets.h"
+
+namespace relief {
+namespace {
+
+// The four doubles of a sum as one operand. The compiler splits it on processors with smaller
+// registers.
+using Lanes = double __attribute__((vector_size(32), may_alias));
+
+using Block = std::span<const glm::uvec3>;
+
+/// One value per triangle of a block.
+template <typename T>
+struct alignas(64) PerTriangle : std::array<T, triangles_at_once> {};
+
+/// x, y and z of the first, second and third corner.
+using BlockCorners = std::array<std::array<PerTriangle<float>, 3>, 3>;
+
+/// Contributions of a block of triangles; undefined for odd ones.
+struct BlockContributions {
+    PerTriangle<double> x, y, z, edge_product;
+    std::array<PerTriangle<double>, 3> factor;
+    PerTriangle<std::uint32_t> odd;  ///< 1 if the triangle is not clearly valid.
+};
+
+/// Output of the summation of a range of triangles.
+struct Job {
+    std::span<const glm::vec3> positions;
+    std::span<const glm::uvec3> triangles;
+    std::uint32_t first_triangle;
+    float scale;
+    PartialSums* sums;
+    VertexRange* ranges;
+    std::vector<std::uint32_t>* odd;
+    bool out_of_range = false;  ///< A triangle refers to a vertex that does not exist.
+};
+
+RELIEF_INLINE VertexRange range_of(Block block) {
+    std::uint32_t lowest = std::numeric_limits<std::uint32_t>::max();
+    std::uint32_t highest = 0;
+    const std::uint32_t* index = &block[0].x;
+    for (std::size_t i = 0; i < 3 * block.size(); ++i) {
+        lowest = index[i] < lowest ? index[i] : lowest;
+        highest = index[i] > highest ? index[i] : highest;
+    }
+    return {lowest, highest};
+}
+
+/// Loads corners one by one, for blocks that are not full or that use the last vertex.
+inline void gather_each(Block block, const glm::vec3* positions, BlockCorners& corners) {
+    for (std::size_t i = 0; i < block.size(); ++i) {
+        for (std::size_t k = 0; k < 3; ++k) {
+            const glm::vec3& position = positions[block[i][static_cast<int>(k)]];
+            corners[k][0][i] = position.x;
+            corners[k][1][i] = position.y;
+            corners[k][2][i] = position.z;
+        }
+    }
+}
+
+/// Loads the corners of a full block, four triangles at a time. Each position is loaded together
+/// with the following number, which must exist.
+RELIEF_INLINE void gather_four(Block block, const glm::vec3* positions, BlockCorners& corners) {
+    using Floats = float __attribute__((vector_size(16)));
+    for (std::size_t i = 0; i < triangles_at_once; i += 4) {
+        for (std::size_t k = 0; k < 3; ++k) {
+            Floats a, b, c, d;
+            std::memcpy(&a, positions + block[i][static_cast<int>(k)], sizeof a);
+            std::memcpy(&b, positions + block[i + 1][static_cast<int>(k)], sizeof b);
+            std::memcpy(&c, positions + block[i + 2][static_cast<int>(k)], sizeof c);
+            std::memcpy(&d, positions + block[i + 3][static_cast<int>(k)], sizeof d);
+            const Floats xy_ab = __builtin_shufflevector(a, b, 0, 4, 1, 5);
+            const Floats xy_cd = __builtin_shufflevector(c, d, 0, 4, 1, 5);
+            const Floats z_ab = __builtin_shufflevector(a, b, 2, 6, 3, 7);
+            const Floats z_cd = __builtin_shufflevector(c, d, 2, 6, 3, 7);
+            const Floats x = __builtin_shufflevector(xy_ab, xy_cd, 0, 1, 4, 5);
+            const Floats y = __builtin_shufflevector(xy_ab, xy_cd, 2, 3, 6, 7);
+            const Floats z = __builtin_shufflevector(z_ab, z_cd, 0, 1, 4, 5);
+            std::memcpy(&corners[k][0][i], &x, sizeof x);
+            std::memcpy(&corners[k][1][i], &y, sizeof y);
+            std::memcpy(&corners[k][2][i], &z, sizeof z);
+        }
+    }
+}
+
+template <NormalWeight weight, typename Real>
+RELIEF_INLINE void contribution(const BlockCorners& at, Real scale, BlockContributions& result) {
+    using Point = std::array<float, 3>;
+    for (std::size_t i = 0; i < triangles_at_once; ++i) {
+        const TriangleContributions<Real> contributions = triangle_contributions<weight, Real>(
+            Point{at[0][0][i], at[0][1][i], at[0][2][i]},
+            Point{at[1][0][i], at[1][1][i], at[1][2][i]},
+            Point{at[2][0][i], at[2][1][i], at[2][2][i]}, scale);
+        result.odd[i] = contributions.sound ? 0U : 1U;
+        result.x[i] = static_cast<double>(contributions.area_vector[0]);
+        result.y[i] = static_cast<double>(contributions.area_vector[1]);
+        result.z[i] = static_cast<double>(contributions.area_vector[2]);
+        result.edge_product[i] = static_cast<double>(contributions.edge_product);
+        if constexpr (weight != NormalWeight::area) {
+            result.factor[0][i] = static_cast<double>(contributions.factor[0]);
+            result.factor[1][i] = static_cast<double>(contributions.factor[1]);
+            result.factor[2][i] = static_cast<double>(contributions.factor[2]);
+        }
+    }
+}
+
+RELIEF_INLINE void count_up(std::uint8_t& count) {
+    count = static_cast<std::uint8_t>(count + (count != 255));
+}
+
+template <NormalWeight weight>
+RELIEF_INLINE void scatter(Block block, const BlockContributions& contributions,
+                           PartialSums& target) {
+    auto* const sums = reinterpret_cast<Lanes*>(target.sums());
+    std::uint8_t* const counts = target.counts();
+    for (std::size_t i = 0; i < block.size(); ++i) {
+        const Lanes contribution = {contributions.x[i], contributions.y[i], contributions.z[i],
+                                    contributions.edge_product[i]};
+        const std::array<std::uint32_t, 3> at = {block[i].x, block[i].y, block[i].z};
+        for (std::size_t k = 0; k < 3; ++k) {
+            if constexpr (weight == NormalWeight::area)
+                sums[at[k]] += contribution;
+            else
+                sums[at[k]] += contribution * contributions.factor[k][i];
+            count_up(counts[at[k]]);
+        }
+    }
+}
+
+RELIEF_INLINE bool any_odd(const BlockContributions& contributions, std::size_t size) {
+    std::uint32_t any = 0;
+    for (std::size_t i = 0; i < size; ++i)
+        any |= contributions.odd[i];
+    return any != 0;
+}
+
+/// Records the odd triangles of a block and removes their contributions.
+inline void set_odd_aside(BlockContributions& contributions, std::size_t first, std::size_t size,
+                          std::vector<std::uint32_t>& odd) {
+    for (std::size_t i = 0; i < size; ++i) {
+        if (contributions.odd[i] == 0) continue;
+        odd.push_back(static_cast<std::uint32_t>(first + i));
+        contributions.x[i] = contributions.y[i] = contributions.z[i] =
+            contributions.edge_product[i] = 0.0;
+        for (PerTriangle<double>& factor : contributions.factor)
+            factor[i] = 0.0;
+    }
+}
+
+// Separate functions: inside the loop over blocks, GCC does not vectorize the loop over triangles.
+template <NormalWeight weight, typename Real>
+RELIEF_TARGET_512 void contribution_512(const BlockCorners& at, Real scale,
+                                        BlockContributions& result) {
+    contribution<weight, Real>(at, scale, result);
+}
+template <NormalWeight weight, typename Real>
+RELIEF_TARGET_256 void contribution_256(const BlockCorners& at, Real scale,
+                                        BlockContributions& result) {
+    contribution<weight, Real>(at, scale, result);
+}
+template <NormalWeight weight, typename Real>
+[[gnu::noinline]] void contribution_any(const BlockCorners& at, Real scale,
+                                        BlockContributions& result) {
+    contribution<weight, Real>(at, scale, result);
+}
+
+template <NormalWeight weight, typename Real, typename Contribution>
+RELIEF_INLINE void add_contributions(Job& job, const Contribution& contribution) {
+    BlockCorners corners{};
+    BlockContributions contributions{};
+    VertexRange touched{std::numeric_limits<std::uint32_t>::max(), 0};
+    for (std::size_t first = 0; first < job.triangles.size(); first += triangles_at_once) {
+        check_cancelled(first);
+        const std::size_t size = std::min(triangles_at_once, job.triangles.size() - first);
+        const Block block = job.triangles.subspan(first, size);
+        const VertexRange range = range_of(block);
+        if (range.highest >= job.positions.size()) {
+            job.out_of_range = true;
+            return;
+        }
+        job.ranges[first / triangles_at_once] = range;
+        touched.lowest = std::min(touched.lowest, range.lowest);
+        touched.highest = std::max(touched.highest, range.highest);
+
+        if (size == triangles_at_once && range.highest + 1 < job.positions.size())
+            gather_four(block, job.positions.data(), corners);
+        else
+            gather_each(block, job.positions.data(), corners);
+        contribution(corners, static_cast<Real>(job.scale), contributions);
+        if (any_odd(contributions, size))
+            set_odd_aside(contributions, job.first_triangle + first, size, *job.odd);
+        scatter<weight>(block, contributions, *job.sums);
+    }
+    job.sums->touched = touched;
+}
+
+template <NormalWeight weight, typename Real>
+RELIEF_TARGET_512 void add_contributions_512(Job& job) {
+    add_contributions<weight, Real>(job, contribution_512<weight, Real>);
+}
+template <NormalWeight weight, typename Real>
+RELIEF_TARGET_256 void add_contributions_256(Job& job) {
+    add_contributions<weight, Real>(job, contribution_256<weight, Real>);
+}
+template <NormalWeight weight, typename Real>
+[[gnu::noinline]] void add_contributions_any(Job& job) {
+    add_contributions<weight, Real>(job, contribution_any<weight, Real>);
+}
+
+template <NormalWeight weight, typename Real>
+void add_contributions_here(Job& job) {
+    switch (best_vector_target()) {
+        case VectorTarget::widest:
+            return add_contributions_512<weight, Real>(job);
+        case VectorTarget::wide:
+            return add_contributions_256<weight, Real>(job);
+        case VectorTarget::any:
+            return add_contributions_any<weight, Real>(job);
+    }
+}
+
+/// Adds the contributions of the odd triangles that are valid, in double precision.
+void add_narrow(const Job& job, NormalWeight weight) {
+    for (const std::uint32_t t : *job.odd) {
+        const glm::uvec3& triangle = job.triangles[t - job.first_triangle];
+        const std::array<glm::vec3, 3> at = {job.positions[triangle.x], job.positions[triangle.y],
+                                             job.positions[triangle.z]};
+        if (kind_of(at[0], at[1], at[2]) != TriangleKind::sound) continue;
+        with_weight(weight, [&]<NormalWeight constant>() {
+            const auto contributions =
+                triangle_contributions<constant, double>(at[0], at[1], at[2], double(job.scale));
+            for (int i = 0; i < 3; ++i) {
+                const auto k = static_cast<std::size_t>(i);
+                WeightedNormalSum& sum = job.sums->sums()[triangle[i]];
+                sum.x += contributions.factor[k] * contributions.area_vector[0];
+                sum.y += contributions.factor[k] * contributions.area_vector[1];
+                sum.z += contributions.factor[k] * contributions.area_vector[2];
+                sum.edge_product += contributions.factor[k] * contributions.edge_product;
+                count_up(job.sums->counts()[triangle[i]]);
+            }
+        });
+    }
+}
+
+void run(Job& job, NormalWeight weight, Arithmetic arithmetic) {
+    if (job.triangles.empty()) return;
+    with_weight(weight, [&]<NormalWeight constant>() {
+        if (arithmetic == Arithmetic::float32)
+            add_contributions_here<constant, float>(job);
+        else
+            add_contributions_here<constant, double>(job);
+    });
+    if (!job.out_of_range) add_narrow(job, weight);
+}
+
+/// Area vector (twice the area along the normal), or zero and the reason if the triangle is not
+/// valid.
+std::pair<TriangleKind, glm::dvec3> area_vector_of(const glm::vec3& a, const glm::vec3& b,
+                                                   const glm::vec3& c) {
+    if (!is_finite(a) || !is_finite(b) || !is_finite(c))
+        return {TriangleKind::non_finite, glm::dvec3(0.0)};
+    // Starts with the smallest corner by value, because rounding depends on which two edges are
+    // multiplied.
+    std::array<glm::dvec3, 3> corners = {glm::dvec3(a), glm::dvec3(b), glm::dvec3(c)};
+    std::rotate(corners.begin(), std::min_element(corners.begin(), corners.end(), comes_before),
+                corners.end());
+    const glm::dvec3 u = corners[1] - corners[0];
+    const glm::dvec3 v = corners[2] - corners[0];
+    const glm::dvec3 w = corners[2] - corners[1];
+    const glm::dvec3 area_vector = glm::cross(u, v);
+    const double longest = std::max({glm::dot(u, u), glm::dot(v, v), glm::dot(w, w)});
+    if (glm::length(area_vector) > min_triangle_width * longest)
+        return {TriangleKind::sound, area_vector};
+    return {TriangleKind::degenerate, glm::dvec3(0.0)};
+}
+
+}  // namespace
+
+TriangleKind kind_of(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c) {
+    return area_vector_of(a, b, c).first;
+}
+
+glm::vec3 triangle_normal(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c) {
+    return rounded(direction_or_zero(area_vector_of(a, b, c).second));
+}
+
+std::vector<glm::vec3> normals_or_zero(std::span<const glm::vec3> positions,
+                                       std::span<const glm::uvec3> triangles) {
+    constexpr std::size_t grain = 4096;
+    std::vector<glm::vec3> normals(triangles.size());
+    parallel_for(triangles.size(), grain, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t t = begin; t < end; ++t) {
+            normals[t] = triangle_normal(positions[triangles[t].x], positions[triangles[t].y],
+                                         positions[triangles[t].z]);
+        }
+    });
+    return normals;
+}
+
+float scale_for(std::span<const glm::vec3> positions) {
+    float lowest = std::numeric_limits<float>::infinity();
+    float highest = -lowest;
+    for (const glm::vec3& position : positions) {
+        for (int i = 0; i < 3; ++i) {
+            if (!std::isfinite(position[i])) continue;
+            lowest = std::min(lowest, position[i]);
+            highest = std::max(highest, position[i]);
+        }
+    }
+    const double size = double(highest) - double(lowest);
+    if (!(size > 0.0)) return 1.0F;
+    return std::ldexp(1.0F, std::clamp(-std::ilogb(size), -126, 127));
+}
+
+PartialSums::PartialSums(std::size_t vertex_count) {
+    // The system provides large zeroed memory on first use: untouched memory costs nothing.
+    const std::size_t bytes =
+        vertex_count * (sizeof(WeightedNormalSum) + 1) + alignof(WeightedNormalSum);
+    memory_.reset(std::calloc(bytes, 1));
+    if (!memory_) throw std::bad_alloc();
+    void* begin = memory_.get();
+    std::size_t room = bytes;
+    sums_ = static_cast<WeightedNormalSum*>(std::align(
+        alignof(WeightedNormalSum), vertex_count * sizeof(WeightedNormalSum), begin, room));
+    counts_ = reinterpret_cast<std::uint8_t*>(sums_ + vertex_count);
+    expect_filling(sums_, vertex_count * sizeof(WeightedNormalSum));
+}
+
+NormalSums sum_contributions(std::span<const glm::vec3> positions,
+                             std::span<const glm::uvec3> triangles, NormalWeight weight,
+                             Arithmetic arithmetic) {
+    constexpr std::size_t worth_a_thread = 64 * triangles_at_once;
+    // A larger number of parts would cost more memory than the threads save time.
+    constexpr std::size_t max_parts = 8;
+    const std::size_t blocks = (triangles.size() + triangles_at_once - 1) / triangles_at_once;
+    const std::size_t parts = std::clamp<std::size_t>(
+        std::min<std::size_t>(thread_count(), triangles.size() / worth_a_thread), 1, max_parts);
+
+    NormalSums result;
+    result.ranges.resize(blocks);
+    std::vector<std::vector<std::uint32_t>> odd(parts);
+    std::vector<Job> jobs;
+    for (std::size_t i = 0; i < parts; ++i)
+        result.parts.emplace_back(positions.size());
+    const float scale = arithmetic == Arithmetic::float32 ? scale_for(positions) : 1.0F;
+    for (std::size_t i = 0; i < parts; ++i) {
+        const std::size_t first = blocks * i / parts;
+        const std::size_t begin = first * triangles_at_once;
+        const std::size_t end =
+            std::min(blocks * (i + 1) / parts * triangles_at_once, triangles.size());
+        jobs.push_back({positions, triangles.subspan(begin, end - begin),
+                        static_cast<std::uint32_t>(begin), scale, &result.parts[i],
+                        result.ranges.data() + first, &odd[i]});
+    }
+    parallel_for(parts, 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i)
+            run(jobs[i], weight, arithmetic);
+    });
+    for (const Job& job : jobs) {
+        if (job.out_of_range) check_triangles(triangles, positions.size());
+    }
+    for (const std::vector<std::uint32_t>& some : odd)
+        result.odd.insert(result.odd.end(), some.begin(), some.end());
+    return result;
+}
+
+namespace {
+
+constexpr std::size_t at_once = 128;
+constexpr double unit_rounding = 0x1p-53;
+
+struct BlockSums {
+    alignas(64) std::array<double, at_once> x, y, z, edge_product, count;
+};
+
+struct BlockNormals {
+    alignas(64) std::array<float, at_once> x, y, z;
+    alignas(64) std::array<std::uint32_t, at_once> doubt;  ///< 1 or 0.
+};
+
+/// Rounds to the nearest integer, for |value| < 2^51.
+RELIEF_INLINE double nearest(double value) {
+    constexpr double large = 0x1.8p52;
+    return (value + large) - large;
+}
+
+RELIEF_INLINE float to_float(double steps) {
+    return static_cast<float>(steps) * static_cast<float>(1.0 / normal_grid) + 0.0F;
+}
+
+RELIEF_INLINE void round_block(const BlockSums& sums, BlockNormals& normals) {
+    for (std::size_t i = 0; i < at_once; ++i) {
+        const double x = sums.x[i], y = sums.y[i], z = sums.z[i];
+        const double steps = normal_grid / std::sqrt(x * x + y * y + z * z);
+        const double sum_error = (64.0 + 2.0 * sums.count[i]) * sums.edge_product[i] * steps;
+        const double safe = 0.5 - unit_rounding * (sum_error + 8.0 * normal_grid);
+        const double to_x = nearest(x * steps), to_y = nearest(y * steps),
+                     to_z = nearest(z * steps);
+        const double off_x = std::abs(x * steps - to_x), off_y = std::abs(y * steps - to_y),
+                     off_z = std::abs(z * steps - to_z);
+        const double off_xy = off_x > off_y ? off_x : off_y;
+        const double off = off_xy > off_z ? off_xy : off_z;
+        // The condition is true for NaN (from a sum of zero) and for a saturated count.
+        const double full = sums.count[i] < 255.0 ? 0.0 : 1.0;
+        normals.doubt[i] = off + full < safe ? 0U : 1U;
+        normals.x[i] = to_float(to_x);
+        normals.y[i] = to_float(to_y);
+        normals.z[i] = to_float(to_z);
+    }
+}
+
+template <typename Take>
+RELIEF_INLINE void take_part(const PartialSums& part, std::size_t begin, std::size_t from,
+                             std::size_t to, BlockSums& block, const Take& take) {
+    for (std::size_t v = from; v < to; ++v) {
+        const WeightedNormalSum& sum = part.sums()[v];
+        take(block.x[v - begin], sum.x);
+        take(block.y[v - begin], sum.y);
+        take(block.z[v - begin], sum.z);
+        take(block.edge_product[v - begin], sum.edge_product);
+    }
+    for (std::size_t v = from; v < to; ++v)
+        take(block.count[v - begin], static_cast<double>(part.counts()[v]));
+}
+
+/// Adds the sums of all parts for the vertices from `begin`.
+RELIEF_INLINE void load(const NormalSums& sums, std::size_t begin, std::size_t size,
+                        BlockSums& block) {
+    const auto set = [](double& to, double value) { to = value; };
+    const auto add = [](double& to, double value) { to += value; };
+    bool is_set = false;
+    for (const PartialSums& part : sums.parts) {
+        const std::size_t from = std::max<std::size_t>(begin, part.touched.lowest);
+        const std::size_t to =
+            std::min<std::size_t>(begin + size, std::size_t(part.touched.highest) + 1);
+        if (from >= to) continue;
+        const bool is_whole = to - from == at_once;
+        if (!is_set && is_whole) {
+            take_part(part, begin, from, to, block, set);
+        } else {
+            if (!is_set) block = {};
+            take_part(part, begin, from, to, block, add);
+        }
+        is_set = true;
+    }
+    if (!is_set) block = {};
+}
+
+/// Adds the sums of `size` groups of vertices.
+void load_shared(const NormalSums& sums, std::span<const std::uint32_t> first,
+                 std::span<const std::uint32_t> members, std::size_t size, BlockSums& block) {
+    block = {};
+    for (std::size_t i = 0; i < size; ++i) {
+        for (std::size_t k = first[i]; k < first[i + 1]; ++k) {
+            for (const PartialSums& part : sums.parts) {
+                const WeightedNormalSum& sum = part.sums()[members[k]];
+                block.x[i] += sum.x;
+                block.y[i] += sum.y;
+                block.z[i] += sum.z;
+                block.edge_product[i] += sum.edge_product;
+                block.count[i] += part.counts()[members[k]];
+            }
+        }
+    }
+}
+
+// A separate function: GCC does not vectorize the loop when it is inlined.
+RELIEF_TARGET_512 void round_block_512(const BlockSums& sums, BlockNormals& normals) {
+    round_block(sums, normals);
+}
+RELIEF_TARGET_256 void round_block_256(const BlockSums& sums, BlockNormals& normals) {
+    round_block(sums, normals);
+}
+[[gnu::noinline]] void round_block_any(const BlockSums& sums, BlockNormals& normals) {
+    round_block(sums, normals);
+}
+
+/// Rounds the normals of a block of vertices and marks uncertain ones in `doubt`.
+template <typename RoundBlock>
+RELIEF_INLINE void round_vertices(const NormalSums& sums, std::size_t begin, std::size_t size,
+                                  glm::vec3* normals, BlockNormals& rounded,
+                                  const RoundBlock& round) {
+    BlockSums block;
+    load(sums, begin, size, block);
+    round(block, rounded);
+    for (std::size_t i = 0; i < size; ++i)
+        normals[begin + i] = {rounded.x[i], rounded.y[i], rounded.z[i]};
+}
+
+RELIEF_TARGET_512 void round_vertices_512(const NormalSums& sums, std::size_t begin,
+                                          std::size_t size, glm::vec3* normals,
+                                          BlockNormals& rounded) {
+    round_vertices(sums, begin, size, normals, rounded, round_block_512);
+}
+RELIEF_TARGET_256 void round_vertices_256(const NormalSums& sums, std::size_t begin,
+                                          std::size_t size, glm::vec3* normals,
+                                          BlockNormals& rounded) {
+    round_vertices(sums, begin, size, normals, rounded, round_block_256);
+}
+void round_vertices_any(const NormalSums& sums, std::size_t begin, std::size_t size,
+                        glm::vec3* normals, BlockNormals& rounded) {
+    round_vertices(sums, begin, size, normals, rounded, round_block_any);
+}
+
+auto* best_round_vertices() {
+    switch (best_vector_target()) {
+        case VectorTarget::widest:
+            return &round_vertices_512;
+        case VectorTarget::wide:
+            return &round_vertices_256;
+        case VectorTarget::any:
+            break;
+    }
+    return &round_vertices_any;
+}
+
+/// Indices gathered by several threads, sorted at the end.
+class Gathered {
+  public:
+    void add(const BlockNormals& normals, std::size_t begin, std::size_t size) {
+        std::uint32_t any = 0;
+        for (std::size_t i = 0; i < size; ++i)
+            any |= normals.doubt[i];
+        if (any == 0) return;
+        const std::lock_guard lock(mutex_);
+        for (std::size_t i = 0; i < size; ++i) {
+            if (normals.doubt[i] != 0) indices_.push_back(static_cast<std::uint32_t>(begin + i));
+        }
+    }
+    std::vector<std::uint32_t> sorted() {
+        std::sort(indices_.begin(), indices_.end());
+        return std::move(indices_);
+    }
+
+  private:
+    std::mutex mutex_;
+    std::vector<std::uint32_t> indices_;
+};
+
+constexpr std::size_t blocks_a_piece = 64;
+
+/// Calls body(begin, size) for all blocks of `count` elements.
+template <typename Body>
+void for_blocks(std::size_t count, const Body& body) {
+    const std::size_t blocks = (count + at_once - 1) / at_once;
+    parallel_for(blocks, blocks_a_piece, [&](std::size_t first, std::size_t end) {
+        for (std::size_t b = first; b < end; ++b)
+            body(b * at_once, std::min(at_once, count - b * at_once));
+    });
+}
+
+}  // namespace
+
+glm::vec3 on_grid(double x, double y, double z) {
+    return {to_float(nearest(x * normal_grid)), to_float(nearest(y * normal_grid)),
+            to_float(nearest(z * normal_grid))};
+}
+
+std::vector<std::uint32_t> round_normals(const NormalSums& sums, std::span<glm::vec3> normals) {
+    Gathered doubtful;
+    const auto round = best_round_vertices();
+    for_blocks(normals.size(), [&](std::size_t begin, std::size_t size) {
+        BlockNormals rounded;
+        round(sums, begin, size, normals.data(), rounded);
+        doubtful.add(rounded, begin, size);
+    });
+    return doubtful.sorted();
+}
+
+std::vector<std::uint32_t> round_shared_normals(const NormalSums& sums,
+                                                std::span<const std::uint32_t> first,
+                                                std::span<const std::uint32_t> members,
+                                                std::span<glm::vec3> normals) {
+    if (first.empty()) return {};
+    Gathered doubtful;
+    for_blocks(first.size() - 1, [&](std::size_t begin, std::size_t size) {
+        BlockSums block;
+        BlockNormals rounded;
+        load_shared(sums, first.subspan(begin), members, size, block);
+        round_block_any(block, rounded);
+        for (std::size_t i = 0; i < size; ++i) {
+            for (std::size_t k = first[begin + i]; k < first[begin + i + 1]; ++k)
+                normals[members[k]] = {rounded.x[i], rounded.y[i], rounded.z[i]};
+        }
+        doubtful.add(rounded, begin, size);
+    });
+    return doubtful.sorted();
+}
+
+}  // namespace relief

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// Sums of the weighted normals of all triangles at every vertex, and unit normals rounded from
+/// them.
+///
+/// Triangles are added in any order, on several threads, with any vector instructions. Each sum has
+/// a bound on its rounding error. Where the bound leaves no doubt how the normal rounds, no other
+/// order could round it differently. The remaining vertices, one in 10,000 or fewer on usual
+/// meshes, are summed again in higher precision (normals.cpp). Unit vectors are rounded to
+/// multiples of 2^-28 and then to float, so all normals have the bits of exact arithmetic. The
+/// method is Ziv's for elementary functions [Ziv 1991].
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <glm/glm.hpp>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "relief/mesh/normals.h"
+
+namespace relief {
+/// Sum of contributions at one vertex, as wide as one vector register.
+struct alignas(32) WeightedNormalSum {
+    double x = 0.0, y = 0.0, z = 0.0;
+    /// Sum of factor times edge product, the unit of the rounding error.
+    double edge_product = 0.0;
+};
+
+/// A triangle is degenerate if its width divided by its longest edge is below this ratio. The
+/// rounding of the cross product (1e-16) could rotate the normal of a narrower triangle by more
+/// than 0.01 degrees.
+constexpr double min_triangle_width = 1e-12;
+
+enum class TriangleKind : std::uint8_t { sound, degenerate, non_finite };
+
+/// Classifies a triangle. The result does not depend on the first corner.
+TriangleKind kind_of(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c);
+
+/// Unit normal of a valid triangle, otherwise zero. The result does not depend on the first corner.
+glm::vec3 triangle_normal(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c);
+
+/// Unit normals of all triangles, zero for triangles that are not valid.
+std::vector<glm::vec3> normals_or_zero(std::span<const glm::vec3> positions,
+                                       std::span<const glm::uvec3> triangles);
+
+/// Power of two that scales the edges of a mesh to about 1, for float arithmetic.
+float scale_for(std::span<const glm::vec3> positions);
+
+/// Number of triangles per block: small enough for all data of a block to stay in the first-level
+/// cache.
+constexpr std::size_t triangles_at_once = 128;
+
+/// Smallest and largest vertex index of a block of `triangles_at_once` triangles.
+struct VertexRange {
+    std::uint32_t lowest;
+    std::uint32_t highest;
+};
+
+/// Contributions of a range of triangles at all vertices. Memory that no triangle touches is never
+/// written.
+class PartialSums {
+  public:
+    explicit PartialSums(std::size_t vertex_count);
+
+    WeightedNormalSum* sums() { return sums_; }
+    std::uint8_t* counts() { return counts_; }
+    [[nodiscard]] const WeightedNormalSum* sums() const { return sums_; }
+    [[nodiscard]] const std::uint8_t* counts() const { return counts_; }
+
+    VertexRange touched{1, 0};  ///< Empty if there is no triangle.
+
+  private:
+    struct Free {
+        void operator()(void* memory) const { std::free(memory); }
+    };
+    std::unique_ptr<void, Free> memory_;
+    WeightedNormalSum* sums_;
+    /// Number of contributions at each vertex; 255 means 255 or more.
+    std::uint8_t* counts_;
+};
+
+struct NormalSums {
+    std::vector<PartialSums> parts;  ///< Partial sums that are added.
+    /// Vertex range of each block of `triangles_at_once` triangles.
+    std::vector<VertexRange> ranges;
+    /// Triangles that were processed one by one: all that are not valid, and narrow valid ones.
+    std::vector<std::uint32_t> odd;
+};
+
+/// \throws InvalidInput if a triangle names a vertex that does not exist
+NormalSums sum_contributions(std::span<const glm::vec3> positions,
+                             std::span<const glm::uvec3> triangles, NormalWeight weight,
+                             Arithmetic arithmetic);
+
+/// Grid steps per unit to which unit vectors are rounded. The error is at most 1.9e-9, a sixteenth
+/// of the spacing of floats next to 1.
+constexpr double normal_grid = 268435456.0;
+
+/// Rounds a unit vector to the grid and to float. -0 becomes +0.
+glm::vec3 on_grid(double x, double y, double z);
+
+/// Computes the normals of all vertices. \return the vertices whose rounding is uncertain or that
+/// have no normal, ascending
+std::vector<std::uint32_t> round_normals(const NormalSums& sums, std::span<glm::vec3> normals);
+
+/// Computes the normals of groups of vertices that share a normal. Group i is `members` from
+/// first[i] up to first[i + 1]. \return the groups whose rounding is uncertain or that have no
+/// normal, ascending
+std::vector<std::uint32_t> round_shared_normals(const NormalSums& sums,
+                                                std::span<const std::uint32_t> first,
+                                                std::span<const std::uint32_t> members,
+                                                std::span<glm::vec3> normals);
+
+}  // namespace relief

@@ -1,0 +1,326 @@
+// SPDX-License-Identifier: Apache-2.0
+// MikkTSpace tangents, written from the method's description [Mikkelsen 2008] and the contract of
+// its header. Object space, unit vectors; computed in double precision and rounded to float once.
+//
+// Vertices with equal position, normal and texture coordinate are one. Around each, triangles that
+// follow each other across edges and have the same texture orientation form a group
+// (tangent_groups.h). Their tangents are averaged with the angle of the corner as weight, seen
+// along the normal. Comments mark each place where this deviates from the reference implementation
+// because the reference gives no usable or no stable result.
+//
+// Corners whose group has no tangent (degenerate, non-finite and isolated triangles) take one from
+// their vertex. The candidates of each vertex are collected first, from finished corners only, and
+// the open corners are filled afterwards, so the order of triangles does not matter. (The reference
+// implementation takes the first triangle of the list, and (1,0,0) if the vertex has none.) Every
+// fallback is counted.
+#include "relief/mesh/tangents.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <limits>
+#include <optional>
+#include <span>
+#include <tuple>
+#include <vector>
+
+#include "geometry/check_triangles.h"
+#include "geometry/corners.h"
+#include "geometry/direction.h"
+#include "geometry/tangent_contributions.h"
+#include "geometry/tangent_groups.h"
+#include "geometry/tangent_signs.h"
+#include "geometry/weld.h"
+#include "large_memory.h"
+#include "parallel.h"
+#include "progress_stage.h"
+#include "relief/mesh/error.h"
+
+namespace relief {
+namespace {
+
+using Offer = std::optional<glm::vec3>;
+
+/// Candidate tangents of a vertex for its open corners: one for each w, +1 and -1.
+using VertexOffers = std::array<Offer, 2>;
+
+std::size_t slot_of(float sign) {
+    return sign > 0.0F ? 0 : 1;
+}
+
+bool offer_comes_before(const glm::vec3& a, const glm::vec3& b) {
+    return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z);
+}
+
+/// Most frequent value; ties: the first.
+Offer most_frequent(std::vector<glm::vec3>& values) {
+    std::sort(values.begin(), values.end(), offer_comes_before);
+    Offer best;
+    std::ptrdiff_t most = 0;
+    for (auto first = values.begin(); first != values.end();) {
+        const auto last = std::upper_bound(first, values.end(), *first, offer_comes_before);
+        if (last - first > most) {
+            most = last - first;
+            best = *first;
+        }
+        first = last;
+    }
+    return best;
+}
+
+VertexOffers offers_at(std::span<const Corner> around, std::span<const glm::vec4> tangents) {
+    std::array<std::vector<glm::vec3>, 2> found;
+    for (const Corner corner : around) {
+        const glm::vec4& tangent = tangents[corner];
+        if (tangent.w != 0.0F) found[slot_of(tangent.w)].emplace_back(tangent);
+    }
+    return {most_frequent(found[0]), most_frequent(found[1])};
+}
+
+/// Candidates of all vertices that have an open corner.
+class Offers {
+  public:
+    Offers(const GroupInput& input, std::span<const Corner> open,
+           std::span<const glm::vec4> tangents)
+        : slots_(input.corners.vertex_count(), none) {
+        for (const Corner corner : open) {
+            std::uint32_t& slot = slots_[vertex_of(corner, input.mesh.triangles)];
+            if (slot != none) continue;
+            slot = static_cast<std::uint32_t>(offers_.size());
+            offers_.push_back(
+                offers_at(input.corners.at(vertex_of(corner, input.mesh.triangles)), tangents));
+        }
+    }
+
+    [[nodiscard]] const VertexOffers& at(std::uint32_t vertex) const {
+        return offers_[slots_[vertex]];
+    }
+
+  private:
+    static constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
+    std::vector<std::uint32_t> slots_;
+    std::vector<VertexOffers> offers_;
+};
+
+/// The w that is available at more corners of a triangle without a sign.
+float majority_sign(std::uint32_t triangle, const GroupInput& input, const Offers& offers) {
+    std::array<int, 2> contributions{};
+    for (int i = 0; i < 3; ++i) {
+        const VertexOffers& offer = offers.at(input.mesh.triangles[triangle][i]);
+        for (std::size_t slot = 0; slot < 2; ++slot)
+            contributions[slot] += offer[slot] ? 1 : 0;
+    }
+    return contributions[0] > 0 && contributions[0] >= contributions[1] ? 1.0F : -1.0F;
+}
+
+void copy_twin(const GroupFindings::Repeated& repeated, std::span<const glm::uvec3> triangles,
+               std::span<glm::vec4> tangents) {
+    const Corner first = 3 * repeated.triangle;
+    for (Corner corner = first; corner < first + 3; ++corner) {
+        Corner same = 3 * repeated.twin;
+        while (vertex_of(same, triangles) != vertex_of(corner, triangles))
+            ++same;
+        tangents[corner] = tangents[same];
+    }
+}
+
+/// Corners without a tangent, except those of duplicate triangles.
+std::vector<Corner> open_corners(const GroupInput& input, const GroupFindings& findings,
+                                 std::span<const glm::vec4> tangents) {
+    std::vector<Corner> open;
+    auto next = findings.repeated.begin();
+    const auto look_at = [&](std::uint32_t triangle) {
+        while (next != findings.repeated.end() && next->triangle < triangle)
+            ++next;
+        if (next != findings.repeated.end() && next->triangle == triangle) return;
+        for (Corner corner = 3 * triangle; corner < 3 * triangle + 3; ++corner) {
+            if (tangents[corner].w == 0.0F) open.push_back(corner);
+        }
+    };
+    if (findings.all_settled) {
+        for (const std::uint32_t triangle : input.gradients.without)
+            look_at(triangle);
+    } else {
+        for (std::uint32_t triangle = 0; triangle < input.mesh.triangles.size(); ++triangle)
+            look_at(triangle);
+    }
+    return open;
+}
+
+/// Assigns a tangent to every corner that has none. All corners of a triangle share w.
+///
+/// A corner takes the most frequent tangent of its welded vertex (ties: the first by value), among
+/// those with its triangle's w if there are any. If the vertex has none, the tangent is the x axis,
+/// or the y axis if the normal is near the x axis, projected onto the plane of the normal. A
+/// triangle without a sign (tangent_signs.h) takes the w that is available at more of its corners,
+/// +1 before -1, and -1 if there is none, like the reference implementation. A duplicate triangle
+/// copies its twin.
+///
+/// \return the corners whose vertex had no tangent, ascending
+std::vector<Corner> fill_open_corners(const GroupInput& input, const GroupFindings& findings,
+                                      std::span<glm::vec4> tangents) {
+    const std::vector<Corner> open = open_corners(input, findings, tangents);
+    if (open.empty() && findings.repeated.empty()) return {};
+    const Offers offers(input, open, tangents);
+    std::vector<Corner> invented;
+    for (const Corner corner : open) {
+        const std::uint32_t triangle = triangle_of(corner);
+        const std::uint32_t vertex = vertex_of(corner, input.mesh.triangles);
+        const float sign = input.signs[triangle] != 0 ? static_cast<float>(input.signs[triangle])
+                                                      : majority_sign(triangle, input, offers);
+        const VertexOffers& offer = offers.at(vertex);
+        const Offer& found = offer[slot_of(sign)] ? offer[slot_of(sign)] : offer[slot_of(-sign)];
+        if (!found) invented.push_back(corner);
+        tangents[corner] =
+            glm::vec4(found ? *found : perpendicular_to(input.mesh.normals[vertex]), sign);
+    }
+    for (const GroupFindings::Repeated& repeated : findings.repeated)
+        copy_twin(repeated, input.mesh.triangles, tangents);
+    return invented;
+}
+
+void check(const TangentInput& input) {
+    const std::size_t positions = input.positions.size();
+    const std::size_t normals = input.normals.size();
+    const std::size_t texcoords = input.texcoords.size();
+    if (normals != positions) {
+        throw InvalidInput(
+            fmt::format("there are {} normals, but {} positions", normals, positions));
+    }
+    if (texcoords != positions) {
+        throw InvalidInput(fmt::format("there are {} texture coordinates, but {} positions",
+                                       texcoords, positions));
+    }
+    check_triangles(input.triangles, positions);
+}
+
+void report_normals(std::span<const glm::vec3> normals, Report& report) {
+    parallel_for_reporting(normals.size(), 16384, report,
+                           [&](std::size_t begin, std::size_t end, Report& found) {
+                               for (std::size_t v = begin; v < end; ++v) {
+                                   if (!is_finite(normals[v]) || normals[v] == glm::vec3(0.0F)) {
+                                       found.add("normal without direction", "vertex", v,
+                                                 "its tangents follow the texture alone");
+                                   }
+                               }
+                           });
+}
+
+void report_triangles(const TriangleGradients& gradients, Report& report) {
+    for (const std::uint32_t triangle : gradients.without) {
+        switch (gradients.kinds[triangle]) {
+            case Gradient::upright:
+            case Gradient::mirrored:
+                break;
+            case Gradient::none:
+                report.add("triangle without texture gradient", "triangle", triangle,
+                           "takes its neighbors' tangents");
+                break;
+            case Gradient::coinciding:
+                report.add("triangle with coinciding corners", "triangle", triangle,
+                           "takes the tangents of triangles at its vertices");
+                break;
+            case Gradient::non_finite:
+                report.add("triangle with non-finite values", "triangle", triangle,
+                           "takes the tangents of triangles at its vertices");
+                break;
+        }
+    }
+}
+
+void report_groups(const GroupFindings& findings, Report& report) {
+    for (const GroupFindings::Repeated& repeated : findings.repeated) {
+        report.add("repeated triangle", "triangle", repeated.triangle,
+                   "counts once and shares its tangents");
+    }
+    for (const Corner corner : findings.along_normal) {
+        report.add("texture direction along the normal", "corner", corner,
+                   "takes the tangent of others at its vertex");
+    }
+    for (const Corner corner : findings.cancelled)
+        report.add("cancelling tangents", "corner", corner, "keeps its own triangle's tangent");
+}
+
+/// Triangles with indices of welded vertices. Copies nothing if all vertices differ.
+class WeldedTriangles {
+  public:
+    explicit WeldedTriangles(const TangentInput& input) : triangles_(input.triangles) {
+        const std::vector<std::uint32_t> first =
+            weld_vertices(input.positions, input.normals, input.texcoords);
+        std::uint32_t vertex = 0;
+        if (std::all_of(first.begin(), first.end(),
+                        [&](std::uint32_t index) { return index == vertex++; }))
+            return;
+        welded_ = welded_triangles(input.triangles, first);
+        triangles_ = welded_;
+    }
+    [[nodiscard]] std::span<const glm::uvec3> get() const { return triangles_; }
+
+  private:
+    std::vector<glm::uvec3> welded_;
+    std::span<const glm::uvec3> triangles_;
+};
+
+std::vector<glm::vec4> tangents_of(TangentInput input, TangentWeight weight, TangentGroups groups,
+                                   Report& report) {
+    ProgressStage stage("tangents", 6);
+    check(input);
+    const WeldedTriangles welded(input);
+    input.triangles = welded.get();
+    stage.advance(1);
+
+    std::vector<glm::vec4> tangents;
+    reserve_to_fill(tangents, 3 * input.triangles.size());
+    tangents.resize(3 * input.triangles.size());
+    const TriangleGradients gradients = compute_contributions(input, weight, tangents);
+    stage.advance(1);
+    const CornersByVertex corners(input.positions.size(), input.triangles,
+                                  [&](std::size_t t) { return takes_part(gradients.kinds[t]); });
+    stage.advance(1);
+    const TriangleSigns signs = triangle_signs(input.triangles, corners, gradients);
+    stage.advance(1);
+    const GroupInput group_input{input, corners, gradients, signs, groups};
+    const GroupFindings findings = average_groups(group_input, tangents);
+    stage.advance(1);
+
+    report_normals(input.normals, report);
+    report_triangles(gradients, report);
+    report_groups(findings, report);
+    for (const Corner corner : fill_open_corners(group_input, findings, tangents)) {
+        report.add("corner without texture direction", "corner", corner,
+                   "gets a fixed tangent perpendicular to its normal");
+    }
+    return tangents;
+}
+
+}  // namespace
+
+std::vector<glm::vec4> mikktspace_tangents(std::span<const glm::vec3> positions,
+                                           std::span<const glm::vec3> normals,
+                                           std::span<const glm::vec2> texcoords,
+                                           std::span<const glm::uvec3> triangles, Report& report) {
+    return tangents_of({positions, normals, texcoords, triangles}, TangentWeight::angle,
+                       TangentGroups::connected, report);
+}
+
+std::vector<glm::vec4> area_weighted_tangents(std::span<const glm::vec3> positions,
+                                              std::span<const glm::vec3> normals,
+                                              std::span<const glm::vec2> texcoords,
+                                              std::span<const glm::uvec3> triangles,
+                                              Report& report) {
+    return tangents_of({positions, normals, texcoords, triangles}, TangentWeight::area,
+                       TangentGroups::connected, report);
+}
+
+std::vector<glm::vec4> lengyel_tangents(std::span<const glm::vec3> positions,
+                                        std::span<const glm::vec3> normals,
+                                        std::span<const glm::vec2> texcoords,
+                                        std::span<const glm::uvec3> triangles, Report& report) {
+    return tangents_of({positions, normals, texcoords, triangles}, TangentWeight::stretch,
+                       TangentGroups::all, report);
+}
+
+}  // namespace relief

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// The separate checks of diagnose(). Object space, any unit.
+///
+/// Each check writes its results to arrays by element, in parallel, and counts them afterwards in
+/// order, so no count depends on the number of threads.
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <vector>
+
+#include "geometry/corners.h"
+#include "relief/mesh/diagnose.h"
+
+namespace relief {
+
+/// Counts of conditions, one entry for each.
+class Tally {
+  public:
+    /// \param listed  maximum number of elements listed per condition
+    explicit Tally(std::size_t listed);
+
+    /// Counts one element. Elements of one condition are added in ascending order. An element that
+    /// is added again (a triangle with two such edges) is listed once.
+    void add(MeshCondition condition, std::size_t index);
+
+    /// Adds the counts of a tally with other conditions.
+    void merge(const Tally& other);
+
+    /// The conditions with a count above zero, in order.
+    [[nodiscard]] std::vector<FoundCondition> found() const;
+
+  private:
+    std::size_t listed_;
+    std::vector<FoundCondition> conditions_;
+};
+
+/// Shape of a single triangle.
+enum class TriangleShape : std::uint8_t { sound, needle, collinear, collapsed, not_finite };
+
+inline bool has_area(TriangleShape shape) {
+    return shape <= TriangleShape::needle;
+}
+
+/// A mesh and the derived data that several checks use.
+struct Subject {
+    explicit Subject(const Mesh& subject);
+
+    const Mesh& mesh;
+    std::vector<std::uint32_t> classes;  ///< weld_positions()
+    std::vector<glm::uvec3> triangles;   ///< Triangles with the indices of position classes.
+    std::vector<TriangleShape> shapes;
+    std::vector<glm::vec3> normals;  ///< Unit normals of triangles; zero if the area is zero.
+};
+
+/// Checks single triangles.
+void diagnose_triangles(const Subject& subject, Tally& tally);
+
+/// Checks duplicate and back-to-back triangles, edges and fans.
+void diagnose_edges(const Subject& subject, Tally& tally);
+
+/// Checks positions, and whether triangles use them.
+void diagnose_vertices(const Subject& subject, Tally& tally);
+
+/// Checks for nearly equal positions.
+void diagnose_near_duplicates(const Subject& subject, Tally& tally);
+
+/// Checks stored normals and tangents.
+void diagnose_frames(const Subject& subject, Tally& tally);
+
+/// Checks texture coordinates, except for overlaps.
+void diagnose_texture(const Subject& subject, Tally& tally);
+
+}  // namespace relief
