@@ -1,24 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Elements of glTF accessors: as raw bytes, as floats, as indices.
+/// Accessors and primitives of a glTF document as plain arrays.
 ///
-/// Sparse substitutions are applied, integers that stand for fractions divided. The document must
-/// have passed check_gltf. Source: glTF 2.0 (ISO/IEC 12113), section 3.6.2.
-/// Tests: tests/mesh/io/gltf/gltf_document_test.cpp.
+/// Sparse substitutions are applied and normalized integers become fractions. The document must
+/// have passed check_gltf(). Source: glTF 2.0 (ISO/IEC 12113), section 3.6.2.
 #pragma once
 
 #include <cstdint>
 #include <glm/ext/vector_float1.hpp>
 #include <glm/glm.hpp>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "io/gltf/gltf_contents.h"
+#include "relief/mesh/gltf_document.h"
 
 namespace relief {
 
-/// Numeric codes that glTF takes over from OpenGL.
+/// Numeric codes that glTF takes from OpenGL.
 namespace gltf_code {
 inline constexpr int int8 = 5120;
 inline constexpr int uint8 = 5121;
@@ -28,26 +29,30 @@ inline constexpr int uint32 = 5125;
 inline constexpr int float32 = 5126;
 inline constexpr int array_buffer = 34962;
 inline constexpr int element_array_buffer = 34963;
+inline constexpr std::size_t triangles = 4;
+inline constexpr std::size_t triangle_strip = 5;
+inline constexpr std::size_t triangle_fan = 6;
 }  // namespace gltf_code
 
-/// Bytes of one component; 0 for a code that glTF does not know.
+/// Bytes of one component; 0 for an unknown code.
 std::size_t component_size(int component_type);
 
-/// Components of a type such as "VEC3"; 0 for one that glTF does not know.
+/// Components of a type such as "VEC3"; 0 for an unknown type.
 std::size_t component_count(std::string_view type);
 
-/// How one element of an accessor lies in memory.
+/// The memory layout of one element of an accessor.
 struct ElementLayout {
     int component_type = 0;
     std::size_t components = 0;
-    std::size_t size = 0;  ///< Bytes, with the padding between matrix columns.
+    std::size_t size = 0;  ///< Bytes, including padding between matrix columns.
 };
 ElementLayout element_layout(const Json& accessor);
 
-/// The same of an accessor that holds indices. \throws InvalidInput if it cannot
+/// The layout of an accessor of indices. \throws InvalidInput if it is not of scalar unsigned
+/// integers
 ElementLayout index_layout(const GltfContents& contents, std::size_t accessor);
 
-/// All elements, tightly packed: in the buffer itself where they lie so, else in a copy.
+/// All elements, tightly packed: a view of the buffer if they are packed there, otherwise a copy.
 struct PackedElements {
     std::string copy;
     std::string_view in_buffer;
@@ -58,18 +63,40 @@ struct PackedElements {
 /// \throws InvalidInput if a sparse index is out of range
 PackedElements packed_elements(const GltfContents& contents, std::size_t accessor);
 
-/// The same, as a copy in any case.
+/// Like packed_elements(), but always a copy.
 std::string raw_elements(const GltfContents& contents, std::size_t accessor);
 
-/// All elements as vectors of floats. \throws InvalidInput if they have another number of
-/// components, or as raw_elements
+/// All elements as vectors of floats. \throws InvalidInput if the number of components differs, or
+/// as packed_elements()
 template <typename Vector>
 std::vector<Vector> float_elements(const GltfContents& contents, std::size_t accessor);
 
-/// All elements as numbers. \throws InvalidInput if they are not scalar unsigned integers
+/// All elements as indices. \throws InvalidInput if they are not scalar unsigned integers
 std::vector<std::uint32_t> index_elements(const GltfContents& contents, std::size_t accessor);
 
-/// The same, three by three. \throws InvalidInput also if there is a rest
+/// All elements as triangles. \throws InvalidInput also if the count is not a multiple of 3
 std::vector<glm::uvec3> index_triples(const GltfContents& contents, std::size_t accessor);
+
+const Json& primitive_json(const GltfContents& contents, GltfPrimitiveId id);
+
+/// See GltfDocument::describe().
+std::string describe_primitive(const GltfContents& contents, GltfPrimitiveId id);
+
+/// Returns true if other primitives have the same POSITION.
+bool shares_vertices(const GltfContents& contents, const Json& primitive);
+
+/// The triangles of a primitive over the vertices of its accessors, and the vertices that its mesh
+/// has.
+struct GltfTriangles {
+    std::vector<glm::uvec3> triangles;  ///< Indices into the accessors' elements.
+    std::size_t vertex_count = 0;       ///< Element count of the accessors.
+    /// Vertices that the primitive uses, ascending. Set only if it shares POSITION with others and
+    /// does not use all vertices. The mesh then has only these.
+    std::optional<std::vector<std::uint32_t>> used;
+};
+
+/// \throws InvalidInput if indices are out of range or their count is not a multiple of 3, or if
+///         attributes differ in length
+GltfTriangles read_triangles(const GltfContents& contents, GltfPrimitiveId id);
 
 }  // namespace relief

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Checks of a glTF document beyond the types of its properties: version, required extensions, the
-// ranges of buffer views and accessors, primitives, animations, and that nodes form trees.
+// Validation of glTF documents: the table of known properties, one walk over a document along this
+// table, and the checks beyond types (version, required extensions, ranges, node trees).
 //
-// The first offence throws InvalidInput. Source: glTF 2.0 (ISO/IEC 12113), chapters 3 and 5.
-// Tests: tests/mesh/io/gltf/gltf_document_test.cpp.
+// extras are never examined. Properties that are not in the table are kept and ignored. The first
+// offense throws InvalidInput. Source: glTF 2.0 (ISO/IEC 12113), chapters 3 and 5.
 #include "io/gltf/gltf_check.h"
 
 #include <fmt/format.h>
@@ -11,16 +11,491 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <limits>
+#include <map>
 #include <vector>
 
 #include "io/gltf/gltf_accessor.h"
-#include "io/gltf/gltf_schema.h"
 #include "relief/mesh/error.h"
 
 namespace relief {
 namespace {
 
-/// "2.1" as 2 and 1.
+enum class Kind {
+    boolean,
+    integer,  ///< Must not be negative.
+    number,
+    numbers,  ///< An array of `length` numbers, or of any length if that is 0.
+    string,
+    strings,
+    object,      ///< An object of the type that `refers` names.
+    objects,     ///< An array of such objects.
+    object_map,  ///< Such objects under any keys.
+    index,       ///< An index into the array that `refers` names.
+    indices,
+    index_map,  ///< Indices under any keys.
+    index_maps,
+};
+
+struct Rule {
+    std::string_view type;
+    const char* property;
+    Kind kind;
+    std::string_view refers = {};
+    bool is_required = false;
+    std::size_t length = 0;
+};
+
+constexpr bool required = true;
+
+constexpr Rule rules[] = {
+    {"glTF", "asset", Kind::object, "asset", required},
+    {"glTF", "extensionsUsed", Kind::strings},
+    {"glTF", "extensionsRequired", Kind::strings},
+    {"glTF", "accessors", Kind::objects, "accessor"},
+    {"glTF", "animations", Kind::objects, "animation"},
+    {"glTF", "buffers", Kind::objects, "buffer"},
+    {"glTF", "bufferViews", Kind::objects, "bufferView"},
+    {"glTF", "cameras", Kind::objects, "camera"},
+    {"glTF", "images", Kind::objects, "image"},
+    {"glTF", "materials", Kind::objects, "material"},
+    {"glTF", "meshes", Kind::objects, "mesh"},
+    {"glTF", "nodes", Kind::objects, "node"},
+    {"glTF", "samplers", Kind::objects, "sampler"},
+    {"glTF", "scene", Kind::index, "scenes"},
+    {"glTF", "scenes", Kind::objects, "scene"},
+    {"glTF", "skins", Kind::objects, "skin"},
+    {"glTF", "textures", Kind::objects, "texture"},
+    {"asset", "version", Kind::string, {}, required},
+    {"asset", "minVersion", Kind::string},
+    {"accessor", "bufferView", Kind::index, "bufferViews"},
+    {"accessor", "byteOffset", Kind::integer},
+    {"accessor", "componentType", Kind::integer, {}, required},
+    {"accessor", "normalized", Kind::boolean},
+    {"accessor", "count", Kind::integer, {}, required},
+    {"accessor", "type", Kind::string, {}, required},
+    {"accessor", "max", Kind::numbers},
+    {"accessor", "min", Kind::numbers},
+    {"accessor", "sparse", Kind::object, "sparse"},
+    {"accessor", "name", Kind::string},
+    {"sparse", "count", Kind::integer, {}, required},
+    {"sparse", "indices", Kind::object, "sparse.indices", required},
+    {"sparse", "values", Kind::object, "sparse.values", required},
+    {"sparse.indices", "bufferView", Kind::index, "bufferViews", required},
+    {"sparse.indices", "byteOffset", Kind::integer},
+    {"sparse.indices", "componentType", Kind::integer, {}, required},
+    {"sparse.values", "bufferView", Kind::index, "bufferViews", required},
+    {"sparse.values", "byteOffset", Kind::integer},
+    {"animation", "channels", Kind::objects, "channel", required},
+    {"animation", "samplers", Kind::objects, "animation.sampler", required},
+    {"animation", "name", Kind::string},
+    {"channel", "sampler", Kind::integer, {}, required},
+    {"channel", "target", Kind::object, "channel.target", required},
+    {"channel.target", "node", Kind::index, "nodes"},
+    {"channel.target", "path", Kind::string, {}, required},
+    {"animation.sampler", "input", Kind::index, "accessors", required},
+    {"animation.sampler", "interpolation", Kind::string},
+    {"animation.sampler", "output", Kind::index, "accessors", required},
+    {"buffer", "uri", Kind::string},
+    {"buffer", "byteLength", Kind::integer, {}, required},
+    {"bufferView", "buffer", Kind::index, "buffers", required},
+    {"bufferView", "byteOffset", Kind::integer},
+    {"bufferView", "byteLength", Kind::integer, {}, required},
+    {"bufferView", "byteStride", Kind::integer},
+    {"bufferView", "target", Kind::integer},
+    {"camera", "type", Kind::string, {}, required},
+    {"camera", "perspective", Kind::object, "perspective"},
+    {"camera", "name", Kind::string},
+    {"perspective", "yfov", Kind::number, {}, required},
+    {"perspective", "znear", Kind::number, {}, required},
+    {"perspective", "zfar", Kind::number},
+    {"perspective", "aspectRatio", Kind::number},
+    {"image", "uri", Kind::string},
+    {"image", "mimeType", Kind::string},
+    {"image", "bufferView", Kind::index, "bufferViews"},
+    {"image", "name", Kind::string},
+    {"material", "name", Kind::string},
+    {"material", "pbrMetallicRoughness", Kind::object, "pbr"},
+    {"material", "normalTexture", Kind::object, "textureInfo"},
+    {"material", "occlusionTexture", Kind::object, "textureInfo"},
+    {"material", "emissiveTexture", Kind::object, "textureInfo"},
+    {"material", "emissiveFactor", Kind::numbers, {}, false, 3},
+    {"material", "alphaMode", Kind::string},
+    {"material", "alphaCutoff", Kind::number},
+    {"material", "doubleSided", Kind::boolean},
+    {"pbr", "baseColorFactor", Kind::numbers, {}, false, 4},
+    {"pbr", "baseColorTexture", Kind::object, "textureInfo"},
+    {"pbr", "metallicFactor", Kind::number},
+    {"pbr", "roughnessFactor", Kind::number},
+    {"pbr", "metallicRoughnessTexture", Kind::object, "textureInfo"},
+    {"textureInfo", "index", Kind::index, "textures", required},
+    {"textureInfo", "texCoord", Kind::integer},
+    {"textureInfo", "scale", Kind::number},
+    {"textureInfo", "strength", Kind::number},
+    {"mesh", "primitives", Kind::objects, "primitive", required},
+    {"mesh", "weights", Kind::numbers},
+    {"mesh", "name", Kind::string},
+    {"primitive", "attributes", Kind::index_map, "accessors", required},
+    {"primitive", "indices", Kind::index, "accessors"},
+    {"primitive", "material", Kind::index, "materials"},
+    {"primitive", "mode", Kind::integer},
+    {"primitive", "targets", Kind::index_maps, "accessors"},
+    {"node", "camera", Kind::index, "cameras"},
+    {"node", "children", Kind::indices, "nodes"},
+    {"node", "skin", Kind::index, "skins"},
+    {"node", "matrix", Kind::numbers, {}, false, 16},
+    {"node", "mesh", Kind::index, "meshes"},
+    {"node", "rotation", Kind::numbers, {}, false, 4},
+    {"node", "scale", Kind::numbers, {}, false, 3},
+    {"node", "translation", Kind::numbers, {}, false, 3},
+    {"node", "weights", Kind::numbers},
+    {"node", "name", Kind::string},
+    {"sampler", "magFilter", Kind::integer},
+    {"sampler", "minFilter", Kind::integer},
+    {"sampler", "wrapS", Kind::integer},
+    {"sampler", "wrapT", Kind::integer},
+    {"scene", "nodes", Kind::indices, "nodes"},
+    {"scene", "name", Kind::string},
+    {"skin", "inverseBindMatrices", Kind::index, "accessors"},
+    {"skin", "skeleton", Kind::index, "nodes"},
+    {"skin", "joints", Kind::indices, "nodes", required},
+    {"texture", "sampler", Kind::index, "samplers"},
+    {"texture", "source", Kind::index, "images"},
+    // Extensions, named by what they extend: "TYPE+NAME".
+    {"primitive+KHR_draco_mesh_compression", "bufferView", Kind::index, "bufferViews", required},
+    {"primitive+KHR_draco_mesh_compression", "attributes", Kind::object, {}, required},
+    {"primitive+CESIUM_primitive_outline", "indices", Kind::index, "accessors"},
+    {"bufferView+EXT_meshopt_compression", "buffer", Kind::index, "buffers", required},
+    {"bufferView+EXT_meshopt_compression", "byteOffset", Kind::integer},
+    {"bufferView+EXT_meshopt_compression", "byteLength", Kind::integer, {}, required},
+    {"bufferView+EXT_meshopt_compression", "byteStride", Kind::integer, {}, required},
+    {"bufferView+EXT_meshopt_compression", "count", Kind::integer, {}, required},
+    {"bufferView+EXT_meshopt_compression", "mode", Kind::string, {}, required},
+    {"bufferView+EXT_meshopt_compression", "filter", Kind::string},
+    {"bufferView+KHR_meshopt_compression", "buffer", Kind::index, "buffers", required},
+    {"bufferView+KHR_meshopt_compression", "byteOffset", Kind::integer},
+    {"bufferView+KHR_meshopt_compression", "byteLength", Kind::integer, {}, required},
+    {"bufferView+KHR_meshopt_compression", "byteStride", Kind::integer, {}, required},
+    {"bufferView+KHR_meshopt_compression", "count", Kind::integer, {}, required},
+    {"bufferView+KHR_meshopt_compression", "mode", Kind::string, {}, required},
+    {"bufferView+KHR_meshopt_compression", "filter", Kind::string},
+    {"node+EXT_mesh_gpu_instancing", "attributes", Kind::index_map, "accessors"},
+    {"glTF+EXT_structural_metadata", "propertyTables", Kind::objects, "propertyTable"},
+    {"propertyTable", "properties", Kind::object_map, "propertyTable.property"},
+    {"propertyTable.property", "values", Kind::index, "bufferViews"},
+    {"propertyTable.property", "arrayOffsets", Kind::index, "bufferViews"},
+    {"propertyTable.property", "stringOffsets", Kind::index, "bufferViews"},
+    {"glTF+EXT_lights_ies", "lights", Kind::objects, "iesLight"},
+    {"iesLight", "bufferView", Kind::index, "bufferViews"},
+    {"glTF+KHR_lights_punctual", "lights", Kind::objects, "light", required},
+    {"light", "type", Kind::string, {}, required},
+    {"light", "color", Kind::numbers, {}, false, 3},
+    {"light", "intensity", Kind::number},
+    {"light", "range", Kind::number},
+    {"light", "name", Kind::string},
+    {"light", "spot", Kind::object, "spot"},
+    {"spot", "innerConeAngle", Kind::number},
+    {"spot", "outerConeAngle", Kind::number},
+    {"node+KHR_lights_punctual", "light", Kind::index, "lights", required},
+    {"material+KHR_materials_emissive_strength", "emissiveStrength", Kind::number},
+    {"material+KHR_materials_clearcoat", "clearcoatNormalTexture", Kind::object, "textureInfo"},
+    {"material+KHR_materials_anisotropy", "anisotropyTexture", Kind::object, "textureInfo"},
+    {"textureInfo+KHR_texture_transform", "offset", Kind::numbers, {}, false, 2},
+    {"textureInfo+KHR_texture_transform", "rotation", Kind::number},
+    {"textureInfo+KHR_texture_transform", "scale", Kind::numbers, {}, false, 2},
+    {"textureInfo+KHR_texture_transform", "texCoord", Kind::integer},
+    {"texture+KHR_texture_basisu", "source", Kind::index, "images"},
+    {"texture+EXT_texture_webp", "source", Kind::index, "images"},
+    {"texture+EXT_texture_avif", "source", Kind::index, "images"},
+    {"texture+MSFT_texture_dds", "source", Kind::index, "images"},
+};
+
+/// Extensions without indices into accessors, bufferViews or buffers beyond those in the table. A
+/// name that ends in '*' is a prefix.
+constexpr std::array known_extensions = {
+    "KHR_materials_*",
+    "KHR_texture_*",
+    "KHR_lights_punctual",
+    "KHR_mesh_quantization",
+    "KHR_animation_pointer",
+    "KHR_xmp*",
+    "KHR_node_*",
+    "KHR_draco_mesh_compression",
+    "EXT_meshopt_compression",
+    "KHR_meshopt_compression",
+    "EXT_mesh_gpu_instancing",
+    "EXT_mesh_features",
+    "EXT_instance_features",
+    "EXT_structural_metadata",
+    "EXT_texture_*",
+    "EXT_lights_image_based",
+    "EXT_lights_ies",
+    "MSFT_texture_dds",
+    "MSFT_lod",
+    "MSFT_packing_*",
+    "CESIUM_primitive_outline",
+    "AGI_*",
+    "FB_geometry_metadata",
+    "FB_ngon_encoding",
+    "ADOBE_materials_*",
+    "VRM",
+    "VRMC_*",
+};
+
+bool is_known(std::string_view extension) {
+    return std::any_of(known_extensions.begin(), known_extensions.end(),
+                       [&](std::string_view known) {
+                           if (!known.ends_with('*')) return known == extension;
+                           known.remove_suffix(1);
+                           return extension.starts_with(known);
+                       });
+}
+
+/// The rules of one type.
+const std::vector<Rule>& rules_of(std::string_view type) {
+    static const auto by_type = [] {
+        std::map<std::string_view, std::vector<Rule>> result;
+        for (const Rule& rule : rules)
+            result[rule.type].push_back(rule);
+        return result;
+    }();
+    static const std::vector<Rule> none;
+    const auto found = by_type.find(type);
+    return found == by_type.end() ? none : found->second;
+}
+
+/// The location of a value, as a chain towards the root. It becomes text only for messages.
+struct ValuePath {
+    const ValuePath* parent = nullptr;
+    std::string_view key;
+    std::size_t index = 0;
+
+    [[nodiscard]] std::string text() const {
+        const std::string outer = parent == nullptr ? std::string() : parent->text();
+        if (key.empty()) return parent == nullptr ? outer : fmt::format("{}[{}]", outer, index);
+        return outer.empty() ? std::string(key) : fmt::format("{}.{}", outer, key);
+    }
+};
+
+/// Callbacks of a walk over a document.
+struct Visitor {
+    virtual ~Visitor() = default;
+    /// Called before the walk descends into a property; `value` is null if it is absent.
+    virtual void property(const ValuePath&, const Rule&, Json* /*value*/) {}
+    virtual void index(const ValuePath&, std::string_view /*target*/, Json& /*value*/) {}
+    virtual void extension(const ValuePath&, std::string_view /*name*/, Json& /*value*/) {}
+};
+
+void walk(Json& object, std::string_view type, const ValuePath& place, Visitor& visitor);
+
+void walk_each(Json& container, std::string_view type, const ValuePath& place, Visitor& visitor) {
+    std::size_t number = 0;
+    for (auto& [key, value] : container.items()) {
+        const bool is_map = container.is_object();
+        const ValuePath inner{&place, is_map ? std::string_view(key) : std::string_view(),
+                               number++};
+        walk(value, type, inner, visitor);
+    }
+}
+
+void visit_each_index(Json& container, std::string_view target, const ValuePath& place,
+                      Visitor& visitor) {
+    std::size_t number = 0;
+    for (auto& [key, value] : container.items()) {
+        const bool is_map = container.is_object();
+        visitor.index({&place, is_map ? std::string_view(key) : std::string_view(), number++},
+                      target, value);
+    }
+}
+
+void walk_property(Json& value, const Rule& rule, const ValuePath& place, Visitor& visitor) {
+    switch (rule.kind) {
+        case Kind::object:
+            walk(value, rule.refers, place, visitor);
+            break;
+        case Kind::objects:
+        case Kind::object_map:
+            walk_each(value, rule.refers, place, visitor);
+            break;
+        case Kind::index:
+            visitor.index(place, rule.refers, value);
+            break;
+        case Kind::indices:
+        case Kind::index_map:
+            visit_each_index(value, rule.refers, place, visitor);
+            break;
+        case Kind::index_maps: {
+            std::size_t number = 0;
+            for (Json& map : value) {
+                visit_each_index(map, rule.refers, {&place, {}, number++}, visitor);
+            }
+            break;
+        }
+        default:
+            break;
+    }
+}
+
+/// Walks an object and everything in it that the table knows. Properties come in the table's order.
+void walk(Json& object, std::string_view type, const ValuePath& place, Visitor& visitor) {
+    for (const Rule& rule : rules_of(type)) {
+        const auto found = object.find(rule.property);
+        const ValuePath inner{&place, rule.property};
+        visitor.property(inner, rule, found == object.end() ? nullptr : &*found);
+        if (found != object.end()) walk_property(*found, rule, inner, visitor);
+    }
+    const auto extensions = object.find("extensions");
+    if (extensions == object.end()) return;
+    const ValuePath outer{&place, "extensions"};
+    visitor.property(outer, {type, "extensions", Kind::object}, &*extensions);
+    for (auto& [name, value] : extensions->items()) {
+        const ValuePath inner{&outer, name};
+        visitor.extension(inner, name, value);
+        const std::string extension_type = fmt::format("{}+{}", type, name);
+        if (value.is_object()) walk(value, extension_type, inner, visitor);
+    }
+}
+
+[[noreturn]] void fail(const ValuePath& place, const std::string& problem) {
+    throw InvalidInput(fmt::format("{} {}", place.text(), problem));
+}
+
+class Checker : public Visitor {
+  public:
+    explicit Checker(const Json& root) {
+        for (const Rule& rule : rules_of("glTF")) {
+            if (rule.kind == Kind::objects) counts_[rule.property] = count(root, rule.property);
+        }
+        const Json* lights = find(root, "extensions", "KHR_lights_punctual");
+        counts_["lights"] = lights != nullptr && lights->is_object() ? count(*lights, "lights") : 0;
+    }
+
+    void property(const ValuePath& place, const Rule& rule, Json* value) override {
+        if (value == nullptr) {
+            if (rule.is_required) fail(place, "is missing");
+            return;
+        }
+        if (const char* wanted = mismatch(rule, *value))
+            fail(place, fmt::format("is not {}", wanted));
+    }
+
+    void index(const ValuePath& place, std::string_view target, Json& value) override {
+        if (!value.is_number_unsigned()) fail(place, "is not an index");
+        const std::size_t count = counts_.find(target)->second;
+        if (value.get<std::uint64_t>() >= count) {
+            fail(place, fmt::format("is {}, but there are only {} {}", value.get<std::uint64_t>(),
+                                    count, target));
+        }
+    }
+
+    void extension(const ValuePath& place, std::string_view, Json& value) override {
+        if (!value.is_object()) fail(place, "is not an object");
+    }
+
+  private:
+    static std::size_t count(const Json& object, const char* key) {
+        const Json* array = find(object, key);
+        return array != nullptr && array->is_array() ? array->size() : 0;
+    }
+
+    template <typename Predicate>
+    static bool all(const Json& array, Predicate predicate) {
+        return std::all_of(array.begin(), array.end(), predicate);
+    }
+
+    /// The expected type, or null if the value has it.
+    static const char* mismatch(const Rule& rule, const Json& value) {
+        const auto is_object = [](const Json& item) { return item.is_object(); };
+        const auto is_number = [](const Json& item) { return item.is_number(); };
+        const auto is_string = [](const Json& item) { return item.is_string(); };
+        switch (rule.kind) {
+            case Kind::boolean:
+                return value.is_boolean() ? nullptr : "true or false";
+            case Kind::integer:
+                // Offsets and lengths are added: this limit keeps sums far from overflow.
+                return value.is_number_unsigned() && value.get<std::uint64_t>() < (1ULL << 53U)
+                           ? nullptr
+                           : "a whole number";
+            case Kind::number:
+                return value.is_number() ? nullptr : "a number";
+            case Kind::numbers:
+                return value.is_array() && all(value, is_number) &&
+                               (rule.length == 0 || value.size() == rule.length)
+                           ? nullptr
+                           : "an array of numbers of the right length";
+            case Kind::string:
+                return value.is_string() ? nullptr : "a string";
+            case Kind::strings:
+                return value.is_array() && all(value, is_string) ? nullptr : "an array of strings";
+            case Kind::object:
+            case Kind::index_map:
+                return value.is_object() ? nullptr : "an object";
+            case Kind::object_map:
+                return value.is_object() && all(value, is_object) ? nullptr : "objects by name";
+            case Kind::objects:
+            case Kind::index_maps:
+                return value.is_array() && all(value, is_object) ? nullptr : "an array of objects";
+            case Kind::indices:
+                return value.is_array() ? nullptr : "an array of indices";
+            case Kind::index:
+                return nullptr;  // Checked by index().
+        }
+        return nullptr;
+    }
+
+    std::map<std::string_view, std::size_t> counts_;
+};
+
+}  // namespace
+
+void check_schema(const Json& root) {
+    if (!root.is_object()) throw InvalidInput("the JSON is not an object");
+    Checker checker(root);
+    // The checker changes nothing, but it shares the walk with a visitor that does.
+    walk(const_cast<Json&>(root), "glTF", {}, checker);
+}
+
+void visit_references(Json& root,
+                      const std::function<void(std::string_view target, Json& index)>& visit) {
+    struct : Visitor {
+        const std::function<void(std::string_view, Json&)>* visit = nullptr;
+        void index(const ValuePath&, std::string_view target, Json& value) override {
+            if (target == "accessors" || target == "bufferViews" || target == "buffers") {
+                (*visit)(target, value);
+            }
+        }
+    } visitor;
+    visitor.visit = &visit;
+    walk(root, "glTF", {}, visitor);
+}
+
+bool has_extension(const Json& root, std::string_view name) {
+    struct : Visitor {
+        std::string_view wanted;
+        bool found = false;
+        void extension(const ValuePath&, std::string_view extension, Json&) override {
+            found = found || extension == wanted;
+        }
+    } visitor;
+    visitor.wanted = name;
+    walk(const_cast<Json&>(root), "glTF", {}, visitor);
+    return visitor.found;
+}
+
+bool has_unknown_extension(const Json& root) {
+    struct : Visitor {
+        bool found = false;
+        void extension(const ValuePath&, std::string_view name, Json&) override {
+            found = found || !is_known(name);
+        }
+    } visitor;
+    walk(const_cast<Json&>(root), "glTF", {}, visitor);
+    return visitor.found;
+}
+
+namespace {
+
+/// Parses "2.1" as 2 and 1.
 std::pair<int, int> version_in(const Json& asset, const char* key) {
     const std::string text = text_in(asset, key);
     int major = -1;
@@ -41,8 +516,8 @@ void check_version(const Json& root) {
     }
 }
 
-/// Extensions that a document may require: those that leave its meshes as they are, and those that
-/// are decoded. One that ends in '*' stands for all that begin so.
+/// Returns true for extensions that a document may require: those that do not affect meshes, and
+/// those that relief decodes. A name that ends in '*' is a prefix.
 bool is_accepted(std::string_view extension) {
     static constexpr std::array accepted = {
         "KHR_materials_*",
@@ -116,7 +591,7 @@ void check_views(const Json& root) {
     }
 }
 
-/// That `count` elements fit into a view.
+/// Checks that `count` elements fit into a view.
 void check_elements(const Json& root, const std::string& what, const Json& holder,
                     std::size_t count, std::size_t element_size) {
     const std::size_t number = size_in(holder, "bufferView");
@@ -124,7 +599,7 @@ void check_elements(const Json& root, const std::string& what, const Json& holde
     const std::size_t stride = size_in(view, "byteStride", element_size);
     const std::size_t view_length = size_in(view, "byteLength");
     const std::size_t length = count == 0 ? 0 : (count - 1) * stride + element_size;
-    // With counts below 2^53 and strides below 2^8 nothing wraps in 64 bits.
+    // Counts below 2^53 and strides below 2^8 cannot overflow 64 bits.
     check_range(what, size_in(holder, "byteOffset"), length, view_length,
                 fmt::format("bufferViews[{}]", number));
 }
@@ -163,9 +638,9 @@ void check_accessors(const Json& root) {
         const std::size_t count = size_in(accessor, "count");
         if (accessor.contains("bufferView")) {
             check_elements(root, name, accessor, count, element_layout(accessor).size);
-        } else if (count > most_zero_elements) {
+        } else if (count > max_zero_elements) {
             fail_gltf("{} has no data for {} elements, more than {}", name, count,
-                      most_zero_elements);
+                      max_zero_elements);
         }
         check_sparse(root, accessor, name);
     }
@@ -197,8 +672,8 @@ void check_animations(const Json& root) {
     }
 }
 
-/// Every node has one parent at most and is below a root: no cycles, and no walk over the nodes
-/// takes longer than there are nodes.
+/// Checks that every node has at most one parent and is below a root. There are then no cycles, and
+/// a walk over the nodes is linear.
 void check_nodes(const Json& root) {
     const Json& nodes = array_in(root, "nodes");
     std::vector<bool> has_parent(nodes.size(), false);

@@ -1,19 +1,44 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Whether a glTF document can be worked with: after this, no index, offset, length or count in it
-/// leads astray. Tests: tests/mesh/io/gltf/gltf_document_test.cpp.
+/// Validation of glTF documents, and the schema that it uses.
+///
+/// One table in gltf_check.cpp states the type of each property and which properties are indices.
+/// It serves for checking a document and for renumbering its references.
 #pragma once
 
-#include "io/gltf/gltf_json.h"
+#include <functional>
+#include <string_view>
+
+#include "io/gltf/gltf_contents.h"
 
 namespace relief {
 
-/// Largest count of an accessor without data (all zeros): there are no bytes in the file that bound
-/// it.
-inline constexpr std::size_t most_zero_elements = std::size_t{1} << 24U;
+/// Checks the type of each property in the table and the range of each index.
+///
+/// \throws InvalidInput with the location: "meshes[0].primitives[1].indices is 7, but there are
+///         only 3 accessors"
+void check_schema(const Json& root);
 
-/// \throws InvalidInput naming the place, the value and the limit; or the extension that is
-///         required but not understood
+/// Calls `visit` for each index into "accessors", "bufferViews" or "buffers"; it may change the
+/// index. The document must have passed check_schema().
+void visit_references(Json& root,
+                      const std::function<void(std::string_view target, Json& index)>& visit);
+
+/// Returns true if any object carries the extension.
+bool has_extension(const Json& root, std::string_view name);
+
+/// Returns true if any object carries an extension that the table does not know. Such an extension
+/// may hold indices that visit_references() does not see.
+bool has_unknown_extension(const Json& root);
+
+/// Largest count of an accessor without data (all zeros), for which no bytes of the file limit the
+/// count.
+inline constexpr std::size_t max_zero_elements = std::size_t{1} << 24U;
+
+/// Checks a whole document. Afterwards every index, offset, length and count in it is valid.
+///
+/// \throws InvalidInput with the location, value and limit, or the name of a required extension
+///         that relief does not support
 void check_gltf(const Json& root);
 
 }  // namespace relief

@@ -1,40 +1,111 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// A glTF document in memory: its JSON as it was, and its bytes.
+/// A glTF document in memory: its JSON, unchanged, and its buffers.
 ///
-/// Why not tinygltf: version 2.7 gives back large integers in extras as other numbers, drops nulls,
-/// empty objects, unknown properties and minVersion, drops animation channels without a node, and
-/// writes null where it has dropped them all. It serves as an independent reader in the tests.
-/// Tests: tests/mesh/io/gltf/gltf_document_test.cpp.
+/// relief does not use tinygltf 2.7 here, because it loses data: large integers in extras change,
+/// nulls, empty objects, unknown properties, minVersion and animation channels without a node
+/// disappear, and an array that becomes empty is written as null. The tests use it as an
+/// independent reader.
 #pragma once
 
+#include <fmt/format.h>
+
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <nlohmann/json.hpp>
+#include <optional>
 #include <set>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
-#include "io/gltf/gltf_json.h"
+#include "relief/mesh/error.h"
+#include "relief/mesh/gltf_document.h"
 
 namespace relief {
 
-/// Bytes of a buffer; they may be the tail of a file that was read whole.
+/// Keys are sorted; their order has no meaning in JSON.
+using Json = nlohmann::json;
+
+/// \throws InvalidInput always, with the formatted text
+template <typename... Values>
+[[noreturn]] void fail_gltf(fmt::format_string<Values...> format, Values&&... values) {
+    throw InvalidInput(fmt::format(format, std::forward<Values>(values)...));
+}
+
+/// A property, or null if it is absent.
+inline const Json* find(const Json& object, const char* key) {
+    const auto it = object.find(key);
+    return it == object.end() ? nullptr : &*it;
+}
+
+/// The value at a path of keys, or null.
+template <typename... Keys>
+const Json* find(const Json& object, const char* key, const char* next, Keys... rest) {
+    const Json* inner = find(object, key);
+    return inner == nullptr || !inner->is_object() ? nullptr : find(*inner, next, rest...);
+}
+
+/// An array of the document; empty if it is absent.
+inline const Json& array_in(const Json& object, const char* key) {
+    static const Json empty = Json::array();
+    const Json* array = find(object, key);
+    return array == nullptr ? empty : *array;
+}
+
+inline std::optional<std::size_t> index_in(const Json& object, const char* key) {
+    const Json* value = find(object, key);
+    return value == nullptr ? std::nullopt : std::optional(value->get<std::size_t>());
+}
+
+inline std::size_t size_in(const Json& object, const char* key, std::size_t absent = 0) {
+    return index_in(object, key).value_or(absent);
+}
+
+inline float float_in(const Json& object, const char* key, float absent) {
+    const Json* value = find(object, key);
+    return value == nullptr ? absent : value->get<float>();
+}
+
+inline bool bool_in(const Json& object, const char* key) {
+    const Json* value = find(object, key);
+    return value != nullptr && value->get<bool>();
+}
+
+inline std::string text_in(const Json& object, const char* key) {
+    const Json* value = find(object, key);
+    return value == nullptr ? std::string() : value->get<std::string>();
+}
+
+/// A glm vector, or `absent` if there is no such property.
+template <typename Vector>
+Vector vector_in(const Json& object, const char* key, Vector absent) {
+    const Json* value = find(object, key);
+    if (value == nullptr) return absent;
+    Vector result;
+    for (int i = 0; i < Vector::length(); ++i) {
+        result[i] = value->at(static_cast<std::size_t>(i)).template get<float>();
+    }
+    return result;
+}
+
+/// Bytes of a buffer. They may be the tail of a file that was read as a whole.
 struct GltfBuffer {
     std::string storage;
     std::size_t begin = 0;
     std::size_t size = 0;
-    bool is_placeholder = false;  ///< Its bytes are nowhere: all its views are compressed.
+    bool is_placeholder = false;  ///< It has no bytes: all its views are compressed.
 
     [[nodiscard]] std::string_view bytes() const {
         return std::string_view(storage).substr(begin, size);
     }
 };
 
-/// Bytes [begin, end) of a buffer.
+/// The bytes [begin, end) of a buffer.
 struct GltfExtent {
     std::size_t buffer = 0;
     std::size_t begin = 0;
@@ -42,34 +113,36 @@ struct GltfExtent {
 };
 
 struct GltfContents {
-    Json root;                        ///< Checked by check_gltf.
-    std::filesystem::path folder;     ///< Where relative URIs begin; absolute.
-    std::vector<GltfBuffer> buffers;  ///< One per entry of "buffers".
-    /// Chunks of a GLB that are neither JSON nor the buffer: kept as they are.
+    Json root;                        ///< Has passed check_gltf().
+    std::filesystem::path folder;     ///< Base of relative URIs; absolute.
+    std::vector<GltfBuffer> buffers;  ///< One for each entry of "buffers".
+    /// Chunks of a GLB other than JSON and the buffer. They are kept unchanged.
     std::vector<std::pair<std::uint32_t, std::string>> extra_chunks;
 
-    /// Accessors and buffer views that processing has replaced: left out when written, if nothing
-    /// else refers to them.
+    /// Replaced accessors and buffer views. The writer leaves them out if nothing refers to them.
     std::set<std::size_t> retired_accessors;
     std::set<std::size_t> retired_views;
-    std::vector<GltfExtent> retired_bytes;  ///< Compressed data that has been unpacked.
-    /// How many buffer views or primitives were unpacked, by extension.
+    std::vector<GltfExtent> retired_bytes;  ///< Compressed data that has been decoded.
+    /// Number of decoded buffer views or primitives, by extension.
     std::map<std::string, std::size_t> unpacked;
-    /// The buffer that holds what processing adds; past the end until there is something.
+    /// Index of the buffer for added data; -1 until data is added.
     std::size_t added_buffer = static_cast<std::size_t>(-1);
-    /// Accessors that processing has added for primitives that share theirs, by a hash of their
-    /// elements.
+    /// Accessors that were added for primitives with shared accessors, by a hash of their elements.
     std::multimap<std::size_t, std::size_t> shared_accessors;
-    /// How many primitives use an accessor as POSITION, as read: who shares vertices with others
-    /// must not change while primitives are processed one by one.
+    /// Number of primitives that use an accessor as POSITION, counted after reading. The set of
+    /// sharing primitives must not change while primitives are processed one by one.
     std::vector<std::uint32_t> position_uses;
 };
 
-/// Names of the extension that holds a compressed copy of a buffer view.
+struct GltfDocument::Contents {
+    GltfContents data;
+};
+
+/// Names of the extension that compresses a buffer view.
 inline constexpr std::array meshopt_extensions = {"EXT_meshopt_compression",
                                                   "KHR_meshopt_compression"};
 
-/// Name of the extension that holds a compressed copy of a primitive.
+/// Name of the extension that compresses a primitive.
 inline constexpr const char* draco_extension = "KHR_draco_mesh_compression";
 
 }  // namespace relief

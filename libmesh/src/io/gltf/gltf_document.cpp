@@ -1,33 +1,103 @@
 // SPDX-License-Identifier: Apache-2.0
-// The public face of glTF documents; the work is done in the files that each function names.
-// Tests: tests/mesh/io/gltf/gltf_document_test.cpp.
+// Summaries of a glTF document: texture coordinate sets and the one of the tangents, compression,
+// and contents that other formats cannot hold.
 #include "relief/mesh/gltf_document.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <string_view>
 
-#include "io/gltf/gltf_animation.h"
-#include "io/gltf/gltf_from_mesh.h"
-#include "io/gltf/gltf_morph.h"
-#include "io/gltf/gltf_primitive.h"
+#include "io/gltf/gltf_accessor.h"
 #include "io/gltf/gltf_reader.h"
-#include "io/gltf/gltf_tangent_texcoords.h"
-#include "io/gltf/gltf_view.h"
-#include "io/gltf/gltf_writer.h"
 
 namespace relief {
+namespace {
+
+/// A texture of a material that is sampled in tangent space.
+struct TangentTexture {
+    const char* name = "";
+    const Json* info = nullptr;
+};
+
+/// The first such texture of a material, in the order in which glTF derives tangents from them.
+TangentTexture tangent_texture(const Json& material) {
+    const TangentTexture candidates[] = {
+        {"normalTexture", find(material, "normalTexture")},
+        {"clearcoatNormalTexture",
+         find(material, "extensions", "KHR_materials_clearcoat", "clearcoatNormalTexture")},
+        {"anisotropyTexture",
+         find(material, "extensions", "KHR_materials_anisotropy", "anisotropyTexture")}};
+    for (const TangentTexture& candidate : candidates) {
+        if (candidate.info != nullptr && candidate.info->is_object()) return candidate;
+    }
+    return {};
+}
+
+/// Returns true if the transform rotates or mirrors texture coordinates. Positive scales, as used
+/// for tiles and atlases, keep both directions.
+bool rotates_or_mirrors(const Json& transform) {
+    const auto rotation = static_cast<double>(float_in(transform, "rotation", 0.0F));
+    const glm::vec2 scale = vector_in(transform, "scale", glm::vec2(1.0F));
+    constexpr double rounding = 1e-6;  // Relative error of an angle in float.
+    const bool is_turned = std::abs(std::sin(rotation)) > rounding || !(std::cos(rotation) > 0.0);
+    return is_turned || scale.x < 0.0F || scale.y < 0.0F;
+}
+
+}  // namespace
+
+std::vector<int> GltfDocument::texcoord_sets(GltfPrimitiveId id) const {
+    const GltfContents& contents = contents_->data;
+    constexpr std::string_view prefix = "TEXCOORD_";
+    std::vector<int> sets;
+    for (const auto& [name, accessor] : primitive_json(contents, id)["attributes"].items()) {
+        if (!name.starts_with(prefix)) continue;
+        int set = 0;
+        const char* end = name.data() + name.size();
+        const auto parsed = std::from_chars(name.data() + prefix.size(), end, set);
+        if (parsed.ec == std::errc() && parsed.ptr == end && set >= 0) sets.push_back(set);
+    }
+    std::sort(sets.begin(), sets.end());
+    return sets;
+}
+
+GltfTangentTexcoords GltfDocument::tangent_texcoords(GltfPrimitiveId id) const {
+    const GltfContents& contents = contents_->data;
+    GltfTangentTexcoords result;
+    const std::vector<int> sets = texcoord_sets(id);
+    const int first = sets.empty() ? 0 : sets.front();
+    result.set = first;
+    const auto material = index_in(primitive_json(contents, id), "material");
+    if (!material) return result;
+    const TangentTexture texture = tangent_texture(contents.root["materials"][*material]);
+    if (texture.info == nullptr) return result;
+    result.texture = texture.name;
+    result.set = static_cast<int>(size_in(*texture.info, "texCoord"));
+    if (const Json* transform = find(*texture.info, "extensions", "KHR_texture_transform")) {
+        result.set =
+            static_cast<int>(size_in(*transform, "texCoord", static_cast<std::size_t>(result.set)));
+        result.is_turned = rotates_or_mirrors(*transform);
+    }
+    if (!std::binary_search(sets.begin(), sets.end(), result.set)) {
+        result.missing = result.set;
+        result.set = first;
+    }
+    return result;
+}
+
 namespace {
 
 void add_count(std::vector<std::string>& lines, std::size_t count, const char* thing) {
     if (count > 0) lines.push_back(fmt::format("{} {}{}", count, thing, count == 1 ? "" : "s"));
 }
 
-/// Sums over all primitives.
+/// Totals over all primitives.
 struct PrimitiveCounts {
     std::size_t morph_targets = 0;
     std::size_t points_and_lines = 0;
-    std::size_t more_attributes = 0;  ///< Beyond what Mesh has.
+    std::size_t more_attributes = 0;  ///< Attributes that Mesh does not have.
 };
 
 PrimitiveCounts count_primitives(const Json& root) {
@@ -47,7 +117,7 @@ PrimitiveCounts count_primitives(const Json& root) {
     return counts;
 }
 
-/// How many buffer views have a compressed copy by an extension.
+/// Number of buffer views with a compressed copy by an extension.
 std::size_t packed_views(const Json& root, const char* extension) {
     const Json& views = array_in(root, "bufferViews");
     return static_cast<std::size_t>(std::count_if(
@@ -55,7 +125,7 @@ std::size_t packed_views(const Json& root, const char* extension) {
         [&](const Json& view) { return find(view, "extensions", extension) != nullptr; }));
 }
 
-/// How many primitives have a compressed copy.
+/// Number of primitives with a compressed copy.
 std::size_t packed_primitives(const Json& root) {
     std::size_t count = 0;
     for (const Json& mesh : array_in(root, "meshes")) {
@@ -67,71 +137,10 @@ std::size_t packed_primitives(const Json& root) {
 
 }  // namespace
 
-struct GltfDocument::Contents {
-    GltfContents data;
-};
-
 GltfDocument::GltfDocument(std::unique_ptr<Contents> contents) : contents_(std::move(contents)) {}
 GltfDocument::GltfDocument(GltfDocument&&) noexcept = default;
 GltfDocument& GltfDocument::operator=(GltfDocument&&) noexcept = default;
 GltfDocument::~GltfDocument() = default;
-
-GltfDocument GltfDocument::read(const std::filesystem::path& file, Report& report) {
-    return GltfDocument(std::make_unique<Contents>(Contents{read_gltf(file, report)}));
-}
-
-GltfDocument GltfDocument::from_mesh(const MeshFile& contents) {
-    return GltfDocument(std::make_unique<Contents>(Contents{gltf_from_mesh(contents, nullptr)}));
-}
-
-GltfDocument GltfDocument::from_mesh(const MeshFile& contents, Report& report) {
-    return GltfDocument(std::make_unique<Contents>(Contents{gltf_from_mesh(contents, &report)}));
-}
-
-void GltfDocument::write(const std::filesystem::path& file) const {
-    write_gltf(file, contents_->data);
-}
-
-std::vector<GltfPrimitiveId> GltfDocument::triangle_primitives() const {
-    return triangle_primitives_of(contents_->data);
-}
-
-std::string GltfDocument::describe(GltfPrimitiveId id) const {
-    return describe_primitive(contents_->data, id);
-}
-
-Mesh GltfDocument::mesh(GltfPrimitiveId id, int texcoord_set) const {
-    return read_primitive(contents_->data, id, texcoord_set);
-}
-
-std::vector<int> GltfDocument::texcoord_sets(GltfPrimitiveId id) const {
-    return texcoord_sets_of(contents_->data, id);
-}
-
-GltfTangentTexcoords GltfDocument::tangent_texcoords(GltfPrimitiveId id) const {
-    return tangent_texcoords_of(contents_->data, id);
-}
-
-void GltfDocument::set_frames(GltfPrimitiveId id, const FramedMesh& framed) {
-    replace_frames(contents_->data, id, framed);
-}
-
-std::size_t GltfDocument::set_frames(GltfPrimitiveId id, const FramedMesh& framed,
-                                     const FrameOptions& options, Report& report) {
-    return replace_all_frames(contents_->data, id, framed, options, report);
-}
-
-void GltfDocument::set_geometry(GltfPrimitiveId id, const Mesh& mesh) {
-    replace_geometry(contents_->data, id, mesh);
-}
-
-GltfView GltfDocument::view() const {
-    return view_of(contents_->data);
-}
-
-std::vector<GltfAnimation> GltfDocument::animations(Report& report) const {
-    return animations_of(contents_->data, report);
-}
 
 std::vector<GltfCompression> GltfDocument::compression() const {
     const GltfContents& contents = contents_->data;

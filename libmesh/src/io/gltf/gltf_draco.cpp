@@ -1,17 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
-// Compressed primitives decoded into the accessors that describe them, in object space.
+// Decodes primitives that KHR_draco_mesh_compression has compressed. This is the only file that
+// uses Draco.
 //
-// Accessors that several primitives share stay shared where the same data fills them; one that
-// already got other data is doubled. Strips become the triangles that they are. Source: the
-// glTF extension KHR_draco_mesh_compression. Tests: tests/mesh/io/gltf/gltf_draco_test.cpp.
-#include "io/gltf/gltf_draco.h"
+// Draco's decoder validates its input. Its result is validated again before it is used: the value
+// index of each vertex, and that values lie inside the attribute's buffer.
+#include "io/gltf/gltf_compression.h"
 
+#include <draco/compression/decode.h>
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdint>
+#include <cstring>
 #include <map>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
 
-#include "io/gltf/draco_mesh.h"
 #include "io/gltf/gltf_accessor.h"
 #include "io/gltf/gltf_edit.h"
 #include "progress_stage.h"
@@ -20,11 +26,177 @@
 namespace relief {
 namespace {
 
-/// Where decoded data came from: a buffer view, and in it an attribute, or the indices.
+/// Number types that glTF and Draco have in common.
+enum class DracoComponent { int8, uint8, int16, uint16, uint32, float32 };
+
+class DracoMesh {
+  public:
+    /// Decodes the data; quantized attributes become the numbers that they stand for.
+    /// \throws InvalidInput if the data is damaged or holds points without triangles
+    explicit DracoMesh(std::string_view bytes);
+
+    [[nodiscard]] std::size_t vertex_count() const;
+
+    /// Three indices for each triangle. \throws InvalidInput if one is out of range
+    [[nodiscard]] std::vector<std::uint32_t> indices() const;
+
+    /// The attribute with a unique id: `components` packed numbers of a type for each vertex.
+    /// Numbers that Draco stores in another type are converted by value.
+    /// \throws InvalidInput if there is no such attribute, if it has another number of components,
+    ///         or if a number does not fit
+    [[nodiscard]] std::string attribute(std::uint32_t unique_id, std::size_t components,
+                                        DracoComponent component) const;
+
+  private:
+    std::unique_ptr<draco::Mesh> mesh_;
+};
+
+draco::DataType draco_type(DracoComponent component) {
+    switch (component) {
+        case DracoComponent::int8:
+            return draco::DT_INT8;
+        case DracoComponent::uint8:
+            return draco::DT_UINT8;
+        case DracoComponent::int16:
+            return draco::DT_INT16;
+        case DracoComponent::uint16:
+            return draco::DT_UINT16;
+        case DracoComponent::uint32:
+            return draco::DT_UINT32;
+        case DracoComponent::float32:
+            return draco::DT_FLOAT32;
+    }
+    return draco::DT_INVALID;
+}
+
+/// The value index of a vertex. \throws InvalidInput if it is out of range
+draco::AttributeValueIndex value_of(const draco::PointAttribute& attribute, std::uint32_t vertex) {
+    const draco::AttributeValueIndex value = attribute.mapped_index(draco::PointIndex(vertex));
+    if (value.value() >= attribute.size())
+        throw InvalidInput(fmt::format("its Draco data has no value for vertex {}", vertex));
+    return value;
+}
+
+/// Copies values of the stored type.
+void copy_values(const draco::PointAttribute& attribute, std::size_t size, std::string& values) {
+    for (std::size_t i = 0; i * size < values.size(); ++i) {
+        const auto value = value_of(attribute, static_cast<std::uint32_t>(i));
+        std::memcpy(values.data() + i * size, attribute.GetAddress(value), size);
+    }
+}
+
+/// Converts values from another stored type.
+template <typename Component>
+void convert_values(const draco::PointAttribute& attribute, std::size_t components,
+                    std::string& values) {
+    std::vector<Component> element(components);
+    const std::size_t size = components * sizeof(Component);
+    for (std::size_t i = 0; i * size < values.size(); ++i) {
+        const auto vertex = static_cast<std::uint32_t>(i);
+        if (!attribute.ConvertValue<Component>(value_of(attribute, vertex),
+                                               static_cast<std::int8_t>(components),
+                                               element.data())) {
+            throw InvalidInput(
+                fmt::format("a number of vertex {} in its Draco data does not fit", vertex));
+        }
+        std::memcpy(values.data() + i * size, element.data(), size);
+    }
+}
+
+/// Checks that all values lie inside the attribute's buffer.
+void check_buffer(const draco::PointAttribute& attribute, std::size_t element_size) {
+    const draco::DataBuffer* buffer = attribute.buffer();
+    const auto stride = static_cast<std::size_t>(attribute.byte_stride());
+    const auto offset = static_cast<std::size_t>(attribute.byte_offset());
+    const std::size_t needed =
+        attribute.size() == 0 ? 0 : offset + (attribute.size() - 1) * stride + element_size;
+    if (buffer == nullptr || needed > buffer->data_size())
+        throw InvalidInput("its Draco data lacks values of an attribute");
+}
+
+DracoMesh::DracoMesh(std::string_view bytes) {
+    draco::DecoderBuffer buffer;
+    buffer.Init(bytes.data(), bytes.size());
+    const auto type = draco::Decoder::GetEncodedGeometryType(&buffer);
+    if (!type.ok())
+        throw InvalidInput(
+            fmt::format("its Draco data is damaged: {}", type.status().error_msg_string()));
+    if (type.value() != draco::TRIANGULAR_MESH)
+        throw InvalidInput("its Draco data holds points, not triangles");
+    draco::Decoder decoder;
+    auto mesh = decoder.DecodeMeshFromBuffer(&buffer);
+    if (!mesh.ok())
+        throw InvalidInput(
+            fmt::format("its Draco data is damaged: {}", mesh.status().error_msg_string()));
+    mesh_ = std::move(mesh).value();
+}
+
+std::size_t DracoMesh::vertex_count() const {
+    return mesh_->num_points();
+}
+
+std::vector<std::uint32_t> DracoMesh::indices() const {
+    std::vector<std::uint32_t> result;
+    result.reserve(3 * std::size_t{mesh_->num_faces()});
+    for (draco::FaceIndex i(0); i < mesh_->num_faces(); ++i) {
+        for (const draco::PointIndex& vertex : mesh_->face(i)) {
+            if (vertex.value() >= mesh_->num_points()) {
+                throw InvalidInput(
+                    fmt::format("its Draco data names vertex {}, but there are only {}",
+                                vertex.value(), mesh_->num_points()));
+            }
+            result.push_back(vertex.value());
+        }
+    }
+    return result;
+}
+
+std::string DracoMesh::attribute(std::uint32_t unique_id, std::size_t components,
+                                 DracoComponent component) const {
+    const draco::PointAttribute* attribute = mesh_->GetAttributeByUniqueId(unique_id);
+    if (attribute == nullptr)
+        throw InvalidInput(fmt::format("its Draco data has no attribute {}", unique_id));
+    if (attribute->num_components() != components) {
+        throw InvalidInput(fmt::format("attribute {} of its Draco data has {} components, not {}",
+                                       unique_id, attribute->num_components(), components));
+    }
+    const draco::DataType type = draco_type(component);
+    const auto component_size = static_cast<std::size_t>(draco::DataTypeLength(type));
+    check_buffer(*attribute, components * static_cast<std::size_t>(
+                                              draco::DataTypeLength(attribute->data_type())));
+    std::string values(vertex_count() * components * component_size, '\0');
+    if (attribute->data_type() == type) {
+        copy_values(*attribute, components * component_size, values);
+        return values;
+    }
+    switch (component) {
+        case DracoComponent::int8:
+            convert_values<std::int8_t>(*attribute, components, values);
+            break;
+        case DracoComponent::uint8:
+            convert_values<std::uint8_t>(*attribute, components, values);
+            break;
+        case DracoComponent::int16:
+            convert_values<std::int16_t>(*attribute, components, values);
+            break;
+        case DracoComponent::uint16:
+            convert_values<std::uint16_t>(*attribute, components, values);
+            break;
+        case DracoComponent::uint32:
+            convert_values<std::uint32_t>(*attribute, components, values);
+            break;
+        case DracoComponent::float32:
+            convert_values<float>(*attribute, components, values);
+            break;
+    }
+    return values;
+}
+
+/// The source of decoded data: a buffer view, and an attribute in it or `indices_source`.
 using Source = std::pair<std::size_t, std::size_t>;
 constexpr std::size_t indices_source = static_cast<std::size_t>(-1);
 
-/// The extension of a primitive, or null.
+/// The Draco extension of a primitive, or null.
 const Json* draco_of(const Json& primitive) {
     return find(primitive, "extensions", draco_extension);
 }
@@ -46,7 +218,7 @@ DracoComponent component_of(const ElementLayout& layout) {
     }
 }
 
-/// Indices in the type that an accessor gives them.
+/// Packs indices in the type of an accessor.
 std::string packed_indices(const std::vector<std::uint32_t>& indices, const ElementLayout& layout) {
     const std::size_t size = component_size(layout.component_type);
     std::string bytes;
@@ -65,7 +237,7 @@ class Unpacking {
   public:
     Unpacking(GltfContents& contents, Report& report) : contents_(contents), report_(report) {}
 
-    /// Whether there is something that only the compressed data has.
+    /// Returns true if the primitive lacks data that its compressed copy has.
     [[nodiscard]] bool is_needed(const Json& primitive) const;
     void unpack(Json& primitive);
 
@@ -80,7 +252,8 @@ class Unpacking {
 
     GltfContents& contents_;
     Report& report_;
-    std::map<std::size_t, Source> filled_;  ///< Accessors that have got data, and which.
+    std::map<std::size_t, Source>
+        filled_;  ///< Accessors that were filled, and the source of their data.
     std::optional<std::size_t> last_view_;
     std::optional<DracoMesh> last_mesh_;
 };
@@ -98,7 +271,8 @@ bool Unpacking::is_needed(const Json& primitive) const {
     return false;
 }
 
-/// Primitives with the same data usually follow each other: one is kept.
+/// Decodes a view. The last result is kept, because primitives with the same data usually are
+/// neighbors.
 const DracoMesh& Unpacking::decoded(std::size_t view) {
     if (last_view_ != view) {
         const Json& json = contents_.root["bufferViews"][view];
@@ -109,7 +283,8 @@ const DracoMesh& Unpacking::decoded(std::size_t view) {
     return *last_mesh_;
 }
 
-/// Gives an accessor its elements. \return its number, or that of its double
+/// Gives an accessor its elements. \return its index, or that of a copy if it already has other
+/// data
 std::size_t Unpacking::fill(std::size_t accessor, Source source, const std::string& elements,
                             int target) {
     if (const auto done = filled_.find(accessor); done != filled_.end() || has_data(accessor)) {
@@ -132,7 +307,7 @@ std::size_t Unpacking::fill(std::size_t accessor, Source source, const std::stri
     json["bufferView"] = view;
     json["count"] = count;
     json.erase("byteOffset");
-    if (!json.contains("sparse")) renew_bounds(json, elements);
+    if (!json.contains("sparse")) update_bounds(json, elements);
     filled_[accessor] = source;
     return accessor;
 }
@@ -165,16 +340,14 @@ std::size_t Unpacking::fill_indices(std::optional<std::size_t> accessor, std::si
 }
 
 void Unpacking::unpack(Json& primitive) {
-    constexpr std::size_t triangles = 4;
-    constexpr std::size_t triangle_strip = 5;
     const Json draco = *draco_of(primitive);
-    const std::size_t mode = size_in(primitive, "mode", triangles);
-    if (mode != triangles && mode != triangle_strip)
+    const std::size_t mode = size_in(primitive, "mode", gltf_code::triangles);
+    if (mode != gltf_code::triangles && mode != gltf_code::triangle_strip)
         throw InvalidInput(fmt::format("Draco has no primitives of mode {}", mode));
     const std::size_t view = size_in(draco, "bufferView");
     auto indices = index_in(primitive, "indices");
-    if (mode == triangle_strip && indices) {
-        // A strip has fewer indices than its triangles: no contradiction.
+    if (mode == gltf_code::triangle_strip && indices) {
+        // A strip has fewer indices than its triangles, so the counts may differ.
         Json copy = contents_.root["accessors"][*indices];
         copy["count"] = decoded(view).indices().size();
         contents_.retired_accessors.insert(*indices);
@@ -215,7 +388,7 @@ void unpack_draco(GltfContents& contents, Report& report) {
             any = true;
         }
     }
-    if (any) forget_if_unused(contents.root, draco_extension);
+    if (any) remove_unused_extension(contents.root, draco_extension);
 }
 
 }  // namespace relief

@@ -1,23 +1,28 @@
 // SPDX-License-Identifier: Apache-2.0
-// Bytes, buffer views and accessors added to a glTF document, and extensions taken out of it.
+// Additions to a glTF document, removal of extensions, and replacement of a primitive's mesh.
 //
-// What is added goes into one buffer of its own, every view at a multiple of four bytes; joining it
-// with the others is gltf_layout.h's. Tests: tests/mesh/io/gltf/gltf_frames_test.cpp.
+// Added data goes into one buffer, each view at a multiple of four bytes; the writer joins it with
+// the other buffers. Replaced accessors are retired, and the writer leaves them out unless others
+// use them.
 #include "io/gltf/gltf_edit.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <functional>
 #include <limits>
 
 #include "io/gltf/gltf_accessor.h"
-#include "io/gltf/gltf_schema.h"
+#include "io/gltf/gltf_check.h"
+#include "relief/mesh/error.h"
 
 namespace relief {
 namespace {
 
-/// The buffer that holds what is added.
+/// The buffer of added data.
 GltfBuffer& added_buffer(GltfContents& contents) {
     if (contents.added_buffer == static_cast<std::size_t>(-1)) {
         contents.added_buffer = contents.buffers.size();
@@ -66,7 +71,7 @@ std::size_t add_view(GltfContents& contents, std::string_view bytes) {
 std::size_t add_elements(GltfContents& contents, std::size_t size, const std::string& elements,
                          int target) {
     const std::size_t count = elements.size() / size;
-    // Vertex attributes begin at multiples of four bytes.
+    // Vertex attributes must begin at multiples of four bytes.
     const std::size_t stride = target == gltf_code::array_buffer ? (size + 3) / 4 * 4 : size;
     std::size_t view = 0;
     if (stride == size) {
@@ -115,7 +120,7 @@ std::size_t add_shared_accessor(GltfContents& contents, Json accessor, const std
     return number;
 }
 
-void renew_bounds(Json& accessor, const std::string& elements) {
+void update_bounds(Json& accessor, const std::string& elements) {
     const ElementLayout layout = element_layout(accessor);
     Json least = Json::array();
     Json most = Json::array();
@@ -146,7 +151,7 @@ void renew_bounds(Json& accessor, const std::string& elements) {
         }
         if (!(std::abs(low) <= std::numeric_limits<float>::max()) ||
             !(std::abs(high) <= std::numeric_limits<float>::max())) {
-            return;  // Non-finite elements: JSON has no bounds for them; the old ones stay.
+            return;  // JSON cannot hold these bounds.
         }
         const bool is_float = layout.component_type == gltf_code::float32;
         least.push_back(is_float ? Json(low) : Json(static_cast<std::int64_t>(low)));
@@ -162,7 +167,7 @@ void erase_extension(Json& holder, const char* extension) {
     if (holder["extensions"].empty()) holder.erase("extensions");
 }
 
-void forget_if_unused(Json& root, std::string_view extension) {
+void remove_unused_extension(Json& root, std::string_view extension) {
     if (has_extension(root, extension)) return;
     for (const char* list : {"extensionsUsed", "extensionsRequired"}) {
         if (!root.contains(list)) continue;
@@ -172,6 +177,82 @@ void forget_if_unused(Json& root, std::string_view extension) {
         }
         if (names.empty()) root.erase(list);
     }
+}
+
+namespace {
+
+constexpr std::array carried_attributes = {"POSITION", "NORMAL", "TANGENT", "TEXCOORD_0",
+                                           "COLOR_0"};
+
+/// Names what the primitive has but a mesh cannot hold; "" if nothing.
+std::string unsupported_content(const Json& primitive) {
+    if (!array_in(primitive, "targets").empty()) return "morph targets";
+    for (const auto& [name, accessor] : primitive["attributes"].items()) {
+        bool is_carried = false;
+        for (const char* carried : carried_attributes)
+            is_carried = is_carried || name == carried;
+        if (!is_carried) return name;
+    }
+    if (find(primitive, "extensions", "CESIUM_primitive_outline") != nullptr) return "an outline";
+    return "";
+}
+
+template <typename Element>
+std::size_t add_values(GltfContents& contents, const std::vector<Element>& elements,
+                       const char* type, int component_type, int target) {
+    return add_accessor(contents, {{"componentType", component_type}, {"type", type}},
+                        std::string(reinterpret_cast<const char*>(elements.data()),
+                                    elements.size() * sizeof(Element)),
+                        target);
+}
+
+/// Sets the bounds that glTF requires for positions, if they are finite.
+void set_bounds(Json& accessor, const Mesh& mesh) {
+    const Bounds bounds = bounds_of(mesh);
+    if (bounds.empty()) return;
+    accessor["min"] = {bounds.min.x, bounds.min.y, bounds.min.z};
+    accessor["max"] = {bounds.max.x, bounds.max.y, bounds.max.z};
+}
+
+Json attributes_of(GltfContents& contents, const Mesh& mesh) {
+    Json attributes = Json::object();
+    const auto add = [&](const char* name, const auto& values, const char* type) {
+        if (values.empty()) return;
+        attributes[name] =
+            add_values(contents, values, type, gltf_code::float32, gltf_code::array_buffer);
+    };
+    add("POSITION", mesh.positions, "VEC3");
+    set_bounds(contents.root["accessors"].back(), mesh);
+    add("NORMAL", mesh.normals, "VEC3");
+    if (!mesh.normals.empty()) add("TANGENT", mesh.tangents, "VEC4");
+    add("TEXCOORD_0", mesh.texcoords, "VEC2");
+    add("COLOR_0", mesh.colors, "VEC4");
+    return attributes;
+}
+
+}  // namespace
+
+void GltfDocument::set_geometry(GltfPrimitiveId id, const Mesh& mesh) {
+    GltfContents& contents = contents_->data;
+    const Json before = primitive_json(contents, id);
+    const std::string more = unsupported_content(before);
+    if (!more.empty()) {
+        throw InvalidInput(fmt::format("{}: has {}, which another mesh cannot take over",
+                                       describe_primitive(contents, id), more));
+    }
+    validate(mesh);
+    if (mesh.triangles.empty()) throw InvalidInput("the mesh has no triangle");
+    for (const auto& [name, accessor] : before["attributes"].items())
+        contents.retired_accessors.insert(accessor.get<std::size_t>());
+    if (const auto indices = index_in(before, "indices"))
+        contents.retired_accessors.insert(*indices);
+    Json attributes = attributes_of(contents, mesh);
+    const std::size_t indices = add_values(contents, mesh.triangles, "SCALAR", gltf_code::uint32,
+                                           gltf_code::element_array_buffer);
+    Json& primitive = contents.root["meshes"][id.mesh]["primitives"][id.primitive];
+    primitive["attributes"] = std::move(attributes);
+    primitive["indices"] = indices;
+    primitive.erase("mode");  // Triangles are the default mode.
 }
 
 }  // namespace relief

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Changing a glTF document: bytes and accessors that are added, extensions that are taken out.
-/// Tests: tests/mesh/io/gltf/gltf_frames_test.cpp.
+/// Additions to a glTF document (bytes, buffer views, accessors) and removal of extensions.
 #pragma once
 
 #include <cstddef>
@@ -12,38 +11,40 @@
 
 namespace relief {
 
-/// Makes room for bytes that are to be appended.
+/// Reserves capacity for bytes that will be appended.
 void reserve_bytes(GltfContents& contents, std::size_t count);
 
-/// Appends bytes, 4-aligned, to the buffer that holds what is added. \return where in it
+/// Appends bytes to the buffer of added data, at a multiple of 4. \return their offset
 std::size_t append_bytes(GltfContents& contents, std::string_view bytes);
 
 /// Appends bytes as a new buffer view. \return its index
 std::size_t add_view(GltfContents& contents, std::string_view bytes);
 
-/// Appends packed elements of `size` bytes as a new buffer view, aligned as `target` asks.
+/// Appends packed elements of `size` bytes as a new buffer view, with the alignment that `target`
+/// requires.
 /// \return the view's index
 std::size_t add_elements(GltfContents& contents, std::size_t size, const std::string& elements,
                          int target);
 
-/// Adds an accessor over its own buffer view; `accessor` says all but where and how many.
+/// Adds an accessor with its own buffer view. `accessor` has all properties except location and
+/// count.
 /// \return its index
 std::size_t add_accessor(GltfContents& contents, Json accessor, const std::string& elements,
                          int target);
 
-/// The same for one that others may need as well: an equal one that was added this way is taken
-/// again, so that those who shared an accessor share the one that replaces it.
+/// Like add_accessor(), but reuses an equal accessor that was added by this function. Primitives
+/// that shared an accessor thus share its replacement.
 std::size_t add_shared_accessor(GltfContents& contents, Json accessor, const std::string& elements,
                                 int target);
 
-/// min and max of an accessor that had them: true for the elements that it has now. Where elements
-/// are not finite the old ones stay, since JSON has no bounds for them.
-void renew_bounds(Json& accessor, const std::string& elements);
+/// Updates min and max, if the accessor has them. If elements are not finite, the old bounds stay,
+/// because JSON cannot hold them.
+void update_bounds(Json& accessor, const std::string& elements);
 
-/// Takes an extension away from an object that may have it.
+/// Removes an extension from an object that may have it.
 void erase_extension(Json& holder, const char* extension);
 
-/// Takes an extension's name out of extensionsUsed and extensionsRequired, if no object has it.
-void forget_if_unused(Json& root, std::string_view extension);
+/// Removes an extension from extensionsUsed and extensionsRequired if no object has it.
+void remove_unused_extension(Json& root, std::string_view extension);
 
 }  // namespace relief

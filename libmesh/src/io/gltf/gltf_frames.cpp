@@ -1,27 +1,37 @@
 // SPDX-License-Identifier: Apache-2.0
-// Putting new normals and tangents into a glTF primitive, in object space.
+// Replaces normals and tangents of a glTF primitive and of its morph targets, in object space.
 //
-// What changes is written as fresh accessors, so that others who share the old ones keep them; what
-// it replaces is retired, and left out when the document is written (gltf_layout.h). Values that
-// come out as they were keep their accessor, or at least their type and bits. A framed mesh that
-// does not belong to the primitive throws InvalidInput. Tests:
-// tests/mesh/io/gltf/gltf_frames_test.cpp.
+// Changed values become new accessors, so that other users of the old ones are not affected. The
+// old ones are retired: the writer leaves them out. Unchanged values keep their accessor, or at
+// least their type and bits. A framed mesh that does not belong to the primitive throws
+// InvalidInput.
+//
+// glTF adds a target's displacements to a vertex's normal and tangent. The displacements are
+// therefore the frames of the displaced shape, computed by with_frames(), minus those of the
+// primitive. Corners are compared one by one: if corners that share a vertex at rest differ when
+// displaced, the vertex is split. A target with weight 1 then gives exactly the frames of its
+// shape; frames in between are interpolated, as glTF requires. Source: glTF 2.0 (ISO/IEC 12113),
+// 3.7.2.2.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cstring>
 #include <map>
+#include <optional>
+#include <utility>
 
 #include "io/gltf/gltf_accessor.h"
+#include "io/gltf/gltf_check.h"
+#include "io/gltf/gltf_contents.h"
 #include "io/gltf/gltf_edit.h"
-#include "io/gltf/gltf_primitive.h"
-#include "io/gltf/gltf_schema.h"
 #include "relief/mesh/error.h"
+#include "relief/mesh/gltf_document.h"
+#include "relief/mesh/split.h"
 
 namespace relief {
 namespace {
 
-/// Replaces the parts of one primitive.
+/// Replaces the frames of one primitive.
 class FrameReplacement {
   public:
     FrameReplacement(GltfContents& contents, GltfPrimitiveId id, const FramedMesh& framed);
@@ -48,11 +58,11 @@ class FrameReplacement {
     GltfPrimitiveId id_;
     const FramedMesh& framed_;
     GltfTriangles before_;
-    std::vector<std::uint32_t> sources_;  ///< Accessor element of every new vertex.
-    bool shares_vertices_ = false;        ///< Others may come to the same results.
+    std::vector<std::uint32_t> sources_;  ///< Accessor element of each new vertex.
+    bool shares_vertices_ = false;        ///< Other primitives may produce the same results.
     bool same_vertices_ = false;
     bool same_triangles_ = false;
-    std::map<std::size_t, std::size_t> carried_;  ///< Old accessor to new.
+    std::map<std::size_t, std::size_t> carried_;  ///< Maps an old accessor to the new one.
 };
 
 FrameReplacement::FrameReplacement(GltfContents& contents, GltfPrimitiveId id,
@@ -68,7 +78,7 @@ FrameReplacement::FrameReplacement(GltfContents& contents, GltfPrimitiveId id,
     for (std::size_t i = 0; same_vertices_ && i < sources_.size(); ++i) {
         same_vertices_ = sources_[i] == i;
     }
-    // Vertices that only others use may be missing: that alone is no reason to write anything.
+    // If only vertices that this primitive does not use are missing, nothing needs to be written.
     bool all_in_place = before_.used && framed.mesh.positions.size() == before_.used->size();
     for (std::size_t i = 0; all_in_place && i < sources_.size(); ++i) {
         all_in_place = sources_[i] == (*before_.used)[i];
@@ -100,7 +110,7 @@ void FrameReplacement::check() const {
     validate(framed_.mesh);
 }
 
-/// An accessor with its elements in the order of the new vertices, in its own type.
+/// Copies an accessor with its elements in the order of the new vertices. The type stays.
 std::size_t FrameReplacement::carried(std::size_t accessor) {
     if (const auto done = carried_.find(accessor); done != carried_.end()) return done->second;
     Json json = contents_.root["accessors"][accessor];
@@ -110,13 +120,13 @@ std::size_t FrameReplacement::carried(std::size_t accessor) {
     for (std::size_t i = 0; i < sources_.size(); ++i) {
         std::memcpy(elements.data() + i * size, old_elements.data() + sources_[i] * size, size);
     }
-    renew_bounds(json, elements);
+    update_bounds(json, elements);
     const std::size_t number = add(std::move(json), elements, gltf_code::array_buffer);
     carried_.emplace(accessor, number);
     return number;
 }
 
-/// Whether what is stored, read as floats, is what is wanted, bit for bit.
+/// Returns true if the stored elements, read as floats, have exactly the wanted bits.
 template <typename Vector>
 bool is_stored(const GltfContents& contents, std::size_t accessor,
                const std::vector<std::uint32_t>& sources, const std::vector<Vector>& wanted) {
@@ -127,8 +137,8 @@ bool is_stored(const GltfContents& contents, std::size_t accessor,
     return true;
 }
 
-/// NORMAL or TANGENT: removed where there are no values, left to be carried where they are as they
-/// were, else written as floats.
+/// Replaces NORMAL or TANGENT. Without values the attribute is removed. Unchanged values are left
+/// for carry_all(); others are written as floats.
 template <typename Vector>
 void FrameReplacement::replace(const char* name, const std::vector<Vector>& values) {
     const auto accessor = index_in(primitive()["attributes"], name);
@@ -137,7 +147,7 @@ void FrameReplacement::replace(const char* name, const std::vector<Vector>& valu
         carry_neighbours(*accessor);
         retire(*accessor);
         primitive()["attributes"].erase(name);
-        // Morph targets may not change what the primitive does not have.
+        // Morph targets must not change an attribute that the primitive lacks.
         if (!primitive().contains("targets")) return;
         for (Json& target : primitive()["targets"]) {
             if (const auto displacement = index_in(target, name)) retire(*displacement);
@@ -160,10 +170,10 @@ void FrameReplacement::replace(const char* name, const std::vector<Vector>& valu
                                values.size() * sizeof(Vector));
     const std::size_t number = add(std::move(json), elements, gltf_code::array_buffer);
     primitive()["attributes"][name] = number;
-    carried_.emplace(number, number);  // It is in the new order already.
+    carried_.emplace(number, number);  // These elements already have the new order.
 }
 
-/// Every attribute and morph target in the order of the new vertices.
+/// Reorders all attributes and morph targets for the new vertices.
 void FrameReplacement::carry_all() {
     const auto carry = [&](Json& attributes) {
         for (auto& [name, accessor] : attributes.items()) {
@@ -174,7 +184,8 @@ void FrameReplacement::carry_all() {
             accessor = number;
         }
     };
-    Json copy = primitive();  // Adding accessors moves the arrays of the document about.
+    Json copy =
+        primitive();  // A copy, because adding accessors reallocates the arrays of the document.
     carry(copy["attributes"]);
     if (copy.contains("targets")) {
         for (Json& target : copy["targets"])
@@ -183,10 +194,10 @@ void FrameReplacement::carry_all() {
     primitive() = std::move(copy);
 }
 
-/// Where the accessor that goes away lies interleaved with others of this primitive, those are
-/// written anew, so that no gaps stay behind.
+/// If the removed accessor is interleaved with others of this primitive, rewrites those, so that no
+/// gaps remain.
 void FrameReplacement::carry_neighbours(std::size_t accessor) {
-    if (!same_vertices_) return;  // All are written anew in any case.
+    if (!same_vertices_) return;  // In this case carry_all() rewrites everything.
     const Json& root = contents_.root;
     const auto view = index_in(root["accessors"][accessor], "bufferView");
     if (!view) return;
@@ -204,8 +215,8 @@ void FrameReplacement::carry_neighbours(std::size_t accessor) {
     primitive()["attributes"] = std::move(attributes);
 }
 
-/// Indices of the new triangles, in the smallest type that holds them without the value that
-/// restarts strips.
+/// Indices of the new triangles, in the smallest type that holds them. The largest value of a type
+/// is not used, because it restarts strips.
 void FrameReplacement::replace_indices() {
     const auto old = index_in(primitive(), "indices");
     Json json = Json::object();
@@ -229,16 +240,16 @@ void FrameReplacement::replace_indices() {
     json["type"] = "SCALAR";
     const std::size_t number = add(std::move(json), elements, gltf_code::element_array_buffer);
     primitive()["indices"] = number;
-    primitive().erase("mode");  // Triangles are the default.
+    primitive().erase("mode");  // Triangles are the default mode.
 }
 
-/// A compressed copy of the primitive would contradict it now.
+/// Removes the compressed copy of the primitive, which is outdated now.
 void FrameReplacement::drop_draco() {
     const Json* draco = find(primitive(), "extensions", draco_extension);
     if (draco == nullptr) return;
     contents_.retired_views.insert(size_in(*draco, "bufferView"));
     erase_extension(primitive(), draco_extension);
-    forget_if_unused(contents_.root, draco_extension);
+    remove_unused_extension(contents_.root, draco_extension);
 }
 
 void FrameReplacement::run() {
@@ -260,10 +271,256 @@ void FrameReplacement::run() {
     drop_draco();
 }
 
-}  // namespace
-
 void replace_frames(GltfContents& contents, GltfPrimitiveId id, const FramedMesh& framed) {
     FrameReplacement(contents, id, framed).run();
+}
+
+/// The displacements of one target, one per vertex of the primitive's mesh; empty if it has none.
+struct Displacements {
+    std::vector<glm::vec3> positions;
+    std::vector<glm::vec3> normals;
+};
+
+/// The attributes that one target needs, and the frames of its shape at each corner.
+struct TargetFrames {
+    std::size_t target = 0;
+    bool wants_normals = false;
+    bool wants_tangents = false;
+    std::vector<glm::vec3> corner_normals;
+    std::vector<glm::vec4> corner_tangents;
+};
+
+std::vector<glm::vec3> displacements(const GltfContents& contents, const Json& target,
+                                     const char* name, const GltfTriangles& triangles) {
+    const auto accessor = index_in(target, name);
+    if (!accessor) return {};
+    std::vector<glm::vec3> all = float_elements<glm::vec3>(contents, *accessor);
+    if (!triangles.used) return all;
+    std::vector<glm::vec3> used;
+    used.reserve(triangles.used->size());
+    for (const std::uint32_t vertex : *triangles.used)
+        used.push_back(all[vertex]);
+    return used;
+}
+
+/// Returns the mesh before vertices were split: the original vertices come first, in order.
+Mesh unsplit(const FramedMesh& framed, std::size_t vertex_count) {
+    Mesh mesh;
+    const auto first = [&](const auto& values) {
+        auto result = values;
+        if (!result.empty()) result.resize(vertex_count);
+        return result;
+    };
+    mesh.positions = first(framed.mesh.positions);
+    mesh.normals = first(framed.mesh.normals);
+    mesh.texcoords = first(framed.mesh.texcoords);
+    for (const glm::uvec3& t : framed.mesh.triangles) {
+        mesh.triangles.emplace_back(framed.source_vertex[t.x], framed.source_vertex[t.y],
+                                    framed.source_vertex[t.z]);
+    }
+    return mesh;
+}
+
+template <typename Vector>
+std::vector<Vector> at_corners(const Mesh& mesh, const std::vector<Vector>& values) {
+    std::vector<Vector> result;
+    if (values.empty()) return result;
+    result.reserve(3 * mesh.triangles.size());
+    for (const glm::uvec3& triangle : mesh.triangles) {
+        for (int k = 0; k < 3; ++k)
+            result.push_back(values[triangle[k]]);
+    }
+    return result;
+}
+
+/// Reports findings of the displaced shape that the primitive does not have, one for each kind.
+void report_new(const Report& of_target, const Report& at_rest, std::size_t target,
+                Report& report) {
+    for (const Finding& finding : of_target.findings()) {
+        if (finding.count <= at_rest.count(finding.kind)) continue;
+        report.add(finding.kind + ", in a morph target", "morph target", target, finding.outcome);
+    }
+}
+
+/// Computes and stores the frames of all targets of one primitive.
+class MorphReplacement {
+  public:
+    MorphReplacement(GltfContents& contents, GltfPrimitiveId id, const FramedMesh& framed,
+                     const FrameOptions& options, Report& report);
+    std::size_t run();
+
+  private:
+    Json& primitive() { return contents_.root["meshes"][id_.mesh]["primitives"][id_.primitive]; }
+    [[nodiscard]] TargetFrames wanted(std::size_t target) const;
+    void compute(TargetFrames& frames, const Mesh& rest, const GltfTriangles& triangles);
+    template <typename Vector>
+    void split_where_differ(const std::vector<Vector>& corner_values);
+    void store(const TargetFrames& frames);
+    void store_displacements(std::size_t target, const char* name,
+                             const std::vector<glm::vec3>& values);
+
+    GltfContents& contents_;
+    GltfPrimitiveId id_;
+    FramedMesh framed_;
+    FrameOptions options_;
+    Report& report_;
+    Report at_rest_;                ///< Findings of the primitive itself.
+    bool shares_vertices_ = false;  ///< As read: other primitives may produce the same results.
+    bool had_normals_ = false;
+    bool had_tangents_ = false;
+    bool has_new_normals_ = false;
+    bool has_new_tangents_ = false;
+};
+
+MorphReplacement::MorphReplacement(GltfContents& contents, GltfPrimitiveId id,
+                                   const FramedMesh& framed, const FrameOptions& options,
+                                   Report& report)
+    : contents_(contents), id_(id), framed_(framed), options_(options), report_(report) {
+    const Json& attributes = primitive_json(contents, id)["attributes"];
+    shares_vertices_ = shares_vertices(contents, primitive_json(contents, id));
+    had_normals_ = attributes.contains("NORMAL");
+    had_tangents_ = attributes.contains("TANGENT");
+    if (options_.normals == NormalMode::keep && !had_normals_) {
+        options_.normals = options_.if_missing;
+    }
+    has_new_normals_ = options_.normals != NormalMode::keep && !framed_.mesh.normals.empty();
+    has_new_tangents_ = !framed_.mesh.tangents.empty() &&
+                        (has_new_normals_ || computes_tangents(options_.tangents));
+    if (!has_new_tangents_)
+        options_.tangents = TangentMode::none;
+    else if (!computes_tangents(options_.tangents))
+        options_.tangents = TangentMode::mikktspace;  // New normals require new tangents.
+}
+
+/// A target needs the displacements that it had. It also needs those that renderers derived from
+/// the displaced shape because the primitive lacked the attribute.
+TargetFrames MorphReplacement::wanted(std::size_t target) const {
+    const Json& json = primitive_json(contents_, id_)["targets"][target];
+    const bool moves = json.contains("POSITION");
+    TargetFrames frames;
+    frames.target = target;
+    frames.wants_normals =
+        has_new_normals_ && (json.contains("NORMAL") || (moves && !had_normals_));
+    frames.wants_tangents =
+        has_new_tangents_ &&
+        (json.contains("TANGENT") || ((moves || json.contains("NORMAL")) && !had_tangents_));
+    return frames;
+}
+
+/// Computes the frames of the displaced shape.
+void MorphReplacement::compute(TargetFrames& frames, const Mesh& rest,
+                               const GltfTriangles& triangles) {
+    const Json& target = primitive_json(contents_, id_)["targets"][frames.target];
+    const auto positions = displacements(contents_, target, "POSITION", triangles);
+    Mesh shape = rest;
+    for (std::size_t v = 0; v < positions.size(); ++v)
+        shape.positions[v] += positions[v];
+    if (!has_new_normals_) {
+        const auto normals = displacements(contents_, target, "NORMAL", triangles);
+        for (std::size_t v = 0; v < normals.size(); ++v) {
+            const glm::vec3 sum = shape.normals[v] + normals[v];
+            const float length = glm::length(sum);
+            if (length > 0.0F) shape.normals[v] = sum / length;
+        }
+    }
+    FrameOptions options = options_;
+    if (!frames.wants_tangents) options.tangents = TangentMode::none;
+    Report report;
+    const FramedMesh displaced = with_frames(std::move(shape), options, report);
+    report_new(report, at_rest_, frames.target, report_);
+    frames.corner_normals = at_corners(displaced.mesh, displaced.mesh.normals);
+    frames.corner_tangents = at_corners(displaced.mesh, displaced.mesh.tangents);
+}
+
+template <typename Vector>
+void MorphReplacement::split_where_differ(const std::vector<Vector>& corner_values) {
+    const VertexSplit split = split_where_corners_differ(framed_.mesh.positions.size(),
+                                                         framed_.mesh.triangles, corner_values);
+    if (split.source_vertex.size() == framed_.mesh.positions.size()) return;
+    framed_.source_vertex = carried<std::uint32_t>(framed_.source_vertex, split);
+    framed_.mesh = carried(framed_.mesh, split);
+}
+
+/// Writes the displacements of one attribute, unless they are unchanged.
+void MorphReplacement::store_displacements(std::size_t target, const char* name,
+                                           const std::vector<glm::vec3>& values) {
+    const auto old = index_in(primitive()["targets"][target], name);
+    if (old && float_elements<glm::vec3>(contents_, *old) == values) return;
+    Json json = Json::object();
+    if (old) {
+        contents_.retired_accessors.insert(*old);
+        json = contents_.root["accessors"][*old];
+        for (const char* key : {"normalized", "min", "max"})
+            json.erase(key);
+    }
+    json["componentType"] = gltf_code::float32;
+    json["type"] = "VEC3";
+    const std::string elements(reinterpret_cast<const char*>(values.data()),
+                               values.size() * sizeof(glm::vec3));
+    const auto add = shares_vertices_ ? add_shared_accessor : add_accessor;
+    const std::size_t number = add(contents_, std::move(json), elements, gltf_code::array_buffer);
+    primitive()["targets"][target][name] = number;
+}
+
+void MorphReplacement::store(const TargetFrames& frames) {
+    const Mesh& mesh = framed_.mesh;
+    std::vector<glm::vec3> normals(mesh.positions.size(), glm::vec3(0.0F));
+    std::vector<glm::vec3> tangents = normals;
+    std::vector<bool> is_turned(mesh.positions.size(), false);
+    for (std::size_t corner = 0; corner < 3 * mesh.triangles.size(); ++corner) {
+        const std::uint32_t v = mesh.triangles[corner / 3][static_cast<int>(corner % 3)];
+        if (frames.wants_normals) normals[v] = frames.corner_normals[corner] - mesh.normals[v];
+        if (!frames.wants_tangents) continue;
+        const glm::vec4& tangent = frames.corner_tangents[corner];
+        tangents[v] = glm::vec3(tangent) - glm::vec3(mesh.tangents[v]);
+        is_turned[v] = tangent.w != mesh.tangents[v].w;
+    }
+    if (frames.wants_normals) store_displacements(frames.target, "NORMAL", normals);
+    if (frames.wants_tangents) store_displacements(frames.target, "TANGENT", tangents);
+    if (std::find(is_turned.begin(), is_turned.end(), true) == is_turned.end()) return;
+    report_.add("tangents of other handedness in a morph target", "morph target", frames.target,
+                "keep that of the shape at rest, which a target cannot change");
+}
+
+std::size_t MorphReplacement::run() {
+    std::vector<TargetFrames> all;
+    const std::size_t target_count = array_in(primitive(), "targets").size();
+    for (std::size_t i = 0; i < target_count; ++i) {
+        TargetFrames frames = wanted(i);
+        if (frames.wants_normals || frames.wants_tangents) all.push_back(std::move(frames));
+    }
+    if (!all.empty()) {
+        const GltfTriangles triangles = read_triangles(contents_, id_);
+        const std::size_t vertex_count =
+            triangles.used ? triangles.used->size() : triangles.vertex_count;
+        const Mesh rest = unsplit(framed_, vertex_count);
+        with_frames(rest, options_, at_rest_);
+        for (TargetFrames& frames : all) {
+            compute(frames, rest, triangles);
+            if (frames.wants_normals) split_where_differ(frames.corner_normals);
+            if (frames.wants_tangents) split_where_differ(frames.corner_tangents);
+        }
+    }
+    replace_frames(contents_, id_, framed_);
+    for (const TargetFrames& frames : all)
+        store(frames);
+    return framed_.mesh.positions.size();
+}
+
+}  // namespace
+
+void GltfDocument::set_frames(GltfPrimitiveId id, const FramedMesh& framed) {
+    replace_frames(contents_->data, id, framed);
+}
+
+std::size_t GltfDocument::set_frames(GltfPrimitiveId id, const FramedMesh& framed,
+                                     const FrameOptions& options, Report& report) {
+    GltfContents& contents = contents_->data;
+    if (array_in(primitive_json(contents, id), "targets").empty()) {
+        replace_frames(contents, id, framed);
+        return framed.mesh.positions.size();
+    }
+    return MorphReplacement(contents, id, framed, options, report).run();
 }
 
 }  // namespace relief

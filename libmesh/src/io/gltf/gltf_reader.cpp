@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reading .gltf and .glb: container, JSON, checks, buffers, what is compressed, in this order.
+// Reads .gltf and .glb: container, JSON, checks, buffers, decompression, in this order.
 //
-// By content, not by name: a file that begins with "glTF" is a GLB. Every length is checked before
-// it is used; what does not fit is a FileError. Source: glTF 2.0 (ISO/IEC 12113), chapters 3 and 4.
-// Tests: tests/mesh/io/gltf/gltf_document_test.cpp.
+// The content decides, not the name: a file that begins with "glTF" is a GLB. Every length is
+// checked before it is used; a wrong one is a FileError. Source: glTF 2.0 (ISO/IEC 12113), chapters
+// 3 and 4.
 #include "io/gltf/gltf_reader.h"
 
 #include <fmt/format.h>
@@ -13,8 +13,7 @@
 
 #include "file_bytes.h"
 #include "io/gltf/gltf_check.h"
-#include "io/gltf/gltf_draco.h"
-#include "io/gltf/gltf_meshopt.h"
+#include "io/gltf/gltf_compression.h"
 #include "io/gltf/gltf_uri.h"
 #include "progress_stage.h"
 #include "relief/mesh/error.h"
@@ -26,7 +25,7 @@ constexpr std::uint32_t json_chunk = 0x4E4F534A;
 constexpr std::uint32_t binary_chunk = 0x004E4942;
 constexpr std::size_t deepest_json = 256;
 
-/// The parts of a file: for .gltf the JSON alone.
+/// The parts of a file. A .gltf has only the JSON.
 struct Container {
     std::string bytes;  ///< The whole file.
     std::size_t json_begin = 0;
@@ -43,7 +42,7 @@ std::uint32_t word_at(std::string_view bytes, std::size_t offset) {
     return word;
 }
 
-/// One chunk of a GLB after the other.
+/// Parses the chunks of a GLB.
 void parse_chunks(Container& container, std::size_t end, const std::filesystem::path& file) {
     std::size_t at = 12;
     for (std::size_t number = 0; at < end; ++number) {
@@ -95,7 +94,7 @@ Container parse_container(std::string bytes, const std::filesystem::path& file, 
     return container;
 }
 
-/// Brackets nested deeper than any document needs would overflow the stack of whoever recurses.
+/// Limits the depth of nesting, which recursion would turn into a stack overflow.
 void check_depth(std::string_view text, const std::filesystem::path& file) {
     std::size_t depth = 0;
     bool is_string = false;
@@ -125,7 +124,7 @@ Json parse_json(std::string_view text, const std::filesystem::path& file) {
     try {
         return Json::parse(text);
     } catch (const Json::exception& error) {
-        // The library puts its own name for the error in brackets before the message.
+        // The library's message begins with its own error name in brackets.
         const std::string_view what = error.what();
         throw FileError(
             file, fmt::format("its JSON is malformed: {}",
@@ -172,7 +171,7 @@ GltfBuffer read_buffer(const Json& buffer, std::size_t index, const GltfContents
     return result;
 }
 
-/// Images are not decoded, but a name that leads nowhere is worth a word.
+/// Reports images whose file is missing or outside the folder. Images are not decoded.
 void check_images(const GltfContents& contents, Report& report) {
     const Json& images = array_in(contents.root, "images");
     for (std::size_t i = 0; i < images.size(); ++i) {
@@ -238,6 +237,10 @@ GltfContents read_gltf(const std::filesystem::path& file, Report& report) {
     } catch (const std::bad_alloc&) {
         throw FileError(file, "needs more memory than there is");
     }
+}
+
+GltfDocument GltfDocument::read(const std::filesystem::path& file, Report& report) {
+    return GltfDocument(std::make_unique<Contents>(Contents{read_gltf(file, report)}));
 }
 
 }  // namespace relief

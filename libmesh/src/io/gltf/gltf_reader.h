@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Reading .gltf and .glb files, with their buffers, fully checked.
-/// Tests: tests/mesh/io/gltf/gltf_document_test.cpp.
+/// Reads and checks .gltf and .glb files with their buffers.
 #pragma once
 
 #include <filesystem>
@@ -11,7 +10,7 @@
 
 namespace relief {
 
-/// See GltfDocument::read. Images are not touched, beyond looking whether they exist.
+/// See GltfDocument::read(). Images are not opened; only their existence is checked.
 GltfContents read_gltf(const std::filesystem::path& file, Report& report);
 
 }  // namespace relief

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// URIs in glTF files. A path is judged by its letters alone, before any file is touched; malformed
-// base64 throws InvalidInput. Source: RFC 2397, RFC 3986, RFC 4648.
-// Tests: tests/mesh/io/gltf/gltf_uri_test.cpp.
+// URIs in glTF files. Paths are checked as text, before any file is accessed; malformed base64
+// throws InvalidInput. Source: RFC 2397, RFC 3986, RFC 4648.
 #include "io/gltf/gltf_uri.h"
 
 #include <fmt/format.h>
@@ -29,7 +28,7 @@ int hexadecimal(char c) {
     return -1;
 }
 
-/// Percent-encoded bytes decoded; a percent sign that begins no such byte stays.
+/// Decodes percent-encoded bytes; other percent signs stay.
 std::string percent_decoded(std::string_view text) {
     std::string result;
     for (std::size_t i = 0; i < text.size(); ++i) {
@@ -109,7 +108,7 @@ std::optional<std::filesystem::path> path_inside(const std::filesystem::path& fo
     const std::filesystem::path relative = std::filesystem::path(name).lexically_normal();
     if (relative.is_absolute() || *relative.begin() == "..") return std::nullopt;
     const std::filesystem::path path = folder / relative;
-    // Writers that forget to encode percent signs.
+    // Some writers do not encode percent signs.
     std::error_code ignored;
     const std::filesystem::path as_written = folder / std::filesystem::path(uri);
     if (!std::filesystem::exists(path, ignored) && name != uri && uri.find("..") == uri.npos &&
@@ -129,6 +128,19 @@ std::string uri_of(const std::string& file_name) {
         }
     }
     return result;
+}
+
+std::string image_media_type(std::string_view bytes) {
+    const auto at = [&](std::size_t offset, std::string_view text) {
+        return bytes.size() >= offset + text.size() && bytes.substr(offset, text.size()) == text;
+    };
+    if (at(0, "\x89PNG\r\n\x1A\n")) return "image/png";
+    if (at(0, "\xFF\xD8\xFF")) return "image/jpeg";
+    if (at(0, "RIFF") && at(8, "WEBP")) return "image/webp";
+    if (at(4, "ftypavif")) return "image/avif";
+    if (at(0, "\xABKTX 20\xBB")) return "image/ktx2";
+    if (at(0, "DDS ")) return "image/vnd-ms.dds";
+    return {};
 }
 
 }  // namespace relief

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// URIs in glTF files: data URIs, and names of files that lie beside the document.
-/// Source: RFC 2397, RFC 3986, RFC 4648. Tests: tests/mesh/io/gltf/gltf_uri_test.cpp.
+/// URIs in glTF files (data URIs, and names of files beside the document) and media types of
+/// images. Source: RFC 2397, RFC 3986, RFC 4648.
 #pragma once
 
 #include <filesystem>
@@ -11,9 +11,9 @@
 
 namespace relief {
 
-/// What a data URI holds.
+/// The contents of a data URI.
 struct DataUri {
-    std::string media_type;  ///< "image/png"; empty where none is given.
+    std::string media_type;  ///< "image/png"; empty if the URI has none.
     std::string bytes;
 };
 
@@ -22,15 +22,19 @@ bool is_data_uri(std::string_view uri);
 /// \throws InvalidInput if it is no data URI or its base64 is malformed
 DataUri decode_data_uri(std::string_view uri);
 
-/// Whether a URI names its scheme ("https:", "file:"), so that it means the same from anywhere.
+/// Returns true if a URI has a scheme ("https:", "file:"), so that it does not depend on a folder.
 bool has_scheme(std::string_view uri);
 
-/// The path that a relative URI means below a folder; nothing if it leads out of it: an absolute
-/// path, "..", a scheme, or a zero byte.
+/// The path of a relative URI below a folder; nullopt if it leads out of the folder (absolute path,
+/// "..", scheme) or has a zero byte.
 std::optional<std::filesystem::path> path_inside(const std::filesystem::path& folder,
                                                  std::string_view uri);
 
-/// A file name as a URI: bytes other than letters, digits and -._~ percent-encoded.
+/// Encodes a file name as a URI: all bytes except letters, digits and -._~ are percent-encoded.
 std::string uri_of(const std::string& file_name);
+
+/// The media type of an encoded image, from its first bytes: PNG, JPEG, WebP, AVIF, KTX2 or DDS;
+/// empty for any other format.
+std::string image_media_type(std::string_view bytes);
 
 }  // namespace relief

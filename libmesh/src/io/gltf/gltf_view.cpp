@@ -1,21 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
-// A glTF document as a scene: nodes to world matrices, materials, images, lights and cameras.
+// A glTF document as a scene: world matrices of nodes, materials, images, lights, cameras and
+// animations.
 //
-// World space, right-handed, +Y up; colours linear; angles in radians. What the plain scene has no
-// place for is left to the document. Instance attributes of a wrong type throw InvalidInput.
-// Source: glTF 2.0 (ISO/IEC 12113), KHR_lights_punctual, KHR_materials_emissive_strength,
-// KHR_materials_unlit, KHR_texture_transform, EXT_mesh_gpu_instancing.
-// Tests: tests/mesh/io/gltf/gltf_view_test.cpp.
-#include "io/gltf/gltf_view.h"
-
+// World space, right-handed, +Y up; colors linear; angles in radians; times in seconds. Properties
+// without a place in the scene types stay only in the document. Instance attributes of a wrong type
+// throw InvalidInput. An unusable animation channel is left out and counted. Source: glTF 2.0
+// (ISO/IEC 12113), KHR_lights_punctual, KHR_materials_emissive_strength, KHR_materials_unlit,
+// KHR_texture_transform, EXT_mesh_gpu_instancing.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <functional>
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/gtc/quaternion.hpp>
 
+#include "geometry/direction.h"
 #include "geometry/portable_math.h"
 #include "io/gltf/gltf_accessor.h"
 #include "io/gltf/gltf_uri.h"
@@ -24,7 +25,7 @@
 namespace relief {
 namespace {
 
-bool is_drawn_as_triangles(const Json& primitive) {
+bool has_triangles(const Json& primitive) {
     return size_in(primitive, "mode", 4) >= 4 && primitive["attributes"].contains("POSITION");
 }
 
@@ -74,7 +75,7 @@ glm::mat4 parent_from_node(const GltfNode& node) {
     return node.matrix ? *node.matrix : transform(node.translation, node.rotation, node.scale);
 }
 
-/// Where EXT_mesh_gpu_instancing repeats a node's mesh, or the node's own place once.
+/// The transforms of EXT_mesh_gpu_instancing, or one identity matrix.
 std::vector<glm::mat4> instances(const GltfContents& contents, const Json& node) {
     const Json* attributes = find(node, "extensions", "EXT_mesh_gpu_instancing", "attributes");
     if (attributes == nullptr || attributes->empty()) return {glm::mat4(1.0F)};
@@ -110,7 +111,7 @@ TextureWrap wrap_in(const Json& sampler, const char* key) {
     }
 }
 
-/// The image of a texture: the one that every reader knows, or else that of an extension.
+/// The image of a texture: the core glTF one, otherwise that of an extension.
 std::optional<std::size_t> image_of(const Json& texture) {
     if (const auto image = index_in(texture, "source")) return image;
     for (const char* extension :
@@ -229,12 +230,12 @@ GltfLight light_from(const Json& json) {
     return light;
 }
 
-/// Walks the nodes of a scene and places what hangs on them.
-class Placer {
+/// Walks the nodes of a scene and collects their primitives, lights and cameras in world space.
+class SceneWalk {
   public:
-    Placer(const GltfContents& contents, GltfView& view) : contents_(contents), view_(view) {}
+    SceneWalk(const GltfContents& contents, GltfView& view) : contents_(contents), view_(view) {}
 
-    void place_all() {
+    void run() {
         std::vector<Open> open;
         for (const std::size_t root : root_nodes())
             open.push_back({root, glm::mat4(1.0F)});
@@ -259,7 +260,7 @@ class Placer {
         glm::mat4 world_from_parent{1.0F};
     };
 
-    /// Of the default scene, or the first; of a document without scenes, all nodes without parent.
+    /// Roots of the default scene, or of the first one. Without scenes: all nodes without a parent.
     [[nodiscard]] std::vector<std::size_t> root_nodes() const {
         const Json& root = contents_.root;
         const Json& scenes = array_in(root, "scenes");
@@ -290,7 +291,7 @@ class Placer {
             const Json& primitives = contents_.root["meshes"][*mesh]["primitives"];
             for (const glm::mat4& node_from_instance : instances(contents_, node)) {
                 for (std::size_t i = 0; i < primitives.size(); ++i) {
-                    if (!is_drawn_as_triangles(primitives[i])) continue;
+                    if (!has_triangles(primitives[i])) continue;
                     view_.primitives.push_back({{*mesh, i},
                                                 world_from_node * node_from_instance,
                                                 name,
@@ -338,7 +339,8 @@ glm::vec4 transformed(const GltfTextureTransform& transform, const glm::vec4& ta
     const glm::dvec3 t(tangent);
     const glm::dvec3 b = glm::cross(glm::dvec3(normal), t) * static_cast<double>(tangent.w);
     const auto rotation = static_cast<double>(transform.rotation);
-    // The inverse of the transform, with v upwards, applied to how position changes with u and v.
+    // The inverse of the transform (with v upwards), applied to the derivatives of position by u
+    // and v.
     const glm::dvec3 turned =
         t * (portable::cos(rotation) / scale.x) - b * (portable::sin(rotation) / scale.y);
     const double length = glm::length(turned);
@@ -347,19 +349,21 @@ glm::vec4 transformed(const GltfTextureTransform& transform, const glm::vec4& ta
             (scale.x < 0.0) == (scale.y < 0.0) ? tangent.w : -tangent.w};
 }
 
-std::vector<GltfPrimitiveId> triangle_primitives_of(const GltfContents& contents) {
+std::vector<GltfPrimitiveId> GltfDocument::triangle_primitives() const {
+    const GltfContents& contents = contents_->data;
     std::vector<GltfPrimitiveId> result;
     const Json& meshes = array_in(contents.root, "meshes");
     for (std::size_t i = 0; i < meshes.size(); ++i) {
         const Json& primitives = meshes[i]["primitives"];
         for (std::size_t k = 0; k < primitives.size(); ++k) {
-            if (is_drawn_as_triangles(primitives[k])) result.push_back({i, k});
+            if (has_triangles(primitives[k])) result.push_back({i, k});
         }
     }
     return result;
 }
 
-GltfView view_of(const GltfContents& contents) {
+GltfView GltfDocument::view() const {
+    const GltfContents& contents = contents_->data;
     GltfView view;
     view.nodes = nodes_of(contents.root);
     for (const Json& material : array_in(contents.root, "materials")) {
@@ -367,8 +371,108 @@ GltfView view_of(const GltfContents& contents) {
     }
     for (std::size_t i = 0; i < array_in(contents.root, "images").size(); ++i)
         view.images.push_back(image_from(contents, i));
-    Placer(contents, view).place_all();
+    SceneWalk(contents, view).run();
     return view;
+}
+
+namespace {
+
+std::optional<GltfChannel::Path> path_from(const std::string& path) {
+    if (path == "translation") return GltfChannel::Path::translation;
+    if (path == "rotation") return GltfChannel::Path::rotation;
+    if (path == "scale") return GltfChannel::Path::scale;
+    return std::nullopt;
+}
+
+GltfChannel::Interpolation interpolation_from(const std::string& name) {
+    if (name == "STEP") return GltfChannel::Interpolation::step;
+    if (name == "CUBICSPLINE") return GltfChannel::Interpolation::cubic_spline;
+    return GltfChannel::Interpolation::linear;
+}
+
+std::vector<glm::vec4> values_of(const GltfContents& contents, std::size_t accessor,
+                                 GltfChannel::Path path) {
+    if (path == GltfChannel::Path::rotation) return float_elements<glm::vec4>(contents, accessor);
+    std::vector<glm::vec4> values;
+    for (const glm::vec3& value : float_elements<glm::vec3>(contents, accessor))
+        values.emplace_back(value, 0.0F);
+    return values;
+}
+
+bool is_usable(const GltfChannel& channel) {
+    const bool cubic = channel.interpolation == GltfChannel::Interpolation::cubic_spline;
+    const std::size_t per_key = cubic ? 3 : 1;
+    if (channel.times.empty() || channel.values.size() != per_key * channel.times.size())
+        return false;
+    const auto no_order =
+        std::adjacent_find(channel.times.begin(), channel.times.end(), std::greater_equal<float>());
+    if (no_order != channel.times.end() || !(channel.times.front() >= 0.0F) ||
+        !std::isfinite(channel.times.back())) {
+        return false;
+    }
+    if (!std::all_of(channel.values.begin(), channel.values.end(), is_finite<4, float>))
+        return false;
+    if (channel.path != GltfChannel::Path::rotation) return true;
+    for (std::size_t key = 0; key < channel.times.size(); ++key) {
+        if (channel.values[key * per_key + per_key / 2] == glm::vec4(0.0F)) return false;
+    }
+    return true;
+}
+
+/// The keys of a channel, or nullopt if its accessors are unusable.
+std::optional<GltfChannel> keys_from(const GltfContents& contents, const Json& sampler,
+                                     std::size_t node, GltfChannel::Path path) {
+    GltfChannel channel{.node = node, .path = path, .times = {}, .values = {}};
+    channel.interpolation = interpolation_from(text_in(sampler, "interpolation"));
+    try {
+        for (const auto& time : float_elements<glm::vec1>(contents, size_in(sampler, "input")))
+            channel.times.push_back(time.x);
+        channel.values = values_of(contents, size_in(sampler, "output"), path);
+    } catch (const InvalidInput&) {
+        return std::nullopt;
+    }
+    if (!is_usable(channel)) return std::nullopt;
+    return channel;
+}
+
+void add_channel(const GltfContents& contents, const Json& animation, const Json& json,
+                 std::size_t number, GltfAnimation& result, Report& report) {
+    const Json& target = json["target"];
+    const auto node = index_in(target, "node");
+    const std::string name = text_in(target, "path");
+    const auto path = path_from(name);
+    if (!path) {
+        report.add(name == "weights" ? "animated morph weights" : "animation of an extension",
+                   "channel", number, "left out");
+        return;
+    }
+    if (!node) return;  // By the specification, channels without a node are ignored.
+    if (contents.root["nodes"][*node].contains("matrix")) {
+        report.add("animated node with a matrix", "channel", number, "left out");
+        return;
+    }
+    const Json& sampler = animation["samplers"][size_in(json, "sampler")];
+    if (auto channel = keys_from(contents, sampler, *node, *path)) {
+        result.channels.push_back(std::move(*channel));
+    } else {
+        report.add("animation channel with unusable keys", "channel", number,
+                   "left out: its node stays at rest");
+    }
+}
+
+}  // namespace
+
+std::vector<GltfAnimation> GltfDocument::animations(Report& report) const {
+    const GltfContents& contents = contents_->data;
+    std::vector<GltfAnimation> result;
+    std::size_t number = 0;  // Counts the channels of all animations.
+    for (const Json& json : array_in(contents.root, "animations")) {
+        GltfAnimation& animation = result.emplace_back();
+        animation.name = text_in(json, "name");
+        for (const Json& channel : json["channels"])
+            add_channel(contents, json, channel, number++, animation, report);
+    }
+    return result;
 }
 
 }  // namespace relief

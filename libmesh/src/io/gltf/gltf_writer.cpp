@@ -1,30 +1,394 @@
 // SPDX-License-Identifier: Apache-2.0
-// Writing .gltf with its buffer beside it, and .glb with all in one.
+// Writes a document as .gltf with its buffer beside it, or as .glb with everything in one file.
 //
-// Images keep their bytes. In .glb all that can be read are put inside; in .gltf those in files
-// stay files, copied along to another folder; a file of other content that is in their way is a
-// FileError, since another document may need it. Source: glTF 2.0 (ISO/IEC 12113), chapter 4.
-// Tests: tests/mesh/io/gltf/gltf_document_test.cpp.
-#include "io/gltf/gltf_writer.h"
-
+// The layout leaves out retired accessors, buffer views and their bytes, and joins all buffers.
+// Bytes are cut out of a buffer if a retired accessor or view covers them and nothing else does.
+// Cuts are multiples of the alignment, so that the alignment of the bytes behind them does not
+// change.
+//
+// The bytes of images are kept. A .glb embeds all readable images. Beside a .gltf, image files stay
+// files and are copied if the folder changes; a different file in their place is a FileError,
+// because another document may need it. Source: glTF 2.0 (ISO/IEC 12113), chapter 4.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cerrno>
+#include <cstddef>
 #include <cstring>
 #include <fstream>
 #include <limits>
 #include <list>
+#include <map>
+#include <set>
+#include <string_view>
+#include <vector>
 
 #include "file_bytes.h"
 #include "file_replacement.h"
-#include "io/gltf/gltf_layout.h"
+#include "io/gltf/gltf_accessor.h"
+#include "io/gltf/gltf_check.h"
+#include "io/gltf/gltf_contents.h"
 #include "io/gltf/gltf_uri.h"
 #include "relief/mesh/error.h"
 
 namespace relief {
 namespace {
 
-/// Writes pieces one after the other, beside and renamed.
+/// A document with a single buffer, and the pieces of this buffer in order.
+struct GltfLayout {
+    Json root;
+    std::vector<std::string_view> pieces;  ///< Views of the contents, which must outlive them.
+    std::size_t size = 0;                  ///< Total bytes of the pieces.
+};
+
+/// The bytes [begin, end) of one buffer.
+struct Extent {
+    std::size_t begin = 0;
+    std::size_t end = 0;
+};
+
+constexpr std::size_t dropped = std::numeric_limits<std::size_t>::max();
+
+/// The compressed copy of a view, or null.
+const Json* packed_copy(const Json& view) {
+    for (const char* extension : meshopt_extensions) {
+        if (const Json* packed = find(view, "extensions", extension)) return packed;
+    }
+    return nullptr;
+}
+
+/// Number of references to each entry of an array.
+std::vector<std::size_t> reference_counts(Json& root, std::string_view target, const char* key) {
+    std::vector<std::size_t> counts(array_in(root, key).size(), 0);
+    visit_references(root, [&](std::string_view refers_to, Json& index) {
+        if (refers_to == target) ++counts[index.get<std::size_t>()];
+    });
+    return counts;
+}
+
+/// Erases entries of an array and renumbers the references to it.
+void erase_entries(Json& root, const char* key, const std::set<std::size_t>& entries) {
+    if (entries.empty()) return;
+    Json& array = root[key];
+    std::vector<std::size_t> new_numbers(array.size(), dropped);
+    Json kept = Json::array();
+    for (std::size_t i = 0; i < array.size(); ++i) {
+        if (entries.contains(i)) continue;
+        new_numbers[i] = kept.size();
+        kept.push_back(std::move(array[i]));
+    }
+    array = std::move(kept);
+    if (array.empty()) root.erase(key);
+    visit_references(root, [&](std::string_view target, Json& index) {
+        if (target == key) index = new_numbers[index.get<std::size_t>()];
+    });
+}
+
+Extent extent_of_view(const Json& view) {
+    const std::size_t begin = size_in(view, "byteOffset");
+    return {begin, begin + size_in(view, "byteLength")};
+}
+
+/// The bytes from the first to the last element of an accessor, gaps included.
+Extent extent_of_elements(const Json& root, const Json& accessor) {
+    const Json& view = root["bufferViews"][size_in(accessor, "bufferView")];
+    const std::size_t size = element_layout(accessor).size;
+    const std::size_t stride = size_in(view, "byteStride", size);
+    const std::size_t count = size_in(accessor, "count");
+    const std::size_t begin = size_in(view, "byteOffset") + size_in(accessor, "byteOffset");
+    return {begin, count == 0 ? begin : begin + (count - 1) * stride + size};
+}
+
+/// Finds unused entries, and the bytes of each buffer that used and unused entries cover.
+class UnusedData {
+  public:
+    UnusedData(Json& root, const GltfContents& contents)
+        : root_(root), unused_(contents.buffers.size()), used_(contents.buffers.size()) {
+        for (const GltfBuffer& buffer : contents.buffers)
+            sizes_.push_back(buffer.size);
+        drop_accessors(contents);
+        drop_views(contents);
+        for (const GltfExtent& extent : contents.retired_bytes)
+            unused_[extent.buffer].push_back({extent.begin, extent.end});
+        const auto is_empty = [](const std::vector<Extent>& extents) { return extents.empty(); };
+        if (!std::all_of(unused_.begin(), unused_.end(), is_empty)) collect_used();
+    }
+
+    /// Erases the unused entries. \return the unused bytes of each buffer, in multiples of
+    /// `alignment`
+    std::vector<std::vector<Extent>> clear(std::size_t alignment);
+
+  private:
+    void drop_accessors(const GltfContents& contents);
+    void drop_views(const GltfContents& contents);
+    void collect_used();
+    void add(std::vector<std::vector<Extent>>& to, const Json& view, Extent extent) {
+        to[size_in(view, "buffer")].push_back(extent);
+    }
+    void add_view(std::vector<std::vector<Extent>>& to, const Json& view) {
+        add(to, view, extent_of_view(view));
+        if (const Json* packed = packed_copy(view)) {
+            add(to, *packed, extent_of_view(*packed));
+        }
+    }
+
+    Json& root_;
+    std::set<std::size_t> dropped_accessors_, dropped_views_;
+    std::set<std::size_t> touched_views_;  ///< Views that lost an accessor.
+    std::vector<std::vector<Extent>> unused_, used_;
+    std::vector<std::size_t> sizes_;  ///< Sizes of the buffers.
+};
+
+void UnusedData::drop_accessors(const GltfContents& contents) {
+    const auto counts = reference_counts(root_, "accessors", "accessors");
+    for (const std::size_t i : contents.retired_accessors) {
+        if (counts[i] > 0) continue;
+        dropped_accessors_.insert(i);
+        const Json& accessor = root_["accessors"][i];
+        if (const auto view = index_in(accessor, "bufferView")) {
+            touched_views_.insert(*view);
+            add(unused_, root_["bufferViews"][*view], extent_of_elements(root_, accessor));
+        }
+        for (const char* part : {"indices", "values"}) {
+            const Json* sparse = find(accessor, "sparse", part);
+            if (sparse != nullptr) touched_views_.insert(size_in(*sparse, "bufferView"));
+        }
+    }
+}
+
+void UnusedData::drop_views(const GltfContents& contents) {
+    auto counts = reference_counts(root_, "bufferViews", "bufferViews");
+    // References from dropped accessors do not count.
+    for (const std::size_t i : dropped_accessors_) {
+        const Json& accessor = root_["accessors"][i];
+        if (const auto view = index_in(accessor, "bufferView")) --counts[*view];
+        for (const char* part : {"indices", "values"}) {
+            const Json* sparse = find(accessor, "sparse", part);
+            if (sparse != nullptr) --counts[size_in(*sparse, "bufferView")];
+        }
+    }
+    std::set<std::size_t> candidates = touched_views_;
+    candidates.insert(contents.retired_views.begin(), contents.retired_views.end());
+    for (const std::size_t i : candidates) {
+        if (counts[i] > 0) continue;
+        dropped_views_.insert(i);
+        add_view(unused_, root_["bufferViews"][i]);
+    }
+}
+
+/// If a view lost an accessor and only accessors refer to it, just the bytes of the remaining
+/// accessors are used. All bytes of any other view are used.
+void UnusedData::collect_used() {
+    std::map<std::size_t, std::size_t> accessor_counts;
+    const Json& accessors = array_in(root_, "accessors");
+    for (std::size_t i = 0; i < accessors.size(); ++i) {
+        const auto view = index_in(accessors[i], "bufferView");
+        if (view) ++accessor_counts[*view];
+    }
+    const auto counts = reference_counts(root_, "bufferViews", "bufferViews");
+    const auto is_partly_used = [&](std::size_t view) {
+        return touched_views_.contains(view) && accessor_counts[view] == counts[view] &&
+               packed_copy(root_["bufferViews"][view]) == nullptr;
+    };
+    for (std::size_t i = 0; i < accessors.size(); ++i) {
+        const auto view = index_in(accessors[i], "bufferView");
+        if (!view || dropped_accessors_.contains(i) || !is_partly_used(*view)) continue;
+        add(used_, root_["bufferViews"][*view], extent_of_elements(root_, accessors[i]));
+    }
+    const Json& views = array_in(root_, "bufferViews");
+    for (std::size_t i = 0; i < views.size(); ++i) {
+        if (!dropped_views_.contains(i) && !is_partly_used(i)) add_view(used_, views[i]);
+    }
+}
+
+/// The parts of `unused` that `used` does not cover, ascending.
+std::vector<Extent> uncovered(std::vector<Extent> unused, std::vector<Extent> used) {
+    const auto by_begin = [](const Extent& a, const Extent& b) { return a.begin < b.begin; };
+    std::sort(unused.begin(), unused.end(), by_begin);
+    std::sort(used.begin(), used.end(), by_begin);
+    std::vector<Extent> result;
+    std::size_t done = 0;  // Everything before this offset is decided.
+    auto next = used.begin();
+    for (const Extent& extent : unused) {
+        std::size_t at = std::max(extent.begin, done);
+        while (at < extent.end) {
+            while (next != used.end() && next->end <= at)
+                ++next;
+            // Used extents may overlap: the next one may begin much earlier.
+            const std::size_t free_until =
+                next == used.end() ? extent.end : std::min(extent.end, next->begin);
+            if (free_until > at) {
+                if (!result.empty() && result.back().end == at) {
+                    result.back().end = free_until;
+                } else {
+                    result.push_back({at, free_until});
+                }
+                at = free_until;
+            } else {
+                at = next->end;
+            }
+        }
+        done = std::max(done, extent.end);
+    }
+    return result;
+}
+
+std::vector<std::vector<Extent>> UnusedData::clear(std::size_t alignment) {
+    std::vector<std::vector<Extent>> cuts(unused_.size());
+    for (std::size_t buffer = 0; buffer < unused_.size(); ++buffer) {
+        // Padding goes with the bytes before it.
+        for (Extent& extent : unused_[buffer]) {
+            extent.end = std::min((extent.end + 3) / 4 * 4, sizes_[buffer]);
+        }
+        for (Extent extent : uncovered(unused_[buffer], used_[buffer])) {
+            // The alignment of the following bytes must not change. Nothing follows the end of a
+            // buffer.
+            const bool is_last = extent.end == sizes_[buffer];
+            if (!is_last) extent.end -= (extent.end - extent.begin) % alignment;
+            if (extent.end > extent.begin) cuts[buffer].push_back(extent);
+        }
+    }
+    erase_entries(root_, "accessors", dropped_accessors_);
+    erase_entries(root_, "bufferViews", dropped_views_);
+    return cuts;
+}
+
+/// Maps the bytes of all buffers to the joined buffer.
+class Relocation {
+  public:
+    Relocation(const GltfContents& contents, const std::vector<std::vector<Extent>>& cuts,
+               std::size_t alignment) {
+        static const std::string zeros(64, '\0');
+        for (std::size_t i = 0; i < contents.buffers.size(); ++i) {
+            const std::string_view bytes = contents.buffers[i].bytes();
+            if (size % alignment != 0) {
+                add(std::string_view(zeros).substr(0, alignment - size % alignment));
+            }
+            std::vector<Move>& moves = moves_.emplace_back();
+            std::size_t at = 0;
+            for (const Extent& cut : cuts[i]) {
+                moves.push_back({at, size});
+                add(bytes.substr(at, cut.begin - at));
+                at = cut.end;
+            }
+            moves.push_back({at, size});
+            add(bytes.substr(at));
+        }
+    }
+
+    /// The new offset of a byte. A byte that is cut out maps to the first byte behind the cut.
+    [[nodiscard]] std::size_t moved_offset(std::size_t buffer, std::size_t offset) const {
+        const std::vector<Move>& moves = moves_[buffer];
+        auto next = std::upper_bound(moves.begin(), moves.end(), offset,
+                                     [](std::size_t o, const Move& move) { return o < move.from; });
+        const Move& move = *std::prev(next);
+        const std::size_t place = move.to + (offset - move.from);
+        return next == moves.end() ? place : std::min(place, next->to);
+    }
+
+    std::vector<std::string_view> pieces;
+    std::size_t size = 0;
+
+  private:
+    /// Bytes from `from` up to the next move go to `to` and the following offsets.
+    struct Move {
+        std::size_t from = 0;
+        std::size_t to = 0;
+    };
+    void add(std::string_view piece) {
+        if (!piece.empty()) pieces.push_back(piece);
+        size += piece.size();
+    }
+
+    std::vector<std::vector<Move>> moves_;
+};
+
+void set_offset(Json& holder, std::size_t offset) {
+    if (offset != 0 || holder.contains("byteOffset")) holder["byteOffset"] = offset;
+}
+
+/// Moves a view, or its compressed copy.
+void move_view(Json& view, const Relocation& relocation) {
+    const std::size_t buffer = size_in(view, "buffer");
+    const Extent extent = extent_of_view(view);
+    const std::size_t begin = relocation.moved_offset(buffer, extent.begin);
+    view["byteLength"] = relocation.moved_offset(buffer, extent.end) - begin;
+    view["buffer"] = 0;
+    set_offset(view, begin);
+}
+
+/// Rewrites all offsets and lengths. Accessors come first because they are relative to their views.
+void relocate(Json& root, const Relocation& relocation) {
+    const auto move_in_view = [&](Json& holder) {
+        const Json& view = root["bufferViews"][size_in(holder, "bufferView")];
+        const std::size_t buffer = size_in(view, "buffer");
+        const std::size_t view_begin = size_in(view, "byteOffset");
+        set_offset(holder, relocation.moved_offset(buffer, view_begin + size_in(holder, "byteOffset")) -
+                               relocation.moved_offset(buffer, view_begin));
+    };
+    if (root.contains("accessors")) {
+        for (Json& accessor : root["accessors"]) {
+            if (accessor.contains("bufferView")) move_in_view(accessor);
+            if (!accessor.contains("sparse")) continue;
+            move_in_view(accessor["sparse"]["indices"]);
+            move_in_view(accessor["sparse"]["values"]);
+        }
+    }
+    if (!root.contains("bufferViews")) return;
+    for (Json& view : root["bufferViews"]) {
+        move_view(view, relocation);
+        for (const char* extension : meshopt_extensions) {
+            if (find(view, "extensions", extension) == nullptr) continue;
+            move_view(view["extensions"][extension], relocation);
+        }
+    }
+}
+
+/// Reduces the array of buffers to the joined one.
+void join_buffers(Json& root, std::size_t size) {
+    if (size == 0) {
+        root.erase("buffers");
+        return;
+    }
+    Json buffer = root["buffers"][0];
+    buffer.erase("uri");
+    // The joined buffer has data, so it is not a placeholder for meshopt any more.
+    for (const char* extension : meshopt_extensions) {
+        if (find(buffer, "extensions", extension) == nullptr) continue;
+        buffer["extensions"].erase(extension);
+        if (buffer["extensions"].empty()) buffer.erase("extensions");
+    }
+    buffer["byteLength"] = size;
+    root["buffers"] = Json::array({buffer});
+}
+
+/// Lays a document out for writing.
+///
+/// Retired accessors and buffer views without references are left out with their bytes, and the
+/// following entries are renumbered. If an unknown extension is present, everything stays, because
+/// it may hold references. Everything else, used or not, keeps its bytes, order and alignment. The
+/// joined buffer has the name, extras and extensions of the first one.
+GltfLayout layout_of(const GltfContents& contents) {
+    GltfLayout layout;
+    layout.root = contents.root;
+    const bool has_metadata =
+        find(layout.root, "extensions", "EXT_structural_metadata", "propertyTables") != nullptr;
+    const std::size_t alignment = has_metadata ? 8 : 4;
+    std::vector<std::vector<Extent>> cuts(contents.buffers.size());
+    const bool has_retired = !contents.retired_accessors.empty() ||
+                             !contents.retired_views.empty() || !contents.retired_bytes.empty();
+    if (has_retired && !has_unknown_extension(layout.root)) {
+        cuts = UnusedData(layout.root, contents).clear(alignment);
+    }
+    Relocation relocation(contents, cuts, alignment);
+    relocate(layout.root, relocation);
+    join_buffers(layout.root, relocation.size);
+    layout.pieces = std::move(relocation.pieces);
+    layout.size = relocation.size;
+    return layout;
+}
+
+/// Writes the pieces to a temporary file and renames it.
 void write_pieces(const std::filesystem::path& file, const std::vector<std::string_view>& pieces) {
     FileReplacement replacement(file);
     std::ofstream stream(replacement.temporary(), std::ios::binary);
@@ -36,7 +400,7 @@ void write_pieces(const std::filesystem::path& file, const std::vector<std::stri
     replacement.commit();
 }
 
-std::string text_of(const Json& root, int indent, const std::filesystem::path& file) {
+std::string dump(const Json& root, int indent, const std::filesystem::path& file) {
     try {
         return root.dump(indent, ' ');
     } catch (const Json::exception& error) {
@@ -48,7 +412,7 @@ void append_word(std::string& bytes, std::uint32_t word) {
     bytes.append(reinterpret_cast<const char*>(&word), sizeof(word));
 }
 
-/// The path of an image that lies in a file; nothing for those inside, missing or out of reach.
+/// The path of an image that is a readable file in the folder; otherwise nullopt.
 std::optional<std::filesystem::path> image_file(const Json& image,
                                                 const std::filesystem::path& folder) {
     const std::string uri = text_in(image, "uri");
@@ -59,8 +423,8 @@ std::optional<std::filesystem::path> image_file(const Json& image,
     return path;
 }
 
-/// A name that leads out of the document's folder would lead elsewhere from another one.
-void check_stays(const Json& image, std::size_t number, const GltfContents& contents,
+/// Throws if the file moves to another folder while the image is outside the old one.
+void check_inside_folder(const Json& image, std::size_t number, const GltfContents& contents,
                  const std::filesystem::path& file) {
     const std::string uri = text_in(image, "uri");
     if (uri.empty() || has_scheme(uri) || path_inside(contents.folder, uri)) return;
@@ -71,7 +435,7 @@ void check_stays(const Json& image, std::size_t number, const GltfContents& cont
                                 number, uri, contents.folder.string()));
 }
 
-/// Puts images that lie in files or data URIs behind the buffer. `storage` owns what they take.
+/// Appends images from files and data URIs to the buffer. `storage` owns their bytes.
 void embed_images(GltfLayout& layout, const GltfContents& contents,
                   const std::filesystem::path& file, std::list<std::string>& storage) {
     static const std::string zeros(4, '\0');
@@ -79,7 +443,7 @@ void embed_images(GltfLayout& layout, const GltfContents& contents,
     Json& images = layout.root["images"];
     for (std::size_t i = 0; i < images.size(); ++i) {
         Json& image = images[i];
-        check_stays(image, i, contents, file);
+        check_inside_folder(image, i, contents, file);
         const std::string uri = text_in(image, "uri");
         std::string media_type = text_in(image, "mimeType");
         if (is_data_uri(uri)) {
@@ -120,7 +484,7 @@ void write_glb(const std::filesystem::path& file, const GltfContents& contents) 
     GltfLayout layout = layout_of(contents);
     std::list<std::string> storage;
     embed_images(layout, contents, file, storage);
-    std::string json = text_of(layout.root, -1, file);
+    std::string json = dump(layout.root, -1, file);
     json.resize((json.size() + 3) / 4 * 4, ' ');
     const std::size_t padding = (4 - layout.size % 4) % 4;
     std::size_t total = 12 + 8 + json.size();
@@ -152,12 +516,12 @@ void write_glb(const std::filesystem::path& file, const GltfContents& contents) 
     write_pieces(file, pieces);
 }
 
-/// Copies the images that lie in files to the same place below another folder.
+/// Copies image files to the same relative path in the new folder.
 void copy_images(const GltfContents& contents, const std::filesystem::path& file) {
     const std::filesystem::path folder = std::filesystem::absolute(file).parent_path();
     const Json& images = array_in(contents.root, "images");
     for (std::size_t i = 0; i < images.size(); ++i) {
-        check_stays(images[i], i, contents, file);
+        check_inside_folder(images[i], i, contents, file);
         const auto source = image_file(images[i], contents.folder);
         if (!source || folder == contents.folder) continue;
         const std::string bytes = read_file(*source);
@@ -182,26 +546,14 @@ void write_json(const std::filesystem::path& file, const GltfContents& contents)
         layout.root["buffers"][0]["uri"] = uri_of(buffer_file.filename().string());
         write_pieces(buffer_file, layout.pieces);
     }
-    const std::string json = text_of(layout.root, 2, file) + "\n";
+    const std::string json = dump(layout.root, 2, file) + "\n";
     write_pieces(file, {json});
 }
 
 }  // namespace
 
-std::string image_media_type(std::string_view bytes) {
-    const auto at = [&](std::size_t offset, std::string_view text) {
-        return bytes.size() >= offset + text.size() && bytes.substr(offset, text.size()) == text;
-    };
-    if (at(0, "\x89PNG\r\n\x1A\n")) return "image/png";
-    if (at(0, "\xFF\xD8\xFF")) return "image/jpeg";
-    if (at(0, "RIFF") && at(8, "WEBP")) return "image/webp";
-    if (at(4, "ftypavif")) return "image/avif";
-    if (at(0, "\xABKTX 20\xBB")) return "image/ktx2";
-    if (at(0, "DDS ")) return "image/vnd-ms.dds";
-    return {};
-}
-
-void write_gltf(const std::filesystem::path& file, const GltfContents& contents) {
+void GltfDocument::write(const std::filesystem::path& file) const {
+    const GltfContents& contents = contents_->data;
     const std::string extension = lower_extension(file);
     if (extension == ".glb") {
         write_glb(file, contents);

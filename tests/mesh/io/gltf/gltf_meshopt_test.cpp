@@ -15,7 +15,7 @@
 #include "gltf_semantics.h"
 #include "io/gltf/gltf_accessor.h"
 #include "io/gltf/gltf_reader.h"
-#include "io/gltf/meshopt_bitstream.h"
+#include "io/gltf/gltf_compression.h"
 #include "relief/mesh/error.h"
 #include "relief/mesh/gltf_document.h"
 #include "support/shared_data.h"

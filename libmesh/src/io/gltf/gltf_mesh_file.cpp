@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// A mesh and its MTL materials as a glTF document.
+// Conversion between glTF documents and meshes with MTL materials, in both directions.
 //
-// Object space becomes the space of the one node. Phong's exponent becomes GGX's alpha by
-// alpha^2 = 2 / (Ns + 2) [Karis 2013], and alpha is glTF's roughness squared; libshade's
-// phong_from_metallic_roughness is the inverse. A missing image is a finding, or without a report a
-// FileError.
-// Tests: tests/mesh/io/gltf/gltf_from_mesh_test.cpp.
-#include "io/gltf/gltf_from_mesh.h"
-#include "io/gltf/gltf_edit.h"
-
+// from_mesh() keeps object space: it becomes the space of the only node. Phong's exponent Ns
+// becomes GGX's alpha by alpha^2 = 2 / (Ns + 2) [Karis 2013]; glTF's roughness is the square root
+// of alpha. A missing image is a finding, or a FileError if there is no report.
+//
+// flattened() transforms all primitives of the scene to world space. Attributes that only some
+// primitives have are completed: flat normals (as glTF requires), texture coordinate (0, 0), white.
+// MeshFile has no tangents.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -17,17 +16,20 @@
 
 #include "file_bytes.h"
 #include "io/gltf/gltf_accessor.h"
-#include "io/gltf/gltf_writer.h"
+#include "io/gltf/gltf_edit.h"
+#include "io/gltf/gltf_uri.h"
 #include "relief/mesh/error.h"
+#include "relief/mesh/gltf_document.h"
+#include "relief/mesh/placed.h"
 
 namespace relief {
 namespace {
 
-/// Puts together the document of one mesh.
-class DocumentMaker {
+/// Builds the document of one mesh.
+class DocumentBuilder {
   public:
-    DocumentMaker(const MeshFile& file, Report* report) : file_(file), report_(report) {}
-    GltfContents make();
+    DocumentBuilder(const MeshFile& file, Report* report) : file_(file), report_(report) {}
+    GltfContents build();
 
   private:
     template <typename Element>
@@ -48,8 +50,8 @@ class DocumentMaker {
 };
 
 template <typename Element>
-std::size_t DocumentMaker::add_accessor(const std::vector<Element>& elements, const char* type,
-                                        int component_type, int target) {
+std::size_t DocumentBuilder::add_accessor(const std::vector<Element>& elements, const char* type,
+                                          int component_type, int target) {
     const std::size_t view = add_view(contents_, {reinterpret_cast<const char*>(elements.data()),
                                                   elements.size() * sizeof(Element)});
     contents_.root["bufferViews"][view]["target"] = target;
@@ -62,7 +64,7 @@ std::size_t DocumentMaker::add_accessor(const std::vector<Element>& elements, co
     return accessors.size() - 1;
 }
 
-/// The vertices that a range uses, each once, in their order; all where it is the only range.
+/// The vertices that a range uses, ascending; all vertices if it is the only range.
 std::vector<std::uint32_t> vertices_of(const Mesh& mesh, const MaterialRange& range) {
     std::vector<bool> is_used(mesh.positions.size(), range.triangle_count == mesh.triangles.size());
     for (std::uint32_t i = 0; i < range.triangle_count; ++i) {
@@ -87,8 +89,8 @@ std::vector<Value> picked(const std::vector<Value>& values,
     return result;
 }
 
-/// min and max as glTF wants them of positions; JSON has no word for a coordinate without any
-/// finite value, so that becomes 0.
+/// Sets the bounds that glTF requires for positions. A coordinate without finite values gets 0,
+/// because JSON has no other number for it.
 void set_bounds(Json& accessor, const std::vector<glm::vec3>& positions) {
     Json least = Json::array();
     Json most = Json::array();
@@ -107,8 +109,8 @@ void set_bounds(Json& accessor, const std::vector<glm::vec3>& positions) {
     accessor["max"] = most;
 }
 
-/// Normals as glTF wants them. OBJ allows any length, and some writers use that; those that are
-/// unit within what glTF tolerates keep their bits, and those without a direction stay as they are.
+/// Normalizes normals for glTF, because OBJ allows any length. Normals that are unit within glTF's
+/// tolerance keep their bits; zero and non-finite ones stay.
 std::vector<glm::vec3> unit_normals(std::vector<glm::vec3> normals) {
     for (glm::vec3& normal : normals) {
         const double length = glm::length(glm::dvec3(normal));
@@ -120,7 +122,7 @@ std::vector<glm::vec3> unit_normals(std::vector<glm::vec3> normals) {
     return normals;
 }
 
-void DocumentMaker::add_primitive(const MaterialRange& range) {
+void DocumentBuilder::add_primitive(const MaterialRange& range) {
     const Mesh& mesh = file_.mesh;
     const std::vector<std::uint32_t> vertices = vertices_of(mesh, range);
     std::vector<std::uint32_t> place(mesh.positions.size(), 0);
@@ -159,8 +161,8 @@ void DocumentMaker::add_primitive(const MaterialRange& range) {
     contents_.root["meshes"][0]["primitives"].push_back(primitive);
 }
 
-/// The texture of an image file; each file is put inside once.
-Json DocumentMaker::texture_info(const std::filesystem::path& image) {
+/// The texture of an image file. Each file is embedded once.
+Json DocumentBuilder::texture_info(const std::filesystem::path& image) {
     auto entry = textures_.find(image);
     if (entry == textures_.end()) {
         const std::string bytes = read_file(image);
@@ -178,13 +180,12 @@ Json DocumentMaker::texture_info(const std::filesystem::path& image) {
     return {{"index", entry->second}};
 }
 
-/// Sets a member of a material to the texture of an image, if the material has the image and it can
-/// be read.
+/// Sets a member of a material to the texture of an image, if the material has a readable one.
 ///
-/// \param texture  what the report calls it
-void DocumentMaker::add_texture(Json& holder, const char* key, const char* texture,
-                                const std::optional<std::filesystem::path>& image,
-                                const MtlMaterial& material, std::size_t index) {
+/// \param texture  its name in the report
+void DocumentBuilder::add_texture(Json& holder, const char* key, const char* texture,
+                                  const std::optional<std::filesystem::path>& image,
+                                  const MtlMaterial& material, std::size_t index) {
     if (!image) return;
     std::error_code ignored;
     if (report_ == nullptr || std::filesystem::is_regular_file(*image, ignored)) {
@@ -198,7 +199,7 @@ void DocumentMaker::add_texture(Json& holder, const char* key, const char* textu
                              exists ? "is not a file" : "no such file"));
 }
 
-void DocumentMaker::add_material(const MtlMaterial& material, std::size_t index) {
+void DocumentBuilder::add_material(const MtlMaterial& material, std::size_t index) {
     const auto clamped = [](float value) { return std::clamp(value, 0.0F, 1.0F); };
     const glm::vec3 color = glm::clamp(material.diffuse, 0.0F, 1.0F);
     const float opacity = clamped(material.opacity);
@@ -212,11 +213,12 @@ void DocumentMaker::add_material(const MtlMaterial& material, std::size_t index)
     if (opacity < 1.0F) json["alphaMode"] = "BLEND";
     add_texture(json, "emissiveTexture", "emission texture", material.emission_map, material,
                 index);
-    // An image of light needs a factor to be seen; MTL's own default for Ke is black.
+    // An emissive texture needs a factor to have an effect, but the default of Ke in MTL is black.
     glm::vec3 emission = glm::max(material.emission, 0.0F);
     const bool has_emission_texture = json.contains("emissiveTexture");
     if (has_emission_texture && emission == glm::vec3(0.0F)) emission = glm::vec3(1.0F);
-    // Most texels of such textures are black.
+    // Without its texture the object would glow as a whole, while most texels of such textures are
+    // black.
     if (material.emission_map && !has_emission_texture) emission = glm::vec3(0.0F);
     const float strength = std::max({emission.r, emission.g, emission.b, 1.0F});
     if (emission != glm::vec3(0.0F)) {
@@ -231,7 +233,7 @@ void DocumentMaker::add_material(const MtlMaterial& material, std::size_t index)
     contents_.root["materials"].push_back(json);
 }
 
-GltfContents DocumentMaker::make() {
+GltfContents DocumentBuilder::build() {
     const Mesh& mesh = file_.mesh;
     Json& root = contents_.root;
     root["asset"] = {{"version", "2.0"}, {"generator", "relief"}};
@@ -259,8 +261,7 @@ GltfContents DocumentMaker::make() {
     return std::move(contents_);
 }
 
-}  // namespace
-
+/// \param report  if null, an unreadable image is a FileError
 GltfContents gltf_from_mesh(const MeshFile& file, Report* report) {
     validate(file.mesh);
     if (file.mesh.triangles.empty()) throw InvalidInput("the mesh has no triangle");
@@ -272,7 +273,104 @@ GltfContents gltf_from_mesh(const MeshFile& file, Report* report) {
                             *range.material, file.materials.size()));
         }
     }
-    return DocumentMaker(file, report).make();
+    return DocumentBuilder(file, report).build();
+}
+
+}  // namespace
+
+GltfDocument GltfDocument::from_mesh(const MeshFile& contents) {
+    return GltfDocument(std::make_unique<Contents>(Contents{gltf_from_mesh(contents, nullptr)}));
+}
+
+GltfDocument GltfDocument::from_mesh(const MeshFile& contents, Report& report) {
+    return GltfDocument(std::make_unique<Contents>(Contents{gltf_from_mesh(contents, &report)}));
+}
+
+namespace {
+
+/// The inverse of DocumentBuilder::add_material().
+MtlMaterial translated(const GltfMaterial& material, const GltfView& view) {
+    MtlMaterial result;
+    result.name = material.name;
+    result.diffuse = glm::vec3(material.base_color);
+    result.opacity = material.base_color.a;
+    result.emission = material.emission;
+    const float alpha = std::max(material.roughness * material.roughness, 1e-3F);
+    result.shininess = std::max(2.0F / (alpha * alpha) - 2.0F, 0.0F);
+    const auto path = [&](const std::optional<GltfTexture>& texture) {
+        std::optional<std::filesystem::path> file;
+        if (texture) {
+            const auto* found =
+                std::get_if<std::filesystem::path>(&view.images[texture->image].source);
+            if (found != nullptr) file = *found;
+        }
+        return file;
+    };
+    result.diffuse_map = path(material.base_color_texture);
+    result.emission_map = path(material.emission_texture);
+    result.normal_map = path(material.normal_texture);
+    return result;
+}
+
+/// Appends one transformed primitive and completes its missing arrays.
+void append(Mesh& all, Mesh part) {
+    const auto first = static_cast<std::uint32_t>(all.positions.size());
+    const std::size_t count = part.positions.size();
+    if (part.texcoords.empty()) part.texcoords.assign(count, glm::vec2(0.0F));
+    if (part.colors.empty()) part.colors.assign(count, glm::vec4(1.0F));
+    all.positions.insert(all.positions.end(), part.positions.begin(), part.positions.end());
+    all.normals.insert(all.normals.end(), part.normals.begin(), part.normals.end());
+    all.texcoords.insert(all.texcoords.end(), part.texcoords.begin(), part.texcoords.end());
+    all.colors.insert(all.colors.end(), part.colors.begin(), part.colors.end());
+    const auto first_triangle = static_cast<std::uint32_t>(all.triangles.size());
+    for (const glm::uvec3& triangle : part.triangles)
+        all.triangles.push_back(triangle + first);
+    for (MaterialRange range : part.material_ranges) {
+        range.first_triangle += first_triangle;
+        MaterialRange* last = all.material_ranges.empty() ? nullptr : &all.material_ranges.back();
+        if (last != nullptr && last->material == range.material) {
+            last->triangle_count += range.triangle_count;
+        } else {
+            all.material_ranges.push_back(range);
+        }
+    }
+}
+
+}  // namespace
+
+MeshFile flattened(const GltfDocument& document) {
+    const GltfView view = document.view();
+    std::vector<Mesh> parts;
+    bool any_normals = false;
+    bool any_texcoords = false;
+    bool any_colors = false;
+    std::size_t vertex_count = 0;
+    for (const auto& placed : view.primitives) {
+        const Mesh& part = parts.emplace_back(document.mesh(placed.what));
+        any_normals = any_normals || !part.normals.empty();
+        any_texcoords = any_texcoords || !part.texcoords.empty();
+        any_colors = any_colors || !part.colors.empty();
+        vertex_count += part.positions.size();
+    }
+    if (vertex_count > std::numeric_limits<std::uint32_t>::max()) {
+        throw InvalidInput(fmt::format("{} vertices are too many for one mesh", vertex_count));
+    }
+    MeshFile result;
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+        if (any_normals && parts[i].normals.empty()) {
+            FrameOptions options;
+            options.if_missing = NormalMode::flat;
+            Report ignored;  // The document's own processing reports these findings.
+            parts[i] = with_frames(std::move(parts[i]), options, ignored).mesh;
+        }
+        append(result.mesh, placed(std::move(parts[i]), view.primitives[i].world_from_object));
+    }
+    if (!any_texcoords) result.mesh.texcoords.clear();
+    if (!any_colors) result.mesh.colors.clear();
+    for (const GltfMaterial& material : view.materials) {
+        result.materials.push_back(translated(material, view));
+    }
+    return result;
 }
 
 }  // namespace relief
