@@ -1,33 +1,90 @@
 // SPDX-License-Identifier: Apache-2.0
-// Choosing the reader or writer of a mesh file by its extension.
+// Chooses the reader or writer of a mesh file by its extension, and the local origin of distant
+// meshes.
 //
-// What a reader runs out of memory on is a FileError like all else that cannot be read.
-// Tests: tests/mesh/io/mesh/mesh_file_test.cpp.
+// Local origins are multiples of a power of two max_ratio the mesh's size. Subtracting them is therefore
+// exact, and they have few digits. If a reader runs out of memory, this is a FileError.
 #include "relief/mesh/mesh_file.h"
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <new>
 
 #include "file_bytes.h"
-#include "io/mesh/far_positions.h"
-#include "io/mesh/obj_reader.h"
-#include "io/mesh/obj_writer.h"
-#include "io/mesh/ply_reader.h"
-#include "io/mesh/ply_writer.h"
-#include "io/mesh/polygon_off.h"
-#include "io/mesh/polygon_stl.h"
+#include "io/mesh/mesh_formats.h"
 #include "relief/mesh/error.h"
 
 namespace relief {
+namespace {
+
+/// The offset to the middle of the mesh; zero if the mesh is max_ratio 0 compared with its size.
+glm::dvec3 offset_if_distant(const Mesh& mesh) {
+    constexpr double max_ratio = 16.0;  // At this ratio floats still resolve 20 bits of the mesh's size.
+    const Bounds bounds = bounds_of(mesh);
+    if (bounds.empty()) return glm::dvec3(0.0);
+    const glm::dvec3 low(bounds.min);
+    const glm::dvec3 high(bounds.max);
+    const glm::dvec3 extent = high - low;
+    const double size = std::max({extent.x, extent.y, extent.z});
+    const glm::dvec3 farthest = glm::max(glm::abs(low), glm::abs(high));
+    if (std::max({farthest.x, farthest.y, farthest.z}) <= max_ratio * size) return glm::dvec3(0.0);
+    if (size == 0.0) return low;  // All positions are equal in float.
+    const double step = std::exp2(std::ceil(std::log2(size)));
+    return glm::round(0.5 * (low + high) / step) * step;
+}
+
+/// Returns true if the positions that were read with an origin have digits that the old ones lack.
+bool has_more_digits(const MeshFile& centered, const MeshFile& before) {
+    const std::vector<glm::vec3>& now = centered.mesh.positions;
+    const std::vector<glm::vec3>& then = before.mesh.positions;
+    if (now.size() != then.size()) return true;
+    for (std::size_t i = 0; i < now.size(); ++i) {
+        const glm::dvec3 value = glm::dvec3(now[i]) + centered.origin;
+        const glm::dvec3 old = glm::dvec3(then[i]) + before.origin;
+        for (int k = 0; k < 3; ++k) {
+            if (value[k] != old[k] && std::isfinite(value[k])) return true;
+        }
+    }
+    return false;
+}
+
+}  // namespace
+
+MeshFile read_with_local_origin(const std::filesystem::path& file, const MeshReader& read,
+                                Report& report) {
+    Report findings;
+    MeshFile best = read(file, glm::dvec3(0.0), findings);
+    // Positions that are equal in float may be far apart compared with their size once the origin
+    // is max_ratio.
+    constexpr int max_passes = 3;
+    for (int pass = 0; pass < max_passes; ++pass) {
+        const glm::dvec3 shift = offset_if_distant(best.mesh);
+        if (shift == glm::dvec3(0.0)) break;
+        Report again;
+        MeshFile centered = read(file, best.origin + shift, again);
+        centered.origin = best.origin + shift;
+        if (!has_more_digits(centered, best)) break;
+        best = std::move(centered);
+        findings = std::move(again);
+    }
+    report.merge(findings);
+    if (best.origin != glm::dvec3(0.0)) {
+        report.add("far from the origin", "mesh", 0,
+                   fmt::format("are kept relative to ({}, {}, {}), where floats hold their digits",
+                               best.origin.x, best.origin.y, best.origin.z));
+    }
+    return best;
+}
 
 MeshFile read_mesh(const std::filesystem::path& file, Report& report) {
     const std::string extension = lower_extension(file);
     try {
-        if (extension == ".obj") return read_near(file, read_obj, report);
-        if (extension == ".ply") return read_near(file, read_ply, report);
-        if (extension == ".stl") return read_near(file, read_stl, report);
-        if (extension == ".off") return read_near(file, read_off, report);
+        if (extension == ".obj") return read_with_local_origin(file, read_obj, report);
+        if (extension == ".ply") return read_with_local_origin(file, read_ply, report);
+        if (extension == ".stl") return read_with_local_origin(file, read_stl, report);
+        if (extension == ".off") return read_with_local_origin(file, read_off, report);
     } catch (const std::bad_alloc&) {
         throw FileError(file, "needs more memory than there is");
     }

@@ -1,19 +1,235 @@
 // SPDX-License-Identifier: Apache-2.0
-// Polygons over indexed vertices to triangles. An index past the end is a FileError that names the
-// face. Tests: tests/mesh/io/mesh/mesh_file_test.cpp.
+// Triangulation of polygons: quads by MikkTSpace's diagonal, larger ones by ear clipping.
+//
+// All decisions are made in double precision from the float corners, so that they do not depend on
+// scale or compiler. Bad input (no plane, crossing edges, NaN) gives a fan and false. An index out
+// of range is a FileError with the face.
 #include "io/mesh/polygon_mesh.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <cstddef>
 #include <numeric>
+#include <optional>
 
-#include "io/mesh/polygon_triangulation.h"
 #include "large_memory.h"
 #include "progress_stage.h"
 #include "relief/mesh/error.h"
 
 namespace relief {
+namespace {
+
+/// Twice the vector area of a polygon: its normal by Newell's method. It is computed relative to
+/// the first corner, so that large coordinates lose no digits.
+glm::dvec3 newell_normal(std::span<const glm::vec3> positions) {
+    glm::dvec3 sum(0.0);
+    const glm::dvec3 origin(positions[0]);
+    for (std::size_t i = 1; i + 1 < positions.size(); ++i) {
+        sum += glm::cross(glm::dvec3(positions[i]) - origin, glm::dvec3(positions[i + 1]) - origin);
+    }
+    return sum;
+}
+
+template <typename Vector>
+double squared_distance(const Vector& a, const Vector& b) {
+    double sum = 0.0;
+    for (int i = 0; i < Vector::length(); ++i) {
+        const double difference = static_cast<double>(a[i]) - static_cast<double>(b[i]);
+        sum += difference * difference;
+    }
+    return sum;
+}
+
+/// The only reflex corner of a quad, or -1 if there is none or more than one.
+int reflex_corner_of_quad(std::span<const glm::vec3> positions) {
+    const glm::dvec3 normal = newell_normal(positions);
+    int reflex = -1;
+    for (int i = 0; i < 4; ++i) {
+        const auto at = [&](int k) { return glm::dvec3(positions[static_cast<size_t>(k) % 4]); };
+        const glm::dvec3 turn = glm::cross(at(i) - at(i + 3), at(i + 1) - at(i));
+        if (!(glm::dot(turn, normal) < 0.0)) continue;
+        if (reflex >= 0) return -1;
+        reflex = i;
+    }
+    return reflex;
+}
+
+bool quad_is_cut_from_first_to_third(std::span<const glm::vec3> positions,
+                                     std::span<const glm::vec2> texcoords) {
+    const int reflex = reflex_corner_of_quad(positions);
+    if (reflex >= 0) return reflex % 2 == 0;
+    if (!texcoords.empty()) {
+        const double first_to_third = squared_distance(texcoords[0], texcoords[2]);
+        const double second_to_fourth = squared_distance(texcoords[1], texcoords[3]);
+        if (first_to_third < second_to_fourth) return true;
+        if (second_to_fourth < first_to_third) return false;
+    }
+    return !(squared_distance(positions[1], positions[3]) <
+             squared_distance(positions[0], positions[2]));
+}
+
+/// Ear clipping of one polygon in its plane.
+class EarClipper {
+  public:
+    explicit EarClipper(std::span<const glm::vec3> positions);
+
+    /// Appends the triangles; false if the last ones are a fan.
+    bool clip(std::vector<glm::uvec3>& triangles);
+
+  private:
+    using Corner = std::uint32_t;
+    enum class Kind { ear, flat, other };  ///< Flat corners are cut only if there is no ear.
+
+    double turn(Corner a, Corner b, Corner c) const {
+        const glm::dvec2 ab = points_[b] - points_[a];
+        const glm::dvec2 ac = points_[c] - points_[a];
+        return ab.x * ac.y - ab.y * ac.x;
+    }
+    bool same_point(Corner a, Corner b) const { return points_[a] == points_[b]; }
+    bool blocked(Corner a, Corner b, Corner c);
+    Kind kind_of(Corner corner);
+    std::optional<Corner> next_to_cut();
+    void remove(Corner corner);
+
+    static constexpr std::size_t max_tests = 1'000'000'000;
+
+    std::vector<glm::dvec2> points_;  ///< Projected so that the polygon is counter-clockwise.
+    std::vector<Corner> previous_, next_;
+    std::vector<Kind> kinds_;
+    std::vector<Corner>
+        by_x_;  ///< Corners that are not convex at first, sorted by x: only they can block an ear.
+    std::vector<bool> removed_;
+    std::size_t tests_ = 0;
+    bool has_plane_ = false;
+};
+
+EarClipper::EarClipper(std::span<const glm::vec3> positions) {
+    const glm::dvec3 normal = newell_normal(positions);
+    const glm::dvec3 size = glm::abs(normal);
+    // Dropping the coordinate of the largest normal component keeps the other two exact.
+    const int drop = size.x > size.y ? (size.x > size.z ? 0 : 2) : (size.y > size.z ? 1 : 2);
+    has_plane_ = std::isfinite(size.x + size.y + size.z) && size[drop] > 0.0;
+    int u = (drop + 1) % 3;
+    int v = (drop + 2) % 3;
+    if (normal[drop] < 0.0) std::swap(u, v);
+    const auto count = static_cast<Corner>(positions.size());
+    for (const glm::vec3& position : positions)
+        points_.emplace_back(position[u], position[v]);
+    previous_.resize(count);
+    next_.resize(count);
+    for (Corner i = 0; i < count; ++i) {
+        previous_[i] = (i + count - 1) % count;
+        next_[i] = (i + 1) % count;
+    }
+    removed_.assign(count, false);
+    kinds_.assign(count, Kind::other);
+    if (!has_plane_) return;
+    for (Corner i = 0; i < count; ++i) {
+        if (!(turn(previous_[i], i, next_[i]) > 0.0)) by_x_.push_back(i);
+    }
+    std::sort(by_x_.begin(), by_x_.end(), [&](Corner a, Corner b) {
+        return points_[a].x != points_[b].x ? points_[a].x < points_[b].x : a < b;
+    });
+    for (Corner i = 0; i < count; ++i)
+        kinds_[i] = kind_of(i);
+}
+
+/// Returns true if another corner lies in the triangle or on its border. Points equal to its
+/// corners do not count.
+bool EarClipper::blocked(Corner a, Corner b, Corner c) {
+    const double left = std::min({points_[a].x, points_[b].x, points_[c].x});
+    const double right = std::max({points_[a].x, points_[b].x, points_[c].x});
+    const auto begin = std::lower_bound(by_x_.begin(), by_x_.end(), left,
+                                        [&](Corner i, double x) { return points_[i].x < x; });
+    if (tests_ >= max_tests) return true;
+    for (auto it = begin; it != by_x_.end() && points_[*it].x <= right; ++it) {
+        ++tests_;
+        const Corner p = *it;
+        if (removed_[p] || same_point(p, a) || same_point(p, b) || same_point(p, c)) continue;
+        if (turn(a, b, p) >= 0.0 && turn(b, c, p) >= 0.0 && turn(c, a, p) >= 0.0) return true;
+    }
+    return false;
+}
+
+EarClipper::Kind EarClipper::kind_of(Corner corner) {
+    const Corner a = previous_[corner];
+    const Corner c = next_[corner];
+    const double area = turn(a, corner, c);
+    if (area > 0.0) return blocked(a, corner, c) ? Kind::other : Kind::ear;
+    // A spike that reverses direction is not flat: cutting it would uncover the area that it
+    // covers.
+    const bool goes_on = glm::dot(points_[corner] - points_[a], points_[c] - points_[corner]) >= 0;
+    return area == 0.0 && goes_on ? Kind::flat : Kind::other;
+}
+
+/// The first ear after the lowest remaining corner, otherwise the first flat corner, otherwise
+/// none.
+std::optional<EarClipper::Corner> EarClipper::next_to_cut() {
+    std::optional<Corner> flat;
+    Corner start = 0;
+    while (removed_[start])
+        ++start;
+    Corner corner = start;
+    do {
+        ++tests_;
+        corner = next_[corner];
+        if (kinds_[corner] == Kind::ear) return corner;
+        if (kinds_[corner] == Kind::flat && !flat) flat = corner;
+    } while (corner != start);
+    return flat;
+}
+
+void EarClipper::remove(Corner corner) {
+    removed_[corner] = true;
+    const Corner before = previous_[corner];
+    const Corner after = next_[corner];
+    next_[before] = after;
+    previous_[after] = before;
+    kinds_[before] = kind_of(before);
+    kinds_[after] = kind_of(after);
+}
+
+bool EarClipper::clip(std::vector<glm::uvec3>& triangles) {
+    std::size_t left = points_.size();
+    while (has_plane_ && left > 3 && tests_ < max_tests) {
+        const std::optional<Corner> corner = next_to_cut();
+        if (!corner) break;
+        triangles.emplace_back(previous_[*corner], *corner, next_[*corner]);
+        remove(*corner);
+        --left;
+    }
+    Corner first = 0;
+    while (removed_[first])
+        ++first;
+    for (Corner b = next_[first]; next_[b] != first; b = next_[b]) {
+        triangles.emplace_back(first, b, next_[b]);
+    }
+    return left == 3;
+}
+
+}  // namespace
+
+bool triangulate_polygon(std::span<const glm::vec3> positions, std::span<const glm::vec2> texcoords,
+                         std::vector<glm::uvec3>& triangles) {
+    assert(positions.size() >= 3 && (texcoords.empty() || texcoords.size() == positions.size()));
+    if (positions.size() == 3) {
+        triangles.emplace_back(0, 1, 2);
+        return true;
+    }
+    if (positions.size() > 4) return EarClipper(positions).clip(triangles);
+    if (quad_is_cut_from_first_to_third(positions, texcoords)) {
+        triangles.emplace_back(0, 1, 2);
+        triangles.emplace_back(0, 2, 3);
+    } else {
+        triangles.emplace_back(0, 1, 3);
+        triangles.emplace_back(1, 2, 3);
+    }
+    return true;
+}
+
 namespace {
 
 void check_indices(const Polygons& polygons, std::size_t vertex_count,
@@ -34,7 +250,7 @@ bool are_triangles(const Polygons& polygons) {
                        [](std::uint32_t count) { return count == 3; });
 }
 
-/// Nothing to cut.
+/// All polygons are triangles: nothing to cut.
 CutPolygons whole_triangles(const Polygons& polygons) {
     CutPolygons result;
     const std::size_t count = polygons.corner_counts.size();

@@ -1,7 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Polygons over indexed vertices, as files hold them, to triangles.
-/// Tests: tests/mesh/io/mesh/mesh_file_test.cpp.
+/// Polygons of indexed vertices, and their triangulation by one fixed rule.
+///
+/// A quad is cut along the diagonal that is shorter in texture space. Without texture coordinates,
+/// or if they give equal lengths, the diagonal that is shorter in object space is used; on a
+/// further tie the one from the first corner to the third. This is the rule of MikkTSpace, so that
+/// tangents agree with those of the quad mesh. A quad with one reflex corner is cut at this corner,
+/// because the other diagonal lies outside. Larger polygons are cut into ears in the plane of their
+/// Newell normal, lowest corner number first, so that a convex polygon becomes a fan around its
+/// first corner.
+///
+/// Source: [Mikkelsen 2008] (quads), [Sutherland et al. 1974] (Newell normal), [Meisters 1975]
+/// (ears).
 #pragma once
 
 #include <cstdint>
@@ -15,27 +25,37 @@
 
 namespace relief {
 
-/// Polygons as runs of vertex indices.
+/// Cuts a polygon of n corners into n - 2 triangles with the same winding.
+///
+/// \param positions  one per corner, object space, any unit of length; at least 3
+/// \param texcoords  one per corner, or empty
+/// \param triangles  triples of corner numbers are appended
+/// \return false if ear clipping fails (no plane, crossing edges, non-finite corners, or more than
+/// a billion point tests); the rest of the polygon is then cut as a fan
+bool triangulate_polygon(std::span<const glm::vec3> positions, std::span<const glm::vec2> texcoords,
+                         std::vector<glm::uvec3>& triangles);
+
+/// Polygons as consecutive ranges of vertex indices.
 struct Polygons {
     std::vector<std::uint32_t> corners;
     std::vector<std::uint32_t> corner_counts;
 };
 
-/// Triangles, and the polygon that each is a part of.
+/// Triangles, and the polygon of each.
 struct CutPolygons {
     std::vector<glm::uvec3> triangles;
     std::vector<std::uint32_t> polygons;
 };
 
-/// Cuts polygons by the rule of polygon_triangulation.h.
+/// Triangulates polygons by triangulate_polygon().
 ///
-/// \param vertices  positions and, where it has them, texture coordinates
-/// \param report    counts polygons of fewer than three corners (left out) and those that no ear
-///                  cut fits (cut as fans)
+/// \param vertices  positions, and texture coordinates if it has them
+/// \param report    counts polygons of fewer than three corners (left out) and those without an ear
+///         (cut as fans)
 CutPolygons cut_polygons(const Mesh& vertices, const Polygons& polygons, Report& report);
 
-/// Fills in a mesh's triangles. \throws FileError if a polygon names a vertex that does not exist,
-/// or no triangle comes out
+/// Sets the triangles of a mesh. \throws FileError if a polygon names a missing vertex, or if there
+/// are no triangles
 void add_triangles(Mesh& mesh, const Polygons& polygons, const std::filesystem::path& file,
                    Report& report);
 

@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// STL to a mesh: corners with equal positions become one vertex, facet normals are not kept.
+// Reads STL files: corners with equal positions become one vertex, facet normals are ignored.
 //
-// Object space as written. A file is binary when its length fits its count; else it is ASCII if it
-// says so, else cut short, which is a FileError. Source: [3D Systems 1989].
-// Tests: tests/mesh/io/mesh/stl_test.cpp.
-#include "io/mesh/polygon_stl.h"
-
+// Object space as written. A file is binary if its length matches its triangle count. Otherwise it
+// is ASCII if it begins with "solid" and a keyword; otherwise it is truncated, which is a
+// FileError. Source: [3D Systems 1989].
 #include <fmt/format.h>
 
 #include <array>
@@ -14,8 +12,9 @@
 #include <utility>
 
 #include "file_bytes.h"
-#include "io/mesh/mesh_file_text.h"
-#include "io/mesh/polygon_key_numbers.h"
+#include "io/mesh/mesh_formats.h"
+#include "io/mesh/mesh_text.h"
+#include "io/mesh/vertex_dedup.h"
 #include "progress_stage.h"
 #include "relief/mesh/error.h"
 
@@ -25,13 +24,13 @@ namespace {
 constexpr std::size_t header_size = 84;
 constexpr std::size_t facet_size = 50;
 
-/// Welds corners as they come; +0 equals -0 and NaN equals itself.
+/// Merges corners into vertices in order of first use; +0 equals -0 and NaN equals itself.
 class CornerWelder {
   public:
     explicit CornerWelder(std::size_t expected) : numbers_(expected) {}
 
     std::uint32_t vertex_at(const glm::vec3& position) {
-        const glm::vec3 key = position + 0.0F;  // -0 becomes +0, all else stays.
+        const glm::vec3 key = position + 0.0F;  // -0 becomes +0, other values do not change.
         const auto vertex = numbers_.number_of(std::bit_cast<KeyNumbers<3>::Key>(key));
         if (vertex == positions.size()) positions.push_back(position);
         return vertex;
@@ -83,7 +82,7 @@ Mesh read_ascii(std::string_view bytes, const std::filesystem::path& file,
             corners.clear();
         } else if (equal_ignoring_case(word, "normal")) {
             for (int i = 0; i < 3; ++i)
-                text.word();  // Some tools write words here: not read.
+                text.word();  // Some tools write words here: the normal is ignored.
         } else if (equal_ignoring_case(word, "solid") || equal_ignoring_case(word, "endsolid")) {
             text.skip_line();
         } else if (!equal_ignoring_case(word, "facet") && !equal_ignoring_case(word, "outer") &&
@@ -96,7 +95,7 @@ Mesh read_ascii(std::string_view bytes, const std::filesystem::path& file,
     return mesh;
 }
 
-bool says_that_it_is_ascii(std::string_view bytes, const std::filesystem::path& file) {
+bool looks_like_ascii(std::string_view bytes, const std::filesystem::path& file) {
     TextScanner text(bytes.substr(0, 1024), file);
     if (!equal_ignoring_case(text.word(), "solid")) return false;
     text.skip_line();
@@ -117,7 +116,7 @@ MeshFile read_stl(const std::filesystem::path& file, const glm::dvec3& origin, R
     MeshFile result;
     if (bytes.size() >= header_size && binary_size == bytes.size()) {
         result.mesh = read_binary(bytes, count, origin);
-    } else if (says_that_it_is_ascii(bytes, file)) {
+    } else if (looks_like_ascii(bytes, file)) {
         result.mesh = read_ascii(bytes, file, origin);
     } else if (bytes.size() >= header_size && binary_size < bytes.size()) {
         report.add("bytes behind the last triangle", "byte", binary_size, "left out");

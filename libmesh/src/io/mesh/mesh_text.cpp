@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Words and numbers out of text files. A number that is missing or malformed is a FileError with
-// its line. Tests: tests/mesh/io/mesh/mesh_file_test.cpp.
-#include "io/mesh/mesh_file_text.h"
+// Words and numbers in text files. A missing or malformed number is a FileError with its line.
+#include "io/mesh/mesh_text.h"
 
 #include <fmt/format.h>
 

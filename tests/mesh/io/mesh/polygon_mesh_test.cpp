@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The rule by which polygons are cut: known quads, ears of concave polygons, and bad input.
-#include "io/mesh/polygon_triangulation.h"
-
+// Triangulation of polygons: quads like MikkTSpace, ears, and fans of bad polygons.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -10,10 +8,13 @@
 #include <limits>
 #include <numbers>
 
+#include "io/mesh/polygon_mesh.h"
+
 namespace relief {
 namespace {
 
 using testing::ElementsAre;
+
 using Points = std::vector<glm::vec3>;
 
 std::vector<glm::uvec3> cut(const Points& positions, const std::vector<glm::vec2>& texcoords = {}) {
@@ -173,4 +174,5 @@ TEST(PolygonTriangulation, TenThousandCornersTakeLessThanASecond) {
 }
 
 }  // namespace
+
 }  // namespace relief

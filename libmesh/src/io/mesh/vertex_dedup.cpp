@@ -1,23 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
-// Unifying OBJ corners into indexed vertices: first equal values, then index triples.
+// Merging corners into indexed vertices: first equal values, then index triples.
 //
-// Bits decide, so NaN equals itself and +0 differs from -0. Corners must be complete and in range
-// (obj_parser.h, obj_reader.cpp see to it). Tests: tests/mesh/io/mesh/obj_test.cpp.
-#include "io/mesh/obj_vertices.h"
+// Bits are compared, so NaN equals itself and +0 differs from -0. Corners must be complete and in
+// range.
+#include "io/mesh/vertex_dedup.h"
 
 #include <array>
 #include <cassert>
 #include <limits>
 
 #include "geometry/weld.h"
-#include "io/mesh/polygon_key_numbers.h"
 #include "large_memory.h"
 #include "progress_stage.h"
 
 namespace relief {
 namespace {
 
-/// The same for positions that carry colours: both must agree.
+/// Merges positions; if they have colors, both must be equal.
 std::vector<std::uint32_t> first_equal_vertex(const ObjStatements& statements) {
     if (statements.colors.empty()) return weld_bits<glm::vec3>(statements.positions);
     std::vector<std::array<float, 7>> rows;
@@ -30,8 +29,8 @@ std::vector<std::uint32_t> first_equal_vertex(const ObjStatements& statements) {
     return weld_bits<std::array<float, 7>>(rows);
 }
 
-/// Numbers combinations in order of first appearance. Those of a position are few nearly always,
-/// and looked through; from the seventeenth on they are hashed.
+/// Numbers combinations in order of first use. A position nearly always has few of them, which are
+/// searched linearly; from the seventeenth on they are hashed.
 class VertexNumbers {
   public:
     struct Vertex {
@@ -49,19 +48,19 @@ class VertexNumbers {
         for (std::uint32_t at = newest; at != none; at = previous_[at]) {
             const Vertex& known = vertices_[at];
             if (known.texcoord == vertex.texcoord && known.normal == vertex.normal) return at;
-            if (++steps == most_steps) return hashed_number_of(vertex);
+            if (++steps == max_steps) return hashed_number_of(vertex);
         }
         previous_.push_back(newest);
         newest = added(vertex);
         return newest;
     }
 
-    /// Each at its number.
+    /// All combinations, indexed by their number.
     [[nodiscard]] const std::vector<Vertex>& vertices() const { return vertices_; }
 
   private:
     static constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
-    static constexpr std::uint32_t most_steps = 16;
+    static constexpr std::uint32_t max_steps = 16;
 
     std::uint32_t added(const Vertex& vertex) {
         vertices_.push_back(vertex);
@@ -72,15 +71,16 @@ class VertexNumbers {
         const std::uint32_t known =
             hashed_.number_of({vertex.position, vertex.texcoord, vertex.normal});
         if (known == number_of_hashed_.size()) {
-            previous_.push_back(none);  // In no chain.
+            previous_.push_back(none);  // Hashed combinations are in no chain.
             number_of_hashed_.push_back(added(vertex));
         }
         return number_of_hashed_[known];
     }
 
     std::vector<Vertex> vertices_;
-    std::vector<std::uint32_t> previous_;  ///< With the same position, by vertex.
-    std::vector<std::uint32_t> newest_;    ///< By position.
+    std::vector<std::uint32_t>
+        previous_;                       ///< The previous vertex with the same position, by vertex.
+    std::vector<std::uint32_t> newest_;  ///< The newest vertex, by position.
     KeyNumbers<3> hashed_;
     std::vector<std::uint32_t> number_of_hashed_;
 };

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// PLY: every scalar type and byte order, texture coordinates by vertex and by face, hostile counts.
+// PLY, STL and OFF files: all variants of the formats, and broken files.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <cstring>
 #include <fstream>
+#include <limits>
 
 #include "mesh_text_test.h"
 #include "support/shapes.h"
@@ -158,5 +161,114 @@ TEST_F(Ply, TheSameModelAsPlyAndAsObjHasTheSameTextureCoordinates) {
     }
 }
 
+class Stl : public test::MeshTextTest {
+  protected:
+    Stl() : MeshTextTest("a.stl") {}
+};
+
+std::string facet(const std::vector<glm::vec3>& corners) {
+    std::string bytes(50, '\0');
+    std::memcpy(bytes.data() + 12, corners.data(), 36);
+    return bytes;
+}
+
+std::string binary(std::uint32_t count, const std::string& facets) {
+    std::string bytes = "solid made by a tool that begins its binary files so";
+    bytes.resize(84, ' ');
+    std::memcpy(bytes.data() + 80, &count, 4);
+    return bytes + facets;
+}
+
+TEST_F(Stl, CornersWithEqualPositionsBecomeOneVertex) {
+    const Mesh mesh = read(binary(2, facet({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}) +
+                                         facet({{0, 1, 0}, {1, 0, -0.0F}, {1, 1, 0}})))
+                          .mesh;
+    EXPECT_THAT(mesh.triangles, ElementsAre(glm::uvec3(0, 1, 2), glm::uvec3(2, 1, 3)));
+    EXPECT_EQ(mesh.positions.size(), 4U);
+}
+
+TEST_F(Stl, TinyAndNonFiniteTrianglesAreKept) {
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    const Mesh mesh = read(binary(2, facet({{0, 0, 0}, {1e-40F, 0, 0}, {0, 1e-40F, 0}}) +
+                                         facet({{nan, 0, 0}, {1, 0, 0}, {0, 1, 0}})))
+                          .mesh;
+    EXPECT_THAT(mesh.triangles, ElementsAre(glm::uvec3(0, 1, 2), glm::uvec3(3, 4, 5)));
+    EXPECT_TRUE(std::isnan(mesh.positions[3].x));
+}
+
+TEST_F(Stl, AsciiReadsAllSolidsInAnyCase) {
+    const Mesh mesh = read(
+                          "solid facet vertex\nFACET NORMAL a b c\nOuter Loop\nVertex 0 0 0\n"
+                          "vertex 1 0 0\nvertex 0 1e0 0\nendloop endfacet\nendsolid x\nsolid "
+                          "empty\nendsolid\nsolid\nfacet normal 0 0 1 outer loop vertex 0 0 0 "
+                          "vertex 1 0 0 vertex 5 5 5 endloop endfacet endsolid")
+                          .mesh;
+    EXPECT_THAT(mesh.triangles, ElementsAre(glm::uvec3(0, 1, 2), glm::uvec3(0, 1, 3)));
+}
+
+TEST_F(Stl, DamagedFilesAreRefusedAndSurplusIsCounted) {
+    const std::string one = facet({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}});
+    EXPECT_THAT(error_of(binary(4000000000U, one)), HasSubstr("4000000000 triangles need"));
+    EXPECT_THAT(error_of(binary(0, "")), HasSubstr("has no triangle"));
+    EXPECT_THAT(error_of("solid\nfacet\nouter loop\nvertex 1,5 0 0\n"),
+                HasSubstr("line 4: '1,5' stands where a number should be"));
+    EXPECT_THAT(error_of("solid\nfacet outer loop vertex 0 0 0 vertex 1 1 1 endloop"),
+                HasSubstr("line 2: a facet has 2 corners instead of 3"));
+    EXPECT_THAT(error_of("solid\nfacet outer loop vertex 0 0 0"), HasSubstr("ends inside a facet"));
+    EXPECT_EQ(read(binary(1, one + "trailing")).mesh.triangles.size(), 1U);
+    EXPECT_EQ(report_.count("bytes behind the last triangle"), 1U);
+}
+
+TEST_F(Stl, TheAsciiAndTheBinaryFormOfAModelAgree) {
+    RELIEF_NEEDS_SHARED(folder, "data/models/stl/assimp");
+    const Mesh ascii = read_mesh(folder / "Spider_ascii.stl", report_).mesh;
+    const Mesh binary = read_mesh(folder / "Spider_binary.stl", report_).mesh;
+    EXPECT_EQ(ascii.triangles, binary.triangles);
+    EXPECT_EQ(ascii.triangles.size(), 1368U);
+}
+
+class Off : public test::MeshTextTest {
+  protected:
+    Off() : MeshTextTest("a.off") {}
+};
+
+TEST_F(Off, PolygonsCommentsAndCountsBehindTheKeywordAreRead) {
+    const Mesh mesh = read(
+                          "OFF 5 2 0 # counts\n# nothing\n0 0 0\n1 0 nan\n\n1 1 0\n0 1 0\n9 9 9\n"
+                          "4 0 1 2 3 255 0 0\n3 0 1 2")
+                          .mesh;
+    EXPECT_THAT(mesh.triangles,
+                ElementsAre(glm::uvec3(0, 1, 2), glm::uvec3(0, 2, 3), glm::uvec3(0, 1, 2)));
+    EXPECT_EQ(mesh.positions.size(), 5U);
+    EXPECT_TRUE(std::isnan(mesh.positions[1].z));
+}
+
+TEST_F(Off, NormalsColorsAndTextureCoordinatesStandInThatOrder) {
+    const Mesh mesh =
+        read(
+            "STCNOFF\n3 1 0\n0 0 0 0 0 1 255 0 51 255 0.25 0.25\n1 0 0 0 0 1 1.0 0.5 0 0 1\n"
+            "0 1 0 0 0 1 0 0 0 0 0 0\n3 0 1 2\n")
+            .mesh;
+    EXPECT_EQ(mesh.normals[0], glm::vec3(0, 0, 1));
+    EXPECT_EQ(mesh.texcoords[0], glm::vec2(0.25F, 0.75F));
+    // The first line has a point in its texture coordinates only.
+    EXPECT_EQ(mesh.colors[0], glm::vec4(1.0F, 0.0F, 0.2F, 1.0F));
+    EXPECT_EQ(mesh.colors[1], glm::vec4(1.0F, 0.5F, 0.0F, 1.0F));
+    EXPECT_EQ(mesh.colors[2], glm::vec4(0.0F));
+}
+
+TEST_F(Off, DamagedFilesAreRefused) {
+    const std::string head = "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n";
+    EXPECT_THAT(error_of(head + "3 0 1 3\n"), HasSubstr("face 0 names vertex 3"));
+    EXPECT_THAT(error_of(head + "-5 0 1 2\n"), HasSubstr("a face has -5 corners"));
+    EXPECT_THAT(error_of(head + "2000000000 0 1 2\n"), HasSubstr("a face has 2000000000 corners"));
+    EXPECT_THAT(error_of(head + "3 0 1\n"), HasSubstr("the file ends"));
+    EXPECT_THAT(error_of("OFF\n4000000000 1 0\n"), HasSubstr("too short for 4000000000 vertices"));
+    EXPECT_THAT(error_of("4OFF\n1 1 0\n"), HasSubstr("'4OFF' is a kind that is not read"));
+    EXPECT_THAT(error_of("OFF BINARY\n"), HasSubstr("vertex count"));
+    EXPECT_THAT(error_of("solid\n"), HasSubstr("does not begin with 'OFF'"));
+}
+
 }  // namespace
+
 }  // namespace relief

@@ -1,18 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-// OFF to a mesh. Object space as written; v is turned to grow downwards here.
+// Reads OFF text files with normals, colors and texture coordinates. Object space as written; v is
+// flipped.
 //
 // Source: the Geomview manual, object file format OFF: [ST][C][N]OFF, counts, vertex lines
-// (position, normal, colour, texture coordinates), face lines. Binary, four-dimensional and
-// n-dimensional files, wrong counts and indices are FileErrors. Tests:
-// tests/mesh/io/mesh/off_test.cpp.
-#include "io/mesh/polygon_off.h"
-
+// (position, normal, color, texture coordinates), face lines. Binary, four-dimensional and
+// n-dimensional files, wrong counts and indices are FileErrors.
 #include <fmt/format.h>
 
 #include <algorithm>
 
 #include "file_bytes.h"
-#include "io/mesh/mesh_file_text.h"
+#include "io/mesh/mesh_formats.h"
+#include "io/mesh/mesh_text.h"
 #include "io/mesh/polygon_mesh.h"
 #include "progress_stage.h"
 #include "relief/mesh/error.h"
@@ -48,8 +47,8 @@ OffHeader parse_header(TextScanner& text, std::size_t file_size) {
         text.fail(fmt::format("{} stands where the vertex count should be", quoted(first)));
     header.vertex_count = *vertex_count;
     header.face_count = text.number<std::uint64_t>();
-    text.skip_line();  // The number of edges, which some leave out.
-    // A vertex takes three numbers, a face four, each with what parts them.
+    text.skip_line();  // The number of edges, which some files lack.
+    // A vertex has at least three numbers, a face one, each with a separator.
     if (header.vertex_count > file_size / 6 + 1 || header.face_count > file_size / 2 + 1) {
         text.fail(fmt::format("the file is too short for {} vertices and {} faces",
                               header.vertex_count, header.face_count));
@@ -57,7 +56,7 @@ OffHeader parse_header(TextScanner& text, std::size_t file_size) {
     return header;
 }
 
-/// A number that is written as a fraction or out of 255, as colours are.
+/// A number of a color: a fraction, or out of 255.
 struct LineNumber {
     float value = 0.0F;
     bool has_point = false;
@@ -73,7 +72,7 @@ std::vector<LineNumber> numbers_on_line(TextScanner& text) {
     return result;
 }
 
-/// Three or four numbers: whole ones out of 255, or fractions if any has a decimal point.
+/// A color of three or four numbers: fractions if any has a decimal point, otherwise out of 255.
 glm::vec4 color_of(const std::vector<LineNumber>& numbers) {
     const bool are_fractions = std::any_of(numbers.begin(), numbers.end(),
                                            [](const LineNumber& n) { return n.has_point; });
@@ -115,7 +114,7 @@ void read_face(TextScanner& text, Polygons& polygons) {
         polygons.corners.push_back(static_cast<std::uint32_t>(index));
     }
     polygons.corner_counts.push_back(static_cast<std::uint32_t>(count));
-    text.skip_line();  // A colour of the face may follow.
+    text.skip_line();  // A color of the face may follow.
 }
 
 }  // namespace

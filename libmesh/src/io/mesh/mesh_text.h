@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file
-/// Words and numbers out of text files, with the line for messages.
+/// Words and numbers in text files, with line numbers for messages.
 ///
-/// Numbers are rounded once, correctly, whatever the locale; infinities and NaN are numbers too.
-/// Bad input throws FileError. Tests: tests/mesh/io/mesh/mesh_file_test.cpp.
+/// Numbers are rounded once, correctly, in any locale; infinities and NaN are accepted. Bad input
+/// throws FileError.
 #pragma once
 
 #include <charconv>
@@ -17,10 +16,10 @@
 
 namespace relief {
 
-/// A whole word as a number, or nothing if it is none.
+/// Parses a whole word as a number; nullopt if it is none.
 ///
-/// Beyond the range of the type it becomes infinity or 0, as strtod has it; "1.#QNAN" and the like
-/// are what some compilers' printf once wrote for NaN and infinity.
+/// Numbers beyond the range of the type become infinity or 0, as with strtod. "1.#QNAN" and the
+/// like, which old printf implementations wrote for NaN and infinity, are accepted.
 template <typename Number>
 std::optional<Number> number_in(std::string_view word) {
     if (word.starts_with('+')) word.remove_prefix(1);
@@ -43,20 +42,20 @@ std::optional<Number> number_in(std::string_view word) {
     return std::nullopt;
 }
 
-/// Walks over the words of a text, counting lines. LF, CR LF and CR all end a line.
+/// Scans the words of a text and counts lines. LF, CR LF and CR end a line.
 class TextScanner {
   public:
-    /// \param comment  what begins a comment that runs to the end of its line; 0 for nothing
+    /// \param comment  the character that begins a comment, which ends with the line; 0 for none
     TextScanner(std::string_view text, const std::filesystem::path& file, char comment = '\0')
         : rest_(text), file_(file), comment_(comment) {}
 
-    /// The next word, on whatever line; empty at the end of the text.
+    /// The next word on any line; empty at the end of the text.
     std::string_view word();
 
     /// The next word on this line; empty at its end.
     std::string_view word_on_line();
 
-    /// Goes behind the end of this line.
+    /// Skips the rest of this line.
     void skip_line();
 
     /// The next word as a number. \throws FileError if there is none or it is no number
@@ -68,10 +67,10 @@ class TextScanner {
         return *value;
     }
 
-    /// What has not been read yet.
+    /// The text that has not been read yet.
     [[nodiscard]] std::string_view rest() const { return rest_; }
 
-    /// \throws FileError always, naming the line
+    /// \throws FileError always, with the line
     [[noreturn]] void fail(const std::string& reason) const;
 
   private:
@@ -85,18 +84,18 @@ class TextScanner {
     std::size_t line_ = 1;
 };
 
-/// What is between the words of a line.
+/// Returns true for characters that separate the words of a line.
 inline bool is_blank(char c) {
     return c == ' ' || c == '\t' || c == '\v' || c == '\f';
 }
 
-/// The next three numbers, less the origin, rounded once. \throws FileError as number() does
+/// The next three numbers minus the origin, rounded once. \throws FileError as number() does
 glm::vec3 position_in(TextScanner& text, const glm::dvec3& origin);
 
-/// A word of a file for a message: at most 40 characters, in quotes, unprintable ones as '?'.
+/// Quotes a word of a file for a message: at most 40 characters, unprintable ones as '?'.
 std::string quoted(std::string_view word);
 
-/// The same letters, whatever their case.
+/// Compares ASCII letters without case.
 bool equal_ignoring_case(std::string_view a, std::string_view b);
 
 }  // namespace relief

@@ -1,0 +1,628 @@
+// SPDX-License-Identifier: Apache-2.0
+// PLY files: read_ply() for ASCII and binary files of both byte orders and all scalar types,
+// write_ply() for binary little-endian ones.
+//
+// relief does not use OpenMesh 9's reader: it hangs on some broken headers, allocates gigabytes for
+// a negative list length, refuses integer positions and unsigned index types other than its own,
+// and leaves out texture coordinates named texture_u or stored per face.
+//
+// The writer keeps the bits of floats, except v: it is flipped in float, because the format has no
+// other convention, and 1 - (1 - v) can differ from v by 6e-8. PLY cannot hold materials. Malformed
+// files throw FileError. Source: [Turk 1994].
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <filesystem>
+#include <limits>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "file_bytes.h"
+#include "file_replacement.h"
+#include "io/mesh/mesh_formats.h"
+#include "io/mesh/mesh_text.h"
+#include "io/mesh/polygon_mesh.h"
+#include "io/mesh/vertex_dedup.h"
+#include "progress_stage.h"
+#include "relief/mesh/error.h"
+
+namespace relief {
+namespace {
+
+enum class PlyType { int8, uint8, int16, uint16, int32, uint32, float32, float64 };
+
+/// One value of an element, or a list of values.
+struct PlyProperty {
+    std::string name;
+    PlyType type = PlyType::float32;
+    std::optional<PlyType> count_type;  ///< The type of a list's length; absent for a single value.
+};
+
+struct PlyElement {
+    std::string name;
+    std::uint64_t count = 0;
+    std::vector<PlyProperty> properties;
+};
+
+enum class PlyFormat { ascii, little_endian, big_endian };
+
+struct PlyHeader {
+    PlyFormat format = PlyFormat::ascii;
+    std::vector<PlyElement> elements;
+    std::size_t data_begin = 0;  ///< Offset of the first byte after the header.
+};
+
+PlyType type_named(std::string_view name, const TextScanner& text) {
+    static constexpr std::array<std::pair<std::string_view, PlyType>, 16> types = {{
+        {"char", PlyType::int8},
+        {"int8", PlyType::int8},
+        {"uchar", PlyType::uint8},
+        {"uint8", PlyType::uint8},
+        {"short", PlyType::int16},
+        {"int16", PlyType::int16},
+        {"ushort", PlyType::uint16},
+        {"uint16", PlyType::uint16},
+        {"int", PlyType::int32},
+        {"int32", PlyType::int32},
+        {"uint", PlyType::uint32},
+        {"uint32", PlyType::uint32},
+        {"float", PlyType::float32},
+        {"float32", PlyType::float32},
+        {"double", PlyType::float64},
+        {"float64", PlyType::float64},
+    }};
+    for (const auto& [known, type] : types) {
+        if (known == name) return type;
+    }
+    text.fail(fmt::format("{} is no PLY type", quoted(name)));
+}
+
+PlyProperty parse_property(TextScanner& text) {
+    PlyProperty property;
+    std::string_view word = text.word_on_line();
+    if (word == "list") {
+        property.count_type = type_named(text.word_on_line(), text);
+        if (*property.count_type == PlyType::float32 || *property.count_type == PlyType::float64) {
+            text.fail("a list is counted in a floating-point type");
+        }
+        word = text.word_on_line();
+    }
+    property.type = type_named(word, text);
+    property.name = text.word_on_line();
+    if (property.name.empty()) text.fail("a property has no name");
+    if (const auto more = text.word_on_line(); !more.empty()) {
+        text.fail(fmt::format("a property line goes on with {}", quoted(more)));
+    }
+    return property;
+}
+
+PlyElement parse_element(TextScanner& text) {
+    PlyElement element;
+    element.name = text.word_on_line();
+    const std::string_view count = text.word_on_line();
+    const auto number = number_in<std::uint64_t>(count);
+    if (element.name.empty() || !number) {
+        text.fail(fmt::format("an element has the count {}", quoted(count)));
+    }
+    element.count = *number;
+    return element;
+}
+
+PlyFormat parse_format(TextScanner& text) {
+    const std::string_view format = text.word_on_line();
+    if (format == "ascii") return PlyFormat::ascii;
+    if (format == "binary_little_endian") return PlyFormat::little_endian;
+    if (format == "binary_big_endian") return PlyFormat::big_endian;
+    text.fail(fmt::format("{} is no PLY format", quoted(format)));
+}
+
+/// Bytes of one value in a binary file.
+std::size_t size_of(PlyType type) {
+    switch (type) {
+        case PlyType::int8:
+        case PlyType::uint8:
+            return 1;
+        case PlyType::int16:
+        case PlyType::uint16:
+            return 2;
+        case PlyType::float64:
+            return 8;
+        default:
+            return 4;
+    }
+}
+
+/// \throws FileError with the line of a malformed statement
+PlyHeader parse_ply_header(std::string_view bytes, const std::filesystem::path& file) {
+    TextScanner text(bytes, file);
+    if (text.word() != "ply") throw FileError(file, "does not begin with 'ply'");
+    text.skip_line();
+    PlyHeader header;
+    bool has_format = false;
+    for (std::string_view word = text.word(); word != "end_header"; word = text.word()) {
+        if (word.empty()) throw FileError(file, "the header has no end_header line");
+        if (word == "format") {
+            if (!header.elements.empty()) text.fail("the format stands behind an element");
+            header.format = parse_format(text);
+            has_format = true;
+        } else if (word == "element") {
+            header.elements.push_back(parse_element(text));
+        } else if (word == "property") {
+            if (header.elements.empty()) text.fail("a property stands before any element");
+            header.elements.back().properties.push_back(parse_property(text));
+        } else if (word != "comment" && word != "obj_info") {
+            text.fail(fmt::format("{} has no meaning in a PLY header", quoted(word)));
+        }
+        text.skip_line();
+    }
+    if (!has_format) throw FileError(file, "the header names no format");
+    text.skip_line();
+    header.data_begin = bytes.size() - text.rest().size();
+    return header;
+}
+
+/// Values as text.
+class PlyTextValues {
+  public:
+    PlyTextValues(std::string_view data, const std::filesystem::path& file) : text_(data, file) {}
+
+    double next(PlyType type) {
+        const auto value = text_.number<double>();
+        return type == PlyType::float32 ? static_cast<double>(static_cast<float>(value)) : value;
+    }
+    /// Moves to the next line, which has the next element; false if the line has surplus values.
+    bool end_element() {
+        const bool is_whole = text_.word_on_line().empty();
+        text_.skip_line();
+        return is_whole;
+    }
+    /// Upper bound of the number of remaining values, to validate counts.
+    [[nodiscard]] std::uint64_t max_remaining(PlyType) const { return text_.rest().size() / 2 + 1; }
+
+  private:
+    TextScanner text_;
+};
+
+/// Values as bytes, in either order.
+template <bool is_swapped>
+class PlyBinaryValues {
+  public:
+    PlyBinaryValues(std::string_view data, const std::filesystem::path& file)
+        : data_(data), file_(file) {}
+
+    double next(PlyType type) {
+        switch (type) {
+            case PlyType::int8:
+                return take<std::int8_t, std::uint8_t>();
+            case PlyType::uint8:
+                return take<std::uint8_t, std::uint8_t>();
+            case PlyType::int16:
+                return take<std::int16_t, std::uint16_t>();
+            case PlyType::uint16:
+                return take<std::uint16_t, std::uint16_t>();
+            case PlyType::int32:
+                return take<std::int32_t, std::uint32_t>();
+            case PlyType::uint32:
+                return take<std::uint32_t, std::uint32_t>();
+            case PlyType::float32:
+                return static_cast<double>(take<float, std::uint32_t>());
+            case PlyType::float64:
+                return take<double, std::uint64_t>();
+        }
+        return 0.0;
+    }
+    bool end_element() { return true; }
+    [[nodiscard]] std::uint64_t max_remaining(PlyType type) const { return data_.size() / size_of(type); }
+
+  private:
+    template <typename Value, typename Bits>
+    Value take() {
+        if (data_.size() < sizeof(Bits)) throw FileError(file_, "ends in the middle of its data");
+        Bits bits = 0;
+        std::memcpy(&bits, data_.data(), sizeof(Bits));
+        data_.remove_prefix(sizeof(Bits));
+        if constexpr (is_swapped && sizeof(Bits) > 1) {
+            Bits swapped = 0;
+            for (std::size_t i = 0; i < sizeof(Bits); ++i) {
+                swapped = static_cast<Bits>(swapped << 8U) | static_cast<Bits>(bits & 0xFFU);
+                bits = static_cast<Bits>(bits >> 8U);
+            }
+            bits = swapped;
+        }
+        return std::bit_cast<Value>(bits);
+    }
+
+    std::string_view data_;
+    const std::filesystem::path& file_;
+};
+
+/// Meaning of a vertex property; the number is its index in a row of floats.
+enum Slot : std::uint8_t { x, y, z, nx, ny, nz, red, green, blue, alpha, u, v, slot_count, unread };
+
+Slot slot_named(std::string_view name) {
+    static constexpr std::array<std::pair<std::string_view, Slot>, 28> names = {{
+        {"x", x},
+        {"y", y},
+        {"z", z},
+        {"nx", nx},
+        {"ny", ny},
+        {"nz", nz},
+        {"red", red},
+        {"green", green},
+        {"blue", blue},
+        {"alpha", alpha},
+        {"r", red},
+        {"g", green},
+        {"b", blue},
+        {"a", alpha},
+        {"diffuse_red", red},
+        {"diffuse_green", green},
+        {"diffuse_blue", blue},
+        {"diffuse_alpha", alpha},
+        {"s", u},
+        {"t", v},
+        {"u", u},
+        {"v", v},
+        {"texture_u", u},
+        {"texture_v", v},
+        {"texture_s", u},
+        {"texture_t", v},
+        {"s0", u},
+        {"t0", v},
+    }};
+    for (const auto& [known, slot] : names) {
+        if (known == name) return slot;
+    }
+    return unread;
+}
+
+/// The divisor for integers that stand for fractions: the largest value of their type.
+double largest_value(PlyType type) {
+    switch (type) {
+        case PlyType::int8:
+            return 127.0;
+        case PlyType::uint8:
+            return 255.0;
+        case PlyType::int16:
+            return 32767.0;
+        case PlyType::uint16:
+            return 65535.0;
+        case PlyType::int32:
+            return 2147483647.0;
+        case PlyType::uint32:
+            return 4294967295.0;
+        default:
+            return 1.0;
+    }
+}
+
+struct PlyData {
+    Mesh mesh;
+    Polygons polygons;
+    /// One per corner if texture coordinates are stored per face; otherwise empty.
+    std::vector<glm::vec2> corner_texcoords;
+};
+
+/// Reads the elements of one file.
+template <typename Values>
+class PlyElements {
+  public:
+    PlyElements(Values values, const std::filesystem::path& file, const glm::dvec3& origin,
+                Report& report)
+        : values_(values), file_(file), origin_(origin), report_(report) {}
+
+    PlyData read(const PlyHeader& header) {
+        for (const PlyElement& element : header.elements) {
+            if (element.properties.empty()) continue;
+            check_count(element);
+            if (element.name == "vertex") {
+                read_vertices(element);
+            } else if (element.name == "face") {
+                read_faces(element);
+            } else {
+                skip(element);
+            }
+        }
+        return std::move(data_);
+    }
+
+  private:
+    /// An element has at least one value, so the remaining values limit the count.
+    void check_count(const PlyElement& element) const {
+        const PlyProperty& first = element.properties.front();
+        if (element.count <= values_.max_remaining(first.count_type.value_or(first.type))) return;
+        throw FileError(file_, fmt::format("claims {} of element '{}', but ends before that",
+                                           element.count, element.name));
+    }
+
+    std::uint64_t list_length(const PlyProperty& property) {
+        const double length = values_.next(*property.count_type);
+        if (!(length >= 0.0) || length != std::floor(length) ||
+            length > static_cast<double>(values_.max_remaining(property.type))) {
+            throw FileError(file_, fmt::format("a list '{}' has the length {}, which the file "
+                                               "cannot hold",
+                                               property.name, length));
+        }
+        return static_cast<std::uint64_t>(length);
+    }
+
+    void skip_property(const PlyProperty& property) {
+        const std::uint64_t length = property.count_type ? list_length(property) : 1;
+        for (std::uint64_t i = 0; i < length; ++i)
+            values_.next(property.type);
+    }
+
+    void skip(const PlyElement& element) {
+        for (std::uint64_t i = 0; i < element.count; ++i) {
+            check_cancelled(i);
+            for (const PlyProperty& property : element.properties)
+                skip_property(property);
+        }
+        if (element.count > 0) {
+            report_.add(fmt::format("PLY element '{}'", element.name), "file", 0, "left out");
+        }
+    }
+
+    void count_unread(const PlyElement& element, const PlyProperty& property) {
+        report_.add(fmt::format("PLY property '{}' of '{}'", property.name, element.name), "file",
+                    0, "left out");
+    }
+
+    void end_element(const PlyElement& element, std::uint64_t index) {
+        if (values_.end_element()) return;
+        report_.add("line with more values than the header names", element.name, index,
+                    "the surplus left out");
+    }
+
+    void read_vertices(const PlyElement& element);
+    void read_faces(const PlyElement& element);
+    void read_corners(const PlyProperty& property);
+    void read_corner_texcoords(const PlyProperty& property);
+
+    Values values_;
+    const std::filesystem::path& file_;
+    glm::dvec3 origin_;
+    Report& report_;
+    PlyData data_;
+};
+
+template <typename Values>
+void PlyElements<Values>::read_vertices(const PlyElement& element) {
+    std::vector<Slot> slots;
+    std::array<bool, slot_count> has{};
+    for (const PlyProperty& property : element.properties) {
+        const Slot slot = property.count_type ? unread : slot_named(property.name);
+        slots.push_back(slot);
+        if (slot == unread) {
+            count_unread(element, property);
+        } else {
+            has[slot] = true;
+        }
+    }
+    if (!has[x] || !has[y] || !has[z]) throw FileError(file_, "its vertices have no x, y and z");
+    Mesh& mesh = data_.mesh;
+    std::array<double, slot_count + 2> row{};
+    row[alpha] = 1.0;
+    ProgressStage stage("vertices", element.count);
+    for (std::uint64_t i = 0; i < element.count; ++i) {
+        stage.at(i);
+        for (std::size_t k = 0; k < slots.size(); ++k) {
+            const PlyProperty& property = element.properties[k];
+            if (slots[k] == unread) {
+                skip_property(property);
+            } else {
+                const double value = values_.next(property.type);
+                row[slots[k]] = slots[k] <= z ? value : value / largest_value(property.type);
+            }
+        }
+        end_element(element, i);
+        mesh.positions.emplace_back(glm::dvec3(row[x], row[y], row[z]) - origin_);
+        if (has[nx] && has[ny] && has[nz]) mesh.normals.emplace_back(row[nx], row[ny], row[nz]);
+        if (has[red] && has[green] && has[blue]) {
+            mesh.colors.emplace_back(row[red], row[green], row[blue], row[alpha]);
+        }
+        if (has[u] && has[v]) mesh.texcoords.emplace_back(row[u], 1.0 - row[v]);
+    }
+}
+
+template <typename Values>
+void PlyElements<Values>::read_corners(const PlyProperty& property) {
+    const std::uint64_t length = list_length(property);
+    for (std::uint64_t i = 0; i < length; ++i) {
+        const double index = values_.next(property.type);
+        if (!(index >= 0.0 && index <= 4294967295.0 && index == std::floor(index))) {
+            throw FileError(file_, fmt::format("face {} names vertex {}",
+                                               data_.polygons.corner_counts.size(), index));
+        }
+        data_.polygons.corners.push_back(static_cast<std::uint32_t>(index));
+    }
+    data_.polygons.corner_counts.push_back(static_cast<std::uint32_t>(length));
+}
+
+/// Reads u v pairs, one per corner of the last face. Writers leave the list empty if a face has no
+/// texture; only if all lists are empty, the mesh has no texture coordinates.
+template <typename Values>
+void PlyElements<Values>::read_corner_texcoords(const PlyProperty& property) {
+    std::vector<glm::vec2>& texcoords = data_.corner_texcoords;
+    const std::uint64_t length = list_length(property);
+    if (length == 0 && texcoords.empty()) return;
+    texcoords.resize(data_.polygons.corners.size() - data_.polygons.corner_counts.back());
+    for (std::uint64_t i = 0; i + 1 < length; i += 2) {
+        const double u_value = values_.next(property.type);
+        const double v_value = values_.next(property.type);
+        texcoords.emplace_back(u_value, 1.0 - v_value);
+    }
+    if (length % 2 != 0) values_.next(property.type);
+    if (texcoords.size() == data_.polygons.corners.size()) return;
+    report_.add("face with too few or too many texture coordinates", "face",
+                data_.polygons.corner_counts.size() - 1, "has (0, 0) where they lack");
+    texcoords.resize(data_.polygons.corners.size());
+}
+
+template <typename Values>
+void PlyElements<Values>::read_faces(const PlyElement& element) {
+    const auto is_corners = [](const PlyProperty& property) {
+        return property.count_type &&
+               (property.name == "vertex_indices" || property.name == "vertex_index");
+    };
+    const auto corners =
+        std::find_if(element.properties.begin(), element.properties.end(), is_corners);
+    if (corners == element.properties.end()) {
+        throw FileError(file_, "its faces have no list of vertex indices");
+    }
+    const auto is_texcoords = [&](const PlyProperty& property) {
+        return property.count_type && property.name == "texcoord" && &property > &*corners;
+    };
+    for (const PlyProperty& property : element.properties) {
+        if (&property != &*corners && !is_texcoords(property)) count_unread(element, property);
+    }
+    ProgressStage stage("faces", element.count);
+    for (std::uint64_t i = 0; i < element.count; ++i) {
+        stage.at(i);
+        for (const PlyProperty& property : element.properties) {
+            if (&property == &*corners) {
+                read_corners(property);
+            } else if (is_texcoords(property)) {
+                read_corner_texcoords(property);
+            } else {
+                skip_property(property);
+            }
+        }
+        end_element(element, i);
+    }
+}
+
+/// Merges corners with their own texture coordinates into vertices, as for OBJ.
+void unify_corners(PlyData& data, const std::filesystem::path& file) {
+    ObjStatements statements;
+    statements.positions = std::move(data.mesh.positions);
+    statements.colors = std::move(data.mesh.colors);
+    statements.normals = std::move(data.mesh.normals);
+    statements.texcoords = std::move(data.corner_texcoords);
+    data.mesh = Mesh();
+    for (std::size_t i = 0; i < data.polygons.corners.size(); ++i) {
+        check_cancelled(i);
+        const std::uint32_t vertex = data.polygons.corners[i];
+        if (vertex >= statements.positions.size()) {
+            throw FileError(file, fmt::format("a face names vertex {}, but there are only {}",
+                                              vertex, statements.positions.size()));
+        }
+        const auto index = static_cast<std::int32_t>(vertex);
+        statements.corners.push_back(
+            {index, static_cast<std::int32_t>(i), statements.normals.empty() ? -1 : index});
+    }
+    data.polygons.corners = unify_vertices(statements, data.mesh);
+}
+
+PlyData read_data(const PlyHeader& header, std::string_view bytes,
+                  const std::filesystem::path& file, const glm::dvec3& origin, Report& report) {
+    switch (header.format) {
+        case PlyFormat::ascii:
+            return PlyElements(PlyTextValues(bytes, file), file, origin, report).read(header);
+        case PlyFormat::little_endian:
+            return PlyElements(PlyBinaryValues<false>(bytes, file), file, origin, report)
+                .read(header);
+        default:
+            return PlyElements(PlyBinaryValues<true>(bytes, file), file, origin, report)
+                .read(header);
+    }
+}
+
+}  // namespace
+
+MeshFile read_ply(const std::filesystem::path& file, const glm::dvec3& origin, Report& report) {
+    static_assert(std::endian::native == std::endian::little);
+    const FileContents contents(file);
+    const std::string_view bytes = contents.text();
+    const PlyHeader header = parse_ply_header(bytes, file);
+    PlyData data = read_data(header, bytes.substr(header.data_begin), file, origin, report);
+    if (!data.corner_texcoords.empty()) {
+        data.corner_texcoords.resize(data.polygons.corners.size());
+        unify_corners(data, file);
+    }
+    data.mesh.name = file.stem().string();
+    add_triangles(data.mesh, data.polygons, file, report);
+    MeshFile result;
+    result.mesh = std::move(data.mesh);
+    return result;
+}
+
+namespace {
+
+bool are_bytes(const std::vector<glm::vec4>& colors) {
+    const auto is_byte = [](float value) {
+        return value >= 0.0F && value <= 1.0F &&
+               static_cast<float>(std::round(static_cast<double>(value) * 255.0) / 255.0) == value;
+    };
+    return std::all_of(colors.begin(), colors.end(), [&](const glm::vec4& c) {
+        return is_byte(c.r) && is_byte(c.g) && is_byte(c.b) && is_byte(c.a);
+    });
+}
+
+std::string header_text(const Mesh& mesh, bool has_origin, bool has_byte_colors) {
+    std::string text = fmt::format("ply\nformat binary_little_endian 1.0\nelement vertex {}\n",
+                                   mesh.positions.size());
+    const auto properties = [&](const char* type, std::initializer_list<const char*> names) {
+        for (const char* name : names)
+            text += fmt::format("property {} {}\n", type, name);
+    };
+    properties(has_origin ? "double" : "float", {"x", "y", "z"});
+    if (!mesh.normals.empty()) properties("float", {"nx", "ny", "nz"});
+    if (!mesh.texcoords.empty()) properties("float", {"s", "t"});
+    if (!mesh.colors.empty()) {
+        properties(has_byte_colors ? "uchar" : "float", {"red", "green", "blue", "alpha"});
+    }
+    const bool fits_int = mesh.positions.size() <= std::numeric_limits<std::int32_t>::max();
+    return text +
+           fmt::format("element face {}\nproperty list uchar {} vertex_indices\nend_header\n",
+                       mesh.triangles.size(), fits_int ? "int" : "uint");
+}
+
+template <typename Value>
+void append(std::string& bytes, const Value& value) {
+    const std::size_t size = bytes.size();
+    bytes.resize(size + sizeof(value));
+    std::memcpy(bytes.data() + size, &value, sizeof(value));
+}
+
+}  // namespace
+
+void write_ply(const std::filesystem::path& file, const MeshFile& contents) {
+    static_assert(std::endian::native == std::endian::little);
+    const Mesh& mesh = contents.mesh;
+    const bool has_byte_colors = are_bytes(mesh.colors);
+    const bool has_origin = contents.origin != glm::dvec3(0.0);
+    std::string bytes = header_text(mesh, has_origin, has_byte_colors);
+    bytes.reserve(bytes.size() + mesh.positions.size() * 48 + mesh.triangles.size() * 13);
+    for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
+        if (has_origin)
+            append(bytes, contents.origin + glm::dvec3(mesh.positions[i]));
+        else
+            append(bytes, mesh.positions[i]);
+        if (!mesh.normals.empty()) append(bytes, mesh.normals[i]);
+        if (!mesh.texcoords.empty()) {
+            append(bytes, glm::vec2(mesh.texcoords[i].x, 1.0F - mesh.texcoords[i].y));
+        }
+        if (mesh.colors.empty()) continue;
+        if (has_byte_colors) {
+            append(bytes, glm::u8vec4(glm::round(mesh.colors[i] * 255.0F)));
+        } else {
+            append(bytes, mesh.colors[i]);
+        }
+    }
+    for (const glm::uvec3& triangle : mesh.triangles) {
+        append(bytes, std::uint8_t{3});
+        append(bytes, triangle);
+    }
+    replace_file(file, std::as_bytes(std::span(bytes)));
+}
+
+}  // namespace relief
