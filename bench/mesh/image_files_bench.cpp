@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "io/image/image_file_module.h"
+#include "io/image/image_module_client.h"
 #include "mesh/contenders.h"
 #include "relief/mesh/analytic_heights.h"
 #include "relief/mesh/bump.h"

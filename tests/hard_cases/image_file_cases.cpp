@@ -8,7 +8,7 @@
 #include <limits>
 
 #include "hard_cases/map_cases.h"
-#include "io/png/png_chunk.h"
+#include "io/png/png_format.h"
 #include "relief/mesh/bump_file.h"
 #include "relief/mesh/error.h"
 #include "relief/mesh/height_map.h"

@@ -1,23 +1,28 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reading whole image files. TIFF, EXR and large PNG files are read by rows from the file, all
-// others from memory: bytes -> container checks -> a decoder -> Image. The usual PNG and JPEG files
-// have a direct way; all else goes through the image module. Damaged, truncated, empty or oversized
-// files are a FileError. Tests: tests/mesh/io/image/image_file_test.cpp.
+// Reads whole image files and PNG's color tags. TIFF, EXR and large PNG files are read by rows, all
+// others from memory: bytes -> container checks -> decoder -> Image. Common PNG and JPEG files have
+// a direct decoder; all others go to the image module. Damaged, truncated, empty and oversized
+// files are FileErrors.
 #include "relief/mesh/image_file.h"
 
 #include <fmt/format.h>
 
+#include <array>
+#include <cstdint>
+#include <fstream>
 #include <memory>
 #include <new>
 #include <optional>
+#include <string_view>
 #include <utility>
 
 #include "file_bytes.h"
 #include "io/image/image_file_container.h"
 #include "io/image/image_file_direct.h"
-#include "io/image/module_source.h"
-#include "io/image/streamed_rows.h"
+#include "io/image/image_module_client.h"
+#include "io/image/row_codec.h"
 #include "relief/mesh/error.h"
+#include "relief/mesh/image_tags.h"
 
 namespace relief {
 namespace {
@@ -27,7 +32,8 @@ ColorSpace color_space_of(ImageUse use, int bits) {
     return bits == 32 ? ColorSpace::linear : ColorSpace::srgb;
 }
 
-/// A whole file; refuses what no acceptable image can be, before memory is taken.
+/// Reads a whole file. Files that are too large for any image are refused before memory is
+/// allocated.
 std::string read_bytes(const std::filesystem::path& file) {
     constexpr std::uintmax_t largest = max_image_samples * sizeof(float);
     std::error_code unknown;
@@ -51,7 +57,7 @@ ImageInfo info_of(std::span<const std::byte> bytes, const std::filesystem::path&
     return module_rows(std::move(container), bytes, name)->info();
 }
 
-/// Below this size a PNG is faster read and inflated at once.
+/// Below this size, reading and inflating a PNG at once is faster.
 constexpr std::uintmax_t large_png = std::uintmax_t{1} << 20;
 
 Image read_from_file(const std::filesystem::path& file) {
@@ -65,7 +71,7 @@ Image read_from_file(const std::filesystem::path& file) {
     return read_encoded(std::as_bytes(std::span(contents)), file);
 }
 
-/// Labels what `read` gives by its use.
+/// Sets the color space of the result of `read` by its use.
 template <typename Read>
 Image read_for(ImageUse use, const std::filesystem::path& name, Read read) {
     try {
@@ -95,6 +101,49 @@ ImageInfo read_image_info(const std::filesystem::path& file) {
 
 ImageInfo read_image_info(std::span<const std::byte> bytes, const std::string& name) {
     return info_of(bytes, name);
+}
+
+namespace {
+
+constexpr std::string_view png_signature = "\x89PNG\r\n\x1a\n";
+
+std::uint32_t big32(const char* bytes) {
+    std::uint32_t value = 0;
+    for (int i = 0; i < 4; ++i)
+        value = value << 8 | static_cast<unsigned char>(bytes[i]);
+    return value;
+}
+
+/// The color tag in a chunk; empty for most chunks.
+std::string tag_of(std::string_view type, std::istream& file) {
+    if (type == "sRGB") return "sRGB";
+    if (type == "iCCP") return "ICC profile";
+    if (type == "cICP") return "coding-independent code points";
+    if (type != "gAMA") return "";
+    std::array<char, 4> stored{};
+    if (!file.read(stored.data(), stored.size())) return "";
+    const std::uint32_t gamma = big32(stored.data());
+    return gamma == 100000 ? "" : fmt::format("gamma {:g}", gamma / 100000.0);
+}
+
+}  // namespace
+
+std::string color_tag(const std::filesystem::path& file) {
+    std::ifstream stream(file, std::ios::binary);
+    if (!stream) throw FileError(file, "cannot be opened");
+    std::array<char, 8> head{};
+    if (!stream.read(head.data(), head.size()) ||
+        std::string_view(head.data(), head.size()) != png_signature)
+        return "";
+    std::streamoff next = 8;
+    while (stream.seekg(next) && stream.read(head.data(), head.size())) {
+        const std::string_view type(head.data() + 4, 4);
+        if (type == "IDAT" || type == "IEND") return "";
+        const std::string tag = tag_of(type, stream);
+        if (!tag.empty()) return tag;
+        next += 12 + static_cast<std::streamoff>(big32(head.data()));
+    }
+    return "";
 }
 
 }  // namespace relief

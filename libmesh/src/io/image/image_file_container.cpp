@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Walks the chunks of PNG [ISO/IEC 15948], the segments of JPEG [ITU-T T.81] and the headers of
-// TGA and EXR; see image_file_container.h. A walk never reads past the end: what is cut short is a
-// FileError. Believable sizes: deflate expands at most 1032 times; a JPEG block of 8 x 8 takes at
-// least one bit, so that a byte stands for fewer than 2048 samples; a TGA run for at most 128
-// texels. Tests: tests/mesh/io/image/image_file_container_test.cpp.
+// Walks the chunks of PNG [ISO/IEC 15948], the segments of JPEG [ITU-T T.81] and the headers of TGA
+// and EXR. Walks never read past the end: a truncated file is a FileError. Limits for plausible
+// sizes: deflate expands at most 1032 times; a JPEG block of 8 x 8 takes at least one bit, so that
+// a byte encodes fewer than 2048 samples; a TGA run has at most 128 texels.
 #include "io/image/image_file_container.h"
 
 #include <fmt/format.h>
@@ -61,21 +60,20 @@ void check_believable(std::uint64_t needed, std::uint64_t possible, std::uint64_
                                       width, height, size));
 }
 
-// ---------------------------------------------------------------------------------------------
-// PNG
+// --- PNG ---
 
 }  // namespace
 
-/// Key, zero, value; or nothing where it is malformed. iTXt has five more fields in between.
+/// Parses key, zero, value; malformed text is ignored. iTXt has five more fields in between.
 void keep_png_text(std::string_view type, std::string_view data,
                    std::map<std::string, std::string>& text) {
     const std::size_t key_end = data.find('\0');
     if (key_end == std::string_view::npos || key_end == 0) return;
     std::string_view value = data.substr(key_end + 1);
     if (type == "iTXt") {
-        if (value.size() < 2 || value[0] != '\0') return;  // Compressed: no concern of ours.
+        if (value.size() < 2 || value[0] != '\0') return;  // Compressed text is not read.
         value.remove_prefix(2);
-        for (int field = 0; field < 2; ++field) {  // Language tag, translated key.
+        for (int field = 0; field < 2; ++field) {  // Language tag and translated key.
             const std::size_t end = value.find('\0');
             if (end == std::string_view::npos) return;
             value.remove_prefix(end + 1);
@@ -92,7 +90,7 @@ void check_png_size(Bytes header, std::uint64_t compressed, std::uint64_t size,
     const std::uint32_t type = byte_at(header, 9);
     if (type >= channels_of_type.size() || channels_of_type[type] == 0)
         throw FileError(name, fmt::format("PNG has no colour type {}", type));
-    // Width and height are below 2^32, so that bits stay below 2^32 * 64.
+    // Width and height are below 2^32, so the bits of a row are below 2^32 * 64.
     const std::uint64_t row = (width * channels_of_type[type] * byte_at(header, 8) + 7) / 8;
     const std::uint64_t rows_possible =
         deflate_expansion * (compressed + 16) / std::max<std::uint64_t>(row, 1);
@@ -145,8 +143,7 @@ void strip_png(Bytes bytes, const std::filesystem::path& name, ImageContainer& c
     check_png_size(header, compressed, bytes.size(), name);
 }
 
-// ---------------------------------------------------------------------------------------------
-// JPEG
+// --- JPEG ---
 
 bool stands_alone(std::uint32_t marker) {
     return marker == 0x01 || (marker >= 0xD0 && marker <= 0xD8);
@@ -156,12 +153,13 @@ bool starts_frame(std::uint32_t marker) {
     return marker >= 0xC0 && marker <= 0xCF && marker != 0xC4 && marker != 0xC8 && marker != 0xCC;
 }
 
-/// Application data, but for JFIF (0) and Adobe (14), which say how colours are coded; comments.
+/// Application data and comments are dropped, except JFIF (0) and Adobe (14), which define the
+/// color coding.
 bool is_dropped(std::uint32_t marker) {
     return (marker >= 0xE1 && marker <= 0xEF && marker != 0xEE) || marker == 0xFE;
 }
 
-/// Where the next marker's code stands, skipping coded data, stuffed zeros and fill bytes.
+/// The offset of the next marker's code. Coded data, stuffed zeros and fill bytes are skipped.
 std::size_t next_marker(Bytes bytes, std::size_t at, const std::filesystem::path& name) {
     while (at + 1 < bytes.size()) {
         const void* found = std::memchr(bytes.data() + at, 0xFF, bytes.size() - at - 1);
@@ -212,8 +210,7 @@ void strip_jpeg(Bytes bytes, const std::filesystem::path& name, ImageContainer& 
     if (width == 0) throw FileError(name, "has no frame");
 }
 
-// ---------------------------------------------------------------------------------------------
-// TGA
+// --- TGA ---
 
 void check_tga(Bytes bytes, const std::filesystem::path& name) {
     if (bytes.size() < 18) throw FileError(name, "is cut short: TGA starts with 18 bytes");
@@ -233,14 +230,13 @@ bool is_tga(Bytes bytes, const std::filesystem::path& name) {
     return lower_extension(name) == ".tga";
 }
 
-// ---------------------------------------------------------------------------------------------
-// EXR
+// --- EXR ---
 
 std::uint32_t little32(Bytes bytes, std::size_t offset) {
     return little16(bytes, offset) | little16(bytes, offset + 2) << 16;
 }
 
-/// Where the header of the first part ends, or nothing where the bytes do before that.
+/// The end of the first part's header; nullopt if the bytes end before it.
 std::optional<std::size_t> exr_header_end(Bytes bytes) {
     const std::string_view text = text_of(bytes);
     for (std::size_t at = 8;;) {
@@ -255,7 +251,7 @@ std::optional<std::size_t> exr_header_end(Bytes bytes) {
     }
 }
 
-/// The value of an attribute in a header that is whole, or nothing where it has none.
+/// The value of an attribute in a complete header; empty if it is absent.
 Bytes exr_attribute(Bytes bytes, std::string_view wanted) {
     const std::string_view text = text_of(bytes);
     for (std::size_t at = 8; text[at] != '\0';) {
@@ -270,11 +266,11 @@ Bytes exr_attribute(Bytes bytes, std::string_view wanted) {
 
 }  // namespace
 
-/// Every block of lines or tile has 8 bytes in a table; tiles are held in memory as a whole.
+/// Each block of lines or tile has 8 bytes in a table; tiles are held in memory as a whole.
 bool check_exr(std::span<const std::byte> start, std::uint64_t size,
                const std::filesystem::path& name) {
-    constexpr std::uint64_t most_lines_of_a_block = 256;
-    constexpr std::uint64_t largest_tile = 1 << 24;
+    constexpr std::uint64_t max_block_lines = 256;
+    constexpr std::uint64_t max_tile_texels = 1 << 24;
     if (!exr_header_end(start)) {
         if (start.size() < size) return false;
         throw FileError(name, "is cut short within its header");
@@ -288,11 +284,11 @@ bool check_exr(std::span<const std::byte> start, std::uint64_t size,
     };
     const std::uint64_t width = extent(0);
     const std::uint64_t height = extent(4);
-    std::uint64_t blocks = (height + most_lines_of_a_block - 1) / most_lines_of_a_block;
+    std::uint64_t blocks = (height + max_block_lines - 1) / max_block_lines;
     if (const Bytes tiles = exr_attribute(start, "tiles"); tiles.size() >= 8) {
         const std::uint64_t tile_width = little32(tiles, 0);
         const std::uint64_t tile_height = little32(tiles, 4);
-        if (tile_width == 0 || tile_height == 0 || tile_width > largest_tile / tile_height) {
+        if (tile_width == 0 || tile_height == 0 || tile_width > max_tile_texels / tile_height) {
             throw FileError(
                 name, fmt::format("announces tiles of {} x {} texels", tile_width, tile_height));
         }

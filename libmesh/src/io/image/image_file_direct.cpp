@@ -1,18 +1,73 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which decoder of ours takes an image, if any. Nothing is thrown but std::bad_alloc: what goes
-// wrong is left to the image module. Tests: tests/mesh/io/png/png_test.cpp, image/jpeg_test.cpp.
+// Decodes plain JPEG files with libjpeg-turbo, and chooses between this decoder and that of PNG.
+// This is the only file that uses libjpeg-turbo; OpenImageIO decodes with the same library, to the
+// same samples.
 #include "io/image/image_file_direct.h"
 
+#include <turbojpeg.h>
+
+#include <memory>
+#include <new>
 #include <string_view>
 #include <utility>
 
-#include "io/image/jpeg_decoder.h"
 #include "io/png/png_decoder.h"
+#include "relief/mesh/image_file.h"
 
 namespace relief {
 namespace {
 
-/// \param samples  nothing, or what a decoder made
+struct Destroy {
+    void operator()(void* decoder) const { tjDestroy(decoder); }
+};
+using Decoder = std::unique_ptr<void, Destroy>;
+
+Decoder make_decoder() {
+    Decoder decoder(tjInitDecompress());
+    if (!decoder) throw std::bad_alloc();
+    return decoder;
+}
+
+const unsigned char* data_of(std::span<const std::byte> bytes) {
+    return reinterpret_cast<const unsigned char*>(bytes.data());
+}
+
+}  // namespace
+
+std::optional<PlainJpeg> open_plain_jpeg(std::span<const std::byte> stripped) {
+    const Decoder decoder = make_decoder();
+    PlainJpeg jpeg;
+    int subsampling = 0;
+    int colors = 0;
+    if (tjDecompressHeader3(decoder.get(), data_of(stripped), stripped.size(), &jpeg.width,
+                            &jpeg.height, &subsampling, &colors) != 0) {
+        return std::nullopt;
+    }
+    if (colors != TJCS_GRAY && colors != TJCS_RGB && colors != TJCS_YCbCr) return std::nullopt;
+    jpeg.channels = colors == TJCS_GRAY ? 1 : 3;
+    const std::size_t most_rows = max_image_samples / static_cast<std::size_t>(jpeg.channels) /
+                                  static_cast<std::size_t>(jpeg.width);
+    if (static_cast<std::size_t>(jpeg.height) > most_rows) return std::nullopt;
+    return jpeg;
+}
+
+std::optional<std::vector<std::uint8_t>> decode(const PlainJpeg& jpeg,
+                                                std::span<const std::byte> stripped) {
+    const Decoder decoder = make_decoder();
+    std::vector<std::uint8_t> samples(static_cast<std::size_t>(jpeg.width) *
+                                      static_cast<std::size_t>(jpeg.height) *
+                                      static_cast<std::size_t>(jpeg.channels));
+    const int format = jpeg.channels == 1 ? TJPF_GRAY : TJPF_RGB;
+    if (tjDecompress2(decoder.get(), data_of(stripped), stripped.size(), samples.data(), jpeg.width,
+                      0, jpeg.height, format, TJFLAG_STOPONWARNING) != 0) {
+        return std::nullopt;
+    }
+    return samples;
+}
+
+namespace {
+
+/// \param samples  the decoder's result
 template <typename Header, typename Samples>
 std::optional<Image> image_of(const Header& header, std::optional<Samples> samples) {
     if (!samples) return std::nullopt;

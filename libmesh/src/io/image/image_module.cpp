@@ -1,21 +1,85 @@
 // SPDX-License-Identifier: Apache-2.0
-// The image module: OpenImageIO behind the table of image_module.h. The only file that knows it.
-// Reads encoded bytes as 8-bit, 16-bit or float samples exactly as stored: no colour conversion, no
-// multiplied alpha; first subimage, first mip level, data window. What goes wrong comes back as
-// text, never as an exception: everything thrown inside ends here.
-// Tests: tests/mesh/io/image/image_file_test.cpp.
+// The image module: OpenImageIO behind the table of image_module.h. This is the only file that uses
+// it.
+//
+// Encoded bytes become 8-bit, 16-bit or float samples exactly as stored: no color conversion, no
+// multiplied alpha; first subimage, first mip level, data window. Errors are returned as text; no
+// exception leaves the module.
 #include "io/image/image_module.h"
 
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
+#include <dlfcn.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <exception>
 #include <memory>
 #include <string>
 #include <utility>
 
-#include "io/image/image_module_png.h"
+namespace {
+
+// --- Replaced functions of libpng and libtiff ---
+
+thread_local std::string last_message;
+
+// The types of handlers and functions as libpng 1.6 declares them, with opaque pointers.
+using Handler = void (*)(void* png, const char* text);
+using Create = void* (*)(const char* version, void* receiver, Handler error, Handler warning);
+using SetHandlers = void (*)(void* png, void* receiver, Handler error, Handler warning);
+using Jump = void (*)(void* png, int value);
+
+template <typename Function>
+Function in_libpng(const char* name) {
+    return reinterpret_cast<Function>(::dlsym(RTLD_NEXT, name));
+}
+
+[[noreturn]] void jump_out(void* png, const char* text) {
+    last_message = text;
+    if (const auto jump = in_libpng<Jump>("png_longjmp")) jump(png, 1);
+    std::abort();  // An error handler must not return, and without the jump there is no
+                   // alternative.
+}
+
+void ignore_message(void*, const char*) {}
+
+/// Returns libpng's last message in this thread and clears it; empty if there is none.
+std::string take_png_message() {
+    return std::exchange(last_message, {});
+}
+
+}  // namespace
+
+/// Keeps libpng from printing. OpenImageIO 2.4 leaves libpng its default handlers, which write
+/// errors and warnings to stderr, but libraries of relief print nothing. The dynamic linker finds
+/// these two functions in this module before those of libpng, so OpenImageIO calls them. They call
+/// libpng's own functions with silent handlers. The error itself still reaches OpenImageIO by
+/// libpng's jump. If a program has loaded libpng itself, the linker finds that first, and errors
+/// are printed.
+extern "C" __attribute__((visibility("default"))) void* png_create_read_struct(const char* version,
+                                                                               void*, Handler,
+                                                                               Handler) {
+    const auto create = in_libpng<Create>("png_create_read_struct");
+    return create == nullptr ? nullptr : create(version, nullptr, jump_out, ignore_message);
+}
+
+extern "C" __attribute__((visibility("default"))) void png_set_error_fn(void* png, void* receiver,
+                                                                        Handler, Handler) {
+    if (const auto set = in_libpng<SetHandlers>("png_set_error_fn"))
+        set(png, receiver, jump_out, ignore_message);
+}
+
+/// Keeps the output independent of the clock. If writing a TIFF takes more than five seconds,
+/// OpenImageIO 2.4 asks libtiff for a checkpoint of the directory, so that the same image gives
+/// different files. relief writes temporary files and renames them when they are complete, so
+/// checkpoints have no use. The linker finds this function before that of libtiff. The directory is
+/// written once, when the file is closed.
+extern "C" __attribute__((visibility("default"))) int TIFFCheckpointDirectory(void*) {
+    return 1;  // libtiff's value for success.
+}
+
+// --- The functions of the module ---
 
 namespace relief {
 
@@ -36,7 +100,7 @@ void fail(const ImageModuleFailure& failure, const std::string& text) {
     failure.fail(failure.receiver, text.empty() ? "no reason is known" : text.c_str());
 }
 
-/// Runs `body`, and turns whatever it throws into text. The result is `otherwise` then.
+/// Runs `body` and converts exceptions to text; the result is `otherwise` then.
 template <typename Result, typename Body>
 Result guarded(const ImageModuleFailure& failure, Result otherwise, Body body) {
     try {
@@ -49,13 +113,13 @@ Result guarded(const ImageModuleFailure& failure, Result otherwise, Body body) {
     return otherwise;
 }
 
-/// The pending message of a reader or writer, or else the library's own; what libpng says is more
-/// than OpenImageIO makes of it.
+/// The pending message of a reader or writer, or the library's own one. A message of libpng is
+/// preferred, because it has more details.
 template <typename File>
 std::string pending_error(File& file) {
     const std::string text = file.has_error() ? file.geterror() : OIIO::geterror();
-    const std::string complaint = last_png_complaint();
-    return complaint.empty() ? text : "PNG: " + complaint;
+    const std::string last_message = take_png_message();
+    return last_message.empty() ? text : "PNG: " + last_message;
 }
 
 OIIO::TypeDesc sample_type(int bits) {
@@ -64,7 +128,7 @@ OIIO::TypeDesc sample_type(int bits) {
     return OIIO::TypeDesc::FLOAT;
 }
 
-/// 8 and 16 where every channel is an unsigned integer of that size, else 32.
+/// 8 or 16 if all channels are unsigned integers of that size, otherwise 32.
 int bits_of(const OIIO::ImageSpec& spec) {
     int bits = 8;
     for (int channel = 0; channel < spec.nchannels; ++channel) {
@@ -85,7 +149,7 @@ void hand_out_text(const OIIO::ImageSpec& spec, const ImageModuleText& text) {
     }
 }
 
-/// Opens what `bytes` gives.
+/// Opens an image from a proxy.
 ImageModuleReader* open_proxy(const char* format, std::unique_ptr<OIIO::Filesystem::IOProxy> bytes,
                               ImageModuleHeader* header, ImageModuleText text,
                               ImageModuleFailure failure) {
@@ -93,14 +157,14 @@ ImageModuleReader* open_proxy(const char* format, std::unique_ptr<OIIO::Filesyst
     reader->bytes = std::move(bytes);
     reader->input = OIIO::ImageInput::create(format);
     if (!reader->input) return fail(failure, OIIO::geterror()), nullptr;
-    // Opening with both a configuration and a proxy in one call fails in OpenImageIO 2.4; the
-    // proxy set beforehand works.
+    // In OpenImageIO 2.4, opening with both a configuration and a proxy fails; setting the proxy
+    // first works.
     if (!reader->input->set_ioproxy(reader->bytes.get()))
         return fail(failure, "this format cannot be read from memory"), nullptr;
-    OIIO::ImageSpec wish;
-    wish["oiio:UnassociatedAlpha"] = 1;
+    OIIO::ImageSpec request;
+    request["oiio:UnassociatedAlpha"] = 1;
     OIIO::ImageSpec spec;
-    if (!reader->input->open(std::string("image.") + format, spec, wish))
+    if (!reader->input->open(std::string("image.") + format, spec, request))
         return fail(failure, pending_error(*reader->input)), nullptr;
     if (spec.deep || spec.depth > 1)
         return fail(failure, "holds a volume or deep samples"), nullptr;
@@ -147,7 +211,7 @@ bool read(ImageModuleReader* reader, std::int64_t first, std::int64_t end, void*
                 ? input.read_tiles(0, 0, spec.x, spec.x + spec.width, top, bottom, spec.z,
                                    spec.z + 1, 0, spec.nchannels, type, samples)
                 : input.read_scanlines(0, 0, top, bottom, spec.z, 0, spec.nchannels, type, samples);
-        // Truncated files may read with success and leave an error pending.
+        // A truncated file may be read with success while an error is pending.
         if (read && !input.has_error()) return true;
         fail(failure, pending_error(input));
         return false;
@@ -158,12 +222,12 @@ void close(ImageModuleReader* reader) {
     try {
         delete reader;
     } catch (...) {
-        // Nothing is written by a reader: what fails in its end has no consequence.
+        // A reader writes nothing, so an error while closing has no consequence.
         return;
     }
 }
 
-/// What every format of ours is written with.
+/// The settings for all formats that relief writes.
 OIIO::ImageSpec spec_to_write(const std::string& format, const ImageModulePicture& picture) {
     const ImageModuleHeader& header = picture.header;
     OIIO::ImageSpec spec(
@@ -182,16 +246,17 @@ OIIO::ImageSpec spec_to_write(const std::string& format, const ImageModulePictur
     if (picture.srgb) spec["oiio:ColorSpace"] = "sRGB";
     if (format == "tiff" || format == "openexr") spec["compression"] = "zip";
     if (format == "tiff") spec["tiff:zipquality"] = picture.zip_quality;
-    // Plain TIFF has 32-bit offsets; what deflate makes of the samples is not known yet.
+    // Plain TIFF has 32-bit offsets, and the compressed size is unknown.
     constexpr std::uint64_t large = 0xF0000000;
     if (format == "tiff" && spec.image_bytes(true) >= large) spec["tiff:bigtiff"] = 1;
-    // OpenImageIO 2.4 takes some of its own entries for Exif and then cannot write them.
+    // OpenImageIO 2.4 treats some of its own entries as Exif and then cannot write them.
     if (format == "tiff") spec["tiff:write_exif"] = 0;
-    // Else the date would be written, and the same image would never give the same file.
+    // Without this the date would be written, and the file would differ each time.
     if (format == "tiff" || format == "openexr") spec["DateTime"] = "";
     if (format == "jpeg") {
         spec["compression"] = "jpeg:95";
-        spec["jpeg:subsampling"] = "4:4:4";  // Data maps must not bleed between channels' rows.
+        spec["jpeg:subsampling"] =
+            "4:4:4";  // Chroma subsampling would mix neighboring texels of data maps.
     }
     for (std::size_t entry = 0; entry < picture.text_count; ++entry)
         spec.attribute(picture.keys[entry], std::string(picture.values[entry]));
@@ -236,7 +301,7 @@ void release(ImageModuleWriter* writer) {
     try {
         delete writer;
     } catch (...) {
-        // The file is complete, or nobody's.
+        // The file is already complete or abandoned.
         return;
     }
 }

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// The table of functions between libmesh and the image module, the one shared library that knows
-/// OpenImageIO. Plain C types, no exceptions, no allocation handed across.
+/// The table of functions between libmesh and the image module, the only shared library that uses
+/// OpenImageIO. It has plain C types; exceptions and allocations do not cross it.
 ///
-/// Every function returns whether it succeeded; where it did not, it has called `fail` with one
-/// line of text. Samples are rows of interleaved channels from the top, tightly packed, in the
-/// machine's byte order. Tests: tests/mesh/io/image/image_file_test.cpp.
+/// Functions return whether they succeeded, and call `fail` with one line of text if not. Samples
+/// are rows of interleaved channels from the top, tightly packed, in native byte order.
 #pragma once
 
 #include <cstddef>
@@ -13,19 +12,20 @@
 
 namespace relief {
 
-/// Changes whenever anything in this file does; a module of another version is refused.
+/// The version of this interface; it changes with every change here. Modules of other versions are
+/// refused.
 inline constexpr std::uint32_t image_module_version = 3;
 
-/// The name of the module's one exported function: `const ImageModule* relief_image_module()`.
+/// The name of the module's only exported function: `const ImageModule* relief_image_module()`.
 inline constexpr const char* image_module_entry = "relief_image_module";
 
-/// Where the callee says why it failed. `text` lives only during the call.
+/// Receives the reason of a failure. `text` is valid only during the call.
 struct ImageModuleFailure {
     void* receiver = nullptr;
     void (*fail)(void* receiver, const char* text) = nullptr;
 };
 
-/// Where the callee hands out text entries. Both strings live only during the call.
+/// Receives text entries. Both strings are valid only during the call.
 struct ImageModuleText {
     void* receiver = nullptr;
     void (*entry)(void* receiver, const char* key, const char* value) = nullptr;
@@ -35,22 +35,23 @@ struct ImageModuleHeader {
     std::int64_t width = 0;
     std::int64_t height = 0;
     std::int64_t channels = 0;
-    std::int32_t bits = 0;  ///< 8, 16 or 32 (float): what read() gives.
+    std::int32_t bits = 0;  ///< Of samples from read(): 8, 16 or 32 (float).
 };
 
-/// An image being read; the module's own.
+/// An image that is being read; private to the module.
 struct ImageModuleReader;
 
-/// An image being written; the module's own.
+/// An image that is being written; private to the module.
 struct ImageModuleWriter;
 
-/// What to write, and how to label it.
+/// The properties of an image to be written.
 struct ImageModulePicture {
     ImageModuleHeader header;
-    bool srgb = false;    ///< Label as sRGB where the format can say so.
+    bool srgb = false;    ///< Label it as sRGB if the format has such a label.
     bool half = false;    ///< Store float samples as half floats.
-    int zip_quality = 1;  ///< 1 (fast) to 9 (small), where the format deflates.
-    const char* const* channel_names = nullptr;  ///< As many as channels; null: grey, RGB, alpha.
+    int zip_quality = 1;  ///< 1 (fast) to 9 (small), for formats that use deflate.
+    const char* const* channel_names =
+        nullptr;  ///< One for each channel; null for gray, RGB and alpha.
     const char* const* keys = nullptr;
     const char* const* values = nullptr;
     std::size_t text_count = 0;
@@ -59,8 +60,8 @@ struct ImageModulePicture {
 struct ImageModule {
     std::uint32_t version;
 
-    /// Opens encoded bytes, which must outlive the reader. `format` is OpenImageIO's name for it.
-    /// Only headers are looked at. Null where it failed.
+    /// Opens encoded bytes, which must outlive the reader, and reads their header. `format` is
+    /// OpenImageIO's name for it. Null after a failure.
     ImageModuleReader* (*open)(const char* format, const void* bytes, std::size_t size,
                                ImageModuleHeader* header, ImageModuleText text,
                                ImageModuleFailure failure);
@@ -69,28 +70,28 @@ struct ImageModule {
     ImageModuleReader* (*open_file)(const char* format, const char* path, ImageModuleHeader* header,
                                     ImageModuleText text, ImageModuleFailure failure);
 
-    /// The least number of rows that read() may be asked for at once: 1, or the height of a tile.
+    /// The row granularity of read(): 1, or the height of a tile.
     std::int64_t (*row_grain)(ImageModuleReader* reader);
 
-    /// Decodes rows [first, end); `first` is a multiple of the row grain, and so is `end` unless it
-    /// is the height.
+    /// Decodes rows [first, end). Both are multiples of the row granularity, except that `end` may
+    /// be the height.
     bool (*read)(ImageModuleReader* reader, std::int64_t first, std::int64_t end, void* samples,
                  ImageModuleFailure failure);
 
     void (*close)(ImageModuleReader* reader);
 
-    /// Begins a file, by OpenImageIO's name for its format. Null where it failed.
+    /// Creates a file; `format` is OpenImageIO's name for it. Null after a failure.
     ImageModuleWriter* (*create)(const char* format, const char* path,
                                  const ImageModulePicture* picture, ImageModuleFailure failure);
 
-    /// Takes rows [first, end), which follow those before.
+    /// Writes rows [first, end), which must follow the previous ones.
     bool (*write)(ImageModuleWriter* writer, std::int64_t first, std::int64_t end,
                   const void* samples, ImageModuleFailure failure);
 
-    /// Ends a file of which all rows are written.
+    /// Completes a file after all rows.
     bool (*finish)(ImageModuleWriter* writer, ImageModuleFailure failure);
 
-    /// Frees the writer, whether it came to an end or not.
+    /// Frees the writer, also that of an incomplete file.
     void (*release)(ImageModuleWriter* writer);
 };
 

@@ -1,11 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Deflate in pieces that fit together: each piece is coded by itself, on whichever thread, and all
-/// of them in a row are one stream. Source: [RFC 1951]. Tests:
-/// tests/mesh/io/png/deflate_encoder_test.cpp.
-///
-/// libdeflate, which reads fastest, can only end a stream, not a piece of one; zlib can, at a fifth
-/// of this speed; ISA-L can, but what it writes depends on the processor.
+/// An encoder of deflate streams [RFC 1951] whose output does not depend on the machine, and whose
+/// parts can be encoded in parallel.
 #pragma once
 
 #include <cstddef>
@@ -13,24 +9,42 @@
 #include <span>
 #include <vector>
 
-#include "io/png/match_finder.h"
 #include "relief/mesh/image_file.h"
 
 namespace relief {
 
-/// Whether repetitions are looked for. Where bytes are noise, that finds next to nothing.
+/// Computes the code lengths of a shortest prefix code of limited length; 0 for symbols that do not
+/// occur.
+///
+/// \param counts  frequency of each symbol; at most 288 symbols, with a sum below 2^32
+/// \param max_length    the maximum length of a code; longer codes are shortened at the expense of
+/// as few
+///         others as possible
+///
+/// At least two symbols get a code, used or not, because some decoders refuse incomplete codes.
+/// Source: [Huffman 1952].
+void huffman_lengths(std::span<const std::uint32_t> counts, int max_length,
+                     std::span<std::uint8_t> lengths);
+
+/// Computes the codes of these lengths, with the first bit lowest, as deflate stores them.
+void huffman_codes(std::span<const std::uint8_t> lengths, std::span<std::uint16_t> codes);
+
+/// Distance to which deflate can refer back.
+inline constexpr std::size_t deflate_window = 32768;
+
+/// Tells whether to search for repetitions. In noise there are hardly any.
 enum class Repetitions { ignored, sought };
 
-/// Appends a piece of a stream to `to`, ending at a whole byte.
+/// Appends a part of a stream to `to`; it ends at a byte boundary.
 ///
-/// \param bytes     what went before, at most a window of which is of use, then what is to be coded
-/// \param begin     where that begins
-/// \param is_last   whether the stream ends with this piece
+/// \param bytes    the preceding bytes, of which at most a window is used, and the bytes to encode
+/// \param begin    index of the first byte to encode
+/// \param is_last  tells whether the stream ends with this part
 void deflate_piece(std::span<const std::uint8_t> bytes, std::size_t begin, WriteEffort effort,
                    Repetitions repetitions, bool is_last, std::vector<std::uint8_t>& to);
 
-/// How many bits deflate_piece() would take, about: the block's codes are not made. The same on
-/// every machine.
+/// Estimates the number of bits from deflate_piece() without encoding. The estimate is the same on
+/// all machines.
 std::uint64_t estimated_bits(std::span<const std::uint8_t> bytes, Repetitions repetitions);
 
 }  // namespace relief

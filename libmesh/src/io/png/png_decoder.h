@@ -1,60 +1,53 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// The direct way for plain PNG files, without the 0.2 s that loading the image module takes.
+/// The decoder of plain PNG files, which avoids loading the image module (0.2 s).
 ///
-/// Plain is whatever is not interlaced, has no single transparent colour, and is intact. All else,
-/// damage too, is left to the module, so that it has one judge. Samples come out as read_image
-/// promises: rows from the top, 1, 2 and 4 bits widened to 8, palettes as RGB or RGBA.
-/// Tests: tests/mesh/io/png/png_test.cpp.
+/// A plain PNG is not interlaced, has no single transparent color, and is intact. All others,
+/// damaged ones too, are left to the module, so that only it decides about them. Samples are those
+/// of read_image(): rows from the top, 1, 2 and 4 bits widened to 8, palettes as RGB or RGBA.
 #pragma once
 
 #include <cstddef>
+#include <filesystem>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
 
+#include "io/image/row_codec.h"
 #include "relief/mesh/image.h"
 
 namespace relief {
 
-/// What the header and the palette of a plain PNG say.
+/// The header and the palette of a plain PNG.
 struct PlainPng {
     int width = 0;
     int height = 0;
     int stored_bits = 0;                ///< Of a stored sample or palette index: 1, 2, 4, 8 or 16.
-    int stored_channels = 0;            ///< 1 where a palette is.
-    std::vector<std::uint8_t> palette;  ///< Texels of `channels` bytes; empty where there is none.
-    int channels = 0;                   ///< Of the image as it is read.
-    std::vector<std::byte> packed;      ///< The zlib stream of all IDAT chunks, where it is held.
+    int stored_channels = 0;            ///< 1 if there is a palette.
+    std::vector<std::uint8_t> palette;  ///< Texels of `channels` bytes; empty if there is none.
+    int channels = 0;                   ///< Of the decoded image.
+    std::vector<std::byte> packed;      ///< The zlib stream of all IDAT chunks, if it is in memory.
 
     [[nodiscard]] int bits() const { return stored_bits == 16 ? 16 : 8; }
-    /// Of a row in the stream, without the byte that names the filter.
+    /// Bytes of a row in the stream, without the filter byte.
     [[nodiscard]] std::size_t stored_row_size() const;
-    /// Of a row of samples.
+    /// Bytes of a row of samples.
     [[nodiscard]] std::size_t row_size() const;
-    /// From a stored sample to the same of the texel on the left, in bytes.
+    /// Bytes between the same stored samples of neighboring texels.
     [[nodiscard]] std::size_t step() const;
 };
 
-/// Some chunks' data, which is empty where there are none.
-struct PngChunks {
-    std::span<const std::byte> header;
-    std::span<const std::byte> palette;
-    std::span<const std::byte> transparency;
-};
-
-/// What these say, or nothing where that is not plain. `packed` is left empty.
-std::optional<PlainPng> plain_png(const PngChunks& chunks);
-
-/// What a PNG says of itself, or nothing where it is not plain, or of more than max_image_samples.
+/// The properties of a PNG; nullopt if it is not plain, or has more than max_image_samples.
 /// \param stripped  IHDR, PLTE, tRNS, IDAT and IEND chunks only (image_file_container.h)
 std::optional<PlainPng> open_plain_png(std::span<const std::byte> stripped);
 
-/// Its samples, or nothing where the data are damaged.
+/// The samples; nullopt if the data is damaged.
 std::optional<Image::Samples> decode(const PlainPng& png);
 
-/// One row as it stands in the stream, unfiltered, as samples in the machine's byte order.
-/// \return false where an index is beyond the palette
-bool unpack_row(const PlainPng& png, std::span<const std::uint8_t> stored, std::byte* samples);
+/// Opens a plain PNG file, whose rows are decoded on demand; null if it is not plain. If damage is
+/// found in a row, the image module reads the file from its beginning and decides. \throws
+/// FileError if the file is truncated, or if its header announces more than it can hold
+std::unique_ptr<RowSource> open_png_rows(const std::filesystem::path& file);
 
 }  // namespace relief

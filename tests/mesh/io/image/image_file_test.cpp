@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Image files there and back, sample by sample, and what each format refuses.
-#include "relief/mesh/image_file.h"
-
+// Whole image files: formats, samples, text, color tags, options, and the direct decoder of JPEG,
+// which must agree with the module.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
@@ -13,13 +12,20 @@
 #include <limits>
 #include <thread>
 
+#include "io/image/image_file_direct.h"
+#include "io/png/png_format.h"
+#include "module_reference.h"
 #include "relief/mesh/error.h"
+#include "relief/mesh/image_file.h"
+#include "relief/mesh/image_tags.h"
 #include "support/message_of.h"
 #include "support/shared_data.h"
 
 namespace relief {
 namespace {
 
+using test::by_module;
+using test::directly;
 using test::TemporaryDirectory;
 using testing::ElementsAre;
 using testing::HasSubstr;
@@ -293,5 +299,85 @@ TEST(ImageFile, CutFilesAreErrorsInEveryFormat) {
     }
 }
 
+std::string tag_of(const std::string& bytes) {
+    const test::TemporaryDirectory folder;
+    std::ofstream(folder / "map.png", std::ios::binary) << bytes;
+    return color_tag(folder / "map.png");
+}
+
+std::string png_with(std::string_view type, std::string_view data) {
+    std::string file = "\x89PNG\r\n\x1a\n";
+    append_chunk(file, "IHDR", std::string(13, '\1'));
+    append_chunk(file, "pHYs", std::string(9, '\0'));
+    append_chunk(file, type, data);
+    append_chunk(file, "IDAT", "");
+    append_chunk(file, "sRGB", std::string(1, '\0'));  // Too late to count.
+    return file;
+}
+
+TEST(ColorTag, NamesWhatAFileSays) {
+    EXPECT_EQ(tag_of(png_with("sRGB", std::string(1, '\0'))), "sRGB");
+    EXPECT_EQ(tag_of(png_with("iCCP", "x")), "ICC profile");
+    EXPECT_EQ(tag_of(png_with("gAMA", std::string("\0\0\xB1\x8F", 4))), "gamma 0.45455");
+    EXPECT_EQ(tag_of(png_with("gAMA", std::string("\0\x01\x86\xA0", 4))), "");
+    EXPECT_EQ(tag_of(png_with("tEXt", "a")), "");
+}
+
+TEST(ColorTag, IsEmptyForWhatIsCutShortOrNoPng) {
+    const std::string whole = png_with("sRGB", std::string(1, '\0'));
+    for (std::size_t size = 0; size < whole.find("sRGB") + 4; ++size)
+        EXPECT_EQ(tag_of(whole.substr(0, size)), "") << size;
+    EXPECT_EQ(tag_of("\xFF\xD8\xFF"), "");
+    EXPECT_THROW(color_tag("missing.png"), FileError);
+}
+
+TEST(ColorTag, IsThatOfRealMaps) {
+    RELIEF_NEEDS_SHARED(folder, "data/textures");
+    EXPECT_EQ(color_tag(folder / "sand_ambientcg/sand_normal.png"), "sRGB");
+    EXPECT_EQ(color_tag(folder / "parallax_cube_bevy/cube_normal.png"), "ICC profile");
+    EXPECT_EQ(color_tag(folder / "cheese_godot/texture_cheese_normal.png"), "");
+}
+
+/// A picture with edges and soft slopes, written at an odd size.
+std::string jpeg_file(int channels) {
+    const test::TemporaryDirectory folder;
+    Image image = make_image(37, 21, channels, 8, ColorSpace::srgb);
+    std::size_t i = 0;
+    for (std::uint8_t& sample : image.as<std::uint8_t>()) {
+        sample = static_cast<std::uint8_t>(i / 5 % 37 < 11 ? 250 : i * 3 % 256);
+        ++i;
+    }
+    write_image(folder / "a.jpg", image);
+    return test::contents_of(folder / "a.jpg");
+}
+
+TEST(PlainJpegs, GreyAndColouredReadAsTheModuleReadsThem) {
+    for (const int channels : {1, 3}) {
+        const std::string file = jpeg_file(channels);
+        test::expect_same(directly(file), by_module(file), std::to_string(channels));
+        EXPECT_EQ(directly(file)->channels, channels);
+    }
+}
+
+TEST(PlainJpegs, AmongRealFilesReadAsTheModuleReadsThem) {
+    RELIEF_NEEDS_SHARED(data, "data");
+    const test::Comparison comparison = test::compare_all(data, ".jpg");
+    EXPECT_GT(comparison.direct, 10U);
+    EXPECT_GT(comparison.direct, comparison.left);
+}
+
+TEST(PlainJpegs, CmykIsLeftToTheImageModule) {
+    RELIEF_NEEDS_SHARED(file, "data/textures/decoder/jpg/magnum_cmyk.jpg");
+    EXPECT_FALSE(directly(test::contents_of(file)));
+}
+
+TEST(PlainJpegs, OneWhoseDataStopHalfwayIsLeftToTheImageModule) {
+    const std::string whole = jpeg_file(3);
+    const std::size_t scan = whole.find("\xFF\xDA");
+    const std::string cut = whole.substr(0, (scan + whole.size()) / 2) + "\xFF\xD9";
+    EXPECT_FALSE(directly(cut));
+}
+
 }  // namespace
+
 }  // namespace relief

@@ -6,10 +6,10 @@
 #include <fstream>
 
 #include "io/image/image_file_direct.h"
-#include "io/image/image_file_module.h"
-#include "io/png/deflate.h"
+#include "io/image/image_module_client.h"
+#include "io/png/inflate.h"
 #include "io/png/deflate_encoder.h"
-#include "io/png/png_chunk.h"
+#include "io/png/png_format.h"
 #include "relief/mesh/error.h"
 
 namespace relief::test {

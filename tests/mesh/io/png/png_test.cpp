@@ -1,18 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
-// The direct way for PNG against an independent decoder, libpng, by way of the image module: on
-// every kind of PNG put together here by hand, and on every PNG among the real data.
-#include "io/png/png_decoder.h"
-
+// PNG files: the decoder against the image module, the encoder, filters and their choice, and
+// animations.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cstdlib>
+#include <fstream>
 #include <random>
+#include <vector>
 
-#include "io/png/deflate.h"
-#include "io/png/png_encoder.h"
-#include "io/png/png_filter.h"
+#include "io/image/row_codec.h"
+#include "io/png/inflate.h"
+#include "io/png/png_decoder.h"
+#include "io/png/png_format.h"
 #include "module_reference.h"
+#include "relief/mesh/animated_png.h"
 #include "relief/mesh/error.h"
 #include "relief/mesh/image_file.h"
 #include "support/shared_data.h"
@@ -20,12 +23,14 @@
 namespace relief {
 namespace {
 
-using namespace std::string_literals;
 using test::big32;
 using test::by_module;
 using test::directly;
 using test::expect_same;
+using testing::ElementsAre;
 using testing::HasSubstr;
+
+using namespace std::string_literals;
 
 std::span<const std::byte> bytes_of(const std::string& text) {
     return std::as_bytes(std::span(text));
@@ -231,5 +236,167 @@ TEST(PngFilter, EveryFilterIsUndoneWhateverTheVectors) {
     }
 }
 
+constexpr std::size_t size = 3000;  // 500 texels of three 16-bit samples.
+constexpr std::size_t filter_step = 6;
+
+/// 30 rows and the one above, from `value(row, byte)`.
+template <typename Value>
+std::vector<std::uint8_t> rows_of(Value value) {
+    std::vector<std::uint8_t> rows;
+    for (std::size_t y = 0; y < 31; ++y) {
+        for (std::size_t i = 0; i < size; ++i)
+            rows.push_back(static_cast<std::uint8_t>(value(y, i)));
+    }
+    return rows;
+}
+
+TEST(FilterChoice, NoiseIsLeftAloneAndNotSearched) {
+    std::mt19937 random(1);
+    const auto rows = rows_of([&](std::size_t, std::size_t) { return random(); });
+    for (const WriteEffort effort : {WriteEffort::fast, WriteEffort::normal, WriteEffort::small})
+        EXPECT_EQ(choose_filter(rows, size, filter_step, effort).repetitions, Repetitions::ignored);
+}
+
+TEST(FilterChoice, WhatChangesBySmallNoiseFromAboveIsPredictedFromAbove) {
+    std::mt19937 random(2);
+    std::vector<std::size_t> above(size);
+    for (std::size_t& value : above)
+        value = random();
+    const auto rows = rows_of([&](std::size_t, std::size_t i) { return above[i] += random() % 8; });
+    const FilterChoice choice = choose_filter(rows, size, filter_step, WriteEffort::normal);
+    EXPECT_EQ(choice.filter, 2);
+}
+
+TEST(FilterChoice, WhatChangesBySmallNoiseFromTheLeftIsPredictedFromTheLeft) {
+    std::mt19937 random(3);
+    std::vector<std::size_t> last(filter_step);
+    const auto rows = rows_of([&](std::size_t, std::size_t i) {
+        if (i < filter_step) last[i] = random();
+        return last[i % filter_step] += random() % 8;
+    });
+    const FilterChoice choice = choose_filter(rows, size, filter_step, WriteEffort::normal);
+    EXPECT_EQ(choice.filter, 1);
+}
+
+TEST(FilterChoice, FewTexelsInAnyOrderStayAsTheyAre) {
+    // Every texel is one of 16 of six random bytes: repetitions, which differences would break up.
+    std::mt19937 random(4);
+    std::vector<std::size_t> texels(16 * filter_step);
+    for (std::size_t& value : texels)
+        value = random();
+    std::size_t texel = 0;
+    const auto rows = rows_of([&](std::size_t, std::size_t i) {
+        if (i % filter_step == 0) texel = random() % 16;
+        return texels[texel * filter_step + i % filter_step];
+    });
+    const FilterChoice choice = choose_filter(rows, size, filter_step, WriteEffort::normal);
+    EXPECT_EQ(choice.filter, 0);
+    EXPECT_EQ(choice.repetitions, Repetitions::sought);
+}
+
+Image frame(std::uint8_t value, int width = 5) {
+    Image image = make_image(width, 3, 3, 8, ColorSpace::srgb);
+    std::uint8_t next = value;
+    for (std::uint8_t& sample : std::get<std::vector<std::uint8_t>>(image.samples))
+        sample = next += 3;
+    return image;
+}
+
+struct Chunk {
+    std::string type;
+    std::string data;
+};
+
+std::uint32_t number(const std::string& data, std::size_t at, std::size_t bytes) {
+    std::uint32_t value = 0;
+    for (std::size_t i = 0; i < bytes; ++i)
+        value = value << 8U | static_cast<unsigned char>(data.at(at + i));
+    return value;
+}
+
+std::vector<Chunk> chunks_of(const std::filesystem::path& file) {
+    std::ifstream in(file, std::ios::binary);
+    const std::string text{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+    std::vector<Chunk> chunks;
+    for (std::size_t at = 8; at < text.size();) {
+        const std::uint32_t length = number(text, at, 4);
+        chunks.push_back({text.substr(at + 4, 4), text.substr(at + 8, length)});
+        at += 12 + length;
+    }
+    return chunks;
+}
+
+/// A frame as a PNG of its own: the file's header and the frame's data.
+Image frame_by_itself(const std::vector<Chunk>& chunks, std::size_t index) {
+    std::string png = "\x89PNG\r\n\x1A\n";
+    append_chunk(png, "IHDR", chunks.at(0).data);
+    std::size_t seen = 0;
+    for (const Chunk& chunk : chunks) {
+        seen += static_cast<std::size_t>(chunk.type == "fcTL");
+        if (seen != index + 1) continue;
+        if (chunk.type == "IDAT") append_chunk(png, "IDAT", chunk.data);
+        if (chunk.type == "fdAT") append_chunk(png, "IDAT", chunk.data.substr(4));
+    }
+    append_chunk(png, "IEND", "");
+    return read_image(std::as_bytes(std::span(png)), "frame", ImageUse::color);
+}
+
+TEST(AnimatedPng, HoldsEveryFrameInOrder) {
+    const test::TemporaryDirectory folder;
+    AnimatedPng animation(folder / "a.png", 3, 0.04);
+    const std::array<std::uint8_t, 3> values{10, 60, 200};
+    for (const std::uint8_t value : values)
+        animation.add(frame(value));
+    EXPECT_FALSE(std::filesystem::exists(folder / "a.png"));
+    animation.finish();
+
+    const std::vector<Chunk> chunks = chunks_of(folder / "a.png");
+    std::vector<std::uint32_t> sequence;
+    for (const Chunk& chunk : chunks) {
+        if (chunk.type == "fcTL" || chunk.type == "fdAT")
+            sequence.push_back(number(chunk.data, 0, 4));
+        if (chunk.type == "acTL") {
+            EXPECT_EQ(number(chunk.data, 0, 4), 3U);
+        }
+        if (chunk.type == "fcTL") {
+            EXPECT_EQ(number(chunk.data, 4, 4), 5U);    // Width.
+            EXPECT_EQ(number(chunk.data, 20, 2), 40U);  // Of 1000: 0.04 s.
+            EXPECT_EQ(number(chunk.data, 22, 2), 1000U);
+        }
+    }
+    EXPECT_THAT(sequence, ElementsAre(0, 1, 2, 3, 4));  // Without gaps, over both kinds.
+    for (std::size_t i = 0; i < 3; ++i)
+        EXPECT_EQ(frame_by_itself(chunks, i).samples, frame(values.at(i)).samples);
+    // Readers that know nothing of animation see the first frame.
+    EXPECT_EQ(read_image(folder / "a.png", ImageUse::color).samples, frame(10).samples);
+}
+
+TEST(AnimatedPng, LeavesTheOldFileWhereItIsNotFinished) {
+    const test::TemporaryDirectory folder;
+    std::ofstream(folder / "a.png") << "old";
+    {
+        AnimatedPng animation(folder / "a.png", 2, 0.1);
+        animation.add(frame(1));
+        EXPECT_THROW(animation.finish(), InvalidInput);  // One is missing.
+    }
+    EXPECT_EQ(std::filesystem::file_size(folder / "a.png"), 3U);
+    EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 1);
+}
+
+TEST(AnimatedPng, RefusesWhatDoesNotFit) {
+    const test::TemporaryDirectory folder;
+    AnimatedPng animation(folder / "a.png", 1, 0.1);
+    EXPECT_THROW(animation.add(make_image(5, 3, 3, 32, ColorSpace::linear)), InvalidInput);
+    animation.add(frame(1));
+    EXPECT_THROW(animation.add(frame(2)), InvalidInput);
+    AnimatedPng two(folder / "b.png", 2, 0.1);
+    two.add(frame(1));
+    EXPECT_THROW(two.add(frame(2, 6)), InvalidInput);
+    EXPECT_THROW(AnimatedPng(folder / "c.png", 0, 0.1), InvalidInput);
+    EXPECT_THROW(AnimatedPng(folder / "c.png", 1, 66.0), InvalidInput);
+    EXPECT_THROW(AnimatedPng(folder / "missing/c.png", 1, 0.1), FileError);
+}
+
 }  // namespace
+
 }  // namespace relief

@@ -1,23 +1,43 @@
 // SPDX-License-Identifier: Apache-2.0
-// PNG's filters, see png_filter.h. Undoing is compiled for each step that occurs: the samples of a
-// texel then stand in registers and go forward side by side, which matters, since every texel waits
-// for the one on its left. Filtering goes by whole vector registers. Arithmetic is modulo 256. Any
-// bytes are good input. Source: [ISO/IEC 15948], clause 9. Tests: tests/mesh/io/png/png_test.cpp.
-#include "io/png/png_filter.h"
+// Chunks and filters of PNG files. The loops that apply filters are compiled for several vector
+// widths.
+#include "io/png/png_format.h"
 
 #include <algorithm>
 #include <array>
+#include <span>
+#include <vector>
 
+#include "io/png/inflate.h"
 #include "vector_targets.h"
 
 namespace relief {
+
+void append_big16(std::string& to, std::uint32_t value) {
+    to += static_cast<char>(value >> 8);
+    to += static_cast<char>(value);
+}
+
+void append_big32(std::string& to, std::uint32_t value) {
+    append_big16(to, value >> 16);
+    append_big16(to, value);
+}
+
+void append_chunk(std::string& file, std::string_view type, std::string_view data) {
+    append_big32(file, static_cast<std::uint32_t>(data.size()));
+    const std::size_t checked_from = file.size();
+    file += type;
+    file += data;
+    append_big32(file, crc32(std::as_bytes(std::span(file).subspan(checked_from))));
+}
+
 namespace {
 
 int magnitude(int value) {
     return value < 0 ? -value : value;
 }
 
-/// Whichever of left, above and upper left is nearest to left + above - upper left.
+/// The nearest to left + above - upper left of left, above and upper left; ties: in this order.
 int paeth_prediction(int left, int above, int upper_left) {
     const int from_left = magnitude(above - upper_left);
     const int from_above = magnitude(left - upper_left);
@@ -27,7 +47,7 @@ int paeth_prediction(int left, int above, int upper_left) {
     return from_left <= other_distance ? left : other;
 }
 
-/// Walks a row texel by texel; `predict(left, above, upper left)` for every byte.
+/// Processes a row texel by texel; calls `predict(left, above, upper left)` for each byte.
 template <std::size_t Step, typename Predict>
 void add_prediction(std::uint8_t* row, const std::uint8_t* above, std::size_t size,
                     Predict predict) {
@@ -67,14 +87,13 @@ bool undo(std::uint8_t filter, std::uint8_t* row, const std::uint8_t* above, std
     }
 }
 
-// ---------------------------------------------------------------------------------------------
-// Filtering: no byte waits for another, so that they go by whole registers
+// --- Applying filters: bytes are independent, so the loops are vectorized ---
 
 using Byte = std::uint8_t;
 
-/// Paeth's prediction within bytes: where left and above lie on either side of the corner, their
-/// distances from it take from each other, and else they add up, to 255 at most, which no one of
-/// the others exceeds.
+/// Paeth's prediction in byte arithmetic. If left and above lie on the same side of the corner,
+/// their distances from it add up, saturated at 255, which no other distance exceeds; otherwise
+/// they are subtracted.
 RELIEF_INLINE Byte paeth_of(Byte left, Byte up, Byte corner) {
     const auto from_left = static_cast<Byte>(up > corner ? up - corner : corner - up);
     const auto from_up = static_cast<Byte>(left > corner ? left - corner : corner - left);
@@ -161,7 +180,7 @@ bool undo_filter(std::uint8_t filter, std::size_t step, std::span<std::uint8_t> 
 
 void apply_filter(std::uint8_t filter, std::size_t step, std::span<const std::uint8_t> row,
                   std::span<const std::uint8_t> above, std::span<std::uint8_t> filtered) {
-    const std::array<Byte, 8> nothing{};  // Left of the first texel.
+    const std::array<Byte, 8> nothing{};  // The left neighbors of the first texel.
     const std::size_t first = std::min(step, row.size());
     subtract_loop(
         filter, {row.data(), nothing.data(), above.data(), nothing.data(), filtered.data(), first});
@@ -175,6 +194,59 @@ void apply_filter(std::uint8_t filter, std::size_t step, std::span<const std::ui
         case VectorTarget::widest:
             return subtract_512(filter, rest);
     }
+}
+
+namespace {
+
+std::vector<std::uint8_t> filtered_by(std::uint8_t filter, std::span<const std::uint8_t> rows,
+                                      std::size_t size, std::size_t step) {
+    std::vector<std::uint8_t> filtered(rows.size() - size);
+    for (std::size_t at = 0; at < filtered.size(); at += size) {
+        apply_filter(filter, step, rows.subspan(at + size, size), rows.subspan(at, size),
+                     std::span(filtered).subspan(at, size));
+    }
+    return filtered;
+}
+
+/// The saving that repetitions must give, in percent. Bytes with many bits repeat only in short
+/// pieces, which are many and slow to find.
+std::uint64_t surcharge_in_percent(std::uint64_t bits, std::size_t bytes, WriteEffort effort) {
+    const std::uint64_t bits_per_byte_in_percent = 100 * bits / bytes;
+    switch (effort) {
+        case WriteEffort::fast:
+            return bits_per_byte_in_percent / 8;
+        case WriteEffort::normal:
+            return bits_per_byte_in_percent / 20;
+        case WriteEffort::small:
+            break;
+    }
+    return 1;
+}
+
+}  // namespace
+
+FilterChoice choose_filter(std::span<const std::uint8_t> rows, std::size_t size, std::size_t step,
+                           WriteEffort effort) {
+    std::array<std::vector<std::uint8_t>, filter_count> tried;
+    FilterChoice best;
+    std::uint64_t least = 0;
+    const auto consider = [&](std::uint8_t filter, Repetitions repetitions) {
+        std::uint64_t bits = estimated_bits(tried[filter], repetitions);
+        if (repetitions == Repetitions::sought)
+            bits += bits * surcharge_in_percent(bits, tried[filter].size(), effort) / 100;
+        if (least > 0 && bits >= least) return;
+        least = bits;
+        best = {filter, repetitions};
+    };
+    for (std::uint8_t filter = 0; filter < filter_count; ++filter) {
+        tried[filter] = filtered_by(filter, rows, size, step);
+        consider(filter, Repetitions::ignored);
+    }
+    const std::uint8_t plain_best = best.filter;
+    consider(plain_best, Repetitions::sought);
+    if (plain_best != 0) consider(0, Repetitions::sought);
+    if (plain_best != 2) consider(2, Repetitions::sought);
+    return best;
 }
 
 }  // namespace relief
