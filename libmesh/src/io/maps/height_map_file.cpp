@@ -1,21 +1,131 @@
 // SPDX-License-Identifier: Apache-2.0
-// A height map in memory, or its file in hand; what is asked about either is answered from rows in
-// order. Tests: tests/mesh/io/maps/bump_file_test.cpp.
+// Height maps of files: in memory, or read by bands of rows.
+//
+// A window of rows moves over a file: rows are stored consecutively and moved to the front. The
+// last rows of a map that repeats are read first, by a separate reader.
+#include "io/maps/height_bands.h"
+
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <utility>
 
 #include "image/heights/height_holes.h"
 #include "image/heights/seam_survey.h"
-#include "io/maps/height_window.h"
 #include "relief/mesh/bump_file.h"
 #include "relief/mesh/error.h"
 
 namespace relief {
 namespace {
 
-/// Of the file's samples, and of heights made of colours.
+int whole_height(const HeightMapFile& file) {
+    return file.info().height;
+}
+
+/// The last rows of a map.
+HeightMap last_rows(const HeightMapFile& file, int count) {
+    HeightBandReader reader(file);
+    reader.skip(whole_height(file) - count);
+    return reader.read(count);
+}
+
+}  // namespace
+
+HeightBandReader::HeightBandReader(const HeightMapFile& file) : file_(file), reader_(file.path()) {}
+
+HeightMap HeightBandReader::read(int rows) {
+    const ImageInfo& info = reader_.info();
+    const int first = reader_.next_row();
+    const int count = std::min(rows, info.height - first);
+    Image band = make_image(info.width, count, info.channels, info.bits, ColorSpace::data);
+    std::visit([&](auto& samples) { reader_.read(std::as_writable_bytes(std::span(samples))); },
+               band.samples);
+    HeightMap map = height_map(std::move(band), file_.choice().channel);
+    if (file_.choice().ignore_alpha) map.transparent.clear();
+    const auto hole = std::find(map.transparent.begin(), map.transparent.end(), 1);
+    if (hole != map.transparent.end()) {
+        const auto texel = hole - map.transparent.begin();
+        throw FileError(
+            file_.path(),
+            fmt::format("the texel ({}, {}) is transparent, which is understood only in "
+                        "maps that fit into {} MiB",
+                        texel % info.width, first + texel / info.width,
+                        file_.choice().most_memory >> 20));
+    }
+    return map;
+}
+
+void KeptRows::append(const Image& rows) {
+    bits_ = rows.bits();
+    row_bytes_ = static_cast<std::size_t>(rows.width) * static_cast<std::size_t>(bits_ / 8);
+    std::visit(
+        [&](const auto& samples) {
+            const auto bytes = std::as_bytes(std::span(samples));
+            bytes_.insert(bytes_.end(), bytes.begin(), bytes.end());
+        },
+        rows.samples);
+}
+
+void KeptRows::drop(int count) {
+    bytes_.erase(
+        bytes_.begin(),
+        bytes_.begin() + static_cast<std::ptrdiff_t>(static_cast<std::size_t>(count) * row_bytes_));
+}
+
+int KeptRows::count() const {
+    return static_cast<int>(bytes_.size() / row_bytes_);
+}
+
+const void* KeptRows::at(int index) const {
+    return bytes_.data() + static_cast<std::size_t>(index) * row_bytes_;
+}
+
+HeightWindow::HeightWindow(const HeightMapFile& file, int radius, const Wraps& wrap)
+    : reader_(file), height_(whole_height(file)), radius_(radius) {
+    if (wrap.y != Wrap::repeat) return;
+    const int count = std::min(radius, height_);
+    tail_.append(last_rows(file, count).heights);
+    head_.append(HeightBandReader(file).read(count).heights);
+}
+
+int HeightWindow::needed_end(int last) const {
+    return std::min(last + radius_, height_);
+}
+
+void HeightWindow::append(const HeightMap& rows) {
+    heights_.append(rows.heights);
+    if (!rows.alpha.empty()) alpha_.append(rows.alpha);
+}
+
+void HeightWindow::read_ahead(int last) {
+    const int end = begin_ + heights_.count();
+    ahead_ = end < needed_end(last) ? reader_.read(needed_end(last) - end) : HeightMap{};
+}
+
+void HeightWindow::move_to(int first, int last) {
+    const int gone = std::max(first - radius_ - begin_, 0);
+    heights_.drop(gone);
+    if (has_alpha()) alpha_.drop(gone);
+    begin_ += gone;
+    if (!ahead_.heights.empty()) append(ahead_);
+    ahead_ = {};
+    read_ahead(last);
+    if (!ahead_.heights.empty()) append(ahead_);
+    ahead_ = {};
+}
+
+const void* HeightWindow::row(int place) const {
+    if (place >= begin_ && place < begin_ + heights_.count()) return heights_.at(place - begin_);
+    if (place < head_.count()) return head_.at(place);
+    return tail_.at(place - (height_ - tail_.count()));
+}
+
+namespace {
+
+/// Bytes of the file's samples, and of heights that are computed from colors.
 std::size_t bytes_in_memory(const ImageInfo& info) {
     const std::size_t texels =
         static_cast<std::size_t>(info.width) * static_cast<std::size_t>(info.height);
@@ -24,7 +134,7 @@ std::size_t bytes_in_memory(const ImageInfo& info) {
     return texels * channels * static_cast<std::size_t>(info.bits / 8) + heights;
 }
 
-/// Takes parts of a map out of bands of its rows.
+/// Copies parts of a map from bands of its rows.
 class PartCollector {
   public:
     PartCollector(std::span<const ImagePart> parts, int bits) : places_(parts) {
@@ -32,7 +142,7 @@ class PartCollector {
             parts_.push_back(make_image(part.width, part.height, 1, bits, ColorSpace::data));
     }
 
-    /// \param first  the row of the map that the band begins with
+    /// \param first  the row of the map at which the band begins
     void add(const Image& band, int first) {
         for (std::size_t i = 0; i < places_.size(); ++i) {
             const ImagePart& place = places_[i];
@@ -71,7 +181,7 @@ void add_rows(SeamSurvey& survey, const Image& band) {
         band.samples);
 }
 
-/// The map in float, with NaN for what a transparent texel hides.
+/// The map in float, with NaN for transparent texels.
 Image without_hidden(const HeightMap& map) {
     Image floats = to_float(map.heights);
     const std::span<float> heights = floats.as<float>();
@@ -81,10 +191,10 @@ Image without_hidden(const HeightMap& map) {
     return floats;
 }
 
-/// Puts what the surface beside suggests in the place of hidden heights, rounded as those of the
-/// file are: the bits that the map uses stay what they are. Heights beside alpha are floats.
+/// Replaces heights of transparent texels by values that continue the surface, rounded like the
+/// file's heights so that the number of used bits does not change. Heights beside alpha are floats.
 void fill_hidden(const Image& transparent, int file_bits, Image& part) {
-    constexpr int reach = 128;  // As wide as parts that a kernel is chosen by.
+    constexpr int reach = 128;  // The size of the parts from which a kernel is chosen.
     const double largest = std::exp2(file_bits) - 1.0;
     const std::span<const std::uint8_t> hidden = transparent.as<std::uint8_t>();
     Report ignored;  // The conversion counts holes.
@@ -99,7 +209,7 @@ void fill_hidden(const Image& transparent, int file_bits, Image& part) {
     }
 }
 
-/// What a map in memory shows, whatever colours its transparent texels hide.
+/// Analyzes a map in memory; the colors of transparent texels are ignored.
 HeightMapFile::Survey survey_of(const HeightMap& map, int file_bits,
                                 std::span<const ImagePart> places) {
     HeightMapFile::Survey survey;

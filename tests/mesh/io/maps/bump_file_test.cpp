@@ -11,7 +11,7 @@
 #include <limits>
 #include <random>
 
-#include "io/maps/bump_bands.h"
+#include "io/maps/height_bands.h"
 #include "relief/mesh/error.h"
 #include "relief/mesh/threads.h"
 #include "support/height_fields.h"
