@@ -7,9 +7,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "accuracy/random.h"
-#include "full_turn.h"
 #include "parallel.h"
 #include "relief/mesh/error.h"
 
@@ -77,16 +77,16 @@ std::vector<HeightWave> tiling_waves(int width, int height, int count, double sh
     Random random(seed);
     std::vector<HeightWave> waves;
     while (waves.size() < static_cast<std::size_t>(count)) {
-        const double direction = random.between(0.0, full_turn);
+        const double direction = random.between(0.0, 2.0 * std::numbers::pi);
         const double length = shortest * std::pow(longest / shortest, random.between(0.0, 1.0));
         const glm::dvec2 times = glm::round(
             glm::dvec2(std::cos(direction) * width, std::sin(direction) * height) / length);
-        const glm::dvec2 frequency = full_turn * times / glm::dvec2(width, height);
+        const glm::dvec2 frequency = 2.0 * std::numbers::pi * times / glm::dvec2(width, height);
         const double steepness = glm::length(frequency);
-        if (steepness == 0.0 || full_turn / steepness < shortest) continue;
+        if (steepness == 0.0 || 2.0 * std::numbers::pi / steepness < shortest) continue;
         // A sine's slope has the mean square (amplitude * frequency)^2 / 2.
         const double amplitude = rms_slope * std::sqrt(2.0 / count) / steepness;
-        waves.push_back({amplitude, frequency, random.between(0.0, full_turn)});
+        waves.push_back({amplitude, frequency, random.between(0.0, 2.0 * std::numbers::pi)});
     }
     return waves;
 }

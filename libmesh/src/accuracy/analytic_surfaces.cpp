@@ -14,7 +14,6 @@
 #include <utility>
 
 #include "accuracy/random.h"
-#include "full_turn.h"
 #include "relief/mesh/error.h"
 
 namespace relief {
@@ -39,25 +38,26 @@ SurfacePoint on_ellipsoid(const glm::dvec3& axes, double s, double t) {
     constexpr double from_pole = 0.15 * std::numbers::pi;
     constexpr double pole_to_pole = std::numbers::pi - 2.0 * from_pole;
     const double polar = from_pole + t * pole_to_pole;
-    const double around = full_turn * s;
+    const double around = 2.0 * std::numbers::pi * s;
     const glm::dvec3 direction(std::sin(polar) * std::cos(around),
                                std::sin(polar) * std::sin(around), std::cos(polar));
     const glm::dvec3 east(-std::sin(around), std::cos(around), 0.0);
     const glm::dvec3 down(std::cos(polar) * std::cos(around), std::cos(polar) * std::sin(around),
                           -std::sin(polar));
     return {axes * direction, glm::normalize(direction / axes),
-            axes * east * (full_turn * std::sin(polar)), axes * down * pole_to_pole};
+            axes * east * (2.0 * std::numbers::pi * std::sin(polar)), axes * down * pole_to_pole};
 }
 
 SurfacePoint on_torus(double s, double t) {
     constexpr double minor = 0.4;
-    const double around = full_turn * s;
-    const double across = full_turn * t;
+    const double around = 2.0 * std::numbers::pi * s;
+    const double across = 2.0 * std::numbers::pi * t;
     const glm::dvec3 out(std::cos(around), std::sin(around), 0.0);
     const glm::dvec3 normal = std::cos(across) * out + std::sin(across) * glm::dvec3(0.0, 0.0, 1.0);
     const glm::dvec3 on(-std::sin(around), std::cos(around), 0.0);
-    return {out + minor * normal, normal, on * full_turn * (1.0 + minor * std::cos(across)),
-            full_turn * minor *
+    return {out + minor * normal, normal,
+            on * 2.0 * std::numbers::pi * (1.0 + minor * std::cos(across)),
+            2.0 * std::numbers::pi * minor *
                 (std::cos(across) * glm::dvec3(0.0, 0.0, 1.0) - std::sin(across) * out)};
 }
 
@@ -321,11 +321,11 @@ Mesh cubic_fan(int valence, std::uint32_t seed) {
     for (bool closed = false; !closed;) {
         angles.clear();
         for (int i = 0; i < valence; ++i)
-            angles.push_back(random.between(0.0, full_turn));
+            angles.push_back(random.between(0.0, 2.0 * std::numbers::pi));
         std::sort(angles.begin(), angles.end());
-        closed = angles.front() + full_turn - angles.back() < 0.5 * full_turn;
+        closed = angles.front() + 2.0 * std::numbers::pi - angles.back() < std::numbers::pi;
         for (std::size_t i = 1; i < angles.size(); ++i)
-            closed = closed && angles[i] - angles[i - 1] < 0.5 * full_turn;
+            closed = closed && angles[i] - angles[i - 1] < std::numbers::pi;
     }
     Mesh mesh;
     mesh.positions.emplace_back(0.0F);

@@ -11,7 +11,6 @@
 #include <numbers>
 
 #include "accuracy/random.h"
-#include "full_turn.h"
 #include "relief/mesh/error.h"
 
 namespace relief {
@@ -26,14 +25,14 @@ std::vector<HeightWave> open_waves(int size, const FieldRecipe& recipe) {
     Random random(recipe.seed);
     std::vector<HeightWave> waves;
     for (int i = 0; i < waves_in_all; ++i) {
-        const double direction = random.between(0.0, full_turn);
+        const double direction = random.between(0.0, 2.0 * std::numbers::pi);
         const double length =
             recipe.shortest * std::pow(1.7 * size / recipe.shortest, random.between(0.0, 1.0));
-        const double steepness = full_turn / length;
+        const double steepness = 2.0 * std::numbers::pi / length;
         const glm::dvec2 frequency =
             steepness * glm::dvec2(std::cos(direction), std::sin(direction));
         waves.push_back({recipe.rms_slope * std::sqrt(2.0 / waves_in_all) / steepness, frequency,
-                         random.between(0.0, full_turn)});
+                         random.between(0.0, 2.0 * std::numbers::pi)});
     }
     return waves;
 }
@@ -103,10 +102,10 @@ FieldFunction mixed(int width, int height, const FieldRecipe& recipe) {
     const std::vector<HeightWave> fine = tiling_waves(width, height, waves_in_all, recipe.shortest,
                                                       recipe.rms_slope, recipe.seed + 1);
     return [=](const glm::dvec2& place) -> HeightAt {
-        const double angle = full_turn * place.x / width;
+        const double angle = 2.0 * std::numbers::pi * place.x / width;
         const double s = 0.5 - 0.5 * std::cos(angle);
         const double mask = s * s;
-        const double steepness = 2.0 * s * 0.5 * std::sin(angle) * full_turn / width;
+        const double steepness = 2.0 * s * 0.5 * std::sin(angle) * 2.0 * std::numbers::pi / width;
         HeightAt result = waves_at(wide, place);
         const HeightAt detail = waves_at(fine, place);
         result.height += mask * detail.height;

@@ -1,30 +1,41 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reading a whole file into memory; a missing file, a folder and a failing read are told apart.
-// Tests: tests/mesh/io/mesh/mesh_file_test.cpp.
+// Reading files. Missing files, folders and read errors have different messages. Files are not
+// mapped into memory: a mapped file that becomes shorter would give a signal instead of an error.
 #include "file_bytes.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
 #include <span>
+#include <utility>
 
 #include "large_memory.h"
 #include "parallel.h"
 #include "progress_stage.h"
-#include "random_access_file.h"
 #include "relief/mesh/error.h"
 
 namespace relief {
+namespace {
 
-std::string read_file(const std::filesystem::path& file) {
+/// Records that a file is read. \throws FileError if it is missing or a folder
+void note_and_check(const std::filesystem::path& file) {
     note_file(file);
     std::error_code error;
     const std::filesystem::file_status status = std::filesystem::status(file, error);
     if (!std::filesystem::exists(status)) throw FileError(file, "no such file");
     if (!std::filesystem::is_regular_file(status)) throw FileError(file, "is not a file");
+}
+
+}  // namespace
+
+std::string read_file(const std::filesystem::path& file) {
+    note_and_check(file);
     std::ifstream stream(file, std::ios::binary);
     if (!stream) throw FileError(file, fmt::format("cannot be opened: {}", std::strerror(errno)));
     const std::size_t size = std::filesystem::file_size(file);
@@ -60,6 +71,33 @@ FileContents::FileContents(const std::filesystem::path& file) {
         opened.read(begin, std::as_writable_bytes(std::span(&bytes_[begin], end - begin)));
         stage.advance(end - begin);
     });
+}
+
+RandomAccessFile::RandomAccessFile(std::filesystem::path file) : path_(std::move(file)) {
+    note_and_check(path_);
+    descriptor_ = ::open(path_.c_str(), O_RDONLY | O_CLOEXEC);
+    if (descriptor_ < 0)
+        throw FileError(path_, fmt::format("cannot be opened: {}", std::strerror(errno)));
+    struct stat facts {};
+    if (::fstat(descriptor_, &facts) == 0) size_ = static_cast<std::uint64_t>(facts.st_size);
+}
+
+RandomAccessFile::~RandomAccessFile() {
+    if (descriptor_ >= 0) ::close(descriptor_);
+}
+
+void RandomAccessFile::read(std::uint64_t offset, std::span<std::byte> to) const {
+    while (!to.empty()) {
+        const ssize_t got = ::pread(descriptor_, to.data(), to.size(), static_cast<off_t>(offset));
+        if (got < 0 && errno == EINTR) continue;
+        if (got <= 0) {
+            throw FileError(path_,
+                            fmt::format("could be read only up to byte {} of {}{}", offset, size_,
+                                        got < 0 ? fmt::format(": {}", std::strerror(errno)) : ""));
+        }
+        offset += static_cast<std::uint64_t>(got);
+        to = to.subspan(static_cast<std::size_t>(got));
+    }
 }
 
 std::string lower_extension(const std::filesystem::path& file) {

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Reading a whole file into memory, with an error that says why it could not be done.
-/// Tests: tests/mesh/io/mesh/mesh_file_test.cpp, tests/mesh/base/file_contents_test.cpp.
+/// Reading files as a whole or in parts, with errors that tell the reason.
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -15,8 +16,7 @@ namespace relief {
 /// The bytes of a file, as text. \throws FileError if it is missing, a folder or unreadable
 std::string read_file(const std::filesystem::path& file);
 
-/// The bytes of a file that may be large, for reading alone: on all threads, into memory that was
-/// not cleared before.
+/// The bytes of a large file, read on all threads into memory that is not cleared first.
 class FileContents {
   public:
     /// \throws FileError as read_file()
@@ -29,7 +29,30 @@ class FileContents {
     std::size_t size_ = 0;
 };
 
-/// An extension in lower case with its dot, ".obj"; empty where there is none.
+/// A file that is opened for reading, whose parts can be read in any order and in parallel.
+class RandomAccessFile {
+  public:
+    /// \throws FileError if it is missing, a folder or unreadable
+    explicit RandomAccessFile(std::filesystem::path file);
+    ~RandomAccessFile();
+    RandomAccessFile(const RandomAccessFile&) = delete;
+    RandomAccessFile& operator=(const RandomAccessFile&) = delete;
+
+    [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+    /// Size in bytes when it was opened.
+    [[nodiscard]] std::uint64_t size() const { return size_; }
+
+    /// Fills `to` with the bytes from an offset on. \throws FileError if this fails, or if the file
+    /// is too short
+    void read(std::uint64_t offset, std::span<std::byte> to) const;
+
+  private:
+    std::filesystem::path path_;
+    int descriptor_ = -1;
+    std::uint64_t size_ = 0;
+};
+
+/// The extension in lower case with its dot (".obj"); empty if there is none.
 std::string lower_extension(const std::filesystem::path& file);
 
 }  // namespace relief

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Files written beside and renamed. Those that are being written stand in a list of fixed places,
-// which a signal handler can walk: it may neither lock nor allocate. Tests:
-// tests/mesh/base/file_replacement_test.cpp, tests/tools/interruption_test.cpp.
+// Temporary files that are renamed. Files in progress are in a list of fixed size, because a signal
+// handler can neither lock nor allocate.
 #include "file_replacement.h"
 
 #include <fmt/format.h>
@@ -21,29 +20,29 @@
 namespace relief {
 namespace {
 
-/// A file that is being written, for the handler.
+/// A file in progress, for the signal handler.
 struct ListedFile {
     enum State { free, changing, held };
     std::atomic<int> state = free;
     std::array<char, PATH_MAX> path;
 };
 
-constexpr std::size_t most_listed = 128;
-std::array<ListedFile, most_listed> listed_files;
+constexpr std::size_t max_listed = 128;
+std::array<ListedFile, max_listed> listed_files;
 std::atomic<bool> is_ending = false;
 static_assert(std::atomic<int>::is_always_lock_free && std::atomic<bool>::is_always_lock_free);
 
-/// Waits for the end where one has begun: nothing new is to be written then.
+/// Waits for the end of the program if it is ending: no new files must be written then.
 void wait_if_ending() {
     while (is_ending)
         ::pause();
 }
 
-/// Where a file is listed; place_count where there is no room.
-std::size_t enter(const std::filesystem::path& file) {
+/// Adds a file to the list. \return its index, or max_listed if the list is full
+std::size_t add_to_list(const std::filesystem::path& file) {
     const std::string path = std::filesystem::absolute(file).string();
-    if (path.size() >= PATH_MAX) return most_listed;
-    for (std::size_t at = 0; at < most_listed; ++at) {
+    if (path.size() >= PATH_MAX) return max_listed;
+    for (std::size_t at = 0; at < max_listed; ++at) {
         int expected = ListedFile::free;
         if (!listed_files[at].state.compare_exchange_strong(expected, ListedFile::changing))
             continue;
@@ -51,31 +50,31 @@ std::size_t enter(const std::filesystem::path& file) {
         listed_files[at].state = ListedFile::held;
         return at;
     }
-    return most_listed;
+    return max_listed;
 }
 
-void leave(std::size_t place) {
-    if (place < most_listed) listed_files[place].state = ListedFile::free;
+void remove_from_list(std::size_t place) {
+    if (place < max_listed) listed_files[place].state = ListedFile::free;
 }
 
-/// Removes what is listed.
+/// Removes all listed files.
 void remove_all() {
     for (const ListedFile& place : listed_files) {
         if (place.state == ListedFile::held) ::unlink(place.path.data());
     }
 }
 
-/// Only what may be called in a signal handler.
+/// The signal handler; it calls only async-signal-safe functions.
 void end_cleanly(int signal) {
     const int error = errno;
     is_ending = true;
     remove_all();
-    // Other threads still run, and one that was about to begin its file has done so by then.
+    // Other threads still run; one that was creating its file has done so after this delay.
     constexpr int milliseconds = 5;
     ::poll(nullptr, 0, milliseconds);
     remove_all();
     std::signal(signal, SIG_DFL);
-    std::raise(signal);  // Takes effect on return, as it is blocked in here.
+    std::raise(signal);  // The signal is blocked here, so it takes effect on return.
     errno = error;
 }
 
@@ -94,28 +93,28 @@ void remove_temporaries_on_signals() {
 }
 
 FileReplacement::FileReplacement(std::filesystem::path file)
-    : file_(std::move(file)), place_(most_listed) {
+    : file_(std::move(file)), place_(max_listed) {
     const std::filesystem::path folder =
         file_.has_parent_path() ? file_.parent_path() : std::filesystem::path(".");
     if (!std::filesystem::is_directory(folder)) {
         throw FileError(file_, fmt::format("the folder {} does not exist", folder.string()));
     }
     if (std::filesystem::is_directory(file_)) throw FileError(file_, "is a folder");
-    // Renaming would put a file in the place of /dev/null, or of the pipe behind /dev/stdout.
+    // Renaming would replace /dev/null, or the pipe behind /dev/stdout, by a file.
     if (std::filesystem::exists(file_) && !std::filesystem::is_regular_file(file_))
         throw FileError(file_, "is a device or a pipe, which would be replaced by a file");
-    // Unique among the processes and threads that may write here at once.
+    // Unique among all processes and threads that may write here at the same time.
     static std::atomic<unsigned> counter = 0;
     temporary_ = folder / fmt::format(".{}.{}-{}{}", file_.stem().string(), ::getpid(), counter++,
                                       file_.extension().string());
     wait_if_ending();
-    place_ = enter(temporary_);
+    place_ = add_to_list(temporary_);
 }
 
 FileReplacement::~FileReplacement() {
     std::error_code ignored;
     if (!committed_) std::filesystem::remove(temporary_, ignored);
-    leave(place_);
+    remove_from_list(place_);
 }
 
 void FileReplacement::commit() {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Writing a file so that a failure leaves no half file and the old one unharmed.
-/// Tests: tests/mesh/base/file_replacement_test.cpp.
+/// Writing a file such that a failure leaves the old file intact and no partial file.
 #pragma once
 
 #include <cstddef>
@@ -10,10 +9,10 @@
 
 namespace relief {
 
-/// A file being written beside the one it will replace.
+/// A temporary file beside the file that it will replace.
 ///
-/// Write to temporary(), then commit(); without commit(), the destructor removes what was written.
-/// The temporary name keeps the extension, by which writers choose their format.
+/// Write to temporary(), then call commit(). Without commit(), the destructor removes the temporary
+/// file. Its name keeps the extension, from which writers choose the format.
 class FileReplacement {
   public:
     /// \throws FileError if the folder does not exist, or `file` is a folder, a device or a pipe
@@ -24,24 +23,24 @@ class FileReplacement {
 
     [[nodiscard]] const std::filesystem::path& temporary() const { return temporary_; }
 
-    /// Renames over the old file. \throws FileError
+    /// Renames the temporary file. \throws FileError
     void commit();
 
   private:
     std::filesystem::path file_;
     std::filesystem::path temporary_;
     bool committed_ = false;
-    std::size_t place_;  ///< In the list of those that a signal removes.
+    std::size_t place_;  ///< Index in the list of files that a signal removes.
 };
 
-/// From now on a program that is ended by SIGINT, SIGTERM or SIGHUP first removes what it has
-/// written beside: no half file and no temporary one stays. It still dies by the signal.
+/// Makes SIGINT, SIGTERM and SIGHUP remove all temporary files before they end the program.
 ///
-/// For programs, once, before they start threads: a library does not take signals from its user. A
-/// signal that is ignored stays so. Up to 128 files at once are known; of more, some would stay.
+/// Programs call this once, before they start threads; a library must not handle the signals of its
+/// user. Ignored signals stay ignored. At most 128 files at a time are known; further ones would
+/// remain.
 void remove_temporaries_on_signals();
 
-/// Replaces a file by these bytes. \throws FileError
+/// Replaces the contents of a file. \throws FileError
 void replace_file(const std::filesystem::path& file, std::span<const std::byte> bytes);
 
 }  // namespace relief

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Names near to one that is not known, by edit distance. Tests:
-// tests/mesh/base/near_names_test.cpp.
+// Suggestions for mistyped names, by edit distance.
 #include "near_names.h"
 
 #include <algorithm>
@@ -11,7 +10,7 @@ namespace relief {
 
 namespace {
 
-/// Small letters, and a blank for every separator.
+/// Lower case, with blanks for all separators.
 std::string plain(std::string_view name) {
     std::string result;
     for (const char c : name) {
@@ -21,7 +20,7 @@ std::string plain(std::string_view name) {
     return result;
 }
 
-/// Letters to insert, leave out or change to get from one to the other.
+/// The edit distance: letters to insert, remove or change.
 std::size_t edit_distance(const std::string& a, const std::string& b) {
     std::vector<std::size_t> row(b.size() + 1);
     for (std::size_t j = 0; j <= b.size(); ++j)
@@ -57,7 +56,7 @@ std::vector<std::string> near_names(std::string_view wanted, std::span<const std
         found.emplace_back(distance, candidate);
         nearest = std::min(nearest, distance);
     }
-    // Among slips only the smallest: what is further off is not what was meant.
+    // Of several mistypings only the smallest is plausible.
     std::erase_if(found, [&](const auto& entry) {
         return entry.first > nearest && !has_word(plain(entry.second), name);
     });

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// What somebody may have meant who wrote a name that is not known.
-/// Tests: tests/mesh/base/near_names_test.cpp.
+/// Suggestions for mistyped names.
 #pragma once
 
 #include <span>
@@ -11,13 +10,14 @@
 
 namespace relief {
 
-/// The known names nearest to one that is not, nearest first, at most three.
+/// The known names that are nearest to an unknown one, nearest first, at most three.
 ///
-/// Near is what takes few letters inserted, left out or changed (at most three, and at most a third
-/// of the longer name's; case and separators aside), or what contains the wanted name as a word.
+/// A name is near if few letters must be inserted, removed or changed (at most three, and at most a
+/// third of the longer name; case and separators are ignored), or if it contains the wanted name as
+/// a word.
 std::vector<std::string> near_names(std::string_view wanted, std::span<const std::string> known);
 
-/// "; did you mean 'gold' or 'polished gold'?", or nothing where nothing is near.
+/// "; did you mean 'gold' or 'polished gold'?", or "" if no name is near.
 std::string did_you_mean(std::string_view wanted, std::span<const std::string> known);
 
 }  // namespace relief

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Unit vectors as two small integers: places on an octahedron that is unfolded into a square
-/// [Cigolle et al. 2014]. Integers are unfolded exactly, so that every decoder agrees about which
-/// face a vector is on. Tests: tests/mesh/geometry/encoding/frame_encoding_test.cpp.
+/// Octahedral encoding: unit vectors as two small integers, the coordinates on an octahedron that
+/// is unfolded into a square [Cigolle et al. 2014]. Integers are unfolded exactly, so that all
+/// decoders agree about the face of a vector.
 #pragma once
 
 #include <algorithm>
@@ -12,25 +12,25 @@
 
 namespace relief {
 
-/// The nearest whole number, halves away from 0. Plain casts: without SSE 4.1, std::round and
-/// std::floor are calls.
+/// Rounds to the nearest integer, halves away from 0. Casts are faster: without SSE 4.1, std::round
+/// and std::floor are calls.
 inline int rounded_to_int(double value) {
     return static_cast<int>(value + (value < 0.0 ? -0.5 : 0.5));
 }
 
-/// The largest whole number that is no larger.
+/// Rounds down.
 inline int floor_to_int(double value) {
     const int whole = static_cast<int>(value);
     return value < whole ? whole - 1 : whole;
 }
 
-/// Each from -M to M, where M is the largest code: 127, 511 or 32767.
+/// Both are within [-M, M]; M, the largest code, is 127, 511 or 32767.
 struct OctahedralCode {
     int x = 0;
     int y = 0;
 };
 
-/// What a code stands for; not of unit length, never 0.
+/// The direction of a code; not of unit length, but never 0.
 inline glm::dvec3 octahedral_direction(OctahedralCode code, int largest) {
     const int z = largest - std::abs(code.x) - std::abs(code.y);
     if (z >= 0) return {code.x, code.y, z};
@@ -39,7 +39,7 @@ inline glm::dvec3 octahedral_direction(OctahedralCode code, int largest) {
     return {x, y, z};
 }
 
-/// Where a vector's place in the square is, in codes, before rounding.
+/// The coordinates of a unit vector in the square, in codes, before rounding.
 inline glm::dvec2 octahedral_place(const glm::dvec3& unit, int largest) {
     const glm::dvec3 size = glm::abs(unit);
     const double scale = largest / (size.x + size.y + size.z);
@@ -48,13 +48,13 @@ inline glm::dvec2 octahedral_place(const glm::dvec3& unit, int largest) {
             (largest - size.x * scale) * (unit.y < 0.0 ? -1.0 : 1.0)};
 }
 
-/// Of the codes around a place (the two nearest of each coordinate; of y, those whose lowest bit is
-/// `parity` where that is 0 or 1), the one with the least error(code).
+/// The code with the least error(code) among those around a place: the two nearest values of each
+/// coordinate. If `parity` is 0 or 1, the lowest bit of y must equal it.
 template <typename Error>
 OctahedralCode best_code(const glm::dvec2& place, int largest, int parity, Error error) {
     const int left = floor_to_int(place.x);
     const int below = floor_to_int(place.y);
-    // Of a parity there is one on each side within two steps.
+    // Values of one parity are at most two steps away on each side.
     const bool any = parity < 0;
     OctahedralCode best{};
     double least = std::numeric_limits<double>::infinity();
@@ -72,12 +72,12 @@ OctahedralCode best_code(const glm::dvec2& place, int largest, int parity, Error
     return best;
 }
 
-/// The code next to a place; y's lowest bit is `parity` where that is 0 or 1.
+/// The nearest code to a place. If `parity` is 0 or 1, the lowest bit of y must equal it.
 inline OctahedralCode nearest_code(const glm::dvec2& place, int largest, int parity) {
     OctahedralCode code{rounded_to_int(place.x), rounded_to_int(place.y)};
     if (parity < 0 || (code.y & 1) == parity) return code;
     code.y += place.y < code.y ? -1 : 1;
-    // The largest code is odd: what steps over it was to be even.
+    // The largest code is odd, so y exceeds it only if it had to be even.
     if (std::abs(code.y) > largest) code.y += code.y > 0 ? -2 : 2;
     return code;
 }

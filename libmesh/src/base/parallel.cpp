@@ -26,16 +26,16 @@ constinit std::atomic<void (*)()> before_each_piece = nullptr;
 
 namespace {
 
-// oneTBB is not compiled for ThreadSanitizer, which then does not see that a loop's pieces begin
-// after the loop does and end before it. These two say so. This file, with oneTBB's inline
-// functions, is not instrumented either (base/CMakeLists.txt).
-void announce_writes([[maybe_unused]] void* loop) {
+// oneTBB is not instrumented for ThreadSanitizer, which thus does not see that a loop's pieces run
+// between the loop's begin and end. These two functions declare it. This file, which has inline
+// functions of oneTBB, is not instrumented either (base/CMakeLists.txt).
+void release_writes([[maybe_unused]] void* loop) {
 #ifdef RELIEF_TSAN
     __tsan_release(loop);
 #endif
 }
 
-void expect_writes([[maybe_unused]] void* loop) {
+void acquire_writes([[maybe_unused]] void* loop) {
 #ifdef RELIEF_TSAN
     __tsan_acquire(loop);
 #endif
@@ -44,7 +44,8 @@ void expect_writes([[maybe_unused]] void* loop) {
 /// The exception of the failed piece with the smallest index.
 class FirstFailure {
   public:
-    /// Whether a piece before this one has failed, so that this one has no effect on the outcome.
+    /// Returns true if a piece before this one has failed, so that this one cannot affect the
+    /// result.
     [[nodiscard]] bool is_before(std::size_t piece) const {
         return piece_.load(std::memory_order_relaxed) < piece;
     }
@@ -56,7 +57,7 @@ class FirstFailure {
         exception_ = std::move(exception);
     }
 
-    /// After the loop. \throws the exception, if there is one
+    /// Call this after the loop. \throws the exception, if there is one
     void rethrow() {
         if (exception_) std::rethrow_exception(std::move(exception_));
     }
@@ -71,21 +72,20 @@ void call_hook() {
     if (void (*const hook)() = before_each_piece.load(std::memory_order_relaxed)) hook();
 }
 
-/// Runs the pieces as oneTBB cuts them.
+/// Runs the pieces that oneTBB chooses.
 ///
-/// oneTBB's own handling of exceptions cancels the loop and all loops within its other pieces,
-/// which then return normally although parts of them never ran. So no exception reaches oneTBB:
-/// each is caught in its piece. A context of its own keeps the loop from being cancelled from
-/// outside, by a caller's oneTBB tasks.
+/// After an exception oneTBB would cancel the loop and all nested loops, which would then return
+/// normally although some of their pieces never ran. Each exception is therefore caught in its
+/// piece. The isolated context prevents cancellation by oneTBB tasks of the caller.
 template <typename RunPiece>
 void run_pieces(std::size_t count, std::size_t grain, const RunPiece& run_piece) {
     FirstFailure failure;
     tbb::task_group_context context(tbb::task_group_context::isolated);
-    announce_writes(&failure);
+    release_writes(&failure);
     tbb::parallel_for(
         tbb::blocked_range<std::size_t>(0, count, grain),
         [&](const auto& piece) {
-            expect_writes(&failure);
+            acquire_writes(&failure);
             if (!failure.is_before(piece.begin())) {
                 try {
                     run_piece(piece.begin(), piece.end());
@@ -93,18 +93,18 @@ void run_pieces(std::size_t count, std::size_t grain, const RunPiece& run_piece)
                     failure.set(piece.begin(), std::current_exception());
                 }
             }
-            announce_writes(&failure);
+            release_writes(&failure);
         },
         context);
-    expect_writes(&failure);
+    acquire_writes(&failure);
     failure.rethrow();
 }
 
-/// In pieces so small that somebody who wants the work to end is heard soon.
-void parallel_for_watched(std::size_t count, std::size_t grain, Progress* progress,
+/// Runs pieces that are small enough to react to cancellation quickly.
+void parallel_for_with_progress(std::size_t count, std::size_t grain, Progress* progress,
                           const std::function<void(std::size_t, std::size_t)>& body) {
-    constexpr std::size_t looks = 256;  // 2 s of work are 8 ms apart on one thread.
-    const std::size_t step = std::max(grain, count / looks);
+    constexpr std::size_t checks = 256;  // The checks of a 2 s loop on one thread are 8 ms apart.
+    const std::size_t step = std::max(grain, count / checks);
     const auto run_piece = [&](std::size_t first, std::size_t last) {
         const ProgressPiece piece(progress);
         for (std::size_t begin = first; begin < last; begin += step) {
@@ -124,12 +124,12 @@ void parallel_for(std::size_t count, std::size_t grain,
                   const std::function<void(std::size_t, std::size_t)>& body) {
     if (count == 0) return;
     if (current_progress != nullptr)
-        return parallel_for_watched(count, grain, current_progress, body);
+        return parallel_for_with_progress(count, grain, current_progress, body);
     const auto run_piece = [&](std::size_t begin, std::size_t end) {
         call_hook();
         body(begin, end);
     };
-    // Nothing to share out: a program that never has more than this never starts oneTBB.
+    // Loops of one piece run here, so that programs with only such loops never start oneTBB.
     if (count <= grain) return run_piece(0, count);
     run_pieces(count, grain, run_piece);
 }
@@ -146,7 +146,7 @@ void parallel_for_reporting(std::size_t count, std::size_t grain, Report& report
 }
 
 std::size_t thread_count() {
-    // The cap of set_thread_limit, or what the machine has. Asking starts no threads.
+    // The limit of set_thread_limit(), or the number of processors. This call starts no threads.
     const auto capped =
         tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
     return std::min<std::size_t>(

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Who waits is known by a variable of each thread, which shared-out loops hand to their workers.
-// Tests: tests/mesh/base/progress_test.cpp.
+// A thread-local variable holds the Progress of an operation; parallel loops pass it on to their
+// threads.
 #include "relief/mesh/progress.h"
 
 #include <sys/stat.h>
@@ -42,7 +42,7 @@ std::map<std::filesystem::path, FileStamp> Progress::files() const {
     return files_;
 }
 
-/// \return what was going on before
+/// \return the previous stage
 Progress::Stage Progress::begin(Stage stage) {
     {
         const std::lock_guard lock(mutex_);
@@ -54,7 +54,7 @@ Progress::Stage Progress::begin(Stage stage) {
 
 void Progress::advance(std::size_t count) {
     const std::size_t done = done_.fetch_add(count, std::memory_order_relaxed) + count;
-    // A stage changes only while nobody advances it.
+    // A stage changes only while no thread advances it.
     if (!tell_ || stage_.total == 0) return;
     const auto percent = static_cast<int>(100 * done / stage_.total);
     if (told_.exchange(percent, std::memory_order_relaxed) != percent) tell();
@@ -77,23 +77,23 @@ void note_file(const std::filesystem::path& file) {
 }
 
 ProgressStage::ProgressStage(const char* name, std::size_t total)
-    : progress_(current_progress), speaks_(progress_ != nullptr && !is_in_piece) {
+    : progress_(current_progress), reports_(progress_ != nullptr && !is_in_piece) {
     check_cancelled();
-    if (!speaks_) return;
+    if (!reports_) return;
     done_before_ = progress_->done_.exchange(0);
     before_ = progress_->begin({name, total});
     progress_->tell();
 }
 
 ProgressStage::~ProgressStage() {
-    if (!speaks_) return;
+    if (!reports_) return;
     progress_->done_ = done_before_;
     progress_->begin(std::move(before_));
 }
 
 void ProgressStage::advance(std::size_t count) {
     if (progress_ == nullptr) return;
-    if (speaks_) progress_->advance(count);
+    if (reports_) progress_->advance(count);
     if (progress_->is_cancelled()) throw Cancelled();
 }
 

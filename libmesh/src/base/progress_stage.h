@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// The other end of a Progress: what work says to it, and where it looks up.
+/// Progress from the side of the operation: stages, and cancellation points.
 ///
-/// Everything here does nothing, at the price of one look at a thread's variable, where nobody
-/// waits. Tests: tests/mesh/base/progress_test.cpp.
+/// Without a Progress, all functions here only read a thread-local variable.
 #pragma once
 
 #include <cstddef>
@@ -14,50 +13,50 @@
 
 namespace relief {
 
-/// Whom this thread reports to; null: nobody.
+/// The Progress of this thread; null if there is none.
 extern constinit thread_local Progress* current_progress;
 
-/// \throws Cancelled if that is wished
+/// A cancellation point. \throws Cancelled if cancellation was requested
 inline void check_cancelled() {
     if (current_progress != nullptr && current_progress->is_cancelled()) throw Cancelled();
 }
 
-/// For loops that are not shared out: looks up at every 65536th element.
+/// A cancellation point for serial loops, which acts at every 65536th element.
 inline void check_cancelled(std::size_t index) {
     if ((index & 0xFFFF) == 0) check_cancelled();
 }
 
-/// A file is about to be read, or asked for. Files that are opened by the house's own means
-/// (file_bytes.h, random_access_file.h) are noted there.
+/// Records a file that is about to be read. The functions of file_bytes.h do this for their files.
 void note_file(const std::filesystem::path& file);
 
-/// A stage of the work while it lives; those within it take its place meanwhile. Begun inside a
-/// loop that is shared out it says nothing, since several would speak at once.
+/// A stage of the operation during the lifetime of this object; nested stages replace it
+/// temporarily. Inside a parallel loop it has no effect, because several stages would be active at
+/// once.
 class ProgressStage {
   public:
-    /// \param total  of whatever advance() counts; 0: nobody knows
+    /// \param total  the sum of all advance() calls; 0 if unknown
     explicit ProgressStage(const char* name, std::size_t total = 0);
     ~ProgressStage();
     ProgressStage(const ProgressStage&) = delete;
     ProgressStage& operator=(const ProgressStage&) = delete;
 
-    /// So much more is done. From any thread. \throws Cancelled if that is wished
+    /// Reports progress, from any thread. \throws Cancelled if cancellation was requested
     void advance(std::size_t count);
 
-    /// For loops that are not shared out and count the stage's total: looks up at every 65536th
-    /// element. \throws Cancelled likewise
+    /// Reports progress of a serial loop over `total` elements, at every 65536th element. \throws
+    /// Cancelled likewise
     void at(std::size_t index) {
         if ((index & 0xFFFF) == 0 && index > 0) advance(0x10000);
     }
 
   private:
     Progress* progress_;
-    bool speaks_;
+    bool reports_;
     Progress::Stage before_;
     std::size_t done_before_ = 0;
 };
 
-/// A piece of a loop that was shared out by a thread that reports to `progress`.
+/// Marks this thread as working on a piece of a parallel loop whose caller reports to `progress`.
 class ProgressPiece {
   public:
     explicit ProgressPiece(Progress* progress);

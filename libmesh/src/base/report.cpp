@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Counting what was found, and saying it in one line. Tests: tests/mesh/base/report_test.cpp.
+// Counts findings and formats them.
 #include "relief/mesh/report.h"
 
 #include <fmt/format.h>
@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::size_t first_limit = 8;
 
-/// Keeps `first` the smallest indices in ascending order, whatever order they come in.
+/// Keeps the smallest indices in ascending order, for any order of calls.
 void remember(std::vector<std::size_t>& first, std::size_t index) {
     if (first.size() == first_limit && index >= first.back()) return;
     first.insert(std::upper_bound(first.begin(), first.end(), index), index);

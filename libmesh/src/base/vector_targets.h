@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// One loop, compiled for several sets of vector instructions, and the best that this processor
-/// has.
+/// Loops that are compiled for several vector instruction sets, and the best set of this processor.
 ///
 /// A loop over plain arrays is written once, as a RELIEF_INLINE function. Three functions that only
-/// call it, marked with the targets below, get it in three forms, as the compiler vectorises it for
-/// each; `best_vector_target()` says which to call. Whoever does that answers for the results being
-/// the same from all three. Tests: tests/mesh/geometry/normals/normals_test.cpp.
+/// call it have the targets below, so that the compiler vectorizes the loop for each of them.
+/// best_vector_target() tells which one to call. The author must make sure that all three give the
+/// same results.
 #pragma once
 
 #if defined(__x86_64__)
@@ -21,11 +20,11 @@
 
 namespace relief {
 
-/// Bits in a vector register.
+/// Bits of a vector register.
 enum class VectorTarget { any = 128, wide = 256, widest = 512 };
 
-/// The widest that this processor and its system have. The environment variable RELIEF_VECTOR_BITS
-/// (128, 256) narrows it, so that tests can compare.
+/// The best target of this processor and operating system. The environment variable
+/// RELIEF_VECTOR_BITS (128, 256) limits it, so that tests can compare targets.
 VectorTarget best_vector_target();
 
 }  // namespace relief

@@ -9,7 +9,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "full_turn.h"
 #include "relief/mesh/error.h"
 
 namespace relief {
@@ -39,7 +38,7 @@ void add_cells(Mesh& mesh, std::uint32_t first_vertex, std::uint32_t columns, st
 
 /// Angle of a step of a full turn. The last step equals the first.
 double turn(int step, int steps) {
-    return step == steps ? 0.0 : full_turn * step / steps;
+    return step == steps ? 0.0 : 2.0 * std::numbers::pi * step / steps;
 }
 
 /// Adds a disc at this height that faces up or down.

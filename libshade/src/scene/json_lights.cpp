@@ -36,12 +36,13 @@ LampColors colors_from(const JsonCursor& object) {
     const float intensity = number_in(object, "intensity", 1.0F);
     LampColors colors;
     for (const char* key : {"color", "diffuse"}) {
-        if (const auto color = object.find(key)) colors.diffuse = color->color();
+        if (const auto color = object.find(key)) colors.diffuse = color_in(*color);
     }
     colors.diffuse *= intensity;
     if (const auto specular = object.find("specular"))
-        colors.specular = intensity * specular->color();
-    if (const auto ambient = object.find("ambient")) colors.ambient = intensity * ambient->color();
+        colors.specular = intensity * color_in(*specular);
+    if (const auto ambient = object.find("ambient"))
+        colors.ambient = intensity * color_in(*ambient);
     return colors;
 }
 

@@ -12,6 +12,25 @@ namespace relief {
 
 namespace {
 
+/// The value of two hexadecimal digits, divided by 255.
+std::optional<float> hex_code(std::string_view digits) {
+    int code = 0;
+    for (const char c : digits) {
+        int digit = 0;
+        if (c >= '0' && c <= '9') {
+            digit = c - '0';
+        } else if (c >= 'a' && c <= 'f') {
+            digit = c - 'a' + 10;
+        } else if (c >= 'A' && c <= 'F') {
+            digit = c - 'A' + 10;
+        } else {
+            return std::nullopt;
+        }
+        code = 16 * code + digit;
+    }
+    return static_cast<float>(code) / 255.0F;
+}
+
 using MemberSetter = std::function<void(const JsonCursor&)>;
 /// What each member of an object does, by its key.
 using Members = std::map<std::string, MemberSetter>;
@@ -29,7 +48,7 @@ MemberSetter number(float& value, float least, float most) {
     return [&value, least, most](const JsonCursor& c) { value = c.number(least, most); };
 }
 MemberSetter color(glm::vec3& value) {
-    return [&value](const JsonCursor& c) { value = c.color(); };
+    return [&value](const JsonCursor& c) { value = color_in(c); };
 }
 MemberSetter flag(bool& value) {
     return [&value](const JsonCursor& c) { value = c.boolean(); };
@@ -149,6 +168,23 @@ Members members_of(Material& m, JsonImages& images) {
 }
 
 }  // namespace
+
+glm::vec3 color_in(const JsonCursor& cursor) {
+    if (cursor.is_number()) return glm::vec3(cursor.number());
+    if (cursor.is_array()) return cursor.vector();
+    const char* const allowed = "must be three numbers, one number, or \"#rrggbb\"";
+    if (!cursor.is_text()) cursor.fail(allowed);
+    const std::string& code = cursor.text();
+    if (code.size() != 7 || code.front() != '#') cursor.fail(allowed);
+    glm::vec3 color(0.0F);
+    for (int i = 0; i < 3; ++i) {
+        const auto channel =
+            hex_code(std::string_view(code).substr(1 + 2 * static_cast<std::size_t>(i), 2));
+        if (!channel) cursor.fail(allowed);
+        color[i] = linear_from_srgb(*channel);
+    }
+    return color;
+}
 
 std::filesystem::path JsonImages::file(const JsonCursor& cursor) const {
     const std::filesystem::path path = (folder_ / cursor.text()).lexically_normal();

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "json_cursor.h"
 #include "relief/shade/scene.h"
-#include "scene/json_cursor.h"
 #include "scene/json_words.h"
 
 namespace relief {
@@ -24,6 +24,9 @@ Value one_of(const JsonCursor& cursor, const Named<Value> (&names)[count]) {
     }
     cursor.fail_unknown(cursor.text(), known);
 }
+
+/// A linear color: three numbers, one number for gray, or "#rrggbb", which is sRGB-coded.
+glm::vec3 color_in(const JsonCursor& cursor);
 
 /// The images of a scene by their files, each once.
 class JsonImages {

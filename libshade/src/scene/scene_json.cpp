@@ -199,14 +199,14 @@ class SceneReader {
         graph_.point_lights.clear();
         graph_.spot_lights.clear();
         const auto ambient = root.find("ambient");
-        scene.ambient = ambient ? ambient->color() : glm::vec3(0.0F);
+        scene.ambient = ambient ? color_in(*ambient) : glm::vec3(0.0F);
         for (const JsonCursor& light : lights->elements())
             add_light(light, std::nullopt, graph_);
     }
 
     void read_surroundings(const JsonCursor& root) {
         Scene& scene = graph_.scene;
-        if (const auto ambient = root.find("ambient")) scene.ambient = ambient->color();
+        if (const auto ambient = root.find("ambient")) scene.ambient = color_in(*ambient);
         if (const auto environment = root.find("environment"))
             scene.environment = environment_from(*environment, images_);
         if (const auto background = root.find("background")) {
@@ -215,7 +215,7 @@ class SceneReader {
                 const std::vector<float> c = background->numbers(4);
                 scene.background = {c[0], c[1], c[2], c[3]};
             } else {
-                scene.background = glm::vec4(background->color(), 1.0F);
+                scene.background = glm::vec4(color_in(*background), 1.0F);
             }
         }
         if (const auto exposure = root.find("exposure"))

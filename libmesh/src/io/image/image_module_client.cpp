@@ -19,7 +19,6 @@
 #include <vector>
 
 #include "file_bytes.h"
-#include "random_access_file.h"
 #include "relief/mesh/error.h"
 
 namespace relief {

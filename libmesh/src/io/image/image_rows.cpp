@@ -23,7 +23,6 @@
 #include "io/image/row_codec.h"
 #include "io/png/png_decoder.h"
 #include "progress_stage.h"
-#include "random_access_file.h"
 #include "relief/mesh/error.h"
 
 namespace relief {

@@ -21,7 +21,7 @@
 #include "io/png/png_format.h"
 #include "large_memory.h"
 #include "parallel.h"
-#include "random_access_file.h"
+#include "file_bytes.h"
 #include "relief/mesh/error.h"
 #include "relief/mesh/image_file.h"
 #include "relief/mesh/image_rows.h"
