@@ -230,7 +230,7 @@ TEST_F(Obj, FloatsOfEveryMagnitudeComeBackBitForBit) {
         const float v = static_cast<float>(random()) / 4294967296.0F;
         contents.mesh.positions.emplace_back(any_float(), any_float(), any_float());
         contents.mesh.normals.emplace_back(any_float(), any_float(), any_float());
-        // |v| >= 2e-9 turns and comes back exactly, as obj_writer.cpp says.
+        // |v| >= 2e-9 turns and comes back exactly, as obj_file.cpp says.
         contents.mesh.texcoords.emplace_back(any_float(), i % 2 == 0 ? v : 3.0F * v - 1.0F);
         contents.mesh.colors.emplace_back(any_float(), any_float(), any_float(), any_float());
     }
