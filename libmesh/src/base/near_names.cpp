@@ -56,7 +56,7 @@ std::vector<std::string> near_names(std::string_view wanted, std::span<const std
         found.emplace_back(distance, candidate);
         nearest = std::min(nearest, distance);
     }
-    // Of several mistypings only the smallest is plausible.
+    // If there are several mistypings, only the smallest one is plausible.
     std::erase_if(found, [&](const auto& entry) {
         return entry.first > nearest && !has_word(plain(entry.second), name);
     });

@@ -102,7 +102,7 @@ void run_pieces(std::size_t count, std::size_t grain, const RunPiece& run_piece)
 
 /// Runs pieces that are small enough to react to cancellation quickly.
 void parallel_for_with_progress(std::size_t count, std::size_t grain, Progress* progress,
-                          const std::function<void(std::size_t, std::size_t)>& body) {
+                                const std::function<void(std::size_t, std::size_t)>& body) {
     constexpr std::size_t checks = 256;  // The checks of a 2 s loop on one thread are 8 ms apart.
     const std::size_t step = std::max(grain, count / checks);
     const auto run_piece = [&](std::size_t first, std::size_t last) {

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Animated PNG files (APNG), written frame by frame: what browsers play, and what any PNG reader
-/// shows the first frame of. Source: the APNG chunks of [PNG 3], section 11.3.6.
-/// Tests: tests/mesh/io/png/animated_png_test.cpp.
+/// Animated PNG files (APNG), written frame by frame. Browsers play them; other readers show the
+/// first frame. Source: the APNG chunks of [PNG 3], section 11.3.6.
 #pragma once
 
 #include <cstdint>
@@ -13,23 +12,23 @@
 
 namespace relief {
 
-/// A file being written. It takes the old one's place in finish(), and not before.
+/// Writes an animated PNG file. The file replaces an old one in finish().
 class AnimatedPng {
   public:
-    /// \param frames   how many there will be, at least 1; played again and again
-    /// \param seconds  that each is shown, from 0 to 65
+    /// \param frames   number of frames, at least 1; the animation repeats forever
+    /// \param seconds  duration of a frame, from 0 to 65
     /// \throws FileError if the file cannot be written, InvalidInput if a number is out of range
     AnimatedPng(const std::filesystem::path& file, std::uint32_t frames, double seconds);
     ~AnimatedPng();
     AnimatedPng(const AnimatedPng&) = delete;
     AnimatedPng& operator=(const AnimatedPng&) = delete;
 
-    /// The next frame: 8 or 16 bits, sRGB or data; only this one is held in memory.
-    /// \throws InvalidInput if it is not of the first one's size, channels and bits, or one too
-    ///         many; FileError
+    /// Adds a frame of 8 or 16 bits, sRGB-coded or data. Only one frame is held in memory.
+    /// \throws InvalidInput if its size, channels or bits differ from the first frame's, or if
+    ///         there are too many frames; FileError
     void add(const Image& frame);
 
-    /// \throws InvalidInput if frames are missing; FileError
+    /// Completes the file. \throws InvalidInput if frames are missing; FileError
     void finish();
 
   private:

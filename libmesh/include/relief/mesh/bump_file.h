@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// From a file of heights to a file of normals or slopes, band by band, so that images larger than
-/// memory can be converted. Tests: tests/mesh/io/maps/bump_file_test.cpp,
-/// bump_file_memory_test.cpp.
+/// Conversion of height map files to files of normals or slopes. It works by bands of rows, so that
+/// images may be larger than memory.
 #pragma once
 
 #include <cstddef>
@@ -23,44 +22,46 @@
 
 namespace relief {
 
-/// Which heights of a file to take.
+/// Which heights of a file are used, and how much memory reading may take.
 struct HeightMapChoice {
     HeightChannel channel = HeightChannel::mean;
-    /// Takes transparent texels for a part of the surface.
+    /// Treats transparent texels as part of the surface.
     bool ignore_alpha = false;
-    /// Maps whose samples take more bytes than this are read by rows, twice or more often.
+    /// Maps with more bytes of samples than this are read by rows, two or more times.
     std::size_t most_memory = std::size_t{640} << 20;
-    /// How much is worked on at once.
+    /// Size of a band.
     std::size_t texels_per_band = std::size_t{1} << 22;
 };
 
-/// A height map in a file: in memory if it is not too large, else read as its rows are needed.
+/// A height map of a file. It is in memory unless it is too large; then its rows are read when they
+/// are needed.
 class HeightMapFile {
   public:
-    /// Opens a file; one that is not too large is read.
+    /// Opens a file, and reads it unless it is too large.
     /// \throws FileError as read_image(); InvalidInput as height_map()
     explicit HeightMapFile(const std::filesystem::path& file, const HeightMapChoice& choice = {});
 
     [[nodiscard]] const std::filesystem::path& path() const { return path_; }
     [[nodiscard]] const HeightMapChoice& choice() const { return choice_; }
-    /// Of the file.
+    /// Information about the file.
     [[nodiscard]] const ImageInfo& info() const { return info_; }
-    /// Whether it is too large to be in memory.
+    /// Returns true if the map is too large to be in memory.
     [[nodiscard]] bool is_streamed() const { return is_streamed_; }
-    /// All of it, unless it is streamed; it may be changed before it is converted.
+    /// The map, unless it is streamed. It may be changed before the conversion.
     [[nodiscard]] HeightMap& map() { return map_; }
     [[nodiscard]] const HeightMap& map() const { return map_; }
     [[nodiscard]] int rows_per_band() const;
 
-    /// What the map shows of itself.
+    /// Properties of the map.
     struct Survey {
         Tiling tiling;
         std::vector<Image> parts;
         double colored_share = 0.0;        ///< As in HeightMap.
-        double partial_alpha_share = 0.0;  ///< The same.
+        double partial_alpha_share = 0.0;  ///< As in HeightMap.
     };
-    /// Looks at the seams, and takes out parts; a streamed map is read once for both. What a
-    /// transparent texel hides counts for neither: in parts, the surface beside goes on there.
+    /// Examines the seams and copies parts of the map; a streamed map is read once for both. Values
+    /// of transparent texels are ignored: in parts they are replaced by a continuation of the
+    /// surface.
     /// \param parts  within the map, from top to bottom
     /// \throws FileError
     [[nodiscard]] Survey survey(std::span<const ImagePart> parts) const;
@@ -73,35 +74,36 @@ class HeightMapFile {
     HeightMap map_;
 };
 
-/// What is made of the heights.
+/// The content of the result.
 enum class BumpContent {
     normals,
-    /// Height, slopes dh/dx and dh/dy, their squares and their product: the moments of which
+    /// Height, slopes dh/dx and dh/dy, their squares and their product: the moments from which
     /// filtered texels give mean and variance of the slope [Olano and Baker 2010]. Six float
-    /// channels, in the order and by the names of OpenImageIO's bumpslopes; EXR and TIFF only.
+    /// channels in the order and with the names of OpenImageIO's bumpslopes; EXR and TIFF only.
     slope_moments,
 };
 
-/// What goes into the alpha of a normal map.
+/// The alpha channel of a normal map.
 enum class MapAlpha {
     none,
     height,  ///< The height as it was read: 0 to 1.
-    keep,    ///< The alpha of the height map; 1 where it has none.
+    keep,    ///< The alpha of the height map; 1 if it has none.
 };
 
 struct BumpFileFormat {
     BumpContent content = BumpContent::normals;
-    /// Of normals. Of slope moments only `green` counts: it says where dh/dy points.
+    /// The format of normals. For slope moments only `green` matters: it defines the direction of
+    /// dh/dy.
     NormalMapFormat normals{};
     /// Normals without z: blue is 0.
     bool xy_only = false;
     MapAlpha alpha = MapAlpha::none;
     ImageWriteOptions write{};
-    /// Added to what says what the map holds: normal_map_metadata().
+    /// Added to the entries of normal_map_metadata().
     std::map<std::string, std::string> metadata{};
 };
 
-/// Milliseconds of the parts of a conversion. Of a streamed map the reading overlaps the rest.
+/// Milliseconds of the parts of a conversion. Reading a streamed map overlaps the rest.
 struct BumpFileTimes {
     double read = 0.0;
     double convert = 0.0;
@@ -110,19 +112,19 @@ struct BumpFileTimes {
 
 /// Converts a height map and writes the result.
 ///
-/// \param options   as in normals_from_height(). A negative strength turns the heights that
-///                  MapAlpha::height keeps around as well: 1 less them
-/// \param report    counts what normals_from_height() does, heights and alphas outside [0,1] that
-///                  had to be clamped to it (in 8 and 16 bits), and what write_image() reports
-/// \param progress  if given, called with the part that is done, 0 to 1, after every band
+/// \param options   as in normals_from_height(). A negative strength also inverts the heights in
+///         alpha (1 - height)
+/// \param report    counts the findings of normals_from_height() and write_image(), and heights and
+///         alphas outside [0,1] that were clamped (for 8 and 16 bits)
+/// \param progress  if given, called after each band with the fraction that is done, 0 to 1
 ///
-/// Transparent texels become flat, and the surface around them does not see what colour they hide
-/// (see filled_holes()). The same bytes whether the map is streamed or not, and for any number of
+/// Transparent texels become flat, and their hidden values do not affect the surface around them
+/// (see filled_holes()). The bytes of the result do not depend on streaming and on the number of
 /// threads.
 ///
 /// \throws InvalidInput, FileError as normal_map_from_height() and write_image(); FileError if a
-///         streamed map has a transparent texel or a height that is not finite, which only a map in
-///         memory has filled
+///         streamed map has a transparent texel or a non-finite height, which are filled only in
+///         maps in memory
 BumpFileTimes write_bump_file(const HeightMapFile& source, const BumpOptions& options,
                               const std::filesystem::path& file, const BumpFileFormat& format,
                               Report& report, const std::function<void(double)>& progress = {});

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Image files: PNG, JPEG, TIFF, EXR, HDR and what else OpenImageIO reads.
+/// Image files: PNG, JPEG, TIFF, EXR, HDR and other formats of OpenImageIO.
 ///
-/// PNG and JPEG files of the usual kinds have a direct way. OpenImageIO stands behind a module that
-/// is loaded when another image needs it and not before, because loading it alone costs 0.2 s and
-/// 120 MB. The module is looked for in $RELIEF_MODULE_DIR, then in ../lib/relief beside the
-/// program. Tests: tests/mesh/io/image/image_file_test.cpp.
+/// Common PNG and JPEG files are decoded directly. OpenImageIO is in a module that is loaded by the
+/// first image that needs it, because loading it takes 0.2 s and 120 MB. The module is searched in
+/// $RELIEF_MODULE_DIR, then in ../lib/relief beside the program.
 #pragma once
 
 #include <cstddef>
@@ -20,88 +19,89 @@
 
 namespace relief {
 
-/// What an image is read for; files do not say it reliably themselves.
+/// The purpose of an image; the tags of files are not reliable.
 enum class ImageUse {
     color,  ///< Integer samples are sRGB-coded, float samples linear.
-    data,   ///< Samples are numbers: never colour-converted, whatever the file's tags say.
+    data,   ///< Samples are numbers and never color-converted, whatever the file's tags say.
 };
 
-/// What is known of an image without decoding it.
+/// The properties of an image that are known without decoding it.
 struct ImageInfo {
     int width = 0;
     int height = 0;
     int channels = 0;
-    int bits = 0;  ///< 8, 16 or 32, as read_image would give them.
+    int bits = 0;  ///< 8, 16 or 32, as from read_image().
     std::map<std::string, std::string>
-        metadata;  ///< Text entries; relief's own begin with "relief:".
+        metadata;  ///< Text entries; those of relief begin with "relief:".
 };
 
-/// Largest image that is read, in samples; larger headers are refused before memory is taken.
+/// Largest image that is read, in samples. Larger ones are refused before memory is allocated.
 inline constexpr std::size_t max_image_samples = std::size_t{1} << 31;
 
-/// Reads a whole image: PNG, JPEG, TIFF, EXR, HDR, BMP, TGA, PNM, DDS, PSD or WebP. The format is
-/// decided by content, not by name (but for TGA, which has no signature).
+/// Reads a whole image: PNG, JPEG, TIFF, EXR, HDR, BMP, TGA, PNM, DDS, PSD or WebP. The content
+/// decides the format, not the name (except for TGA, which has no signature).
 ///
-/// \return 8, 16 or 32 bits as stored (1, 2 and 4 bits widen to 8, 10 and 12 to 16, palettes to
-///         RGB, transparent colours of PNG to alpha; half becomes float; signed and 32-bit integers
-///         become float, divided by their maximum); samples exactly as stored, alpha never
-///         multiplied in or out; CMYK and YCbCr become RGB. First subimage, first mip level; of EXR
-///         the data window, wherever it lies in the display window. gAMA, iCCP, Exif and their like
-///         change nothing.
-/// \throws FileError if it is missing, damaged, truncated, empty, of more than 4 channels, over
-///         max_image_samples, a volume, or announces more samples than its bytes can hold
+/// \return 8, 16 or 32 bits as stored. 1, 2 and 4 bits widen to 8, 10 and 12 to 16, palettes to
+/// RGB, transparent colors of PNG to alpha; half becomes float; signed and 32-bit integers become
+/// float, divided by their maximum. Samples are exactly as stored, alpha is neither multiplied nor
+/// divided; CMYK and YCbCr become RGB. First subimage, first mip level; for EXR the data window,
+/// independent of the display window. gAMA, iCCP, Exif and the like have no effect.
+/// \throws FileError if the file is missing, damaged, truncated, empty or a volume, has more than 4
+///         channels or max_image_samples, or announces more samples than its bytes can hold
 Image read_image(const std::filesystem::path& file, ImageUse use);
 
-/// The same from memory, as embedded in a glTF file. `name` is for messages.
+/// The same from memory, for images that are embedded in glTF files. `name` is for messages.
 Image read_image(std::span<const std::byte> bytes, const std::string& name, ImageUse use);
 
-/// What a file's header says; throws as read_image does, as far as headers tell.
+/// Reads the header of a file. \throws FileError as read_image(), for any problem that the header
+/// shows
 ImageInfo read_image_info(const std::filesystem::path& file);
 
 /// The same from memory. `name` is for messages.
 ImageInfo read_image_info(std::span<const std::byte> bytes, const std::string& name);
 
-/// What writing may cost: PNG on all threads, TIFF by how it deflates; other formats know no
-/// difference. The samples are the same.
+/// The time that writing may take: for PNG on all threads, for TIFF by the level of deflate; no
+/// effect on other formats. The samples are the same.
 ///
-/// Normal maps as PNG, beside OpenImageIO's defaults, which write 2 to 6 MPixel/s on one thread
-/// (bench/README.md): most have the same size within a tenth by any effort, for what prediction
-/// leaves over is noise. Where heights came in steps, or change very little, efforts differ.
+/// The figures are for normal maps as PNG; OpenImageIO's defaults write 2 to 6 MPixel/s on one
+/// thread (bench/README.md). For most maps the sizes of all efforts differ by less than a tenth,
+/// because the rest after prediction is noise. They differ more for stepped heights, or heights
+/// that change very little.
 enum class WriteEffort {
-    fast,    ///< 35 to 60 MPixel/s a thread; files up to a quarter larger than OpenImageIO's.
-    normal,  ///< 17 to 60 MPixel/s a thread; files at most a tenth larger, mostly smaller.
-    small,   ///< 3 to 60 MPixel/s a thread; files of 0.55 to 1 of OpenImageIO's size.
+    fast,    ///< 35 to 60 MPixel/s per thread; files up to a quarter larger than OpenImageIO's.
+    normal,  ///< 17 to 60 MPixel/s per thread; files at most a tenth larger, mostly smaller.
+    small,   ///< 3 to 60 MPixel/s per thread; files of 0.55 to 1 of OpenImageIO's size.
 };
 
-/// How an image file is written. No choice but `half` changes what is read back.
+/// How an image file is written. Only `half` changes the samples.
 struct ImageWriteOptions {
     WriteEffort effort = WriteEffort::normal;
-    /// EXR: samples are rounded to the nearest half float (11 significant bits). What lies beyond
-    /// the range of half becomes +-65504, its largest number, and is reported as "texel beyond
-    /// half's range"; infinities and NaN stay what they are.
+    /// EXR: rounds samples to half floats (11 significant bits). Values beyond the range of half
+    /// become +-65504, its largest number, and are reported as "texel beyond half's range";
+    /// infinities and NaN do not change.
     bool half = false;
 };
 
-/// Writes a whole image; the format is decided by the extension: .png .tif .tiff .exr .hdr .jpg.
+/// Writes a whole image. The extension decides the format: .png .tif .tiff .exr .hdr .jpg.
 ///
-/// \param metadata  text entries, kept where the format can hold them: PNG (tEXt), EXR, TIFF (lines
-///                  "key=value" of its description, read back where the key begins with "relief:");
-///                  keys have 1 to 79 letters
-/// \throws FileError if it cannot be written, or if the extension is another
-/// \throws InvalidInput if the format cannot hold these samples: float in PNG, anything but 8 bits
-///         of 1 or 3 channels in JPEG, anything but float in EXR and HDR, anything but 3 channels
-///         in HDR, half in anything but EXR; or if they would read back as something else: linear
-///         colour in integers (encode it with to_srgb first), sRGB colour in float
+/// A temporary file is written and renamed: after a failure there is no partial file, and the old
+/// one is unchanged. The same image gives the same bytes for any number of threads. PNG, TIFF and
+/// EXR keep all samples (EXR and TIFF as float); HDR keeps 8 bits of precision and no negative
+/// values; JPEG is written with quality 95.
 ///
-/// Written beside and renamed: a failure leaves no half file and the old one unharmed. The same
-/// image gives the same bytes, whatever the number of threads. PNG, TIFF and EXR keep every sample
-/// (EXR and TIFF as float); HDR keeps 8 bits of precision and no negative values; JPEG is written
-/// at quality 95.
+/// \param metadata  text entries, which are kept if the format can hold them: PNG (tEXt), EXR, TIFF
+///         (lines "key=value" of its description, read back if the key begins with "relief:"); keys
+///         have 1 to 79 letters
+/// \throws FileError if the file cannot be written, or for another extension
+/// \throws InvalidInput if the format cannot hold these samples: float in PNG, other than 8 bits of
+///         1 or 3 channels in JPEG, other than float in EXR and HDR, other than 3 channels in HDR,
+///         half except in EXR; or if they would be read with another meaning: linear color in
+///         integers (encode it with to_srgb() first), sRGB color in float
 void write_image(const std::filesystem::path& file, const Image& image,
                  const std::map<std::string, std::string>& metadata = {},
                  const ImageWriteOptions& options = {});
 
-/// The same; what had to be changed about the samples is added to `report`.
+/// Like write_image(), and adds changes of samples to `report`.
 void write_image(const std::filesystem::path& file, const Image& image,
                  const std::map<std::string, std::string>& metadata,
                  const ImageWriteOptions& options, Report& report);

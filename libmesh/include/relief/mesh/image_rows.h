@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Image files read and written row by row, so that images larger than memory can be worked on.
+/// Reading and writing image files by rows, so that images may be larger than memory.
 ///
-/// Samples mean, and errors say, what they do for whole images (image_file.h). What is held at
-/// once: a band of rows of some 16 MiB or of one row of tiles, whichever is more, and the rows of
-/// the caller. Tests: tests/mesh/io/image/image_rows_test.cpp, image_rows_memory_test.cpp.
+/// Samples and errors are those of whole images (image_file.h). Memory holds a band of rows of
+/// about 16 MiB, or one row of tiles if that is larger, and the rows of the caller.
 #pragma once
 
 #include <cstddef>
@@ -22,20 +21,20 @@
 
 namespace relief {
 
-/// Largest image that is read or written by rows, in samples; no row may have more than
+/// Largest image that is read or written by rows, in samples. A row may have at most
 /// max_image_samples.
 inline constexpr std::size_t max_streamed_samples = std::size_t{1} << 40;
 
-/// Rows of an image file in order from the top.
+/// Reads the rows of an image file in order from the top.
 ///
-/// PNG, TIFF and EXR files are decoded as far as rows are asked for, from the file itself, which
-/// must stay as it is meanwhile. All other formats are decoded whole when they are opened, and so
-/// are interlaced PNG files and those with a single transparent colour; they are held to
-/// max_image_samples, like read_image().
+/// PNG, TIFF and EXR files are decoded on demand from the file, which must not change meanwhile.
+/// All other formats, interlaced PNG files, and PNG files with a single transparent color are
+/// decoded completely by the constructor; they are limited to max_image_samples, as for
+/// read_image().
 class ImageRowReader {
   public:
     /// Opens a file and reads its header.
-    /// \throws FileError as read_image() does, as far as headers tell
+    /// \throws FileError as read_image() does, for any problem that the header shows
     explicit ImageRowReader(const std::filesystem::path& file);
     ~ImageRowReader();
     ImageRowReader(ImageRowReader&&) noexcept;
@@ -45,19 +44,19 @@ class ImageRowReader {
     [[nodiscard]] const ImageInfo& info() const;
     /// width * channels * bits / 8.
     [[nodiscard]] std::size_t row_bytes() const;
-    /// The row that is read next; the height where all have been.
+    /// The next row; the height after the last one.
     [[nodiscard]] int next_row() const;
-    /// Whether rows are decoded as they are asked for; else the whole image is in memory.
+    /// Returns true if rows are decoded on demand; otherwise the whole image is in memory.
     [[nodiscard]] bool is_streamed() const;
 
-    /// The next rows, tightly packed, in the machine's byte order, as read_image() gives them.
+    /// Reads the next rows, tightly packed, in native byte order, as from read_image().
     /// \param rows  whole rows, aligned for the samples' type: std::as_writable_bytes() of a span
-    /// \throws InvalidInput if it holds no whole number of rows, or more than are left; FileError
-    ///         if they are damaged: the reader is of no use from then on
+    /// \throws InvalidInput if it is not a whole number of rows, or has more than are left;
+    ///         FileError if rows are damaged, after which the reader cannot be used
     void read(std::span<std::byte> rows);
 
-    /// Leaves rows out. Where a format allows it (TIFF, EXR) they are not decoded, and what is
-    /// wrong with them stays unnoticed. \throws as read()
+    /// Skips rows. TIFF and EXR do not decode them, so errors in them are not noticed. \throws as
+    /// read()
     void skip(int rows);
 
   private:
@@ -65,23 +64,23 @@ class ImageRowReader {
     std::unique_ptr<Implementation> implementation_;
 };
 
-/// What an image will be, before its samples are known.
+/// The properties of an image, without its samples.
 struct ImageShape {
     int width = 0;
     int height = 0;
     int channels = 0;
-    int bits = 0;  ///< 8, 16 or 32, of the samples that write() is given.
+    int bits = 0;  ///< 8, 16 or 32: the type of the samples for write().
     ColorSpace color_space = ColorSpace::data;
-    /// What the channels are called, for images that are no colours, of up to 8 channels: EXR and
-    /// TIFF only, and only EXR keeps the names. Empty: grey, RGB and alpha.
+    /// Names of the channels, for images of up to 8 channels that are not colors: EXR and TIFF
+    /// only, and only EXR stores the names. Empty for gray, RGB and alpha.
     std::vector<std::string> channel_names{};
 };
 
-/// An image file being written in order from the top.
+/// Writes an image file in order from the top.
 ///
-/// The file takes the old one's place in finish(), and not before; a writer that is destroyed
-/// without finish() leaves no file behind and the old one unharmed. The same samples give the same
-/// bytes, however they were cut into calls and whatever the number of threads.
+/// The file replaces an old one in finish(). Without finish(), the destructor removes the new file,
+/// and the old one is not changed. The same samples give the same bytes, independent of the number
+/// of rows per call and of threads.
 class ImageRowWriter {
   public:
     /// \throws FileError, InvalidInput as write_image() does
@@ -95,18 +94,19 @@ class ImageRowWriter {
     /// width * channels * bits / 8.
     [[nodiscard]] std::size_t row_bytes() const;
 
-    /// The next rows, tightly packed, in the machine's byte order.
+    /// Writes the next rows, tightly packed, in native byte order.
     /// \param rows  whole rows, aligned for the samples' type: std::as_bytes() of a span
-    /// \throws InvalidInput if it holds no whole number of rows, or more than the image has left;
-    ///         FileError if they cannot be written: nothing more can be written then
+    /// \throws InvalidInput if it is not a whole number of rows, or has more than are left;
+    ///         FileError if rows cannot be written, after which writing is no longer possible
     void write(std::span<const std::byte> rows);
 
-    /// Writes what is left and closes the file, which stays beside the old one until finish().
+    /// Writes remaining rows and closes the temporary file, which stays beside the old file until
+    /// finish().
     /// \param report  gets "texel beyond half's range" for EXR files of halves
     /// \throws InvalidInput if rows are missing; FileError
     void complete(Report& report);
 
-    /// Completes the file, unless that is done, and renames it into place.
+    /// Calls complete() if needed, and renames the file.
     /// \param report  gets "texel beyond half's range" for EXR files of halves
     /// \throws InvalidInput if rows are missing; FileError
     void finish(Report& report);

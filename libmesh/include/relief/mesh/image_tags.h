@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// What image files say of the colours in them. relief follows none of it: ImageUse decides.
-/// Tests: tests/mesh/io/image/image_tags_test.cpp.
+/// Color tags of image files. relief does not use them: ImageUse decides.
 #pragma once
 
 #include <filesystem>
@@ -9,9 +8,9 @@
 
 namespace relief {
 
-/// The tag by which a program would take the samples of a PNG file for colours: "sRGB", "gamma
-/// 0.45455", "ICC profile", "coding-independent code points"; the first of these. Empty for a gamma
-/// of 1, for files without any, and for other formats.
+/// The tag by which a program would interpret the samples of a PNG file as colors: "sRGB", "gamma
+/// 0.45455", "ICC profile" or "coding-independent code points"; the first one in the file. Empty
+/// for a gamma of 1, for files without tags, and for other formats.
 /// \throws FileError if the file cannot be read
 std::string color_tag(const std::filesystem::path& file);
 

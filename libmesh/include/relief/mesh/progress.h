@@ -13,7 +13,7 @@
 /// No function takes a Progress: what a thread calls while it has a ProgressScope reports to it,
 /// and so do the loops that it shares out. Without one, nothing is counted and nothing is slower.
 /// Readers of meshes, glTF and images, normals, tangents and what a Renderer prepares report to it.
-/// Tests: tests/mesh/base/progress_test.cpp, tests/mesh/io/mesh/cancelling_test.cpp.
+/// Tests: tests/mesh/base/progress_test.cpp, tests/mesh/io/mesh/mesh_file_test.cpp.
 #pragma once
 
 #include <atomic>

@@ -293,7 +293,7 @@ void walk_each(Json& container, std::string_view type, const ValuePath& place, V
     for (auto& [key, value] : container.items()) {
         const bool is_map = container.is_object();
         const ValuePath inner{&place, is_map ? std::string_view(key) : std::string_view(),
-                               number++};
+                              number++};
         walk(value, type, inner, visitor);
     }
 }

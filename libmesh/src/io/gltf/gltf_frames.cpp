@@ -184,8 +184,7 @@ void FrameReplacement::carry_all() {
             accessor = number;
         }
     };
-    Json copy =
-        primitive();  // A copy, because adding accessors reallocates the arrays of the document.
+    Json copy = primitive();  // Adding accessors reallocates the arrays of the document.
     carry(copy["attributes"]);
     if (copy.contains("targets")) {
         for (Json& target : copy["targets"])

@@ -323,8 +323,9 @@ void relocate(Json& root, const Relocation& relocation) {
         const Json& view = root["bufferViews"][size_in(holder, "bufferView")];
         const std::size_t buffer = size_in(view, "buffer");
         const std::size_t view_begin = size_in(view, "byteOffset");
-        set_offset(holder, relocation.moved_offset(buffer, view_begin + size_in(holder, "byteOffset")) -
-                               relocation.moved_offset(buffer, view_begin));
+        set_offset(holder,
+                   relocation.moved_offset(buffer, view_begin + size_in(holder, "byteOffset")) -
+                       relocation.moved_offset(buffer, view_begin));
     };
     if (root.contains("accessors")) {
         for (Json& accessor : root["accessors"]) {
@@ -425,7 +426,7 @@ std::optional<std::filesystem::path> image_file(const Json& image,
 
 /// Throws if the file moves to another folder while the image is outside the old one.
 void check_inside_folder(const Json& image, std::size_t number, const GltfContents& contents,
-                 const std::filesystem::path& file) {
+                         const std::filesystem::path& file) {
     const std::string uri = text_in(image, "uri");
     if (uri.empty() || has_scheme(uri) || path_inside(contents.folder, uri)) return;
     if (std::filesystem::absolute(file).parent_path() == contents.folder) return;

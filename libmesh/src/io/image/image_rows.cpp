@@ -113,7 +113,8 @@ void check_metadata(const std::map<std::string, std::string>& metadata) {
 
 class WholeImageSource final : public RowSource {
   public:
-    WholeImageSource(Image image, ImageInfo info) : image_(std::move(image)), info_(std::move(info)) {}
+    WholeImageSource(Image image, ImageInfo info)
+        : image_(std::move(image)), info_(std::move(info)) {}
 
     [[nodiscard]] const ImageInfo& info() const override { return info_; }
     [[nodiscard]] bool is_streamed() const override { return false; }

@@ -2,8 +2,8 @@
 // Chooses the reader or writer of a mesh file by its extension, and the local origin of distant
 // meshes.
 //
-// Local origins are multiples of a power of two max_ratio the mesh's size. Subtracting them is therefore
-// exact, and they have few digits. If a reader runs out of memory, this is a FileError.
+// Local origins are multiples of a power of two near the mesh's size. Subtracting them is
+// therefore exact, and they have few digits. If a reader runs out of memory, this is a FileError.
 #include "relief/mesh/mesh_file.h"
 
 #include <fmt/format.h>
@@ -19,9 +19,10 @@
 namespace relief {
 namespace {
 
-/// The offset to the middle of the mesh; zero if the mesh is max_ratio 0 compared with its size.
+/// The offset to the middle of the mesh; zero if the mesh is near 0 compared with its size.
 glm::dvec3 offset_if_distant(const Mesh& mesh) {
-    constexpr double max_ratio = 16.0;  // At this ratio floats still resolve 20 bits of the mesh's size.
+    constexpr double max_ratio =
+        16.0;  // At this ratio floats still resolve 20 bits of the mesh's size.
     const Bounds bounds = bounds_of(mesh);
     if (bounds.empty()) return glm::dvec3(0.0);
     const glm::dvec3 low(bounds.min);
@@ -57,7 +58,7 @@ MeshFile read_with_local_origin(const std::filesystem::path& file, const MeshRea
     Report findings;
     MeshFile best = read(file, glm::dvec3(0.0), findings);
     // Positions that are equal in float may be far apart compared with their size once the origin
-    // is max_ratio.
+    // is near.
     constexpr int max_passes = 3;
     for (int pass = 0; pass < max_passes; ++pass) {
         const glm::dvec3 shift = offset_if_distant(best.mesh);

@@ -46,10 +46,8 @@ struct ObjPiece {
     /// piece's start and may lie before it.
     std::vector<std::uint8_t> relative;
     std::size_t object_count = 0;
-    std::size_t faces_before_material =
-        0;  ///< These have the last material of the preceding pieces.
-    std::size_t faces_before_smoothing =
-        0;  ///< These have the last smoothing group of the preceding pieces.
+    std::size_t faces_before_material = 0;   ///< They have the last material before the piece.
+    std::size_t faces_before_smoothing = 0;  ///< They have the last group before the piece.
     std::int32_t last_material = -1;
     std::uint32_t last_smoothing_group = 0;
     std::size_t line_ends = 0;

@@ -49,8 +49,7 @@ struct ObjStatements {
     std::vector<glm::vec3> normals;
     std::vector<ObjCorner> corners;
     std::vector<ObjFace> faces;
-    bool has_smoothing_groups =
-        false;  ///< True if any s statement sets a group or turns groups off.
+    bool has_smoothing_groups = false;            ///< There is an s statement.
     std::vector<ObjRun> objects, groups;          ///< In the file's order.
     std::vector<std::string> materials;           ///< Names in order of first use.
     std::vector<std::string> material_libraries;  ///< As written after mtllib.

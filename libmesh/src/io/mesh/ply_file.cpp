@@ -220,7 +220,9 @@ class PlyBinaryValues {
         return 0.0;
     }
     bool end_element() { return true; }
-    [[nodiscard]] std::uint64_t max_remaining(PlyType type) const { return data_.size() / size_of(type); }
+    [[nodiscard]] std::uint64_t max_remaining(PlyType type) const {
+        return data_.size() / size_of(type);
+    }
 
   private:
     template <typename Value, typename Bits>

@@ -15,13 +15,13 @@
 #include <utility>
 #include <vector>
 
+#include "file_bytes.h"
 #include "io/image/image_file_container.h"
 #include "io/image/image_module_client.h"
 #include "io/png/inflate.h"
 #include "io/png/png_format.h"
 #include "large_memory.h"
 #include "parallel.h"
-#include "file_bytes.h"
 #include "relief/mesh/error.h"
 #include "relief/mesh/image_file.h"
 #include "relief/mesh/image_rows.h"
