@@ -98,6 +98,23 @@ TEST(FittedNormals, GetTruerWithTheFourthPowerOfTheCells) {
     EXPECT_LE(order, 5.5);
 }
 
+TEST(FittedNormals, TurnWithTheMesh) {
+    const Mesh mesh =
+        analytic_mesh(AnalyticSurface::ellipsoid, Triangulation::jittered, 24, 1).mesh;
+    const glm::vec3 half_turn(-1.0F, -1.0F, 1.0F);
+    Mesh turned = mesh;
+    for (glm::vec3& position : turned.positions)
+        position *= half_turn;
+    const FittedNormals one = fitted_normals(mesh, {});
+    const FittedNormals other = fitted_normals(turned, {});
+    ASSERT_EQ(other.corners, one.corners);
+    double most = 0.0;
+    for (std::size_t i = 0; i < one.normals.size(); ++i)
+        most = std::max(most,
+                        degrees_between(one.normals[i] * glm::dvec3(half_turn), other.normals[i]));
+    EXPECT_LE(most, 1e-8);
+}
+
 /// A grid over [-1,1]^2 of heights.
 template <typename Height>
 Mesh graph_of(const Height& height, int cells) {

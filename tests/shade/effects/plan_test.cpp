@@ -553,6 +553,11 @@ const std::vector<Boundary> color_boundaries = {
      {masked, translucent, opacity_texture},
      {no_texcoords},
      {}},
+    {"diffuse texture", "unlit", {unlit}, {}, {diffuse_texture}},
+    {"vertex colours", "unlit", {unlit}, {}, {with_colors({1, 0.999F, 1, 1})}},
+    {"alpha mask", "unlit", {unlit, translucent}, {}, {masked}},
+    {"opacity texture", "unlit", {unlit, masked}, {}, {opacity_texture}},
+    {"opacity texture", "unlit and opaque", {unlit, opacity_texture}, {}, {masked}},
 };
 
 const std::vector<Boundary> normal_boundaries = {
@@ -776,6 +781,9 @@ const std::vector<Boundary> frame_boundaries = {
     {"exposure", "not 1", {}, {}, {exposed}},
     {"exposure", "sRGB codes", {exposed}, {linear_output}, {}},
     {"exposure", "no finishing pass", {exposed}, {two_samples}, {}},
+    {"exposure", "unlit", {unlit}, {}, {exposed}},
+    {"exposure", "unlit in sRGB codes", {unlit, exposed}, {linear_output}, {}},
+    {"ACES tone mapping", "unlit", {unlit}, {}, {aces}},
     {"Reinhard tone mapping", "its curve", {}, {aces}, {reinhard}},
     {"Reinhard tone mapping", "sRGB codes", {reinhard}, {linear_output}, {}},
     {"ACES tone mapping", "its curve", {}, {reinhard}, {aces}},
@@ -825,7 +833,9 @@ bool is_planned(const Boundary& boundary, const std::vector<Change>& side) {
     if (effect != effects().end()) {
         const bool is_on = effect->on(draw.features);
         // A finishing pass exposes and maps tones instead of the draw.
-        if (!plan.finishing_pass) EXPECT_EQ(reason(draw.reasons, boundary.effect).on, is_on);
+        if (!plan.finishing_pass) {
+            EXPECT_EQ(reason(draw.reasons, boundary.effect).on, is_on);
+        }
         return is_on;
     }
     if (std::string_view(boundary.effect) == "computed tangents") return draw.needs_tangents;
