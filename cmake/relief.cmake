@@ -138,6 +138,13 @@ function(relief_add_test_program name)
     add_executable(${name})
     set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${RELIEF_TEST_DIRECTORY})
     target_link_libraries(${name} PRIVATE ${ARG_GROUPS} ${ARG_OBJECTS} relief_test_main)
+    foreach(group ${ARG_GROUPS})
+        # What a group runs must be built with the program, too; linking does not pass that on.
+        get_target_property(needed ${group} MANUALLY_ADDED_DEPENDENCIES)
+        if(needed)
+            add_dependencies(${name} ${needed})
+        endif()
+    endforeach()
 
     set(used ${ARG_LABEL})
     set(patterns "")
