@@ -59,12 +59,28 @@ ProcessState process_state() {
     return state;
 }
 
+/// The processor time of this process and of its ended children, in milliseconds.
+long processor_milliseconds() {
+    long sum = 0;
+    for (const int whose : {RUSAGE_SELF, RUSAGE_CHILDREN}) {
+        rusage usage{};
+        ::getrusage(whose, &usage);
+        for (const timeval& time : {usage.ru_utime, usage.ru_stime})
+            sum += time.tv_sec * 1000 + time.tv_usec / 1000;
+    }
+    return sum;
+}
+
+/// Also records the processor time of each case, which scripts/run-tests reports.
 class RestoredState : public testing::EmptyTestEventListener {
     void OnTestStart(const testing::TestInfo&) override {  // NOLINT(readability-identifier-naming)
         set_thread_limit(0);
         before_ = process_state();
+        processor_begin_ = processor_milliseconds();
     }
     void OnTestEnd(const testing::TestInfo&) override {  // NOLINT(readability-identifier-naming)
+        testing::Test::RecordProperty("processor_ms",
+                                      std::to_string(processor_milliseconds() - processor_begin_));
         const ProcessState after = process_state();
         for (const auto& [name, value] : before_) {
             const auto now = after.find(name);
@@ -82,6 +98,7 @@ class RestoredState : public testing::EmptyTestEventListener {
     }
 
     ProcessState before_;
+    long processor_begin_ = 0;
 };
 
 }  // namespace
