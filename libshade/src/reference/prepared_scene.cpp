@@ -6,20 +6,22 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "geometry/direction.h"
 #include "relief/mesh/error.h"
 #include "relief/mesh/frames.h"
 #include "relief/shade/effects.h"
 #include "relief/shade/image_source.h"
-#include "render/scene_textures.h"
+#include "render/material_textures.h"
 
 namespace relief::reference {
 
 namespace {
 
-const Material& material_of_range(const Scene& scene, const MaterialRange& range) {
-    return range.material ? scene.materials[*range.material] : default_material();
+const Material& material_of_range(const std::vector<Material>& materials,
+                                  const MaterialRange& range) {
+    return range.material ? materials[*range.material] : default_material();
 }
 
 bool uses_stored_tangents(const Material& material) {
@@ -28,17 +30,17 @@ bool uses_stored_tangents(const Material& material) {
            (material.normal_map && material.normal_map->space == NormalSpace::tangent);
 }
 
-bool needs_tangents(const Scene& scene, const Mesh& mesh) {
+bool needs_tangents(const std::vector<Material>& materials, const Mesh& mesh) {
     if (mesh.texcoords.empty() || !mesh.tangents.empty()) return false;
     return std::any_of(mesh.material_ranges.begin(), mesh.material_ranges.end(),
                        [&](const MaterialRange& range) {
-                           return uses_stored_tangents(material_of_range(scene, range));
+                           return uses_stored_tangents(material_of_range(materials, range));
                        });
 }
 
-Mesh framed_mesh(const Scene& scene, const Mesh& mesh, Report& report) {
+Mesh framed_mesh(const std::vector<Material>& materials, const Mesh& mesh, Report& report) {
     FrameOptions options;
-    if (needs_tangents(scene, mesh)) options.tangents = TangentMode::mikktspace;
+    if (needs_tangents(materials, mesh)) options.tangents = TangentMode::mikktspace;
     const bool complete = !mesh.normals.empty() && options.tangents == TangentMode::keep;
     return complete ? mesh : with_frames(mesh, options, report).mesh;
 }
@@ -80,13 +82,29 @@ PreparedInstance prepared(const Instance& instance, const Mesh& mesh,
     return result;
 }
 
-void want_textures(PreparedScene& prepared, const Scene& scene, const Material& material) {
-    prepared.texels.want(scene, material);
+void find_flat_code(PreparedScene& prepared, const Scene& scene, const Material& material) {
     if (!material.normal_map) return;
     const std::size_t image = material.normal_map->texture.image;
     const Image decoded = decode(scene.images[image], ImageUse::data);
     prepared.normal_map_bits[image] = decoded.bits();
     prepared.detected_flat_codes[image] = detected_flat_code(scene.images[image], decoded);
+}
+
+/// Decodes the textures of all materials that are on meshes with texture coordinates.
+void decode_textures(PreparedScene& prepared, const Scene& scene, Report& report) {
+    std::set<std::uint32_t> textured;
+    for (const Mesh& mesh : scene.meshes) {
+        for (const MaterialRange& range : mesh.material_ranges) {
+            if (!mesh.texcoords.empty() && range.material) textured.insert(*range.material);
+        }
+    }
+    for (const std::uint32_t number : textured)
+        prepared.texels.want(scene, scene.materials[number]);
+    for (const std::uint32_t number : textured) {
+        Material& material = prepared.materials[number];
+        leave_out_textures(scene, prepared.texels.unreadable(), number, material, report);
+        find_flat_code(prepared, scene, material);
+    }
 }
 
 /// Counts triangles that have no place.
@@ -103,19 +121,16 @@ void report_unplaced(const Mesh& mesh, Report& report) {
 
 }  // namespace
 
-PreparedScene::PreparedScene(const Scene& described, Report& report) : scene(described) {
+PreparedScene::PreparedScene(const Scene& described, Report& report)
+    : scene(described), materials(described.materials) {
     validate(scene);
     if (!scene.camera) throw InvalidInput("the scene has no camera");
     const glm::dmat4 world_from_view(scene.camera->world_from_view);
     eye_world = glm::dvec3(world_from_view[3]);
+    decode_textures(*this, scene, report);
     for (const Mesh& mesh : scene.meshes) {
-        meshes.push_back(framed_mesh(scene, mesh, report));
+        meshes.push_back(framed_mesh(materials, mesh, report));
         report_unplaced(mesh, report);
-        for (MaterialRange& range : meshes.back().material_ranges) {
-            if (!mesh.texcoords.empty()) {
-                want_textures(*this, scene, material_of_range(scene, range));
-            }
-        }
     }
     for (const Instance& instance : scene.instances) {
         instances.push_back(
@@ -135,7 +150,7 @@ std::size_t PreparedScene::range_of(std::uint32_t instance, std::uint32_t triang
 const Material& PreparedScene::material_of(std::uint32_t instance, std::uint32_t triangle) const {
     const auto& ranges = instances[instance].mesh->material_ranges;
     if (ranges.empty()) return default_material();
-    return material_of_range(scene, ranges[range_of(instance, triangle)]);
+    return material_of_range(materials, ranges[range_of(instance, triangle)]);
 }
 
 FlatCode PreparedScene::flat_code(const NormalMap& map) const {

@@ -39,6 +39,7 @@ struct PreparedScene {
     [[nodiscard]] FlatCode flat_code(const NormalMap& map) const;
 
     const Scene& scene;
+    std::vector<Material> materials;  ///< Without the textures that cannot be read.
     glm::dvec3 eye_world;
     std::vector<Mesh> meshes;
     std::vector<PreparedInstance> instances;

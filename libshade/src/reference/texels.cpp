@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "geometry/direction.h"
+#include "relief/mesh/error.h"
 #include "relief/shade/image_source.h"
 
 namespace relief::reference {
@@ -91,8 +92,14 @@ void SceneTexels::want(const Scene& scene, const Material& material) {
     for_each_texture(material, [&](const std::optional<Texture>& texture, ImageUse use) {
         if (!texture) return;
         const auto key = std::pair(texture->image, use);
-        if (texels_.contains(key)) return;
-        texels_.emplace(key, Texels(decode(scene.images[texture->image], use)));
+        if (texels_.contains(key) || unreadable_.contains(texture->image)) return;
+        const ImageSource& source = scene.images[texture->image];
+        try {
+            texels_.emplace(key, Texels(decode(source, use)));
+        } catch (const FileError& error) {
+            if (source.is_required) throw;
+            unreadable_.emplace(texture->image, error.what());
+        }
     });
 }
 

@@ -9,6 +9,7 @@
 
 #include <glm/glm.hpp>
 #include <map>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -43,8 +44,14 @@ int wrapped(double index, int size, TextureWrap wrap);
 /// The images that a scene's materials look up, decoded once for each use.
 class SceneTexels {
   public:
-    /// \throws FileError if one cannot be read
+    /// Decodes a material's images. Those that cannot be read are in unreadable().
+    /// \throws FileError if an image that is required cannot be read
     void want(const Scene& scene, const Material& material);
+
+    /// By index of the image, what is wrong with it.
+    [[nodiscard]] const std::map<std::size_t, std::string>& unreadable() const {
+        return unreadable_;
+    }
 
     [[nodiscard]] const Texels& get(std::size_t image, ImageUse use) const {
         return texels_.at({image, use});
@@ -54,6 +61,7 @@ class SceneTexels {
 
   private:
     std::map<std::pair<std::size_t, ImageUse>, Texels> texels_;
+    std::map<std::size_t, std::string> unreadable_;
 };
 
 }  // namespace relief::reference

@@ -28,11 +28,16 @@ struct TextureRow {
     ImageUse use;
     bool (*sampled)(const Features& f);
     const Texture* (*texture)(const Material& m);
+    void (*remove)(Material& m);
 };
 
 template <auto Member>
 const Texture* optional_texture(const Material& m) {
     return m.*Member ? &*(m.*Member) : nullptr;
+}
+template <auto Member>
+void remove_optional(Material& m) {
+    (m.*Member).reset();
 }
 
 const std::array<TextureRow, material_unit_count>& texture_rows() {
@@ -40,30 +45,39 @@ const std::array<TextureRow, material_unit_count>& texture_rows() {
     using M = const Material&;
     static const std::array<TextureRow, material_unit_count> all{{
         {TextureUnit::diffuse_texture, ImageUse::color, [](F f) { return f.diffuse_texture; },
-         optional_texture<&Material::diffuse_texture>},
+         optional_texture<&Material::diffuse_texture>, remove_optional<&Material::diffuse_texture>},
         {TextureUnit::specular_texture, ImageUse::color, [](F f) { return f.specular_texture; },
-         optional_texture<&Material::specular_texture>},
+         optional_texture<&Material::specular_texture>,
+         remove_optional<&Material::specular_texture>},
         {TextureUnit::emission_texture, ImageUse::color, [](F f) { return f.emission_texture; },
-         optional_texture<&Material::emission_texture>},
+         optional_texture<&Material::emission_texture>,
+         [](Material& m) {
+             m.emission_texture.reset();
+             m.emission = glm::vec3(0.0F);
+         }},
         {TextureUnit::occlusion_texture, ImageUse::data, [](F f) { return f.occlusion_texture; },
-         optional_texture<&Material::occlusion_texture>},
+         optional_texture<&Material::occlusion_texture>,
+         remove_optional<&Material::occlusion_texture>},
         {TextureUnit::opacity_texture, ImageUse::data, [](F f) { return f.opacity_texture; },
-         optional_texture<&Material::opacity_texture>},
+         optional_texture<&Material::opacity_texture>, remove_optional<&Material::opacity_texture>},
         {TextureUnit::metallic_roughness_texture, ImageUse::data,
          [](F f) { return f.metallic_roughness_texture; },
          [](M m) -> const Texture* {
              const auto& model = m.metallic_roughness;
              return model && model->texture ? &*model->texture : nullptr;
-         }},
+         },
+         [](Material& m) { m.metallic_roughness->texture.reset(); }},
         {TextureUnit::normal_texture, ImageUse::data,
          [](F f) {
              return f.detail == NormalDetail::normal_map ||
                     f.detail == NormalDetail::object_normal_map;
          },
-         [](M m) { return m.normal_map ? &m.normal_map->texture : nullptr; }},
+         [](M m) { return m.normal_map ? &m.normal_map->texture : nullptr; },
+         remove_optional<&Material::normal_map>},
         {TextureUnit::bump_texture, ImageUse::data,
          [](F f) { return f.detail == NormalDetail::bump_map; },
-         [](M m) { return m.bump_map ? &m.bump_map->texture : nullptr; }},
+         [](M m) { return m.bump_map ? &m.bump_map->texture : nullptr; },
+         remove_optional<&Material::bump_map>},
     }};
     return all;
 }
@@ -97,6 +111,13 @@ void leave_out(Features& features, TextureUnit unit) {
                                      [&](const Effect& one) { return one.name == name; });
     effect->set(features, false);
     if (unit == TextureUnit::emission_texture) features.emission = false;
+}
+
+void report_left_out(const Scene& scene, std::optional<std::uint32_t> material, const char* effect,
+                     const std::pair<const std::size_t, std::string>& image, Report& report) {
+    report.add(fmt::format("unreadable {} of {}", effect, material_label(scene, material)), "image",
+               image.first,
+               "drawn without it: " + with_origin(scene.images[image.first], image.second));
 }
 
 /// Turns off the reasons of effects that the draw does not have any more.
@@ -142,15 +163,25 @@ void leave_out_textures(const Scene& scene, const std::map<std::size_t, std::str
             if (entry == unreadable.end()) continue;
             leave_out(draw.features, used.unit);
             if (!reported.emplace(number, used.unit).second) continue;
-            report.add(
-                fmt::format("unreadable {} of {}", effect_of(used.unit, planned),
-                            material_label(scene, number)),
-                "image", entry->first,
-                "drawn without it: " + with_origin(scene.images[entry->first], entry->second));
+            report_left_out(scene, number, effect_of(used.unit, planned), *entry, report);
         }
         if (draw.features == planned) continue;
         draw.features = canonical(draw.features);
         correct_reasons(draw, planned);
+    }
+}
+
+void leave_out_textures(const Scene& scene, const std::map<std::size_t, std::string>& unreadable,
+                        std::uint32_t number, Material& material, Report& report) {
+    Features features;
+    if (material.normal_map && material.normal_map->space == NormalSpace::object)
+        features.detail = NormalDetail::object_normal_map;
+    for (const TextureRow& row : texture_rows()) {
+        const Texture* const texture = row.texture(material);
+        const auto entry = texture == nullptr ? unreadable.end() : unreadable.find(texture->image);
+        if (entry == unreadable.end()) continue;
+        report_left_out(scene, number, effect_of(row.unit, features), *entry, report);
+        row.remove(material);
     }
 }
 

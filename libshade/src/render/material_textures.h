@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// Which textures a draw samples: the material's, or a neutral one where a forced plan names a
-/// texture that the material or the mesh cannot give.
+/// texture that the material or the mesh cannot give. Which textures are left out.
 /// Tests: tests/shade/render/renderer_test.cpp, forced_effects_test.cpp.
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <map>
 #include <string>
 #include <vector>
@@ -39,6 +40,10 @@ std::vector<UsedTexture> used_textures(const Features& features, const Material&
 /// \param report      names each texture: its effect, its material, its image and what is wrong
 void leave_out_textures(const Scene& scene, const std::map<std::size_t, std::string>& unreadable,
                         FramePlan& plan, Report& report);
+
+/// Takes them out of a material of the scene, by the same rules and with the same report.
+void leave_out_textures(const Scene& scene, const std::map<std::size_t, std::string>& unreadable,
+                        std::uint32_t number, Material& material, Report& report);
 
 /// Whether the material names any texture at all.
 bool has_textures(const Material& material);

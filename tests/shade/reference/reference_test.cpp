@@ -4,8 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <filesystem>
 #include <limits>
 
+#include "../render/unreadable_textures.h"
 #include "relief/mesh/error.h"
 #include "relief/mesh/threads.h"
 #include "relief/shade/image_compare.h"
@@ -201,6 +203,28 @@ TEST(Reference, IsTheSamePictureAtEveryScaleAndPlace) {
     scene.instances[0].world_from_object[3] = {away, 1};
     scene.camera->world_from_view[3] = {away + glm::vec3(0, 0, 3), 1};
     EXPECT_LE(compare(test::traced(scene, 16).radiance, expected).max, 1e-6);
+}
+
+TEST(Reference, LeavesOutTexturesThatCannotBeReadAndNamesThem) {
+    for (const test::UnreadableTexture& texture : test::unreadable_textures()) {
+        Scene equal = test::scene_for_unreadable_textures();
+        texture.make_equal(equal.materials[0]);
+        Scene scene = test::scene_for_unreadable_textures();
+        texture.set(scene.materials[0], Texture{0});
+        scene.images = {{"brick", std::filesystem::path("/nowhere/brick.png"), "wall.gltf"}};
+        Report report;
+        const Reference reference = render_reference(scene, {24, 24}, report);
+        EXPECT_TRUE(test::same_bits(reference.radiance, test::traced(equal, 24).radiance))
+            << texture.effect;
+        ASSERT_EQ(report.findings().size(), 1U) << texture.effect;
+        const Finding& finding = report.findings()[0];
+        EXPECT_EQ(finding.kind,
+                  std::string("unreadable ") + texture.effect + " of material 'wall'");
+        EXPECT_THAT(finding.outcome, testing::HasSubstr("drawn without it: wall.gltf: "
+                                                        "/nowhere/brick.png: no such file"));
+        scene.images[0].is_required = true;
+        EXPECT_THROW((void)render_reference(scene, {24, 24}, report), FileError) << texture.effect;
+    }
 }
 
 TEST(Reference, RefusesWhatItCannotDraw) {

@@ -15,6 +15,7 @@
 #include "relief/shade/image_compare.h"
 #include "support/shapes.h"
 #include "support/shared_data.h"
+#include "unreadable_textures.h"
 
 namespace relief {
 namespace {
@@ -218,60 +219,15 @@ TEST_F(Rendering, DecodesOnlyWhatIsPlanned) {
     EXPECT_THAT(report.findings()[0].outcome, HasSubstr("/nowhere/first.png: no such file"));
 }
 
-/// A material's texture that cannot be read, and the material that draws the same.
-struct UnreadableTexture {
-    const char* effect;
-    void (*set)(Material& material, const Texture& texture);
-    void (*make_equal)(Material& material) = [](Material&) {};
-};
-
-std::vector<UnreadableTexture> unreadable_textures() {
-    using M = Material&;
-    using T = const Texture&;
-    return {{"diffuse texture", [](M m, T t) { m.diffuse_texture = t; }},
-            {"specular texture", [](M m, T t) { m.specular_texture = t; }},
-            {"emission texture", [](M m, T t) { m.emission_texture = t; },
-             [](M m) { m.emission = glm::vec3(0.0F); }},
-            {"occlusion texture", [](M m, T t) { m.occlusion_texture = t; }},
-            {"opacity texture", [](M m, T t) { m.opacity_texture = t; }},
-            {"metallic-roughness texture",
-             [](M m, T t) {
-                 m.metallic_roughness = MetallicRoughness{{1, 1, 1}, 0.5F, 0.5F, t};
-             },
-             [](M m) {
-                 m.metallic_roughness = MetallicRoughness{{1, 1, 1}, 0.5F, 0.5F, {}};
-             }},
-            {"normal map", [](M m, T t) { m.normal_map = NormalMap{t}; }},
-            {"object-space normal map",
-             [](M m, T t) {
-                 m.normal_map = NormalMap{t, 1.0F, Green::up, std::nullopt, NormalSpace::object};
-             }},
-            {"bump map", [](M m, T t) { m.bump_map = BumpMap{t}; }}};
-}
-
-/// All of a material's terms show.
-Scene scene_for_unreadable_textures() {
-    Material material;
-    material.name = "wall";
-    material.specular = {0.5F, 0.5F, 0.5F};
-    material.emission = {0.2F, 0.1F, 0.0F};
-    material.alpha_mode = AlphaMode::blend;
-    material.opacity = 0.75F;
-    Scene scene = test::scene_of(test::sphere(16, 8), material);
-    scene.ambient = {0.3F, 0.3F, 0.3F};
-    scene.directional_lights = {{{1, -0.5F, -1}, {0.8F, 0.8F, 0.8F}}};
-    return scene;
-}
-
 TEST_F(Rendering, LeavesOutTexturesThatCannotBeReadAndNamesThem) {
     const FrameSettings settings{48, 48, 4, OutputCoding::srgb};
     const std::vector<std::byte> damaged(100, std::byte{7});
-    for (const UnreadableTexture& texture : unreadable_textures()) {
-        Scene equal = scene_for_unreadable_textures();
+    for (const test::UnreadableTexture& texture : test::unreadable_textures()) {
+        Scene equal = test::scene_for_unreadable_textures();
         texture.make_equal(equal.materials[0]);
         const Image expected = render(equal, settings).image;
         for (const bool is_missing : {true, false}) {
-            Scene scene = scene_for_unreadable_textures();
+            Scene scene = test::scene_for_unreadable_textures();
             texture.set(scene.materials[0], Texture{0});
             scene.images = {{"brick", damaged, "wall.gltf"}};
             if (is_missing) scene.images[0].source = std::filesystem::path("/nowhere/brick.png");
@@ -296,7 +252,7 @@ TEST_F(Rendering, LeavesOutTexturesThatCannotBeReadAndNamesThem) {
 }
 
 TEST_F(Rendering, LeavesUnreadableTexturesOutOfForcedPlansAndViewsToo) {
-    Scene scene = scene_for_unreadable_textures();
+    Scene scene = test::scene_for_unreadable_textures();
     const FrameSettings settings{32, 32, 1, OutputCoding::srgb};
     const Image expected = render(scene, settings).image;
     scene.materials[0].normal_map = NormalMap{Texture{0}};
@@ -310,7 +266,7 @@ TEST_F(Rendering, LeavesUnreadableTexturesOutOfForcedPlansAndViewsToo) {
 }
 
 TEST_F(Rendering, RefusesRequiredImagesThatCannotBeRead) {
-    Scene scene = scene_for_unreadable_textures();
+    Scene scene = test::scene_for_unreadable_textures();
     scene.materials[0].diffuse_texture = Texture{0};
     scene.images = {{"first", std::filesystem::path("/nowhere/first.png")}};
     scene.images[0].is_required = true;
@@ -325,7 +281,7 @@ TEST_F(Rendering, RefusesRequiredImagesThatCannotBeRead) {
 /// Decoding is a loop over images, and each image is read in loops of its own.
 TEST_F(Rendering, AMissingTextureEndsNoDecodingOfOthers) {
     const test::TemporaryDirectory folder;
-    Scene scene = scene_for_unreadable_textures();
+    Scene scene = test::scene_for_unreadable_textures();
     Material& material = scene.materials[0];
     Image texels = make_image(1500, 1500, 3, 8, ColorSpace::srgb);
     for (std::size_t i = 0; i < texels.sample_count(); ++i)

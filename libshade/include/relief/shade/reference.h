@@ -52,13 +52,14 @@ struct Reference {
 /// The scene as its camera sees it, at the centre of each pixel.
 ///
 /// \param report  counts fallbacks of normal and tangent computation, and triangles with a vertex
-///                that is not finite: they are not drawn
+///                that is not finite: they are not drawn; names textures that cannot be read, which
+///                are left out as renderer.h says
 /// \return as shaders/README.md says in every hard case; always finite. Textures are looked up at
 ///         full resolution, bilinearly or nearest: minified ones show what OpenGL averages, which
 ///         is not done here, and neither is Material::specular_antialiasing. The same bits for any
 ///         number of threads.
 /// \throws InvalidInput if the scene or the settings are not valid or there is no camera; FileError
-///         if an image cannot be read
+///         if an image of the environment, or one that is required (scene.h), cannot be read
 Reference render_reference(const Scene& scene, const ReferenceSettings& settings, Report& report);
 
 /// The picture of a radiance, composed over the scene's background.
