@@ -230,6 +230,10 @@ BakeDistances Baker::distances() const {
     return implementation_->parts.largest_distances();
 }
 
+BakeFit Baker::fit() const {
+    return implementation_->parts.fit();
+}
+
 LayerBounds Baker::bounds(const BakeLayers& layers) const {
     LayerBounds bounds = implementation_->parts.bounds(layers);
     if (layers.heights) {

@@ -90,10 +90,6 @@ void add_triangles(const Mesh& mesh, Bounds& box) {
     }
 }
 
-double diagonal_of(const Bounds& box) {
-    return glm::distance(glm::dvec3(box.max), glm::dvec3(box.min));
-}
-
 /// The largest distance between a face of one box and the same face of the other.
 double face_distance(const Bounds& a, const Bounds& b) {
     const glm::dvec3 lower = glm::abs(glm::dvec3(a.min) - glm::dvec3(b.min));
@@ -144,20 +140,34 @@ BakeMismatch::BakeMismatch(Kind kind, const BakeFit& fit, double reach, std::str
       reach_(reach),
       part_(std::move(part)) {}
 
+double diagonal(const Bounds& box) {
+    return glm::distance(glm::dvec3(box.max), glm::dvec3(box.min));
+}
+
+bool BakeFit::differs_in_size() const {
+    return size_ratio > max_size_ratio || size_ratio < 1.0 / max_size_ratio;
+}
+
 BakeFit compare_boxes(std::span<const Mesh> high, const Mesh& low) {
-    BakeFit fit;
+    Bounds high_box;
+    Bounds low_box;
     validate(low);
-    add_triangles(low, fit.low);
+    add_triangles(low, low_box);
     for (const Mesh& mesh : high) {
         validate(mesh);
-        add_triangles(mesh, fit.high);
+        add_triangles(mesh, high_box);
     }
+    return compare_boxes(high_box, low_box);
+}
+
+BakeFit compare_boxes(const Bounds& high, const Bounds& low) {
+    BakeFit fit{.high = high, .low = low};
     if (fit.low.empty() || fit.high.empty()) return fit;
     const glm::dvec3 above = glm::dvec3(fit.high.min) - glm::dvec3(fit.low.max);
     const glm::dvec3 below = glm::dvec3(fit.low.min) - glm::dvec3(fit.high.max);
     fit.gap = glm::length(glm::max(glm::max(above, below), glm::dvec3(0.0)));
-    const double low_diagonal = diagonal_of(fit.low);
-    const double high_diagonal = diagonal_of(fit.high);
+    const double low_diagonal = diagonal(fit.low);
+    const double high_diagonal = diagonal(fit.high);
     if (!(low_diagonal > 0.0 && high_diagonal > 0.0)) return fit;
     fit.size_ratio = high_diagonal / low_diagonal;
     fit.fits_turned = fits_turned(fit, low_diagonal);

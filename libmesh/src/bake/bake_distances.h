@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// automatic_distances() for those who have cast the high meshes into a scene already.
+/// automatic_distances() for callers that already have a scene of the high meshes.
 #pragma once
 
 #include "bake/ray_scene.h"
@@ -10,5 +10,11 @@ namespace relief {
 
 BakeDistances distances_between(std::span<const Mesh> high, const RayScene& high_scene,
                                 const Mesh& low);
+
+/// The length of a box's diagonal.
+double diagonal(const Bounds& box);
+
+/// compare_boxes() of meshes for callers that already have the boxes.
+BakeFit compare_boxes(const Bounds& high, const Bounds& low);
 
 }  // namespace relief

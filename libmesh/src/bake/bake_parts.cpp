@@ -28,10 +28,6 @@ BakeDistances distances_of(std::span<const Mesh> high, const HighSurface& surfac
     return distances;
 }
 
-double diagonal(const Bounds& box) {
-    return glm::distance(glm::dvec3(box.max), glm::dvec3(box.min));
-}
-
 /// The longest distance of rays from the low mesh.
 double reach_of(const BakeOptions& options, double cage_reach, double low_diagonal) {
     if (options.cage != nullptr)
@@ -40,10 +36,9 @@ double reach_of(const BakeOptions& options, double cage_reach, double low_diagon
     return std::max(options.offset.value_or(automatic), options.max_distance.value_or(automatic));
 }
 
-/// Compares the boxes before rays are prepared. \return the diagonal of the box around both
-double checked_extent(std::span<const Mesh> high, const Mesh& low, const BakeOptions& options,
+/// Checks the boxes before rays are prepared. \return the diagonal of the box around both
+double checked_extent(const BakeFit& fit, std::span<const Mesh> high, const BakeOptions& options,
                       double cage_reach, const std::string& name, Report& report) {
-    const BakeFit fit = compare_boxes(high, low);
     if (fit.low.empty()) return 0.0;
     if (fit.high.empty()) {
         // A part without a high mesh is a choice.
@@ -51,9 +46,7 @@ double checked_extent(std::span<const Mesh> high, const Mesh& low, const BakeOpt
         throw BakeMismatch(BakeMismatch::Kind::no_surface, fit, 0.0, name);
     }
     const double reach = reach_of(options, cage_reach, diagonal(fit.low));
-    const bool differs_in_size =
-        fit.size_ratio > max_size_ratio || fit.size_ratio < 1.0 / max_size_ratio;
-    if (differs_in_size && !options.allow_size_mismatch)
+    if (fit.differs_in_size() && !options.allow_size_mismatch)
         throw BakeMismatch(BakeMismatch::Kind::size, fit, reach, name);
     if (fit.gap > reach) throw BakeMismatch(BakeMismatch::Kind::apart, fit, reach, name);
     if (fit.fits_turned) {
@@ -89,7 +82,8 @@ std::vector<std::uint32_t> parts_of_triangles(std::span<const BakePart> parts, c
 
 SeenSurface::SeenSurface(std::span<const Mesh> meshes, const Mesh& low, const BakeOptions& options,
                          double reach, const std::string& name, Report& report)
-    : extent(checked_extent(meshes, low, options, reach, name, report)),
+    : fit(compare_boxes(meshes, low)),
+      extent(checked_extent(fit, meshes, options, reach, name, report)),
       high(meshes, options, report),
       distances(distances_of(meshes, high, low, options)) {}
 
@@ -124,6 +118,20 @@ LayerBounds BakeParts::bounds(const BakeLayers& layers) const {
         }
     }
     return bounds;
+}
+
+BakeFit BakeParts::fit() const {
+    const auto grow = [](Bounds& box, const Bounds& other) {
+        box.min = glm::min(box.min, other.min);
+        box.max = glm::max(box.max, other.max);
+    };
+    Bounds high;
+    Bounds low;
+    for (const auto& surface : surfaces_) {
+        grow(high, surface->fit.high);
+        grow(low, surface->fit.low);
+    }
+    return compare_boxes(high, low);
 }
 
 BakeDistances BakeParts::largest_distances() const {

@@ -23,6 +23,7 @@ struct SeenSurface {
     SeenSurface(std::span<const Mesh> meshes, const Mesh& low, const BakeOptions& options,
                 double reach, const std::string& name, Report& report);
 
+    BakeFit fit;
     double extent;  ///< No point of the high meshes is further than this from one of the low mesh.
     HighSurface high;
     BakeDistances distances;
@@ -44,6 +45,8 @@ class BakeParts {
     }
 
     [[nodiscard]] BakeDistances largest_distances() const;
+    /// Of the boxes around all parts.
+    [[nodiscard]] BakeFit fit() const;
     /// Of curvature and positions.
     [[nodiscard]] LayerBounds bounds(const BakeLayers& layers) const;
 

@@ -274,7 +274,7 @@ MeshBake bake_maps(const MeshBakeRequest& request, Stages& stages) {
                                    needs_trials(request));
             }
         });
-        baked.fit = compare_boxes(models.high, models.low);
+        baked.fit = baker->fit();
         baked.origin = models.origin;
         MeshBakeRequest settled = request;
         if (needs_trials(request)) {

@@ -35,7 +35,7 @@ struct MeshBake {
     double texel_size = 0.0;  ///< Of its maps, in the mean; where a height map is made.
     std::vector<BakedMap> maps;
     BakeResult all;                        ///< Sums over all maps, and the least and greatest.
-    BakeFit fit;                           ///< Of all models.
+    BakeFit fit;                           ///< Baker::fit()
     glm::dvec3 origin{0.0};                ///< As in BakeModels.
     std::optional<MeshAccuracy> accuracy;  ///< Where something was measured first.
     Findings findings;

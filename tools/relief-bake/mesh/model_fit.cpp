@@ -87,8 +87,9 @@ std::string cause_words(const BakeFit& fit) {
             "transform?",
             point_words(moved), is_alike ? ", and as large as the low one" : "");
     }
-    const bool differs = fit.size_ratio > max_size_ratio || fit.size_ratio < 1.0 / max_size_ratio;
-    return differs ? "are they in different units, or was one exported without its scale?" : "";
+    return fit.differs_in_size()
+               ? "are they in different units, or was one exported without its scale?"
+               : "";
 }
 
 FileError mismatch_error(const MeshBakeRequest& request, const BakeMismatch& mismatch,
@@ -241,6 +242,7 @@ void check_missed(const MeshBakeRequest& request, const BakeModels& models, cons
 void check_missed_early(const MeshBakeRequest& request, const BakeModels& models,
                         const Baker& baker, const BakeMapOptions& map, const std::string& name,
                         bool always) {
+    if (missed_limit(request) + early_margin >= 100.0) return;
     const double texels = static_cast<double>(map.width) * static_cast<double>(map.height);
     // A map of about this size is baked as fast itself.
     if (!always && texels <= 2.0 * early_texels) return;
@@ -259,7 +261,6 @@ void check_missed_early(const MeshBakeRequest& request, const BakeModels& models
     const BakeResult result = baker.bake(
         small, [](const BakedRows&) {}, said_by_the_bake);
     if (!misses_too_much(result, missed_limit(request) + early_margin)) return;
-    if (missed_limit(request) + early_margin >= 100.0) return;
     throw missed_error(request, models, name, result,
                        fmt::format(" of a map of {} x {}", small.width, small.height));
 }

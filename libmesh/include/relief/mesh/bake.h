@@ -192,6 +192,9 @@ struct BakeFit {
     /// meshes are turned by 90 degrees about x, but more than 10 % apart as they are: one side is Y
     /// up, the other Z up.
     bool fits_turned = false;
+
+    /// The diagonals differ by more than max_size_ratio times.
+    [[nodiscard]] bool differs_in_size() const;
 };
 BakeFit compare_boxes(std::span<const Mesh> high, const Mesh& low);
 
@@ -286,6 +289,9 @@ class Baker {
 
     /// As used; the largest of all parts. With a cage, the inner one, or 0 where that varies.
     [[nodiscard]] BakeDistances distances() const;
+
+    /// How the boxes of the meshes compare; with parts, the boxes around all of them.
+    [[nodiscard]] BakeFit fit() const;
 
     /// What the layers that are asked for cannot exceed; 0 for the others.
     [[nodiscard]] LayerBounds bounds(const BakeLayers& layers) const;
