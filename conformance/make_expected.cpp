@@ -220,7 +220,7 @@ Tally write_expected(const std::filesystem::path& file, const kit::KitMesh& mesh
 }  // namespace
 
 int main(int count, char** arguments) {
-    if (count != 2) {
+    if (count != 2 || arguments[1][0] == '-') {
         fmt::print(stderr, "usage: relief-make-conformance-expected FOLDER\n");
         return 2;
     }

@@ -25,7 +25,7 @@ void write_all(const std::filesystem::path& folder) {
 }  // namespace
 
 int main(int count, char** arguments) {
-    if (count != 2) {
+    if (count != 2 || arguments[1][0] == '-') {
         fmt::print(stderr, "usage: relief-make-conformance-kit FOLDER\n");
         return 2;
     }

@@ -4,5 +4,5 @@
 
 int main(int argc, char** argv) {
     using namespace relief::test;
-    return write_sections(argc, argv, bake_tables());
+    return write_sections(argc, argv, bake_tables);
 }

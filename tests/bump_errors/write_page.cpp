@@ -5,9 +5,10 @@
 
 int main(int argc, char** argv) {
     using namespace relief::test;
-    return write_sections(argc, argv,
-                          {{kernels_begin, kernel_tables() + "\n"},
-                           {choices_begin, choice_tables() + "\n"},
-                           {steps_begin, step_tables() + "\n"},
-                           {depths_begin, depth_tables() + "\n"}});
+    return write_sections(argc, argv, [] {
+        return std::vector<PageSection>{{kernels_begin, kernel_tables() + "\n"},
+                                        {choices_begin, choice_tables() + "\n"},
+                                        {steps_begin, step_tables() + "\n"},
+                                        {depths_begin, depth_tables() + "\n"}};
+    });
 }

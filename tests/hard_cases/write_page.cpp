@@ -4,9 +4,10 @@
 #include <fstream>
 
 #include "hard_cases/page.h"
+#include "support/error_page.h"
 
 int main(int argc, char** argv) {
-    if (argc != 2) {
+    if (!relief::test::is_one_path(argc, argv)) {
         std::fputs("usage: relief-hard-cases-page docs/hard-cases.md\n", stderr);
         return 2;
     }

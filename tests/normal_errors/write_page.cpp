@@ -6,5 +6,7 @@
 
 int main(int argc, char** argv) {
     using namespace relief::test;
-    return write_sections(argc, argv, {{tables_begin, normal_error_tables() + "\n"}});
+    return write_sections(argc, argv, [] {
+        return std::vector<PageSection>{{tables_begin, normal_error_tables() + "\n"}};
+    });
 }

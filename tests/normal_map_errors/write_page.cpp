@@ -5,5 +5,5 @@
 
 int main(int argc, char** argv) {
     using namespace relief::test;
-    return write_sections(argc, argv, normal_map_tables());
+    return write_sections(argc, argv, normal_map_tables);
 }

@@ -69,14 +69,19 @@ std::string contents_of_page(const std::string& path) {
     return {std::istreambuf_iterator<char>(in), {}};
 }
 
-int write_sections(int argc, char** argv, const std::vector<PageSection>& sections) {
-    if (argc != 2) {
+bool is_one_path(int argc, const char* const* argv) {
+    return argc == 2 && argv[1][0] != '-' && argv[1][0] != '\0';
+}
+
+int write_sections(int argc, const char* const* argv,
+                   const std::function<std::vector<PageSection>()>& measure) {
+    if (!is_one_path(argc, argv)) {
         std::cerr << "usage: " << argv[0] << " PAGE\n";
         return 2;
     }
     try {
         std::string page = contents_of_page(argv[1]);
-        for (const PageSection& section : sections) {
+        for (const PageSection& section : measure()) {
             const Place place = place_in(page, section.begin);
             page.replace(place.first, place.size, section.text);
         }

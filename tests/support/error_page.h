@@ -4,6 +4,7 @@
 /// compares with what it measures itself.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -30,9 +31,14 @@ inline constexpr const char* tables_end = "<!-- end of tables -->\n";
 /// What stands there in a page as it is. \throws std::runtime_error if there is no such place
 std::string section_in(const std::string& page, const std::string& begin);
 
-/// The whole of a program that is called with a page's path: puts the sections in. \return the exit
-/// status; says on standard error what is wrong
-int write_sections(int argc, char** argv, const std::vector<PageSection>& sections);
+/// Whether the arguments of a program are one file or folder to write to. An option, such as
+/// --help, is not.
+bool is_one_path(int argc, const char* const* argv);
+
+/// The whole of a program that is called with a page's path: measures the sections and puts them
+/// in. \return the exit status; says on standard error what is wrong
+int write_sections(int argc, const char* const* argv,
+                   const std::function<std::vector<PageSection>()>& measure);
 
 /// A text file. \throws std::runtime_error if it cannot be read
 std::string contents_of_page(const std::string& path);

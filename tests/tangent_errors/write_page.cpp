@@ -4,5 +4,5 @@
 #include "tangent_errors/error_tables.h"
 
 int main(int argc, char** argv) {
-    return relief::test::write_sections(argc, argv, relief::test::tangent_error_sections());
+    return relief::test::write_sections(argc, argv, relief::test::tangent_error_sections);
 }
