@@ -59,14 +59,14 @@ ProgramResult compared(const Workplace& workplace, const AccuracyReport& before,
 TEST(AccuracyCompare, OfTheSameFindsNothing) {
     const Workplace workplace;
     const ProgramResult result = compared(workplace, steady_report(), steady_report(),
-                                          "--max-slower 3 --max-error-growth 0");
+                                          "--max-slower 10 --max-error-growth 0");
     EXPECT_EQ(result.exit_code, 0) << result.error;
     EXPECT_EQ(result.error, "");
     EXPECT_THAT(result.out, HasSubstr("methods   12 in both\n"));
-    EXPECT_THAT(result.out, HasSubstr("times     1.00 times as long on one thread (0.99 to 1.01; "
-                                      "the median of 12 methods); a change of one method is seen "
-                                      "from 3 % on (the median method) to 3 % (the least steady "
-                                      "one)\n"));
+    EXPECT_THAT(result.out, HasSubstr("times     1.00 times as long on one thread (median of 12 "
+                                      "methods; half of them 1.00 to 1.00); a change of one method "
+                                      "is seen from 10 % on (the median method) to 10 % (the least "
+                                      "steady one)\n"));
     EXPECT_THAT(result.out, HasSubstr("errors    all the same\n"));
     for (const char* word : {"slower ", "faster ", "gone", "added", "machine"})
         EXPECT_THAT(result.out, Not(HasSubstr(word)));
@@ -79,9 +79,9 @@ TEST(AccuracyCompare, ASlowerMethodIsToldAndHeldAgainstItsBound) {
     slow_down(after, 4, 0.5);
     const ProgramResult within = compared(workplace, steady_report(), after, "--max-slower 25");
     EXPECT_EQ(within.exit_code, 0) << within.error;
-    EXPECT_THAT(within.out, HasSubstr("slower    storage/sample: method 3: 1.20 times ("));
-    EXPECT_THAT(within.out, HasSubstr("), 4.00 ms then 4.80 ms on one thread\n"));
-    EXPECT_THAT(within.out, HasSubstr("faster    storage/sample: method 4: 0.50 times ("));
+    EXPECT_THAT(within.out, HasSubstr("slower    storage/sample: method 3: 1.20 times, 3.96 ms "
+                                      "then 4.75 ms on one thread\n"));
+    EXPECT_THAT(within.out, HasSubstr("faster    storage/sample: method 4: 0.50 times, "));
     const ProgramResult beyond =
         compared(workplace, steady_report(), after, "--max-slower 10 --quiet");
     EXPECT_EQ(beyond.exit_code, 1);
@@ -132,19 +132,36 @@ TEST(AccuracyCompare, TimesThatCannotShowABoundDoNotKeepIt) {
     EXPECT_EQ(compared(workplace, before, after).exit_code, 0) << "no bound, nothing to prove";
 }
 
-TEST(AccuracyCompare, AMachineThatDriftsCannotShowWhatAllHaveInCommon) {
+TEST(AccuracyCompare, RatiosThatScatterCannotShowABound) {
     const Workplace workplace;
     AccuracyReport after = steady_report();
-    for (Measurement& one : after.experiments[0].measurements) {
-        std::vector<double>& rounds = one.cost.one_thread->rounds;
-        for (std::size_t i = 0; i < rounds.size(); ++i)
-            rounds[i] *= i < 3 ? 1.0 : i < 6 ? 1.2 : 1.4;
-    }
+    for (std::size_t i = 0; i < 12; ++i)
+        slow_down(after, i, 0.97 + 0.005 * static_cast<double>(i));
     const ProgramResult result = compared(workplace, steady_report(), after, "--max-slower 10");
     EXPECT_EQ(result.exit_code, 1);
-    EXPECT_THAT(result.error, HasSubstr("new.json: all methods together: cannot tell whether they "
-                                        "kept within 10 % on one thread: the machine's own speed "
-                                        "varied by more (only changes beyond "));
+    // The quartiles are 0.98375 and 1.01125.
+    EXPECT_EQ(result.error,
+              "relief-accuracy: error: new.json: all methods together: cannot tell whether they "
+              "kept within 10 % on one thread: the ratios of the methods scatter (only changes "
+              "beyond 34 % are seen), and 1 more beyond bounds\n");
+}
+
+TEST(AccuracyCompare, FewMethodsCannotShowABound) {
+    const Workplace workplace;
+    AccuracyReport before = steady_report();
+    before.experiments[0].measurements.resize(7);
+    AccuracyReport after = before;
+    slow_down(after, 3, 3.0);
+    const ProgramResult result = compared(workplace, before, after, "--max-slower 50");
+    EXPECT_EQ(result.exit_code, 1);
+    EXPECT_THAT(result.out, HasSubstr("too few methods to tell a change from chance\n"));
+    EXPECT_EQ(result.error,
+              "relief-accuracy: error: new.json: cannot tell whether 7 of 7 times kept within 50 "
+              "%: the reports have too few methods in common on one thread (measure more "
+              "subjects)\n");
+    const ProgramResult told = compared(workplace, before, after, "--json");
+    EXPECT_EQ(told.exit_code, 0) << told.error;
+    EXPECT_TRUE(json::parse(told.out)["one_thread"]["resolution"].is_null());
 }
 
 TEST(AccuracyCompare, OtherThreadsAreAnotherMachine) {

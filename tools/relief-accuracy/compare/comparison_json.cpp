@@ -26,15 +26,14 @@ const char* word_of(TimeVerdict verdict) {
     return "unchanged";
 }
 
-Json json_of(const Interval& ratio) {
-    return {{"value", ratio.value}, {"low", ratio.low}, {"high", ratio.high}};
-}
-
 Json json_of(const CommonChange& common) {
     if (common.methods == 0) return {};
-    return {{"methods", common.methods},         {"ratio", json_of(common.ratio)},
-            {"scatter", common.scatter},         {"drift", common.drift},
-            {"resolution", common.resolution},   {"judged", common.is_judged},
+    return {{"methods", common.methods},
+            {"ratio", common.ratio},
+            {"lower_quartile", common.lower_quartile},
+            {"upper_quartile", common.upper_quartile},
+            {"resolution", common.resolution},  // Infinite is null.
+            {"judged", common.is_judged},
             {"verdict", word_of(common.verdict)}};
 }
 
@@ -44,10 +43,10 @@ Json json_of(const TimeChange& change) {
             {"threads", change.on_all_threads ? "all" : "one"},
             {"before", change.before},
             {"after", change.after},
-            {"ratio", json_of(change.ratio)},
+            {"ratio", change.ratio},
             {"relative", change.relative},
             {"counted", change.counted},
-            {"resolution", change.resolution},
+            {"resolution", change.resolution},  // Infinite is null.
             {"verdict", word_of(change.verdict)}};
 }
 

@@ -40,13 +40,13 @@ std::string result_text(double value) {
     return std::isnan(value) ? "no result" : fmt::format("{:.4g}", value);
 }
 
-/// "storage/frames: angle16: 1.21 times (1.15 to 1.27), 550 µs then 666 µs on one thread"
+/// "storage/frames: angle16: 1.21 times, 550 µs then 666 µs on one thread"
 std::string line_of(const TimeChange& change) {
-    std::string text = fmt::format(
-        "{}: {:.2f} times ({:.2f} to {:.2f}), {} then {} on {}", change_name(change),
-        change.ratio.value, change.ratio.low, change.ratio.high, seconds_in_words(change.before),
-        seconds_in_words(change.after), threads_of(change.on_all_threads));
-    if (std::abs(std::log(change.relative / change.ratio.value)) > 0.01)
+    std::string text =
+        fmt::format("{}: {:.2f} times, {} then {} on {}", change_name(change), change.ratio,
+                    seconds_in_words(change.before), seconds_in_words(change.after),
+                    threads_of(change.on_all_threads));
+    if (std::abs(std::log(change.relative / change.ratio)) > 0.01)
         text += fmt::format("; {:.2f} times relative to all", change.relative);
     return text;
 }
@@ -138,15 +138,16 @@ std::string resolution_words(const ReportComparison& found, bool on_all_threads)
         percent(spread_of(std::move(all)).median), percent(largest));
 }
 
-/// "1.02 times as long on one thread (1.00 to 1.04; the median of 40 methods)", and from where on a
-/// change is seen.
+/// "1.02 times as long on one thread (median of 40 methods; half of them 1.00 to 1.04)", and the
+/// smallest change that is seen.
 std::string line_of(const ReportComparison& found, bool on_all_threads) {
     const CommonChange& common = on_all_threads ? found.all_threads : found.one_thread;
-    const std::string text = fmt::format(
-        "{:.2f} times as long on {} ({:.2f} to {:.2f}; the median of {}); {}", common.ratio.value,
-        threads_of(on_all_threads), common.ratio.low, common.ratio.high,
-        counted(common.methods, "method"), resolution_words(found, on_all_threads));
-    return common.is_judged ? text : text + "; too few methods to tell the machine from the code";
+    return fmt::format(
+        "{:.2f} times as long on {} (median of {}; half of them {:.2f} to {:.2f}); {}",
+        common.ratio, threads_of(on_all_threads), counted(common.methods, "method"),
+        common.lower_quartile, common.upper_quartile,
+        common.is_judged ? resolution_words(found, on_all_threads)
+                         : "too few methods to tell a change from chance");
 }
 
 std::string described(const AccuracyReport& report) {
@@ -205,25 +206,31 @@ void add_unresolved(std::vector<std::string>& lines, const ReportComparison& fou
     const TimeChange& worst = *std::max_element(
         unresolved.begin(), unresolved.end(),
         [](const TimeChange& a, const TimeChange& b) { return a.resolution < b.resolution; });
-    lines.push_back(fmt::format(
-        "cannot tell whether {} of {} times kept within {} %: of {} on {} only changes beyond "
-        "{:.0f} % are seen (measure both on a quieter machine, or with more --repeats)",
-        unresolved.size(), found.times.size(), bound, change_name(worst),
-        threads_of(worst.on_all_threads), percent(worst.resolution)));
+    const std::string reason =
+        std::isinf(worst.resolution)
+            ? fmt::format(
+                  "the reports have too few methods in common on {} (measure more "
+                  "subjects)",
+                  threads_of(worst.on_all_threads))
+            : fmt::format(
+                  "of {} on {} only changes beyond {:.0f} % are seen (measure both on a "
+                  "quieter machine, or with more --repeats)",
+                  change_name(worst), threads_of(worst.on_all_threads), percent(worst.resolution));
+    lines.push_back(fmt::format("cannot tell whether {} of {} times kept within {} %: {}",
+                                unresolved.size(), found.times.size(), bound, reason));
 }
 
 /// On one machine it also counts if all methods became slower together.
 void add_common(std::vector<std::string>& lines, const CommonChange& common, bool on_all_threads,
                 double bound) {
-    if (common.verdict == TimeVerdict::slower && percent(common.ratio.value) > bound) {
+    if (common.verdict == TimeVerdict::slower && percent(common.ratio) > bound) {
         lines.push_back(fmt::format("all methods together: {:.1f} % slower on {} (at most {} %)",
-                                    percent(common.ratio.value), threads_of(on_all_threads),
-                                    bound));
+                                    percent(common.ratio), threads_of(on_all_threads), bound));
     }
     if (common.verdict == TimeVerdict::cannot_tell) {
         lines.push_back(fmt::format(
-            "all methods together: cannot tell whether they kept within {} % on {}: the machine's "
-            "own speed varied by more (only changes beyond {:.0f} % are seen)",
+            "all methods together: cannot tell whether they kept within {} % on {}: the ratios of "
+            "the methods scatter (only changes beyond {:.0f} % are seen)",
             bound, threads_of(on_all_threads), percent(common.resolution)));
     }
 }

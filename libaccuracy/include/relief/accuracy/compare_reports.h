@@ -1,22 +1,27 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// What became faster or slower, more or less exact, between two runs of the same experiments.
+/// Compares two runs of the same experiments: times, errors and memory.
 ///
-/// *Errors* are the same in each run: whatever differs by more than rounding is a change.
+/// *Errors* are the same in each run, so every difference beyond rounding is a change.
 ///
-/// *Times* are not. What counts is the ratio of the medians of the rounds, where it lies outside of
-/// what two runs of one program may differ by:
-/// - a method by the scatter of the ratios of all methods, which shows how far equal runs differ,
-///   and by its own rounds, of which the middle 80 % must not overlap; the bound widens with the
-///   number of methods, so that in 95 of 100 comparisons of equal runs none is reported;
-/// - all methods together by the machine's drift, which the parts of each run show.
-/// A method counts as measured and relative to the median of all methods as well: a machine that
-/// was slower changes all alike. The smaller of the two is reported. From one machine to another
-/// only the second counts.
+/// *Times* are not. They are judged by the ratios of the two runs, one for each method:
+/// - The time of a method is its fastest round, because other programs only add time.
+/// - The ratio of a method is its new time divided by its old time.
+/// - The common ratio is the median of the ratios of all methods. It contains the machine.
+/// - The resolution of all methods is 1 + 12 times the interquartile range of these ratios,
+///   relative to their lower quartile. That of one method is this number multiplied by its median
+///   round divided by its fastest round. Both are at least 1.1.
+/// - A method is slower or faster if its ratio is beyond the resolution, both as measured and
+///   divided by the common ratio; the smaller of the two changes is reported. Between different
+///   machines only the divided ratio is judged.
+/// - All methods together are slower or faster if the common ratio is beyond their resolution.
 ///
-/// Where a bound is given that is closer than the times can resolve, the verdict is cannot_tell:
-/// nothing proves that the bound is kept. Load that lasts for one whole run and not for the other
-/// looks like a change of all methods.
+/// If a bound is given and the resolution is coarser than the bound, the verdict is cannot_tell,
+/// because the times do not prove that the bound is kept. With fewer than 8 methods the
+/// interquartile range is unknown, so no time is judged. If more than a quarter of the methods
+/// change by another ratio than the others, the range contains the change, and the resolution is
+/// coarse. A load that lasts for one whole run and is absent from the other looks like a change of
+/// all methods.
 /// Tests: tests/accuracy/compare_reports_test.cpp.
 #pragma once
 
@@ -30,42 +35,34 @@
 namespace relief {
 
 enum class TimeVerdict {
-    unchanged,  ///< No change beyond what equal runs differ by.
+    unchanged,  ///< No change beyond the resolution.
     slower,
     faster,
     cannot_tell,  ///< No change is seen, but one beyond the bound would not be seen either.
 };
 
-/// A ratio and the range that two runs of one program leave open.
-struct Interval {
-    double value = 1.0;
-    double low = 1.0;
-    double high = 1.0;
-};
-
-/// How the time of one method changed.
+/// How the time of one method changed. Ratios are new by old: more than 1 is slower.
 struct TimeChange {
     std::string experiment;
     std::string method;
     bool on_all_threads = false;
-    double before = 0.0;  ///< Medians, in seconds.
-    double after = 0.0;
-    Interval ratio;           ///< Of the medians, as measured: more than 1 is slower.
-    double relative = 1.0;    ///< The same, divided by the median ratio of all methods.
+    double before = 0.0;      ///< Fastest round, in seconds.
+    double after = 0.0;       ///< The same of the new run.
+    double ratio = 1.0;       ///< As measured.
+    double relative = 1.0;    ///< Divided by the median ratio of all methods.
     double counted = 1.0;     ///< The ratio that is judged.
-    double resolution = 1.0;  ///< Ratios between 1 / this and this may be chance.
+    double resolution = 1.0;  ///< Ratios from 1 / this to this may be chance.
     TimeVerdict verdict = TimeVerdict::unchanged;
 };
 
-/// The change that all methods share, on one thread or on all threads.
+/// The ratios of all methods, on one thread or on all threads.
 struct CommonChange {
     std::size_t methods = 0;
-    Interval ratio;           ///< The median ratio of all methods.
-    double scatter = 0.0;     ///< Of the logarithms of their ratios around it, as a deviation.
-    double reach = 0.0;       ///< How far from it chance takes a single one, in logarithms.
-    double drift = 0.0;       ///< Standard error of its logarithm by the drift within the runs.
-    double resolution = 1.0;  ///< Ratios between 1 / this and this may be chance.
-    bool is_judged = false;   ///< There were enough methods to know the median and the scatter.
+    double ratio = 1.0;           ///< Median.
+    double lower_quartile = 1.0;  ///< A quarter of the ratios is below this.
+    double upper_quartile = 1.0;  ///< A quarter of the ratios is above this.
+    double resolution = 1.0;      ///< Ratios from 1 / this to this may be chance.
+    bool is_judged = false;       ///< There are at least 8 methods.
     TimeVerdict verdict = TimeVerdict::unchanged;
 };
 
@@ -119,8 +116,8 @@ struct ReportComparison {
 };
 
 /// \param same_machine  whether times may be compared as measured
-/// \param max_ratio     a bound of how many times as long methods may take; where chance may be
-///                      larger, verdicts are cannot_tell. Absent: there is none
+/// \param max_ratio     a bound of how many times as long methods may take; if the resolution is
+///                      coarser, verdicts are cannot_tell. Absent: there is none
 ReportComparison compare_reports(const std::vector<Experiment>& before,
                                  const std::vector<Experiment>& after, bool same_machine,
                                  const std::optional<double>& max_ratio = {});
