@@ -9,7 +9,7 @@
 #include <array>
 #include <cmath>
 
-#include "image/border.h"
+#include "image/texel_loops.h"
 #include "parallel.h"
 
 namespace relief {

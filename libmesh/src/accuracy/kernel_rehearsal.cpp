@@ -15,7 +15,7 @@
 
 #include "accuracy/power_spectrum.h"
 #include "accuracy/random.h"
-#include "image/heights/height_holes.h"
+#include "image/height_holes.h"
 #include "parallel.h"
 #include "relief/mesh/destaircase.h"
 

@@ -10,8 +10,8 @@
 #include <numbers>
 
 #include "accuracy/random.h"
-#include "image/border.h"
-#include "image/integration/complex_fft.h"
+#include "image/fft.h"
+#include "image/texel_loops.h"
 
 namespace relief {
 namespace {

@@ -11,7 +11,7 @@
 #include <limits>
 
 #include "geometry/direction.h"
-#include "image/normals/normal_coding.h"
+#include "image/normal_coding.h"
 #include "relief/mesh/error.h"
 
 namespace relief {

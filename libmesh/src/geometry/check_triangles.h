@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// The one check that triangles name vertices that exist. Linear; done before anything is computed.
-/// Tests: tests/mesh/geometry/mesh_test.cpp.
 #pragma once
 
 #include <cstddef>

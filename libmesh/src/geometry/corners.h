@@ -3,7 +3,6 @@
 /// Triangle corners, and which of them stand at a vertex.
 ///
 /// A corner is numbered 3 * triangle + (0, 1 or 2). Linear time and memory.
-/// Tests: tests/mesh/geometry/corners_test.cpp.
 #pragma once
 
 #include <algorithm>

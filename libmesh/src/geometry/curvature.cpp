@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // Each vertex by itself, from its ring of triangles in an order of their vertices.
-// Tests: tests/mesh/geometry/curvature_test.cpp.
 #include "relief/mesh/curvature.h"
 
 #include <algorithm>

@@ -4,7 +4,6 @@
 ///
 /// Differences of floats, their products and the products of those stay within the range of double
 /// (1e-45 to 1e38 to the fourth power), so that nothing here has to rescale.
-/// Tests: tests/mesh/geometry/normals/normals_test.cpp, tangents/tangents_test.cpp.
 #pragma once
 
 #include <algorithm>

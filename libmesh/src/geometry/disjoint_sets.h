@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// Numbers in sets that only ever grow together; near-constant time a step.
-/// Tests: tests/mesh/geometry/weld_near_test.cpp, normals/corner_normals_test.cpp.
 #pragma once
 
 #include <algorithm>

@@ -2,7 +2,6 @@
 // Normals, then tangents, for a whole mesh; each step may split vertices, and everything else is
 // carried along. Object space. Bad values are counted, by the steps and here; nothing is repaired
 // unless asked for.
-// Tests: tests/mesh/geometry/frames_test.cpp.
 #include "relief/mesh/frames.h"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Plain additions, multiplications and divisions, which IEEE 754 rounds in one way only; relief is
-// compiled without contraction. Tests: tests/mesh/geometry/portable_math_test.cpp.
+// compiled without contraction.
 #include "geometry/portable_math.h"
 
 #include <array>

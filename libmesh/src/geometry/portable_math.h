@@ -3,8 +3,7 @@
 /// Functions of <cmath> whose results are the same on every processor and with every C library,
 /// for all numbers that end up in files. The C library's own are not: glibc chooses variants with
 /// and without fused multiplication by the processor, whose last bits differ.
-/// Errors are at most 4 units of the last place, of pow() 60. Tests:
-/// tests/mesh/geometry/portable_math_test.cpp.
+/// Errors are at most 4 units of the last place, of pow() 60.
 #pragma once
 
 namespace relief::portable {

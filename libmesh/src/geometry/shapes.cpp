@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Simple shapes, computed in double and rounded once. Object space, y up. Seams repeat their first
 // positions exactly. Counts out of range throw InvalidInput.
-// Tests: tests/mesh/geometry/shapes_test.cpp.
 #include "relief/mesh/shapes.h"
 
 #include <fmt/format.h>

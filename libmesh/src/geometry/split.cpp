@@ -2,7 +2,7 @@
 // Splitting vertices by the values at their corners. Per vertex the different values are sorted;
 // the smallest stays with the vertex, each further one makes a copy, so that neither how many
 // copies there are nor which comes first depends on the order of triangles. Linear but for the
-// sorting. Tests: tests/mesh/geometry/split_test.cpp.
+// sorting.
 #include "relief/mesh/split.h"
 
 #include <fmt/format.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// How far the length of a stored direction may be from 1, and a tangent from the plane of its
-/// normal. Tests: tests/mesh/geometry/frames_test.cpp, health/diagnose_test.cpp.
+/// normal.
 #pragma once
 
 namespace relief {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Values as colours: 8-bit sRGB, between five colours on the way from black to pale yellow that
-// follow the map "magma" of matplotlib, so that error maps look as those of other tools do. NaN is
-// green, which nothing else is. Tests: tests/mesh/image/heat_picture_test.cpp.
+// Values as colors: 8-bit sRGB, interpolated between five colors from black to pale yellow that
+// follow matplotlib's map "magma". NaN is green, which no other value uses.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pictures in memory, and the sRGB transfer function [IEC 61966-2-1] between coded values and
-// light. The function is evaluated in double by the standard's own formula and rounded once to
-// float, so that every 8- and 16-bit code survives decoding and encoding exactly. Bad sizes and
-// depths throw; NaN encodes as 0. Tests: tests/mesh/image/image_test.cpp.
+// Images in memory: sizes, samples, channels, parts, and the sRGB transfer function [IEC
+// 61966-2-1].
+//
+// The transfer function is evaluated in double precision by the standard's formula and rounded once
+// to float, so that every 8 and 16-bit code survives decoding and encoding exactly. Invalid sizes
+// and bit depths throw. NaN is encoded as 0.
 #include "relief/mesh/image.h"
 
 #include <fmt/format.h>
@@ -18,6 +20,8 @@
 #include "large_memory.h"
 #include "parallel.h"
 #include "relief/mesh/error.h"
+#include "relief/mesh/image_channels.h"
+#include "relief/mesh/image_part.h"
 
 namespace relief {
 namespace {
@@ -177,6 +181,112 @@ float srgb_from_linear(float linear) {
 
 float linear_from_srgb(float coded) {
     return static_cast<float>(std::copysign(decoded(std::abs(coded)), coded));
+}
+
+namespace {
+
+template <typename Sample>
+Sample sample_of(float value) {
+    if constexpr (std::is_same_v<Sample, float>) {
+        return value;
+    } else {
+        const float inside = value > 0.0F ? std::min(value, 1.0F) : 0.0F;
+        return static_cast<Sample>(
+            std::lround(inside * static_cast<float>(largest_sample<Sample>)));
+    }
+}
+
+}  // namespace
+
+Image channel_of(const Image& image, int channel) {
+    if (channel < 0 || channel >= image.channels) {
+        throw InvalidInput(
+            fmt::format("there is no channel {}, but only {}", channel + 1, image.channels));
+    }
+    Image result = make_image(image.width, image.height, 1, 32, ColorSpace::data);
+    const std::span<float> values = result.as<float>();
+    const auto channels = static_cast<std::size_t>(image.channels);
+    with_sample_type(image, [&]<typename Sample>(Sample) {
+        const Sample* const samples = image.as<Sample>().data() + channel;
+        Report unused;
+        for_each_texel(values.size(), unused, [&](std::size_t texel, Report&) {
+            values[texel] = static_cast<float>(samples[texel * channels]) /
+                            static_cast<float>(largest_sample<Sample>);
+        });
+    });
+    return result;
+}
+
+Image with_alpha(const Image& image, const Image& alpha) {
+    check_floats(alpha, 1, "alphas");
+    if (image.channels != 3)
+        throw InvalidInput(fmt::format("alpha goes with 3 channels, not {}", image.channels));
+    if (image.width != alpha.width || image.height != alpha.height) {
+        throw InvalidInput(fmt::format("an alpha of {} x {} does not go with an image of {} x {}",
+                                       alpha.width, alpha.height, image.width, image.height));
+    }
+    Image result = make_image(image.width, image.height, 4, image.bits(), image.color_space);
+    const std::span<const float> values = alpha.as<float>();
+    with_sample_type(image, [&]<typename Sample>(Sample) {
+        const Sample* const from = image.as<Sample>().data();
+        Sample* const to = result.as<Sample>().data();
+        Report unused;
+        for_each_texel(values.size(), unused, [&](std::size_t texel, Report&) {
+            std::copy_n(from + texel * 3, 3, to + texel * 4);
+            to[texel * 4 + 3] = sample_of<Sample>(values[texel]);
+        });
+    });
+    return result;
+}
+
+void drop_alpha(Image& image) {
+    if (image.channels != 4)
+        throw InvalidInput(fmt::format("no alpha to drop from {} channels", image.channels));
+    with_sample_type(image, [&]<typename Sample>(Sample) {
+        std::vector<Sample>& samples = std::get<std::vector<Sample>>(image.samples);
+        for (std::size_t texel = 1; texel < samples.size() / 4; ++texel)
+            std::copy_n(samples.begin() + static_cast<std::ptrdiff_t>(texel * 4), 3,
+                        samples.begin() + static_cast<std::ptrdiff_t>(texel * 3));
+        samples.resize(samples.size() / 4 * 3);
+    });
+    image.channels = 3;
+}
+
+Image part_of(const Image& image, const ImagePart& part) {
+    const bool is_within = part.x >= 0 && part.y >= 0 && part.width > 0 && part.height > 0 &&
+                           part.width <= image.width - part.x &&
+                           part.height <= image.height - part.y;
+    if (!is_within) {
+        throw InvalidInput(fmt::format("{} x {} texels at ({}, {}) are no part of {} x {}",
+                                       part.width, part.height, part.x, part.y, image.width,
+                                       image.height));
+    }
+    Image result =
+        make_image(part.width, part.height, image.channels, image.bits(), image.color_space);
+    std::visit(
+        [&]<typename Sample>(std::vector<Sample>& samples) {
+            const std::span<const Sample> all = image.as<Sample>();
+            const auto channels = static_cast<std::size_t>(image.channels);
+            const std::size_t row = static_cast<std::size_t>(part.width) * channels;
+            for (int y = 0; y < part.height; ++y) {
+                const std::size_t texel =
+                    static_cast<std::size_t>(part.y + y) * static_cast<std::size_t>(image.width) +
+                    static_cast<std::size_t>(part.x);
+                std::copy_n(all.begin() + static_cast<std::ptrdiff_t>(texel * channels), row,
+                            samples.begin() +
+                                static_cast<std::ptrdiff_t>(static_cast<std::size_t>(y) * row));
+            }
+        },
+        result.samples);
+    return result;
+}
+
+void check_floats(const Image& image, int channels, const char* what) {
+    if (image.empty()) throw InvalidInput(fmt::format("an empty image holds no {}", what));
+    if (image.channels != channels || image.bits() != 32) {
+        throw InvalidInput(fmt::format("{} have {} float channels, not {} of {} bits", what,
+                                       channels, image.channels, image.bits()));
+    }
 }
 
 }  // namespace relief

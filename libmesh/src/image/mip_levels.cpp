@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Mip levels by a box filter, see mip_levels.h. 8-bit codes become 16-bit light (or 16-bit
-// numbers), stay so from level to level, and are coded again for the result; float stays float.
-// Even sizes, nearly all, average four texels; an odd size spreads its 2m + 1 texels over m, which
-// takes three of them with weights that sum to 1. Tests: tests/mesh/image/mip_levels_test.cpp.
+// Mip levels with a box filter, see mip_levels.h. 8-bit codes are converted to 16-bit light (or
+// 16-bit numbers), which stays the format of all levels, and are encoded again for the result;
+// floats stay floats. Even sizes, which are usual, average four texels. An odd size distributes its
+// 2m + 1 texels over m, which takes three texels with weights that sum to 1.
 #include "relief/mesh/mip_levels.h"
 
 #include <algorithm>

@@ -1,21 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// What is done texel by texel to heights and normals, in parallel, and what a vector of any length
-/// is worth as a direction. Tests: tests/mesh/image/normals/normal_map_test.cpp,
-/// normal_map_operations_test.cpp.
+/// Parallel loops over texels, coordinates beyond the border of an image, and the largest sample of
+/// a format.
 #pragma once
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
+#include <type_traits>
 
 #include "parallel.h"
+#include "relief/mesh/bump.h"
 #include "relief/mesh/image.h"
 #include "relief/mesh/report.h"
 
 namespace relief {
-
 inline constexpr std::size_t texels_per_piece = 1 << 14;
 
 /// Calls each(texel, report) for every texel in parallel; the findings come together in `report`.
@@ -81,5 +82,29 @@ inline void store(const Direction& direction, float* normal) {
     normal[1] = static_cast<float>(direction.y + 0.0);
     normal[2] = static_cast<float>(direction.z + 0.0);
 }
+
+/// The place within [0, count) that is read for any place: clamped to the edge for Wrap::clamp.
+inline int place_within(int place, int count, Wrap wrap) {
+    if (wrap == Wrap::clamp) return std::clamp(place, 0, count - 1);
+    const int period = wrap == Wrap::mirror ? 2 * count : count;
+    const int rest = (place % period + period) % period;
+    return rest < count ? rest : period - 1 - rest;
+}
+
+/// What a clamped quantity goes on as beyond its border: point-reflected at the border value, so
+/// that a plane goes on as a plane. `at(place)` gives values within; a single one goes on as is.
+template <typename At>
+auto reflected(int place, int count, const At& at) -> decltype(at(0)) {
+    if (place >= 0 && place < count) return at(place);
+    if (count == 1) return at(0);
+    const int edge = place < 0 ? 0 : count - 1;
+    return 2 * at(edge) - reflected(2 * edge - place, count, at);
+}
+
+/// In double, so that dividing codes by it is no division of whole numbers.
+template <typename Sample>
+inline constexpr double largest_sample =
+    std::is_floating_point_v<Sample> ? 1.0
+                                     : static_cast<double>(std::numeric_limits<Sample>::max());
 
 }  // namespace relief

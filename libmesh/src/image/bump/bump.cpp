@@ -2,7 +2,7 @@
 // Normals, codes and slopes of a height field [Blinn 1978], its rows shared out among threads (the
 // rows themselves: bump_rows.cpp). Non-finite heights show in the slopes that they touch; only then
 // are they looked for, filled (height_holes.cpp) and counted, and all is done again. A bad image,
-// strength or texel throws. Tests: tests/mesh/image/bump/bump_test.cpp.
+// strength or texel throws.
 #include "relief/mesh/bump.h"
 
 #include <fmt/format.h>
@@ -12,7 +12,7 @@
 #include <cmath>
 
 #include "image/bump/bump_rows.h"
-#include "image/heights/height_holes.h"
+#include "image/height_holes.h"
 #include "large_memory.h"
 #include "parallel.h"
 #include "relief/mesh/error.h"

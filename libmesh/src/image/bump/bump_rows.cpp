@@ -3,7 +3,7 @@
 // lies beyond the left and right border filled in, columns combined (combine_columns), the slopes
 // stored as asked. Beyond the border, smoothing reads the edge again and differences the point
 // reflection where the map is clamped: a plane stays a plane. Pieces too steep for float are done
-// in double. Tests: tests/mesh/image/bump/bump_test.cpp.
+// in double.
 #include "image/bump/bump_rows.h"
 
 #include <array>
@@ -13,10 +13,10 @@
 #include <optional>
 #include <type_traits>
 
-#include "image/border.h"
 #include "image/bump/codes_3x3.h"
 #include "image/bump/normal_loops.h"
 #include "image/bump/slope_loops.h"
+#include "image/texel_loops.h"
 
 namespace relief {
 namespace {

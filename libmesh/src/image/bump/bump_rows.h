@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// Rows of a normal map from rows of heights, wherever these are: in an image, or in a window that
-/// moves over a file. Tests: tests/mesh/image/bump/bump_test.cpp.
+/// moves over a file.
 #pragma once
 
 #include <functional>

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Heights to codes of normals in one loop, for kernels of 3x3 in float. What limits it is the
-// square root and the division, and memory. Tests: tests/mesh/image/bump/bump_kernels_test.cpp.
+// square root and the division, and memory.
 #include "image/bump/codes_3x3.h"
 
 #include <algorithm>
 #include <cstdint>
 
-#include "image/border.h"
 #include "image/bump/normal_store.h"
+#include "image/texel_loops.h"
 
 namespace relief {
 

@@ -3,7 +3,6 @@
 /// The common case in one loop: kernels of 3x3 in float, heights to codes, nothing stored in
 /// between. Sums are in another order than in slope_loops.h, with fewer operations; the bits are
 /// the same on every processor here too.
-/// Tests: tests/mesh/image/bump/bump_kernels_test.cpp.
 #pragma once
 
 #include <array>

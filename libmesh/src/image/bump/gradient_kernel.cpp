@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Weights of the kernels that take slopes, and their properties in closed form. Offsets in texels,
 // frequencies in radians a texel. A radius out of range throws.
-// Tests: tests/mesh/image/bump/gradient_kernel_test.cpp.
 #include "relief/mesh/gradient_kernel.h"
 
 #include <fmt/format.h>

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Slopes to unit normals, float or coded. The square root and the division are IEEE's, so that
 // every width of registers gives the same bits. Slopes must pass any_too_steep.
-// Tests: tests/mesh/image/bump/bump_test.cpp.
 #include "image/bump/normal_loops.h"
 
 #include <array>

@@ -2,12 +2,11 @@
 /// \file
 /// A piece of a row of slopes into what is to be stored, on whole vector registers. Slopes to the
 /// right and upwards, in tangent space. The same bits on every processor.
-/// Tests: tests/mesh/image/bump/bump_test.cpp.
 #pragma once
 
 #include <cstddef>
 
-#include "image/normals/dither_tile.h"
+#include "image/dither_tile.h"
 #include "relief/mesh/normal_map.h"
 #include "vector_targets.h"
 

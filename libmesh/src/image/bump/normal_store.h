@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// What the loops that store normals have in common, to be inlined into each.
-/// Tests: tests/mesh/image/bump/bump_kernels_test.cpp.
 #pragma once
 
 #include <bit>
@@ -10,7 +9,7 @@
 #include <cstdint>
 #include <type_traits>
 
-#include "image/normals/normal_coding.h"
+#include "image/normal_coding.h"
 #include "vector_targets.h"
 
 namespace relief {

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Sums of a separable kernel, first down the columns, then along the row. A pass over the piece per
 // weight, but for the kernels of 3x3, where all stand in one loop with the same operations in the
-// same order. Non-finite heights give non-finite slopes. Tests:
-// tests/mesh/image/bump/bump_test.cpp.
+// same order. Non-finite heights give non-finite slopes.
 #include "image/bump/slope_loops.h"
 
 #include <cstdint>

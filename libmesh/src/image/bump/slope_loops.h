@@ -2,7 +2,7 @@
 /// \file
 /// The two passes of a separable kernel over a piece of a row, on whole vector registers. Heights
 /// in units of their own; slopes to the right and upwards. The same bits on every processor: each
-/// element is the same sums in the same order. Tests: tests/mesh/image/bump/bump_test.cpp.
+/// element is the same sums in the same order.
 #pragma once
 
 #include <cstddef>

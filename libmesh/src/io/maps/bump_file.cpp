@@ -18,9 +18,9 @@
 #include <vector>
 
 #include "image/bump/bump_rows.h"
-#include "image/heights/height_holes.h"
-#include "image/largest_sample.h"
-#include "image/normals/normal_coding.h"
+#include "image/height_holes.h"
+#include "image/normal_coding.h"
+#include "image/texel_loops.h"
 #include "io/maps/height_bands.h"
 #include "parallel.h"
 #include "relief/mesh/error.h"

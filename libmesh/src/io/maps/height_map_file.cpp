@@ -13,8 +13,8 @@
 #include <limits>
 #include <utility>
 
-#include "image/heights/height_holes.h"
-#include "image/heights/seam_survey.h"
+#include "image/height_holes.h"
+#include "image/seam_survey.h"
 #include "relief/mesh/bump_file.h"
 #include "relief/mesh/error.h"
 

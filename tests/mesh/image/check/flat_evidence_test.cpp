@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Pairs of codes counted by hand; then maps that are smooth, and raise no alarm, beside maps whose
 // flat texels have another code than their file says, and do.
-#include "image/check/flat_evidence.h"
+#include "image/map_statistics.h"
 
 #include <gtest/gtest.h>
 

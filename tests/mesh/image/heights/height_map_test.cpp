@@ -8,7 +8,7 @@
 #include <cmath>
 #include <limits>
 
-#include "image/heights/height_holes.h"
+#include "image/height_holes.h"
 #include "relief/mesh/error.h"
 #include "support/message_of.h"
 #include "support/samples.h"

@@ -7,7 +7,7 @@
 #include <numbers>
 #include <random>
 
-#include "image/integration/real_transform.h"
+#include "image/fft.h"
 
 namespace relief {
 namespace {

@@ -1,21 +1,26 @@
 // SPDX-License-Identifier: Apache-2.0
-// Separable resampling of normals or slopes, see normal_resize.h: for each row of the result the
-// rows around it are summed first, all columns alike, then the columns. Weights in double, sums in
-// float, in the order of the texels: the same bits for any number of threads.
-// Tests: tests/mesh/image/normals/normal_resize_test.cpp.
+// Resampling of normals and slopes, and mip levels with the roughness that compensates for
+// averaging.
+//
+// Resampling is separable: for each row of the result, the rows around it are summed first, then
+// the columns. Weights are double, sums are float, in the order of the texels, so the bits are the
+// same for any number of threads. Mip levels average vectors, never codes, and normalize only the
+// result; its length before that gives the variance.
 #include "relief/mesh/normal_resize.h"
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
 #include <vector>
 
 #include "geometry/portable_math.h"
-#include "image/border.h"
 #include "image/texel_loops.h"
 #include "relief/mesh/error.h"
+#include "relief/mesh/mip_levels.h"
+#include "relief/mesh/normal_mips.h"
 
 namespace relief {
 namespace {
@@ -257,6 +262,66 @@ Image fitted_detail(const Image& detail, int base_width, int base_height,
     fitted.repeat = {width < base_width ? 1.0 : options.repeat.x,
                      height < base_height ? 1.0 : options.repeat.y};
     return resize_normals(detail, width, height, fitted, report);
+}
+
+namespace {
+
+constexpr double shortest_mean = 1e-6;
+
+}  // namespace
+
+std::vector<Image> normal_mip_levels(const Image& normals) {
+    check_floats(normals, 3, "normals");
+    return mip_levels(normals);
+}
+
+Image split_lengths(Image& means, Report& report) {
+    check_floats(means, 3, "normals");
+    Image lengths = make_image(means.width, means.height, 1, 32, ColorSpace::data);
+    const std::span<float> vectors = means.as<float>();
+    const std::span<float> to = lengths.as<float>();
+    for_each_texel(to.size(), report, [&](std::size_t texel, Report& found) {
+        float* const vector = &vectors[texel * 3];
+        Direction direction{vector[0], vector[1], vector[2]};
+        const double length = std::sqrt(direction.x * direction.x + direction.y * direction.y +
+                                        direction.z * direction.z);
+        to[texel] = static_cast<float>(std::min(length, 1.0));
+        if (length < shortest_mean) direction = {0.0, 0.0, 0.0};
+        if (!make_unit(direction))
+            found.add("normals that cancel", "texel", texel, "made flat, with length 0");
+        store(direction, vector);
+    });
+    return lengths;
+}
+
+double slope_variance_of_length(double length) {
+    const double r = std::clamp(length, 1e-3, 1.0);
+    return (1.0 / (r * r) - 1.0) / 2.0;
+}
+
+double toksvig_factor(double length, double exponent) {
+    const double r = std::clamp(length, 0.0, 1.0);
+    return r / (r + exponent * (1.0 - r));
+}
+
+double roughness_with_variance(double roughness, double variance) {
+    const double alpha = roughness * roughness;
+    return std::sqrt(std::sqrt(std::min(alpha * alpha + 2.0 * variance, 1.0)));
+}
+
+Image roughness_from_lengths(const Image& lengths, double roughness) {
+    check_floats(lengths, 1, "lengths");
+    if (!(roughness >= 0.0 && roughness <= 1.0))
+        throw InvalidInput(fmt::format("the roughness {} is not within 0 and 1", roughness));
+    Image result = make_image(lengths.width, lengths.height, 1, 32, ColorSpace::data);
+    const std::span<const float> from = lengths.as<float>();
+    const std::span<float> to = result.as<float>();
+    Report unused;
+    for_each_texel(to.size(), unused, [&](std::size_t texel, Report&) {
+        const double variance = slope_variance_of_length(static_cast<double>(from[texel]));
+        to[texel] = static_cast<float>(roughness_with_variance(roughness, variance));
+    });
+    return result;
 }
 
 }  // namespace relief

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Stockham's self-sorting passes of radix 2, 3, 4, 5, 7, 11 and 13; a length with another prime
-// factor as a convolution with a chirp, of a length that is a power of two [Bluestein 1970]. Four
-// rows lie side by side, so that every loop is one over neighbours in memory. In double; the same
-// bits for any instruction set, since nothing is contracted. Tests:
-// tests/mesh/image/integration/real_transform_test.cpp.
-#include "image/integration/complex_fft.h"
-
+// Fourier transforms with Stockham's self-sorting passes of radix 2, 3, 4, 5, 7, 11 and 13. A
+// length with another prime factor is computed as a convolution with a chirp, of a power-of-two
+// length [Bluestein 1970]. Four rows are interleaved, so that every loop runs over adjacent memory.
+// In double precision, with the same bits for any instruction set.
+//
+// Two real rows form one complex row: both real transforms are linear with real coefficients, so
+// real and imaginary parts do not mix. The Hartley transform is the even part of the Fourier
+// transform minus sqrt(-1) times the odd part. The cosine transform is computed from the Fourier
+// transform of the even samples followed by the odd ones in reverse [Makhoul 1980].
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -13,10 +15,10 @@
 #include <numbers>
 
 #include "geometry/portable_math.h"
+#include "image/fft.h"
 #include "vector_targets.h"
 
 namespace relief {
-
 /// One pass: `count` groups of `radix` samples at a distance, each sample `stride` lanes wide.
 struct ComplexFft::Pass {
     std::size_t radix, groups, stride;
@@ -257,6 +259,104 @@ void ComplexFft::transform(ComplexRows rows, double* scratch) const {
     std::copy_n(wide.real, count, rows.real);
     std::copy_n(wide.imag, count, rows.imag);
     multiply(rows, length_, chirp_->cosines.data(), chirp_->sines.data());
+}
+
+namespace {
+
+constexpr std::size_t half_lanes = ComplexFft::lanes;
+static_assert(RealTransform::lanes == 2 * half_lanes);
+
+/// Where sample j of a row stands among the even ones followed by the odd ones backwards.
+std::size_t place_of(std::size_t j, std::size_t length) {
+    return j % 2 == 0 ? j / 2 : length - 1 - j / 2;
+}
+
+}  // namespace
+
+RealTransform::RealTransform(TransformKind kind, std::size_t length)
+    : kind_(kind), length_(length), fft_(length) {
+    for (std::size_t k = 0; kind == TransformKind::cosine && k < length; ++k) {
+        cosines_.push_back(portable::cos(0.5 * frequency(k)));
+        sines_.push_back(portable::sin(0.5 * frequency(k)));
+    }
+}
+
+double RealTransform::frequency(std::size_t k) const {
+    const double turns = static_cast<double>(k) / static_cast<double>(length_);
+    return (kind_ == TransformKind::hartley ? 2.0 : 1.0) * std::numbers::pi * turns;
+}
+
+/// The rows taken apart into real and imaginary parts, in the scratch.
+ComplexRows RealTransform::unpacked(const double* samples, std::vector<double>& scratch) const {
+    const std::size_t count = length_ * half_lanes;
+    scratch.resize(2 * count + fft_.scratch_size());
+    const ComplexRows rows{scratch.data(), scratch.data() + count};
+    for (std::size_t j = 0; j < length_; ++j) {
+        const std::size_t place = kind_ == TransformKind::cosine ? place_of(j, length_) : j;
+        std::copy_n(samples + j * lanes, half_lanes, rows.real + place * half_lanes);
+        std::copy_n(samples + j * lanes + half_lanes, half_lanes, rows.imag + place * half_lanes);
+    }
+    return rows;
+}
+
+void RealTransform::forward(double* samples, std::vector<double>& scratch) const {
+    const ComplexRows rows = unpacked(samples, scratch);
+    fft_.transform(rows, scratch.data() + 2 * length_ * half_lanes);
+    for (std::size_t k = 0; k < length_; ++k) {
+        const std::size_t opposite = k == 0 ? 0 : length_ - k;
+        const double* r = rows.real + k * half_lanes;
+        const double* m = rows.imag + k * half_lanes;
+        const double* opposite_r = rows.real + opposite * half_lanes;
+        const double* opposite_m = rows.imag + opposite * half_lanes;
+        double* to = samples + k * lanes;
+        if (kind_ == TransformKind::hartley) {
+            // (Z[k] + Z[-k]) / 2 + i (Z[k] - Z[-k]) / 2
+            for (std::size_t i = 0; i < half_lanes; ++i) {
+                to[i] = 0.5 * (r[i] + opposite_r[i] - m[i] + opposite_m[i]);
+                to[i + half_lanes] = 0.5 * (m[i] + opposite_m[i] + r[i] - opposite_r[i]);
+            }
+        } else {
+            // (exp(-i a) Z[k] + exp(i a) Z[-k]) / 2
+            const double c = 0.5 * cosines_[k], s = 0.5 * sines_[k];
+            for (std::size_t i = 0; i < half_lanes; ++i) {
+                to[i] = c * (r[i] + opposite_r[i]) + s * (m[i] - opposite_m[i]);
+                to[i + half_lanes] = c * (m[i] + opposite_m[i]) - s * (r[i] - opposite_r[i]);
+            }
+        }
+    }
+}
+
+void RealTransform::inverse(double* samples, std::vector<double>& scratch) const {
+    const double scale = 1.0 / static_cast<double>(length_);
+    if (kind_ == TransformKind::hartley) {
+        // Its own inverse, but for a factor.
+        forward(samples, scratch);
+        for (std::size_t i = 0; i < length_ * lanes; ++i)
+            samples[i] *= scale;
+        return;
+    }
+    const std::size_t count = length_ * half_lanes;
+    scratch.resize(2 * count + fft_.scratch_size());
+    const ComplexRows rows{scratch.data(), scratch.data() + count};
+    for (std::size_t k = 0; k < length_; ++k) {
+        // exp(i a) (C[k] - i C[n - k]), with C[n] = 0
+        const double* c = samples + k * lanes;
+        const double* d = samples + (length_ - k) % length_ * lanes;
+        const double present = k == 0 ? 0.0 : 1.0;
+        const double cosine = scale * cosines_[k], sine = scale * sines_[k];
+        for (std::size_t i = 0; i < half_lanes; ++i) {
+            const double real = c[i] + present * d[i + half_lanes];
+            const double imag = c[i + half_lanes] - present * d[i];
+            rows.real[k * half_lanes + i] = cosine * real - sine * imag;
+            rows.imag[k * half_lanes + i] = cosine * imag + sine * real;
+        }
+    }
+    fft_.transform({rows.imag, rows.real}, scratch.data() + 2 * count);
+    for (std::size_t j = 0; j < length_; ++j) {
+        const std::size_t place = place_of(j, length_);
+        std::copy_n(rows.real + place * half_lanes, half_lanes, samples + j * lanes);
+        std::copy_n(rows.imag + place * half_lanes, half_lanes, samples + j * lanes + half_lanes);
+    }
 }
 
 }  // namespace relief

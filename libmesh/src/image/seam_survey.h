@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// How a map changes across its seams and inside, from its rows in order: for maps that are not in
-/// memory. Tests: tests/mesh/image/heights/height_statistics_test.cpp.
+/// Changes of a map across its seams and inside, computed from rows in order, for maps that are not
+/// in memory.
 #pragma once
 
 #include <cstddef>

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Height fields made whole before slopes are taken.
-/// Tests: tests/mesh/image/bump/bump_test.cpp, heights/height_map_test.cpp.
+/// Filling of holes in height fields, before slopes are computed.
 #pragma once
 
 #include <span>

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// The tiles of thresholds behind dither.h, by rows. Tests:
-/// tests/mesh/image/normals/dither_test.cpp.
+/// Tiles of thresholds for dither.h, by rows.
 #pragma once
 
 #include <array>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The thresholds of dither.h: Bayer's recursive matrix, and blue noise by voids and clusters. All
-// ranks come from whole numbers, and of equals the first in reading order is taken, so that every
-// machine makes the same tiles. Tests: tests/mesh/image/normals/dither_test.cpp.
-#include "image/normals/dither_tile.h"
+// The thresholds of dither.h: Bayer's recursive matrix, and blue noise by the void-and-cluster
+// method. All ranks are computed from integers, and ties go to the first in reading order, so the
+// tiles are the same on every machine.
+#include "image/dither_tile.h"
 
 #include <algorithm>
 #include <array>

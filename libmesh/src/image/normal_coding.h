@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// One component of a unit normal as a stored sample, and back: the only home of these formulas.
-/// Tests: tests/mesh/image/normals/normal_map_test.cpp.
+/// Encoding and decoding of one component of a unit normal. All encoders and decoders use these
+/// formulas.
 #pragma once
 
 #include <algorithm>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// De-staircasing: smoothed surfaces from fine to wide, each believed where its residual is that of
-// rounding [Lepski 1991], then back to the half step around the stored code. Heights are in steps
-// meanwhile. Holes stay; their filling serves their neighbours. A wrong image or step throws.
-// Tests: tests/mesh/image/heights/destaircase_test.cpp.
+// De-staircasing: surfaces are smoothed from fine to wide. Each is accepted where its residual is
+// that of rounding [Lepski 1991], and the result is then limited to half a step around the stored
+// code. Heights are in steps during the computation. Holes remain; their filled values serve their
+// neighbors. An invalid image or step throws.
 #include "relief/mesh/destaircase.h"
 
 #include <fmt/format.h>
@@ -11,8 +11,8 @@
 #include <array>
 #include <cmath>
 
-#include "image/border.h"
-#include "image/heights/height_holes.h"
+#include "image/height_holes.h"
+#include "image/texel_loops.h"
 #include "parallel.h"
 #include "relief/mesh/error.h"
 #include "relief/mesh/height_statistics.h"

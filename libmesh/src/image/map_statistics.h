@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// Statistics of a map whose kind is not known yet: its vectors in one pass, the direction of
+/// green, and the code of flat texels.
+///
+/// The direction of green follows from a property of surfaces: the derivative in y of the slope
+/// along x equals the derivative in x of the slope along y. With inverted green, the two have
+/// opposite signs. The same test tells whether alpha holds heights.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <glm/glm.hpp>
+#include <span>
+#include <type_traits>
+#include <vector>
+
+#include "image/normal_coding.h"
+#include "image/texel_loops.h"
+#include "relief/mesh/image.h"
+#include "relief/mesh/normal_map_check.h"
+
+namespace relief {
+/// How samples are to be understood.
+struct SampleMeaning {
+    FlatCode flat = FlatCode::middle;
+    StoredCurve curve = StoredCurve::none;
+    bool is_signed = false;   ///< Float samples hold the component itself.
+    bool z_is_stored = true;  ///< Else it is rebuilt, upwards.
+};
+
+/// One component, from the sample as it is stored.
+template <typename Sample>
+float component_of(Sample sample, const SampleMeaning& meaning) {
+    if constexpr (std::is_same_v<Sample, float>) {
+        if (meaning.is_signed) return sample;
+    }
+    if (meaning.curve == StoredCurve::none)
+        return static_cast<float>(NormalCoding<Sample>{meaning.flat}.decoded(sample));
+    const float stored = static_cast<float>(sample) / static_cast<float>(largest_sample<Sample>);
+    const float meant = meaning.curve == StoredCurve::srgb_encoded ? linear_from_srgb(stored)
+                                                                   : srgb_from_linear(stored);
+    return 2.0F * meant - 1.0F;
+}
+
+/// Reads texels as vectors; y as it is stored, up or down. Codes go through a table.
+template <typename Sample>
+class MapVectors {
+  public:
+    MapVectors(const Image& map, const SampleMeaning& meaning)
+        : samples_(map.as<Sample>()),
+          channels_(static_cast<std::size_t>(map.channels)),
+          meaning_(meaning) {
+        if constexpr (!std::is_same_v<Sample, float>) {
+            for (std::size_t code = 0; code <= std::numeric_limits<Sample>::max(); ++code)
+                table_.push_back(component_of(static_cast<Sample>(code), meaning));
+        }
+    }
+
+    [[nodiscard]] float component(std::size_t texel, std::size_t channel) const {
+        const Sample sample = samples_[texel * channels_ + channel];
+        if constexpr (std::is_same_v<Sample, float>)
+            return component_of(sample, meaning_);
+        else
+            return table_[sample];
+    }
+    [[nodiscard]] glm::vec3 operator[](std::size_t texel) const {
+        const float x = component(texel, 0);
+        const float y = component(texel, 1);
+        if (meaning_.z_is_stored) return {x, y, component(texel, 2)};
+        return {x, y, std::sqrt(std::max(0.0F, 1.0F - x * x - y * y))};
+    }
+    [[nodiscard]] std::size_t channels() const { return channels_; }
+
+  private:
+    std::span<const Sample> samples_;
+    std::size_t channels_;
+    SampleMeaning meaning_;
+    std::vector<float> table_;
+};
+
+/// Sums over a map. A texel whose three samples are the same is black, white or grey, a background
+/// or a height, and no vector.
+struct MapStatistics {
+    std::size_t texels = 0;   ///< That were looked at.
+    std::size_t equal = 0;    ///< Whose samples are all the same.
+    std::size_t vectors = 0;  ///< The others, if finite: what all the rest is about.
+    std::size_t upwards = 0;  ///< z above 0.
+    std::size_t in_disk = 0;  ///< x and y within the unit disk, to within 5 %.
+    glm::dvec3 mean{};
+    VectorLengths lengths;
+    std::array<bool, 4> constant{};  ///< By channel.
+    /// Of these `equal`, not as long as a normal, nor without direction: 0.75 to 1.25.
+    std::size_t background = 0;
+    FoundMapCondition not_finite{MapCondition::texel_not_finite, 0, {}};
+    FoundMapCondition without_direction{MapCondition::texel_without_direction, 0, {}};
+    FoundMapCondition facing_back{MapCondition::texel_facing_back, 0, {}};
+
+    [[nodiscard]] double share(std::size_t count) const {
+        return vectors == 0 ? 0.0 : static_cast<double>(count) / static_cast<double>(vectors);
+    }
+};
+
+/// \param step  looks at every step-th texel only
+MapStatistics map_statistics(const Image& map, const SampleMeaning& meaning, std::size_t step = 1);
+
+struct SurfaceEvidence {
+    GreenEvidence green;
+    std::optional<double> alpha_correlation;  ///< With the slopes; where there is an alpha.
+};
+
+/// \param map  two channels at least; y as it is stored
+///
+/// Texels that are not finite, face back or are steeper than 10 have no say, nor have their
+/// neighbours. The map is looked at as it is and averaged over 2, 4 and 8 texels, where the noise
+/// of few bits is less; of these the one counts that is surest.
+SurfaceEvidence surface_evidence(const Image& map, const SampleMeaning& meaning);
+
+/// Texels whose x and y both have one of the two codes below and the two above 127.5 (32767.5).
+struct FlatEvidence {
+    std::size_t near = 0;   ///< All of them.
+    std::size_t lower = 0;  ///< Those that have the lower code of zero, 127, for both.
+
+    /// A smooth surface passes all sixteen pairs of codes alike, on its way; where texels are flat
+    /// by intention, one pair stands out. So: at least 64 texels, and more than half of those near.
+    [[nodiscard]] bool is_half() const { return lower >= 64 && 2 * lower > near; }
+};
+
+/// \param map  three channels at least; none of 32 bits has evidence
+FlatEvidence flat_evidence(const Image& map);
+
+}  // namespace relief
