@@ -11,6 +11,7 @@
 #include "bake/border_sample.h"
 #include "bake/layer_bake.h"
 #include "geometry/direction.h"
+#include "geometry/portable_math.h"
 #include "parallel.h"
 
 namespace relief {
@@ -76,7 +77,7 @@ class Piece {
             cast([&](int x, int y, std::size_t) {
                 return is_first(x % work_.side, y % work_.side, work_.side);
             });
-            const double least = std::cos(*work_.options.sample_angle);
+            const double least = portable::cos(*work_.options.sample_angle);
             std::vector<bool> disagree(sums_.size());
             for (std::size_t i = 0; i < sums_.size(); ++i) {
                 const TexelSum& sum = sums_[i];

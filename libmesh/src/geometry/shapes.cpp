@@ -8,6 +8,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "geometry/portable_math.h"
 #include "relief/mesh/error.h"
 
 namespace relief {
@@ -50,7 +51,7 @@ void add_disc(Mesh& mesh, double height, int slices) {
     };
     add(0.0, 0.0);
     for (int slice = 0; slice < slices; ++slice)
-        add(std::sin(turn(slice, slices)), std::cos(turn(slice, slices)));
+        add(portable::sin(turn(slice, slices)), portable::cos(turn(slice, slices)));
     const auto count = static_cast<std::uint32_t>(slices);
     for (std::uint32_t slice = 0; slice < count; ++slice) {
         const std::uint32_t here = center + 1 + slice;
@@ -92,9 +93,9 @@ Mesh make_sphere(int slices, int stacks) {
             const double v = static_cast<double>(stack) / stacks;
             const double longitude = turn(slice, slices);
             const double colatitude = std::numbers::pi * v;
-            const double ring = stack == 0 || stack == stacks ? 0.0 : std::sin(colatitude);
-            const glm::vec3 position(ring * std::sin(longitude), std::cos(colatitude),
-                                     ring * std::cos(longitude));
+            const double ring = stack == 0 || stack == stacks ? 0.0 : portable::sin(colatitude);
+            const glm::vec3 position(ring * portable::sin(longitude), portable::cos(colatitude),
+                                     ring * portable::cos(longitude));
             mesh.positions.push_back(position);
             mesh.normals.push_back(position);
             mesh.texcoords.emplace_back(static_cast<double>(slice) / slices, v);
@@ -143,9 +144,9 @@ Mesh make_torus(float tube_radius, int slices, int sides) {
         const double around = turn(side, sides);  // It runs from the inner side over the top.
         for (int slice = 0; slice <= slices; ++slice) {
             const double along = turn(slice, slices);
-            const glm::dvec3 outwards(std::sin(along), 0.0, std::cos(along));
+            const glm::dvec3 outwards(portable::sin(along), 0.0, portable::cos(along));
             const glm::dvec3 normal =
-                -std::cos(around) * outwards + glm::dvec3(0.0, std::sin(around), 0.0);
+                -portable::cos(around) * outwards + glm::dvec3(0.0, portable::sin(around), 0.0);
             mesh.positions.emplace_back(outwards + static_cast<double>(tube_radius) * normal);
             mesh.normals.emplace_back(normal);
             mesh.texcoords.emplace_back(static_cast<double>(slice) / slices,
@@ -163,7 +164,8 @@ Mesh make_cylinder(int slices) {
     mesh.name = "cylinder";
     for (int row = 0; row < 2; ++row) {
         for (int slice = 0; slice <= slices; ++slice) {
-            const glm::dvec2 rim(std::sin(turn(slice, slices)), std::cos(turn(slice, slices)));
+            const glm::dvec2 rim(portable::sin(turn(slice, slices)),
+                                 portable::cos(turn(slice, slices)));
             mesh.positions.emplace_back(rim.x, 1.0 - 2.0 * row, rim.y);
             mesh.normals.emplace_back(rim.x, 0.0, rim.y);
             mesh.texcoords.emplace_back(static_cast<double>(slice) / slices, row);

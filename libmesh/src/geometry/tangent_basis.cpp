@@ -11,6 +11,7 @@
 
 #include "geometry/corners.h"
 #include "geometry/direction.h"
+#include "geometry/portable_math.h"
 #include "geometry/texture_gradient.h"
 #include "parallel.h"
 #include "relief/mesh/tangents.h"
@@ -157,7 +158,7 @@ float turn_of(const glm::vec4& stored, const glm::vec4& computed, const glm::vec
     const double y = glm::dot(s, b);
     if (x == 0.0 && y == 0.0) return std::numeric_limits<float>::quiet_NaN();
     constexpr float degrees = 180.0F / std::numbers::pi_v<float>;
-    return std::atan2(static_cast<float>(y), static_cast<float>(x)) * degrees;
+    return static_cast<float>(portable::atan2(y, x)) * degrees;
 }
 
 /// Angle in degrees, 0 to 180, to the direction after `turns` quarter turns.

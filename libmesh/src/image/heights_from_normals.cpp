@@ -423,7 +423,7 @@ Slope slope_of(const float* normal, double steepest) {
     const double x = normal[0], y = normal[1], z = normal[2];
     if (!std::isfinite(x + y + z) || (x == 0.0 && y == 0.0 && z == 0.0))
         return {0.0, 0.0, Slope::Trouble::no_direction};
-    const double across = std::hypot(x, y);
+    const double across = std::sqrt(x * x + y * y);
     if (z > 0.0 && across <= steepest * z) return {-x / z, -y / z, Slope::Trouble::none};
     const auto trouble = z > 0.0 ? Slope::Trouble::too_steep : Slope::Trouble::faces_away;
     if (across == 0.0) return {0.0, 0.0, trouble};

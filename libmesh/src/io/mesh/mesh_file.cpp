@@ -32,7 +32,10 @@ glm::dvec3 offset_if_distant(const Mesh& mesh) {
     const glm::dvec3 farthest = glm::max(glm::abs(low), glm::abs(high));
     if (std::max({farthest.x, farthest.y, farthest.z}) <= max_ratio * size) return glm::dvec3(0.0);
     if (size == 0.0) return low;  // All positions are equal in float.
-    const double step = std::exp2(std::ceil(std::log2(size)));
+    // The power of two that is not less than the size.
+    int exponent = 0;
+    const double fraction = std::frexp(size, &exponent);
+    const double step = std::ldexp(1.0, fraction == 0.5 ? exponent - 1 : exponent);
     return glm::round(0.5 * (low + high) / step) * step;
 }
 
