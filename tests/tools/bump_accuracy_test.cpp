@@ -153,6 +153,8 @@ TEST(BumpAccuracyCommand, SaysWhatFollowsIfGrainIsDetail) {
     EXPECT_TRUE(report["grain"]["ambiguous"].get<bool>());
     EXPECT_GT(report["grain"]["otherwise"]["expected_degrees"].get<double>(),
               5.0 * report["expected_degrees"].get<double>());
+    EXPECT_GE(report["expected_degrees_upper"].get<double>(),
+              report["expected_degrees"].get<double>());
     ASSERT_EQ(workplace.run(line + " out/b.png --grain detail --report out/b.json").exit_code, 0);
     const json detail = json::parse(workplace.read("out/b.json"));
     EXPECT_EQ(detail["grain"]["taken_for"], "detail");

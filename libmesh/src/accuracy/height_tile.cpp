@@ -195,17 +195,22 @@ std::vector<double> remove_lone_spikes(HeightTile& tile, double least) {
     return heights;
 }
 
+/// Deviation of Gaussian values, of which only the smallest fifth must be without detail.
+double deviation_of_quietest(std::vector<double>& sizes) {
+    if (sizes.empty()) return 0.0;
+    // A fifth of a Gaussian lies within 0.2533 deviations.
+    const auto fifth = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 5);
+    std::nth_element(sizes.begin(), fifth, sizes.end());
+    return *fifth / 0.2533;
+}
+
 double noise_by(std::span<const HeightTile> tiles, int times) {
     std::vector<double> all;
     for (const HeightTile& tile : tiles) {
         const std::vector<double> high = masked(tile, times);
         all.insert(all.end(), high.begin(), high.end());
     }
-    if (all.empty()) return 0.0;
-    // A fifth of a Gaussian lies within 0.2533 deviations; only that much must be without detail.
-    const auto fifth = all.begin() + static_cast<std::ptrdiff_t>(all.size() / 5);
-    std::nth_element(all.begin(), fifth, all.end());
-    return *fifth / 0.2533;
+    return deviation_of_quietest(all);
 }
 
 }  // namespace
@@ -254,6 +259,14 @@ TileSlopes true_slopes(const HeightTile& tile, double least_cliff, bool has_exac
     return result;
 }
 
+double true_slope_response(double frequency) {
+    static const auto weights = central_weights();
+    double slope = 0.0;
+    for (std::size_t k = 1; k <= widest_difference; ++k)
+        slope += 2.0 * weights[widest_difference][k] * std::sin(static_cast<double>(k) * frequency);
+    return slope;
+}
+
 std::vector<double> remove_spikes(HeightTile& tile, double least) {
     std::vector<double> heights;
     // Where two are side by side, one hides the other.
@@ -264,6 +277,32 @@ std::vector<double> remove_spikes(HeightTile& tile, double least) {
         heights.insert(heights.end(), found.begin(), found.end());
     }
     return heights;
+}
+
+QuietDeviations quiet_deviations(std::span<const HeightTile> tiles) {
+    // The mask (1 4 6 4 1) / 16, its taps twice as far apart in each octave, and the deviation that
+    // its octaves leave of white noise of deviation 1.
+    static constexpr std::array binomial = {0.375, 0.25, 0.0625};
+    static constexpr std::array gains = {0.890796, 0.200664, 0.0855075, 0.0412174};
+    std::vector<HeightTile> rest(tiles.begin(), tiles.end());
+    QuietDeviations result{};
+    for (std::size_t octave = 0; octave < gains.size(); ++octave) {
+        std::vector<double> sizes;
+        for (HeightTile& tile : rest) {
+            HeightTile low = filtered(tile, binomial, 1 << octave);
+            // At the border the mask has what goes on beyond it.
+            const int margin = std::min(tile.width, tile.height) > 32 ? 3 << octave : 0;
+            for (int y = margin; y < tile.height - margin; ++y) {
+                for (int x = margin; x < tile.width - margin; ++x) {
+                    const auto texel = static_cast<std::size_t>(y * tile.width + x);
+                    sizes.push_back(std::abs(tile.values[texel] - low.values[texel]));
+                }
+            }
+            tile = std::move(low);
+        }
+        result[octave] = deviation_of_quietest(sizes) / gains[octave];
+    }
+    return result;
 }
 
 HighFrequencies high_frequencies(std::span<const HeightTile> tiles) {

@@ -4,6 +4,7 @@
 /// Heights in any unit. Tests: tests/mesh/accuracy/kernel_choice_test.cpp.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <glm/glm.hpp>
 #include <span>
@@ -35,6 +36,9 @@ struct TileSlopes {
 /// \param has_exact_levels  every change of at least `least_cliff` is one
 TileSlopes true_slopes(const HeightTile& tile, double least_cliff, bool has_exact_levels = false);
 
+/// The slope by true_slopes() of a wave whose slope is `frequency`, in radians a texel.
+double true_slope_response(double frequency);
+
 /// Takes texels away that stick out on their own from all around them, as hot pixels do: each gets
 /// the middle of its neighbors.
 ///
@@ -48,5 +52,14 @@ struct HighFrequencies {
     bool is_white = true;    ///< False where it grows towards the highest of all: a pattern.
 };
 HighFrequencies high_frequencies(std::span<const HeightTile> tiles);
+
+/// Octaves of quiet_deviations(), and the middle frequency of each in radians a texel.
+inline constexpr std::array quiet_frequencies = {2.61, 1.05, 0.49, 0.24};
+
+using QuietDeviations = std::array<double, quiet_frequencies.size()>;
+
+/// What the quietest fifth of the texels has in each octave, the highest first: the deviation of
+/// white noise that would leave as much. Noise is in all texels, edges are in few.
+QuietDeviations quiet_deviations(std::span<const HeightTile> tiles);
 
 }  // namespace relief

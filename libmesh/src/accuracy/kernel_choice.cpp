@@ -124,6 +124,12 @@ void check(std::span<const Image> parts) {
 
 }  // namespace
 
+std::string expected_words(const KernelChoice& choice) {
+    return choice.is_range()
+               ? fmt::format("{:.2g} to {:.2g}", choice.rms_degrees, choice.upper_rms_degrees)
+               : fmt::format("{:.2g}", choice.rms_degrees);
+}
+
 int best_gaussian_radius(const KernelChoice& choice) {
     // The best come first.
     for (const KernelPrediction& tried : choice.predictions) {
@@ -183,17 +189,25 @@ KernelChoice choose_kernel(std::span<const Image> parts, const BumpOptions& opti
     choice.rms_degrees = best.rms_degrees;
     choice.max_degrees = best.max_degrees;
     choice.reason = reason_of(rehearsal, options, best);
+    const KernelPrediction upper = rehearsal.predict_upper(best);
+    choice.upper_rms_degrees = std::max(best.rms_degrees, upper.rms_degrees);
+    choice.upper_max_degrees = std::max(best.max_degrees, upper.max_degrees);
     if (choice.grain > 0.0) {
         const KernelRehearsal other(parts, options, destaircased,
                                     choice.noise > 0.0 ? Grain::detail : Grain::noise);
-        choice.otherwise = {other.predict(best.kernel, best.gaussian_radius).rms_degrees,
-                            best_of(all_predictions(other))};
+        const KernelPrediction same = other.predict(best.kernel, best.gaussian_radius);
+        choice.otherwise = {same.rms_degrees, best_of(all_predictions(other))};
+        if (rehearsal.is_only_grain() && grain == Grain::automatic) {
+            choice.upper_rms_degrees = std::max(choice.upper_rms_degrees, same.rms_degrees);
+            choice.upper_max_degrees = std::max(choice.upper_max_degrees, same.max_degrees);
+        }
     }
     std::size_t texels = 0;
     for (const Image& part : parts)
         texels += part.sample_count();
     if (texels < least_texels && choice.rms_degrees > 0.0) {
         choice.rms_degrees = choice.max_degrees = std::numeric_limits<double>::quiet_NaN();
+        choice.upper_rms_degrees = choice.upper_max_degrees = choice.rms_degrees;
         choice.reason = fmt::format("{} texel{} say too little to expect an error", texels,
                                     texels == 1 ? "" : "s");
     }

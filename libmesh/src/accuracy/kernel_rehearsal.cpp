@@ -10,6 +10,8 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <functional>
+#include <limits>
 #include <numbers>
 #include <optional>
 
@@ -106,6 +108,50 @@ bool has_exact_levels(const HeightDepth& depth, int bits_of_file) {
     return bits_of_file == 32 || depth.step > 1.5 / (std::exp2(bits_of_file) - 1.0);
 }
 
+double beyond(double deviation, double rounding) {
+    return std::sqrt(std::max(0.0, deviation * deviation - rounding * rounding));
+}
+
+/// The strongest noise that a map may have: what even its quietest texels have in each octave.
+/// Noise may be blurred, but hardly more than by a binomial over 3 x 3 texels.
+///
+/// \param quiet  quiet_deviations()
+/// \param high   deviation of white noise by the highest frequencies
+std::optional<NoiseSpectrum> possible_noise(const QuietDeviations& quiet, double high,
+                                            double rounding, int side) {
+    // What such a blur leaves in an octave, of the next higher one; at first of `high`.
+    static constexpr std::array greatest_rise = {20.0, 3.5, 1.4, 1.1};
+    QuietDeviations deviations{};
+    double higher = beyond(high, rounding);
+    for (std::size_t i = 0; i < deviations.size(); ++i)
+        higher = deviations[i] = std::min(beyond(quiet[i], rounding), greatest_rise[i] * higher);
+    if (!(deviations[0] > 0.5 * rounding) || deviations.back() == 0.0) return std::nullopt;
+    NoiseSpectrum noise;
+    noise.side = side;
+    noise.rings.clear();
+    for (int ring = 0; ring < side; ++ring) {
+        const double f = std::clamp(2.0 * std::numbers::pi * ring / side, quiet_frequencies.back(),
+                                    quiet_frequencies.front());
+        std::size_t i = 0;
+        while (i + 2 < deviations.size() && quiet_frequencies[i + 1] > f)
+            ++i;
+        const double w = std::log(f / quiet_frequencies[i]) /
+                         std::log(quiet_frequencies[i + 1] / quiet_frequencies[i]);
+        const double deviation = deviations[i] * std::pow(deviations[i + 1] / deviations[i], w);
+        noise.rings.push_back(deviation * deviation);
+    }
+    return noise;
+}
+
+/// The tiles on the diagonal of nine: enough for quantiles and for differences.
+template <typename T>
+std::vector<T> some_of(const std::vector<T>& all) {
+    std::vector<T> some;
+    for (std::size_t i = 0; i < all.size(); i += 4)
+        some.push_back(all[i]);
+    return some;
+}
+
 bool is_flat(const NoiseSpectrum& noise) {
     // Where it is grain for sure: the highest octave.
     const auto begin = noise.rings.begin() + noise.side / 4;
@@ -154,47 +200,55 @@ double HeightCoding::error_of(double height) const {
     return of_rounding * std::ldexp(1.0, exponent - mantissa_bits);
 }
 
-void KernelRehearsal::remove_spikes(std::vector<HeightTile>& tiles) {
+void KernelRehearsal::remove_spikes() {
     // Fewer are as well detail, and change little.
     constexpr double least_share = 0.001;
     std::size_t texels = 0;
-    const std::vector<HeightTile> as_stored = tiles;
-    for (HeightTile& tile : tiles) {
+    const std::vector<HeightTile> as_stored = tiles_;
+    for (HeightTile& tile : tiles_) {
         const std::vector<double> found = relief::remove_spikes(tile, 2.5 * coding_.step());
         spikes_.insert(spikes_.end(), found.begin(), found.end());
         texels += tile.values.size();
     }
     spike_share_ = static_cast<double>(spikes_.size()) / static_cast<double>(texels);
     if (spike_share_ >= least_share) return;
-    tiles = as_stored;
+    tiles_ = as_stored;
     spikes_.clear();
     spike_share_ = 0.0;
 }
 
-void KernelRehearsal::find_grain(const std::vector<HeightTile>& tiles, Grain grain) {
-    const double rounding = root_mean_square_rounding(tiles, coding_);
-    high_ = high_frequencies(tiles);
-    if (have_spectrum(tiles)) spectrum_.emplace(tiles);
+void KernelRehearsal::find_grain(Grain grain) {
+    const double rounding = root_mean_square_rounding(tiles_, coding_);
+    high_ = high_frequencies(tiles_);
+    if (have_spectrum(tiles_)) spectrum_.emplace(tiles_);
     white_ = spectrum_ ? std::min(high_.deviation, spectrum_->white_floor()) : high_.deviation;
-    const auto beyond_rounding = [&](double deviation) {
-        return std::sqrt(std::max(0.0, deviation * deviation - rounding * rounding));
-    };
     // What little there is beyond rounding may as well be detail; and planes that are rounded make
     // patterns.
     const double least = (coding_.step() > 0.0 ? 1.1 : 1.25) * rounding;
-    if (spectrum_) colored_ = spectrum_->grain();
+    QuietDeviations quiet{};
+    if (spectrum_) {
+        quiet = quiet_deviations(some_of(tiles_));
+        colored_ = spectrum_->grain();
+        possible_ = possible_noise(quiet, high_.deviation, rounding, tiles_[0].width);
+    }
     // Grain is everywhere. Edges have as much power in a few places: most of the map is smoother
     // than noise of their spectrum would be, and a fifth of its texels tells the deviation.
-    constexpr double least_share_of_noise = 0.5;
+    constexpr double least_share_of_noise = 0.85;
     const bool is_everywhere =
         high_.deviation > least &&
         (!colored_ || high_.deviation > least_share_of_noise * colored_->high_deviation());
     if (colored_ && (is_flat(*colored_) || !is_everywhere || !(colored_->deviation() > least)))
         colored_.reset();
+    // Edges may fill the spectrum, but not the quietest texels. The highest octave does not count,
+    // since a blur leaves little in it.
+    constexpr double least_fall_of_detail = 1.9;
+    if (!colored_ && possible_ && possible_->deviation() > std::max(least, 1.5 * white_) &&
+        quiet[1] > 2.0 * rounding && quiet[2] < least_fall_of_detail * quiet[1])
+        colored_ = possible_;
     if (colored_)
-        grain_ = beyond_rounding(colored_->deviation());
+        grain_ = beyond(colored_->deviation(), rounding);
     else if (high_.is_white && white_ > least)
-        grain_ = beyond_rounding(white_);
+        grain_ = beyond(white_, rounding);
     if (grain_ == 0.0) return;
     if (spectrum_) {
         const NoiseSpectrum noise = colored_ ? *colored_ : NoiseSpectrum::white(white_);
@@ -204,9 +258,9 @@ void KernelRehearsal::find_grain(const std::vector<HeightTile>& tiles, Grain gra
     if (!is_as_stored_) noise_ = grain_;
 }
 
-void KernelRehearsal::restore(std::vector<HeightTile>& tiles) {
+void KernelRehearsal::restore() {
     if (is_as_stored_) return;
-    const double rounding = root_mean_square_rounding(tiles, coding_);
+    const double rounding = root_mean_square_rounding(tiles_, coding_);
     const double step = coding_.step();
     // Steps that texels climb one by one or faster leave as much in the highest frequencies as
     // white noise; wider ones next to nothing.
@@ -218,18 +272,18 @@ void KernelRehearsal::restore(std::vector<HeightTile>& tiles) {
     if (!by_spectrum && step == 0.0) return;
     const NoiseSpectrum noise =
         colored_ ? *colored_ : NoiseSpectrum::white(std::max(white_, rounding));
-    parallel_for(tiles.size(), 1, [&](std::size_t begin, std::size_t end) {
+    parallel_for(tiles_.size(), 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             if (by_spectrum) {
-                tiles[i] = without_noise(tiles[i], *spectrum_, noise);
+                tiles_[i] = without_noise(tiles_[i], *spectrum_, noise);
                 continue;
             }
-            tiles[i] = tile_of(without_steps(image_of(tiles[i]), step));
+            tiles_[i] = tile_of(without_steps(image_of(tiles_[i]), step));
             if (!steps_are_wide) continue;
-            const HeightTile even = evened(tiles[i]);
+            const HeightTile even = evened(tiles_[i]);
             // What is left of the steps is less than half of one: edges stay.
             for (std::size_t texel = 0; texel < even.values.size(); ++texel) {
-                double& value = tiles[i].values[texel];
+                double& value = tiles_[i].values[texel];
                 value = std::clamp(even.values[texel], value - 0.5 * step, value + 0.5 * step);
             }
         }
@@ -268,30 +322,36 @@ Image KernelRehearsal::spoilt(const HeightTile& tile, std::uint32_t seed) const 
     return image_of(result);
 }
 
-void KernelRehearsal::spoil(const std::vector<HeightTile>& tiles, bool destaircased) {
+void KernelRehearsal::spoil() {
     const double step = coding_.step();
     const double least_cliff = std::max(3.0 * step, 6.0 * noise_);
     const glm::dvec2 scale = options_.strength / options_.texel;
-    normals_.resize(tiles.size());
-    spoilt_.resize(tiles.size());
-    std::vector<std::size_t> beside(tiles.size(), 0);
-    parallel_for(tiles.size(), 1, [&](std::size_t begin, std::size_t end) {
+    walls_ = 0.0;
+    normals_.assign(tiles_.size(), {});
+    spoilt_.resize(tiles_.size());
+    std::vector<std::size_t> beside(tiles_.size(), 0);
+    parallel_for(tiles_.size(), 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
-            const TileSlopes truth = true_slopes(tiles[i], least_cliff, coding_.has_exact_levels);
+            const TileSlopes truth = true_slopes(tiles_[i], least_cliff, coding_.has_exact_levels);
+            Random missed(static_cast<std::uint32_t>(i) ^ 0x6d697373U);
             for (std::size_t texel = 0; texel < truth.slopes.size(); ++texel) {
-                const glm::dvec2 slope = truth.slopes[texel] * scale;
+                glm::dvec2 slope = truth.slopes[texel] * scale;
+                if (missed_slope_ > 0.0) {
+                    const double along_x = missed.normal();
+                    slope += scale * missed_slope_ * glm::dvec2(along_x, missed.normal());
+                }
                 const bool has_none = truth.beside_cliff[texel] != 0;
                 normals_[i].push_back(has_none
                                           ? glm::dvec3(0.0)
                                           : glm::normalize(glm::dvec3(-slope.x, slope.y, 1.0)));
                 beside[i] += has_none ? 1 : 0;
             }
-            spoilt_[i] = spoilt(tiles[i], static_cast<std::uint32_t>(i));
-            if (destaircased && step > 0.0) spoilt_[i] = without_steps(spoilt_[i], step);
+            spoilt_[i] = spoilt(tiles_[i], static_cast<std::uint32_t>(i));
+            if (destaircased_ && step > 0.0) spoilt_[i] = without_steps(spoilt_[i], step);
         }
     });
     double texels = 0.0;
-    for (std::size_t i = 0; i < tiles.size(); ++i) {
+    for (std::size_t i = 0; i < tiles_.size(); ++i) {
         walls_ += static_cast<double>(beside[i]);
         texels += static_cast<double>(normals_[i].size());
     }
@@ -300,19 +360,53 @@ void KernelRehearsal::spoil(const std::vector<HeightTile>& tiles, bool destairca
 
 KernelRehearsal::KernelRehearsal(std::span<const Image> parts, const BumpOptions& options,
                                  bool destaircased, Grain grain)
-    : options_(options) {
+    : options_(options), destaircased_(destaircased) {
     const Image all = joined(parts);
     coding_.depth = height_depth(all);
     if (coding_.depth.bits == 0) coding_.mantissa_bits = mantissa_bits(all);
     coding_.has_exact_levels = has_exact_levels(coding_.depth, parts[0].bits());
     options_.wrap = Wrap::clamp;
     options_.arithmetic = Arithmetic::float64;
-    std::vector<HeightTile> tiles(parts.size());
-    std::transform(parts.begin(), parts.end(), tiles.begin(), tile_of);
-    remove_spikes(tiles);
-    find_grain(tiles, grain);
-    restore(tiles);
-    spoil(tiles, destaircased);
+    tiles_.resize(parts.size());
+    std::transform(parts.begin(), parts.end(), tiles_.begin(), tile_of);
+    remove_spikes();
+    find_grain(grain);
+    restore();
+    spoil();
+}
+
+KernelPrediction KernelRehearsal::predict_upper(const KernelPrediction& shown) const {
+    if (!spectrum_ || coding_.has_exact_levels) return shown;
+    KernelRehearsal upper = *this;
+    upper.tiles_ = some_of(tiles_);
+    upper.normals_ = some_of(normals_);
+    upper.spoilt_ = some_of(spoilt_);
+    const KernelPrediction lower = upper.predict(shown.kernel, shown.gaussian_radius);
+    const double rounding = root_mean_square_rounding(tiles_, coding_);
+    NoiseSpectrum noise = NoiseSpectrum::white(rounding);
+    if (noise_ > 0.0)
+        noise = colored_ ? *colored_ : NoiseSpectrum::white(std::max(white_, rounding));
+    upper.missed_slope_ = spectrum_->missed_slope(noise);
+    if (!is_as_stored_ && possible_ && possible_->deviation() > 1.5 * noise_) {
+        upper.colored_ = possible_;
+        upper.noise_ = possible_->deviation();
+    } else if (noise_ > 0.0) {
+        const NoiseSpectrum hidden = spectrum_->hidden_detail(noise);
+        for (std::size_t i = 0; i < upper.tiles_.size(); ++i) {
+            std::vector<double>& values = upper.tiles_[i].values;
+            const std::vector<double> detail = noise_field(
+                hidden, upper.tiles_[i].width, static_cast<std::uint32_t>(i) ^ 0x68696464U);
+            std::transform(detail.begin(), detail.end(), values.begin(), values.begin(),
+                           std::plus<>());
+        }
+    }
+    upper.spoil();
+    const KernelPrediction some = upper.predict(shown.kernel, shown.gaussian_radius);
+    KernelPrediction result = shown;
+    result.rms_degrees =
+        std::hypot(result.rms_degrees, beyond(some.rms_degrees, lower.rms_degrees));
+    result.max_degrees = std::max(result.max_degrees, some.max_degrees);
+    return result;
 }
 
 KernelPrediction KernelRehearsal::predict(Kernel kernel, int radius) const {

@@ -39,6 +39,12 @@ class KernelRehearsal {
     /// What a kernel does to the spoilt parts.
     [[nodiscard]] KernelPrediction predict(Kernel kernel, int radius) const;
 
+    /// The same where the parts do not show all: noise hides detail or looks like it, and detail
+    /// is finer than texels. The greatest error to be expected, not a bound.
+    ///
+    /// \param shown  by predict()
+    [[nodiscard]] KernelPrediction predict_upper(const KernelPrediction& shown) const;
+
     [[nodiscard]] const HeightCoding& coding() const { return coding_; }
     /// Deviation of the noise beyond rounding.
     [[nodiscard]] double noise() const { return noise_; }
@@ -52,20 +58,24 @@ class KernelRehearsal {
     [[nodiscard]] double walls() const { return walls_; }
 
   private:
-    void remove_spikes(std::vector<HeightTile>& tiles);
-    void find_grain(const std::vector<HeightTile>& tiles, Grain grain);
-    void restore(std::vector<HeightTile>& tiles);
+    void remove_spikes();
+    void find_grain(Grain grain);
+    void restore();
     [[nodiscard]] Image spoilt(const HeightTile& tile, std::uint32_t seed) const;
-    void spoil(const std::vector<HeightTile>& tiles, bool destaircased);
+    void spoil();
 
     BumpOptions options_;
+    bool destaircased_ = false;
     HeightCoding coding_;
+    std::vector<HeightTile> tiles_;  ///< As stored, then restored: the truth.
     double grain_ = 0.0;
     double noise_ = 0.0;
     bool is_only_grain_ = false;
     bool is_as_stored_ = false;  ///< Grain is detail: the map is its own truth.
     std::optional<PowerSpectrum> spectrum_;
-    std::optional<NoiseSpectrum> colored_;  ///< Of noise and rounding, where it is not white.
+    std::optional<NoiseSpectrum> colored_;   ///< Of noise and rounding, where it is not white.
+    std::optional<NoiseSpectrum> possible_;  ///< The strongest noise that there may be.
+    double missed_slope_ = 0.0;              ///< Deviation of true slopes that no texels show.
     HighFrequencies high_;
     double white_ = 0.0;  ///< Deviation of noise and rounding, where it is white.
     double spike_share_ = 0.0;

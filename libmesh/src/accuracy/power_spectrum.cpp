@@ -328,6 +328,87 @@ std::optional<NoiseSpectrum> PowerSpectrum::grain() const {
     return noise;
 }
 
+NoiseSpectrum PowerSpectrum::hidden_detail(const NoiseSpectrum& noise) const {
+    // Detail is seen in a ring if its power exceeds `least_seen` of that of the noise; up to
+    // `most_hidden` goes unnoticed.
+    constexpr double least_seen = 0.25;
+    constexpr double most_hidden = 0.7;
+    // Exponents of the fall of the power over the frequency: edges, and what is smooth.
+    constexpr double least_fall = 3.0;
+    constexpr double greatest_fall = 5.0;
+    const std::vector<double> gains = this->gains(noise);
+    const auto rings = static_cast<std::size_t>(side_);
+    std::vector<double> seen(rings, 0.0);
+    std::vector<double> hidden(rings, 0.0);
+    std::size_t last = 1;  // The highest ring where detail is seen.
+    for (std::size_t ring = 1; ring < rings; ++ring) {
+        const double noise_power = noise.at(2.0 * pi * static_cast<double>(ring) / side_, 0.0);
+        double count = 0.0;
+        double empty = 0.0;
+        for (std::size_t i = ring * sectors; i < (ring + 1) * sectors; ++i) {
+            seen[ring] += gains[i] * gains[i] * bins_[i].power * bins_[i].count;
+            empty += gains[i] == 0.0 ? bins_[i].count : 0.0;
+            count += bins_[i].count;
+        }
+        seen[ring] /= std::max(1.0, count);
+        hidden[ring] = most_hidden * noise_power * empty / std::max(1.0, count);
+        if (seen[ring] > least_seen * noise_power) last = ring;
+    }
+    const auto mean_seen = [&](double begin, double end) {
+        double sum = 0.0;
+        double count = 0.0;
+        const auto to = static_cast<std::size_t>(end);
+        for (std::size_t r = std::max<std::size_t>(1, static_cast<std::size_t>(begin)); r <= to;
+             ++r) {
+            sum += static_cast<double>(r) * seen[r];
+            count += static_cast<double>(r);
+        }
+        return sum / count;
+    };
+    // From there on it falls as it does over the octave below, or as it must to go unnoticed.
+    const auto edge = static_cast<double>(last);
+    double fall = least_fall;
+    double next = last + 1 < rings ? hidden[last + 1] : 0.0;
+    if (const double top = mean_seen(0.7 * edge, edge); top > 0.0) {
+        if (last >= 3) {
+            const double below = mean_seen(0.35 * edge, 0.5 * edge);
+            fall = std::clamp(std::log2(below / top), least_fall, greatest_fall);
+        }
+        next = std::min(next, top * std::pow(edge / (edge + 1.0), fall));
+        const double drop = std::log(top / next) / std::log((edge + 1.0) / (0.85 * edge));
+        if (next < top) fall = std::clamp(drop, fall, greatest_fall);
+    }
+    for (std::size_t ring = last + 1; ring < rings; ++ring) {
+        const double limit = next * std::pow((edge + 1.0) / static_cast<double>(ring), fall);
+        hidden[ring] = std::min(hidden[ring], limit);
+    }
+    NoiseSpectrum result;
+    result.side = side_;
+    result.rings = std::move(hidden);
+    return result;
+}
+
+double PowerSpectrum::missed_slope(const NoiseSpectrum& noise) const {
+    const std::vector<double> gains = this->gains(noise);
+    std::vector<double> missed(static_cast<std::size_t>(side_));
+    for (int i = 0; i < side_; ++i) {
+        const double f = frequency(i, side_);
+        const double rest = f - true_slope_response(f);
+        missed[static_cast<std::size_t>(i)] = rest * rest;
+    }
+    double square = 0.0;
+    for (int row = 0; row < side_; ++row) {
+        for (int column = 0; column < side_; ++column) {
+            const std::size_t bin = bin_at(frequency(column, side_), frequency(row, side_));
+            square +=
+                gains[bin] * gains[bin] * bins_[bin].power *
+                (missed[static_cast<std::size_t>(row)] + missed[static_cast<std::size_t>(column)]);
+        }
+    }
+    // Twice, for as much beyond the Nyquist frequency; half of it is along x.
+    return std::sqrt(square) / side_;
+}
+
 HeightTile without_noise(const HeightTile& tile, const PowerSpectrum& spectrum,
                          const NoiseSpectrum& noise) {
     const int side = 2 * tile.width;

@@ -70,6 +70,15 @@ class PowerSpectrum {
     ///         frequencies at which grain outweighs the rest, its spectrum is extrapolated
     [[nodiscard]] std::optional<NoiseSpectrum> grain() const;
 
+    /// The most detail that the noise may hide: a part of it where no detail is seen, and from the
+    /// highest frequency with visible detail on at most what continues its fall.
+    [[nodiscard]] NoiseSpectrum hidden_detail(const NoiseSpectrum& noise) const;
+
+    /// Root mean square of the slope along x, or along y, that true_slopes() misses of the detail:
+    /// what it does not see near the Nyquist frequency, and as much for detail beyond that
+    /// frequency.
+    [[nodiscard]] double missed_slope(const NoiseSpectrum& noise) const;
+
     /// Standard deviation of white noise with as much power as half of the highest frequencies
     /// have: where rounding makes patterns, which fill a few of them, next to nothing.
     [[nodiscard]] double white_floor() const;

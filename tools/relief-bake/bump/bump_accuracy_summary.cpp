@@ -82,8 +82,12 @@ nlohmann::ordered_json measurement_json(const BumpMeasurement& one,
 /// Returns the expected error of the map and the kernel, in float64 and without rounding.
 std::string expectation_words(const KernelChoice& choice) {
     if (std::isnan(choice.rms_degrees)) return "unknown";
-    return fmt::format("{:.2g} degrees RMS, {:.2g} at most, by the map and this kernel",
-                       choice.rms_degrees, choice.max_degrees);
+    const char* const why = choice.noise > 0.0
+                                ? ", by how much detail the noise hides"
+                                : ", by whether fine detail is true, and how fine it is";
+    return fmt::format("{} degrees RMS, {:.2g} at most, by the map and this kernel{}",
+                       expected_words(choice), choice.upper_max_degrees,
+                       choice.is_range() ? why : "");
 }
 
 nlohmann::ordered_json grain_json(const KernelChoice& choice) {
@@ -141,6 +145,7 @@ void add_accuracy(const AccuracyFound& found, nlohmann::ordered_json& report) {
     if (found.choice && !found.kept) {
         report["kernel_reason"] = found.choice->reason;
         report["expected_degrees"] = found.choice->rms_degrees;
+        report["expected_degrees_upper"] = found.choice->upper_rms_degrees;
         report["grain"] = grain_json(*found.choice);
     }
     report["destaircased_step"] =

@@ -57,7 +57,11 @@ struct KernelChoice {
     /// Expected error of the normals. NaN for maps of fewer than 64 texels, which say too little.
     double rms_degrees = 0.0;
     double max_degrees = 0.0;  ///< The same of the texel that is off most.
-    std::string reason;        ///< A sentence for people, with figures.
+    /// The same two if the map does not show all: noise hides detail or looks like it, detail is
+    /// finer than texels, or a map of nothing but grain is noise. Not less than those.
+    double upper_rms_degrees = 0.0;
+    double upper_max_degrees = 0.0;
+    std::string reason;  ///< A sentence for people, with figures.
 
     HeightDepth depth;   ///< Of what was looked at.
     double noise = 0.0;  ///< Deviation of the noise beyond rounding, in the unit of heights.
@@ -67,6 +71,8 @@ struct KernelChoice {
     double spikes = 0.0;  ///< Share of texels that stick out on their own, taken for noise.
     double walls = 0.0;   ///< Share of texels beside a cliff.
 
+    /// Whether the error may be greater by so much that one number would not tell it.
+    [[nodiscard]] bool is_range() const { return upper_rms_degrees > 1.5 * rms_degrees; }
     /// Whether another kernel has a far smaller error under the other interpretation of the grain.
     [[nodiscard]] bool is_ambiguous() const {
         return otherwise && otherwise->rms_degrees > 1.0 &&
@@ -74,6 +80,9 @@ struct KernelChoice {
     }
     std::vector<KernelPrediction> predictions;  ///< All that were tried, best first.
 };
+
+/// The expected error in degrees: "1.3", or "1.3 to 9.9" where it is a range.
+std::string expected_words(const KernelChoice& choice);
 
 /// The radius that its Gaussian should have, whether that is the choice or not.
 int best_gaussian_radius(const KernelChoice& choice);
