@@ -1,18 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
-// Runs every command that README.md, ARCHITECTURE.md, docs/*.md and conformance/*.md show, page by
-// page, in a folder laid out like a built checkout; out/ there is its own. Scripts must exist and
-// be executable, but are not run: they set up whole machines.
+// Runs every command that --help pages, README.md, ARCHITECTURE.md, docs/*.md and conformance/*.md
+// show, page by page, in a folder laid out like a built checkout; out/ there is its own. Scripts
+// must exist and be executable, but are not run: they set up whole machines.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
+#include <map>
 #include <set>
+#include <sstream>
 
 #include "docs/shown_commands.h"
 #include "support/shared_data.h"
-#include "tools/workplace.h"
+#include "tools/help_pages.h"
 
 namespace relief::test {
 namespace {
@@ -20,7 +21,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Pages relative to the sources, sorted.
-std::vector<std::string> pages() {
+std::vector<std::string> documents() {
     std::set<std::string> found;
     for (const char* folder : {".", "conformance", "docs"}) {
         if (!fs::is_directory(source_directory() / folder)) continue;
@@ -32,22 +33,86 @@ std::vector<std::string> pages() {
     return {found.begin(), found.end()};
 }
 
+struct Page {
+    std::string name;
+    std::vector<std::string> commands;
+};
+
+std::vector<Page> help_pages(const Workplace& workplace) {
+    std::vector<Page> pages;
+    for (const std::string& command : commands_with_help(workplace)) {
+        const std::string name = command + " --help";
+        pages.push_back({name, examples_of(workplace.run(name).out)});
+    }
+    return pages;
+}
+
+Page document_page(const std::string& name) {
+    Page page{name, {}};
+    for (const ShownCommand& command : shown_commands(contents_of(source_directory() / name)))
+        page.commands.push_back(command.text);
+    return page;
+}
+
+/// The first page that shows each command: help pages, then documents.
+const std::map<std::string, std::string>& first_pages() {
+    static const auto first = [] {
+        std::map<std::string, std::string> pages;
+        const Workplace workplace;
+        const auto add = [&](const Page& page) {
+            for (const std::string& command : page.commands)
+                pages.emplace(command, page.name);
+        };
+        for (const Page& page : help_pages(workplace))
+            add(page);
+        for (const std::string& name : documents())
+            add(document_page(name));
+        return pages;
+    }();
+    return first;
+}
+
+/// Whether a later command of the page names a file below out/ that this one names.
+bool is_needed_later(const Page& page, std::size_t index) {
+    std::istringstream words(page.commands[index]);
+    for (std::string word; words >> word;) {
+        if (word.find("out/") == std::string::npos) continue;
+        std::string stem = word.substr(0, word.rfind('.'));
+        if (stem.ends_with('/')) stem.pop_back();
+        const auto names_it = [&](const std::string& later) {
+            return later.find(stem) != std::string::npos;
+        };
+        if (std::any_of(page.commands.begin() + static_cast<std::ptrdiff_t>(index) + 1,
+                        page.commands.end(), names_it))
+            return true;
+    }
+    return false;
+}
+
+/// Runs the commands of a page except those that another page runs and that no later command needs.
+void expect_to_run(const Page& page, const Workplace& workplace, bool is_silent) {
+    for (std::size_t i = 0; i < page.commands.size(); ++i) {
+        const std::string& command = page.commands[i];
+        SCOPED_TRACE(page.name + ": " + command);
+        const std::string script = called_script(command);
+        if (!script.empty()) {
+            EXPECT_EQ(access((source_directory() / script).c_str(), X_OK), 0)
+                << script << " is missing or not executable";
+            continue;
+        }
+        if (first_pages().at(command) != page.name && !is_needed_later(page, i)) continue;
+        const ProgramResult result = workplace.run(command);
+        EXPECT_EQ(result.exit_code, 0) << result.error;
+        if (!is_silent) continue;
+        EXPECT_EQ(result.error, "");
+        EXPECT_NE(result.out, "");
+    }
+}
+
 class Document : public testing::TestWithParam<std::string> {};
 
 TEST_P(Document, ShowsCommandsThatRun) {
-    const Workplace workplace;
-    for (const ShownCommand& command :
-         shown_commands(contents_of(source_directory() / GetParam()))) {
-        const std::string where = GetParam() + ":" + std::to_string(command.line);
-        const std::string script = called_script(command.text);
-        if (!script.empty()) {
-            EXPECT_EQ(access((source_directory() / script).c_str(), X_OK), 0)
-                << where << ": " << script << " is missing or not executable";
-            continue;
-        }
-        const ProgramResult result = workplace.run(command.text);
-        EXPECT_EQ(result.exit_code, 0) << where << ": " << command.text << "\n" << result.error;
-    }
+    expect_to_run(document_page(GetParam()), Workplace(), false);
 }
 
 std::string test_name(const testing::TestParamInfo<std::string>& page) {
@@ -57,7 +122,20 @@ std::string test_name(const testing::TestParamInfo<std::string>& page) {
     return name;
 }
 
-INSTANTIATE_TEST_SUITE_P(All, Document, testing::ValuesIn(pages()), test_name);
+INSTANTIATE_TEST_SUITE_P(All, Document, testing::ValuesIn(documents()), test_name);
+
+class HelpExamples : public testing::TestWithParam<std::string> {};
+
+TEST_P(HelpExamples, RunWithoutAMessage) {
+    for (const Page& page : help_pages(Workplace())) {
+        if (page.name.starts_with(GetParam())) expect_to_run(page, Workplace(), true);
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Of, HelpExamples,
+                         testing::Values("relief-accuracy", "relief-bake", "relief-mesh",
+                                         "relief-view"),
+                         test_name);
 
 }  // namespace
 }  // namespace relief::test

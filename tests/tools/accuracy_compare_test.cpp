@@ -17,9 +17,8 @@ namespace relief::tools {
 namespace {
 
 using nlohmann::json;
-using test::expect_refusal;
+using test::expect_refusals;
 using test::ProgramResult;
-using test::Refused;
 using test::sample_report;
 using test::Workplace;
 using testing::HasSubstr;
@@ -324,9 +323,7 @@ TEST(AccuracyCompare, ItsJsonIsWhatThePageDescribes) {
     EXPECT_TRUE(found["all_threads"].is_null());
 }
 
-class AccuracyCompareRefusal : public testing::TestWithParam<Refused> {};
-
-TEST_P(AccuracyCompareRefusal, IsOneLine) {
+TEST(AccuracyCompareRefusal, IsOneLine) {
     const Workplace workplace;
     workplace.write("report.json", json_of(steady_report(), true).dump());
     AccuracyReport other = steady_report();
@@ -337,27 +334,24 @@ TEST_P(AccuracyCompareRefusal, IsOneLine) {
         one.cost = {};
     workplace.write("untimed.json", json_of(untimed, true).dump());
     workplace.write("text.json", "hello");
-    expect_refusal(workplace, "relief-accuracy", GetParam(), "old");
+    expect_refusals(
+        workplace, "relief-accuracy", "old",
+        {{"relief-accuracy compare report.json", 2, "NEW is missing"},
+         {"relief-accuracy compare report.json none.json", 1, "none.json: "},
+         {"relief-accuracy compare report.json text.json", 1,
+          "text.json: is not JSON (relief-accuracy run SUBJECT --output DIR writes "
+          "DIR/accuracy.json)"},
+         {"relief-accuracy compare report.json other.json", 1,
+          "other.json: has no method on the same input as report.json (run the same "
+          "subjects, both with --quick or both without)"},
+         {"relief-accuracy compare untimed.json report.json --max-slower 5", 1,
+          "report.json: has no times in common with untimed.json, so that --max-slower says "
+          "nothing (run both without --no-times)"},
+         {"relief-accuracy compare report.json report.json --max-slower -1", 2,
+          "--max-slower -1: "},
+         {"relief-accuracy compare report.json report.json --json --quiet", 2,
+          "--json and --quiet contradict each other"}});
 }
-
-INSTANTIATE_TEST_SUITE_P(
-    All, AccuracyCompareRefusal,
-    testing::Values(
-        Refused{"relief-accuracy compare report.json", 2, "NEW is missing"},
-        Refused{"relief-accuracy compare report.json none.json", 1, "none.json: "},
-        Refused{"relief-accuracy compare report.json text.json", 1,
-                "text.json: is not JSON (relief-accuracy run SUBJECT --output DIR writes "
-                "DIR/accuracy.json)"},
-        Refused{"relief-accuracy compare report.json other.json", 1,
-                "other.json: has no method on the same input as report.json (run the same "
-                "subjects, both with --quick or both without)"},
-        Refused{"relief-accuracy compare untimed.json report.json --max-slower 5", 1,
-                "report.json: has no times in common with untimed.json, so that --max-slower says "
-                "nothing (run both without --no-times)"},
-        Refused{"relief-accuracy compare report.json report.json --max-slower -1", 2,
-                "--max-slower -1: "},
-        Refused{"relief-accuracy compare report.json report.json --json --quiet", 2,
-                "--json and --quiet contradict each other"}));
 
 }  // namespace
 }  // namespace relief::tools

@@ -18,9 +18,8 @@ namespace relief::tools {
 namespace {
 
 using nlohmann::json;
-using test::expect_refusal;
+using test::expect_refusals;
 using test::ProgramResult;
-using test::Refused;
 using test::Workplace;
 using testing::HasSubstr;
 using testing::Not;
@@ -233,38 +232,32 @@ TEST(AccuracyOwn, KeepsANormalMapAsItIs) {
                 read_image(workplace / "map.png", ImageUse::data).samples);
 }
 
-class OwnRefusal : public testing::TestWithParam<Refused> {};
-
-TEST_P(OwnRefusal, IsOneLine) {
+TEST(OwnRefusal, IsOneLine) {
     const Workplace workplace;
     workplace.write_square("square.obj");
     workplace.write("other.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
-    expect_refusal(workplace, "relief-accuracy", GetParam(), "old");
+    expect_refusals(workplace, "relief-accuracy", "old",
+                    {{"relief-accuracy own", 2,
+                      "nothing to measure on (name a mesh, a map, or --high and "
+                      "--low)"},
+                     {"relief-accuracy own --high square.obj", 2,
+                      "--high: needs the other mesh of the pair (give --low FILE)"},
+                     {"relief-accuracy own square.obj square.obj", 2, "square.obj: given twice"},
+                     {"relief-accuracy own square.obj --strength 3", 2,
+                      "--strength: is for height maps, and there is none"},
+                     {"relief-accuracy own square.obj --channel alpha", 2,
+                      "--channel: is for height maps, and there is none"},
+                     {"relief-accuracy own square.obj --size 64", 2,
+                      "--size: is for a pair, --high and --low, and there is none"},
+                     {"relief-accuracy own square.obj --max-error-kind max", 2,
+                      "--max-error-kind: is for --max-error (give --max-error DEG)"},
+                     {"relief-accuracy own square.obj --no-times --max-time 3", 2,
+                      "--no-times and --max-time contradict each other"},
+                     {"relief-accuracy own other.obj --truth file --no-times", 1,
+                      "other.obj: the mesh has no normals to compare with"},
+                     {"relief-accuracy own --high square.obj --low other.obj --no-times", 1,
+                      "other.obj: no texture coordinates for a map to lie on"}});
 }
-
-INSTANTIATE_TEST_SUITE_P(
-    All, OwnRefusal,
-    testing::Values(Refused{"relief-accuracy own", 2,
-                            "nothing to measure on (name a mesh, a map, or --high and "
-                            "--low)"},
-                    Refused{"relief-accuracy own --high square.obj", 2,
-                            "--high: needs the other mesh of the pair (give --low FILE)"},
-                    Refused{"relief-accuracy own square.obj square.obj", 2,
-                            "square.obj: given twice"},
-                    Refused{"relief-accuracy own square.obj --strength 3", 2,
-                            "--strength: is for height maps, and there is none"},
-                    Refused{"relief-accuracy own square.obj --channel alpha", 2,
-                            "--channel: is for height maps, and there is none"},
-                    Refused{"relief-accuracy own square.obj --size 64", 2,
-                            "--size: is for a pair, --high and --low, and there is none"},
-                    Refused{"relief-accuracy own square.obj --max-error-kind max", 2,
-                            "--max-error-kind: is for --max-error (give --max-error DEG)"},
-                    Refused{"relief-accuracy own square.obj --no-times --max-time 3", 2,
-                            "--no-times and --max-time contradict each other"},
-                    Refused{"relief-accuracy own other.obj --truth file --no-times", 1,
-                            "other.obj: the mesh has no normals to compare with"},
-                    Refused{"relief-accuracy own --high square.obj --low other.obj --no-times", 1,
-                            "other.obj: no texture coordinates for a map to lie on"}));
 
 }  // namespace
 }  // namespace relief::tools

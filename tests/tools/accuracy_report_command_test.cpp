@@ -15,9 +15,8 @@ namespace relief::tools {
 namespace {
 
 using nlohmann::json;
-using test::expect_refusal;
+using test::expect_refusals;
 using test::ProgramResult;
-using test::Refused;
 using test::sample_report;
 using test::Workplace;
 using testing::HasSubstr;
@@ -66,28 +65,22 @@ TEST(AccuracyReportCommand, LeavesFilesOutsideTheFolderAlone) {
     }
 }
 
-class AccuracyReportRefusal : public testing::TestWithParam<Refused> {};
-
-TEST_P(AccuracyReportRefusal, IsOneLine) {
+TEST(AccuracyReportRefusal, IsOneLine) {
     const Workplace workplace;
     workplace.write("report.json", json_of(sample_report(), true).dump());
     workplace.write("words.json", "{\"format\": \"another\"}");
-    expect_refusal(workplace, "relief-accuracy", GetParam(), "page.html");
+    expect_refusals(workplace, "relief-accuracy", "page.html",
+                    {{"relief-accuracy report", 2, "REPORT is missing"},
+                     {"relief-accuracy report none.json --output out/page.html", 1, "none.json: "},
+                     {"relief-accuracy report words.json --output out/page.html", 1,
+                      "words.json: /format: is 'another', not 'relief-accuracy'"},
+                     {"relief-accuracy report report.json --output report.json", 2,
+                      "report.json: would replace the report"},
+                     {"relief-accuracy report report.json --output none/page.html", 1,
+                      "none/page.html: the folder none does not exist"},
+                     {"relief-accuracy report report.json --output out/page.html", 1,
+                      "pictures/storage-sample-"}});
 }
-
-INSTANTIATE_TEST_SUITE_P(
-    All, AccuracyReportRefusal,
-    testing::Values(Refused{"relief-accuracy report", 2, "REPORT is missing"},
-                    Refused{"relief-accuracy report none.json --output out/page.html", 1,
-                            "none.json: "},
-                    Refused{"relief-accuracy report words.json --output out/page.html", 1,
-                            "words.json: /format: is 'another', not 'relief-accuracy'"},
-                    Refused{"relief-accuracy report report.json --output report.json", 2,
-                            "report.json: would replace the report"},
-                    Refused{"relief-accuracy report report.json --output none/page.html", 1,
-                            "none/page.html: the folder none does not exist"},
-                    Refused{"relief-accuracy report report.json --output out/page.html", 1,
-                            "pictures/storage-sample-"}));
 
 }  // namespace
 }  // namespace relief::tools

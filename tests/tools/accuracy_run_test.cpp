@@ -15,9 +15,8 @@ namespace relief::tools {
 namespace {
 
 using nlohmann::json;
-using test::expect_refusal;
+using test::expect_refusals;
 using test::ProgramResult;
-using test::Refused;
 using test::Workplace;
 using testing::HasSubstr;
 using testing::Not;
@@ -68,31 +67,24 @@ TEST(AccuracyRun, InterruptedWhileItMeasuresLeavesNoHalfReport) {
     EXPECT_TRUE(std::filesystem::is_empty(workplace / "out/report"));
 }
 
-class AccuracyRefusal : public testing::TestWithParam<Refused> {};
-
-TEST_P(AccuracyRefusal, IsOneLine) {
+TEST(AccuracyRefusal, IsOneLine) {
     const Workplace workplace;
     workplace.write("taken", "a file");
-    expect_refusal(workplace, "relief-accuracy", GetParam(), "old");
+    expect_refusals(
+        workplace, "relief-accuracy", "old",
+        {{"relief-accuracy run", 2, "SUBJECT is missing"},
+         {"relief-accuracy run colour", 2, "colour: not one of all, "},
+         {"relief-accuracy run storage all", 2, "all: the other subjects are in it"},
+         {"relief-accuracy run storage storage", 2, "storage: given twice"},
+         {"relief-accuracy run storage --repeats 2", 2, "--repeats 2: not between 3 and 1000"},
+         {"relief-accuracy run storage --repeats 5 --no-times", 2,
+          "--no-times and --repeats contradict each other"},
+         {"relief-accuracy run storage --json --quiet", 2,
+          "--json and --quiet contradict each other"},
+         {"relief-accuracy run storage --quiet", 2,
+          "--quiet without --output would leave nothing of the results"},
+         {"relief-accuracy run storage --output taken", 1, "taken: exists, but is no folder"}});
 }
-
-INSTANTIATE_TEST_SUITE_P(
-    All, AccuracyRefusal,
-    testing::Values(Refused{"relief-accuracy run", 2, "SUBJECT is missing"},
-                    Refused{"relief-accuracy run colour", 2, "colour: not one of all, "},
-                    Refused{"relief-accuracy run storage all", 2,
-                            "all: the other subjects are in it"},
-                    Refused{"relief-accuracy run storage storage", 2, "storage: given twice"},
-                    Refused{"relief-accuracy run storage --repeats 2", 2,
-                            "--repeats 2: not between 3 and 1000"},
-                    Refused{"relief-accuracy run storage --repeats 5 --no-times", 2,
-                            "--no-times and --repeats contradict each other"},
-                    Refused{"relief-accuracy run storage --json --quiet", 2,
-                            "--json and --quiet contradict each other"},
-                    Refused{"relief-accuracy run storage --quiet", 2,
-                            "--quiet without --output would leave nothing of the results"},
-                    Refused{"relief-accuracy run storage --output taken", 1,
-                            "taken: exists, but is no folder"}));
 
 }  // namespace
 }  // namespace relief::tools

@@ -16,9 +16,8 @@ namespace relief::tools {
 namespace {
 
 using nlohmann::json;
-using test::expect_refusal;
+using test::expect_refusals;
 using test::ProgramResult;
-using test::Refused;
 using test::Workplace;
 using testing::HasSubstr;
 
@@ -201,26 +200,20 @@ TEST(BumpAccuracyCommand, ComparesEveryWayOnTheMap) {
     EXPECT_GE(efficient, 1);
 }
 
-class BumpAccuracyRefusal : public testing::TestWithParam<Refused> {};
-
-TEST_P(BumpAccuracyRefusal, SaysWhyAndLeavesNothingBehind) {
+TEST(BumpAccuracyRefusal, SaysWhyAndLeavesNothingBehind) {
     const Workplace workplace;
     write_image(workplace / "flat.png", make_image(4, 4, 1, 8, ColorSpace::data));
-    expect_refusal(workplace, "relief-bake", GetParam(), "old.png");
+    expect_refusals(workplace, "relief-bake", "old.png",
+                    {{"relief-bake bump flat.png out/n.png --max-error-kind max", 2,
+                      "--max-error-kind: is for --max-error (give --max-error DEG)"},
+                     {"relief-bake bump flat.png out/n.png --max-error -1", 2, "--max-error -1: "},
+                     {"relief-bake bump flat.png out/n.png --max-error 1 --compare", 2,
+                      "--compare, --max-error: one converts in every way, the other in one"},
+                     {"relief-bake bump flat.png out/n.exr --max-error 1 --slope-moments", 2,
+                      "--max-error, --slope-moments: errors are those of normals"},
+                     {"relief-bake bump flat.png out/n.exr --compare --half", 2,
+                      "--compare, --half: errors of half floats are not measured"}});
 }
-
-INSTANTIATE_TEST_SUITE_P(
-    Bump, BumpAccuracyRefusal,
-    testing::Values(Refused{"relief-bake bump flat.png out/n.png --max-error-kind max", 2,
-                            "--max-error-kind: is for --max-error (give --max-error DEG)"},
-                    Refused{"relief-bake bump flat.png out/n.png --max-error -1", 2,
-                            "--max-error -1: "},
-                    Refused{"relief-bake bump flat.png out/n.png --max-error 1 --compare", 2,
-                            "--compare, --max-error: one converts in every way, the other in one"},
-                    Refused{"relief-bake bump flat.png out/n.exr --max-error 1 --slope-moments", 2,
-                            "--max-error, --slope-moments: errors are those of normals"},
-                    Refused{"relief-bake bump flat.png out/n.exr --compare --half", 2,
-                            "--compare, --half: errors of half floats are not measured"}));
 
 }  // namespace
 }  // namespace relief::tools

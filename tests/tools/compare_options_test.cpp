@@ -16,7 +16,6 @@ namespace {
 
 using nlohmann::json;
 using test::ProgramResult;
-using test::Refused;
 using test::Workplace;
 using testing::HasSubstr;
 
@@ -76,33 +75,28 @@ TEST(Compare, SplitsAtTheNearestColumn) {
     EXPECT_FLOAT_EQ(apart.as<float>()[3], 5.0F / 255.0F);
 }
 
-class CompareRefuses : public testing::TestWithParam<Refused> {};
-
-TEST_P(CompareRefuses, WhatCouldShowNothing) {
+TEST(CompareRefuses, WhatCouldShowNothing) {
     const Workplace workplace;
-    test::expect_refusal(workplace, "relief-view", GetParam(), "picture.png");
+    test::expect_refusals(
+        workplace, "relief-view", "picture.png",
+        {{"relief-view data/vase.obj --split 0.5 --output out/picture.png", 2,
+          "--split: says where --compare splits"},
+         {"relief-view data/vase.obj --compare kernel=central3 --compare-to data/vase.obj "
+          "--output out/picture.png",
+          2, "--compare: contradicts --compare-to"},
+         {"relief-view data/vase.obj --compare interpolation=flat --turntable 3 --output "
+          "out/picture.png",
+          2, "--compare: shows one picture, not many"},
+         {"relief-view data/vase.obj --compare interpolation=flat --explain-effects", 2,
+          "--compare: there is no --output"},
+         {"relief-view data/vase.obj --compare kernel=central3 --output out/picture.png", 2,
+          "--compare kernel=central3: there are no heights"},
+         {"relief-view data/vase.obj --compare interpolation=flat --difference-map out/m.png "
+          "--output out/m.png",
+          2, "--difference-map: would overwrite"},
+         {"relief-view data/vase.obj --compare-to none.obj --output out/picture.png", 1,
+          "none.obj"}});
 }
-
-INSTANTIATE_TEST_SUITE_P(
-    Lines, CompareRefuses,
-    testing::Values(
-        Refused{"relief-view data/vase.obj --split 0.5 --output out/picture.png", 2,
-                "--split: says where --compare splits"},
-        Refused{"relief-view data/vase.obj --compare kernel=central3 --compare-to data/vase.obj "
-                "--output out/picture.png",
-                2, "--compare: contradicts --compare-to"},
-        Refused{"relief-view data/vase.obj --compare interpolation=flat --turntable 3 --output "
-                "out/picture.png",
-                2, "--compare: shows one picture, not many"},
-        Refused{"relief-view data/vase.obj --compare interpolation=flat --explain-effects", 2,
-                "--compare: there is no --output"},
-        Refused{"relief-view data/vase.obj --compare kernel=central3 --output out/picture.png", 2,
-                "--compare kernel=central3: there are no heights"},
-        Refused{"relief-view data/vase.obj --compare interpolation=flat --difference-map out/m.png "
-                "--output out/m.png",
-                2, "--difference-map: would overwrite"},
-        Refused{"relief-view data/vase.obj --compare-to none.obj --output out/picture.png", 1,
-                "none.obj"}));
 
 }  // namespace
 }  // namespace relief::tools

@@ -21,10 +21,9 @@ namespace relief::tools {
 namespace {
 
 using nlohmann::json;
-using test::expect_refusal;
+using test::expect_refusals;
 using test::normals_image;
 using test::ProgramResult;
-using test::Refused;
 using test::resized_waves;
 using test::Workplace;
 using testing::ElementsAre;
@@ -437,68 +436,62 @@ TEST(ConvertCommand, ARealDirectXMapBecomesTheOpenGlOne) {
     }
 }
 
-class ConvertRefusal : public testing::TestWithParam<Refused> {};
-
-TEST_P(ConvertRefusal, SaysWhyAndLeavesNothingBehind) {
+TEST(ConvertRefusal, SaysWhyAndLeavesNothingBehind) {
     const Workplace workplace;
     write_image(workplace / "map.png", make_image(4, 3, 3, 8, ColorSpace::data));
     write_image(workplace / "grey.png", make_image(4, 3, 1, 8, ColorSpace::data));
     for (const char* name : {"n.png", "n-mip01.png", "n-roughness.png"})
         write_image(workplace / name, make_image(4, 3, 3, 8, ColorSpace::data));
-    expect_refusal(workplace, "relief-bake", GetParam(), "old.png");
+    expect_refusals(
+        workplace, "relief-bake", "old.png",
+        {{"relief-bake convert missing.png out/old.png", 1, "missing.png: "},
+         {"relief-bake convert grey.png out/old.png", 1,
+          "grey.png: has 1 channel, which holds no normals (relief-bake bump converts height "
+          "maps)"},
+         {"relief-bake convert map.png out/n.jpg", 2, "out/n.jpg: JPEG distorts normals"},
+         {"relief-bake convert map.png out/n.png --flip blue", 2,
+          "--flip blue: not one of green, red, both"},
+         {"relief-bake convert map.png out/n.png --flip red --axes y,x,z", 2,
+          "--flip, --axes: both say what becomes of the axes"},
+         {"relief-bake convert map.png out/n.png --flip green --green up", 2,
+          "--flip, --green: both say what becomes of green"},
+         {"relief-bake convert map.png out/n.png --axes x,y", 2,
+          "--axes x,y: not x, y and z in some order, like x,-y,z"},
+         {"relief-bake convert map.png out/n.png --axes x,x,z", 2,
+          "--axes x,x,z: not x, y and z in some order"},
+         {"relief-bake convert map.png out/n.png --axes x,y,z", 2, "--axes x,y,z: changes nothing"},
+         {"relief-bake convert map.png out/n.png --blend udn", 2,
+          "--blend: has no effect without --detail"},
+         {"relief-bake convert map.png out/n.png --detail-repeat 4", 2,
+          "--detail-repeat: has no effect without --detail"},
+         {"relief-bake convert map.png out/n.png --wrap clamp", 2,
+          "--wrap: has no effect without --resize"},
+         {"relief-bake convert map.png out/n.png --resize-filter box", 2,
+          "--resize-filter: has no effect without --resize or --detail"},
+         {"relief-bake convert map.png out/n.png --roughness-from-variance 0.2", 2,
+          "--roughness-from-variance: has no effect without --mips"},
+         {"relief-bake convert map.png out/n.png --normalize --rebuild-z rg", 2,
+          "--normalize: normals with a computed z are of length 1 anyway"},
+         {"relief-bake convert map.png out/n.png --resize 0x4", 2, "--resize 0x4: "},
+         {"relief-bake convert map.png out/n.png --resize 50", 2,
+          "--resize 50: not a size like 512x512 or 50%"},
+         {"relief-bake convert map.png out/n.png --dither ordered", 2,
+          "--dither: has no effect where every code is kept"},
+         {"relief-bake convert map.png out/n.png --detail missing.png", 1, "missing.png: "},
+         {"relief-bake convert map.png out/old.png --detail out/old.png", 2,
+          "out/old.png: would replace the detail map"},
+         {"relief-bake convert map.png n.png --mips --detail n-mip01.png", 2,
+          "n-mip01.png: would replace the detail map"},
+         {"relief-bake convert n-mip01.png n.png --mips", 2,
+          "n-mip01.png: would replace the normal map"},
+         {"relief-bake convert n.png n-mip01.png -o out/ --mips", 2,
+          "n.png and n-mip01.png: would both be written to out/n-mip01.png (convert them by "
+          "separate calls, to different folders)"},
+         {"relief-bake convert n-roughness.png n.png -o out/ --mips "
+          "--roughness-from-variance 0.4",
+          2, "n-roughness.png and n.png: would both be written to out/n-roughness.png"},
+         {"relief-bake convert map.png", 2, ""}});
 }
-
-INSTANTIATE_TEST_SUITE_P(
-    Convert, ConvertRefusal,
-    testing::Values(
-        Refused{"relief-bake convert missing.png out/old.png", 1, "missing.png: "},
-        Refused{"relief-bake convert grey.png out/old.png", 1,
-                "grey.png: has 1 channel, which holds no normals (relief-bake bump converts height "
-                "maps)"},
-        Refused{"relief-bake convert map.png out/n.jpg", 2, "out/n.jpg: JPEG distorts normals"},
-        Refused{"relief-bake convert map.png out/n.png --flip blue", 2,
-                "--flip blue: not one of green, red, both"},
-        Refused{"relief-bake convert map.png out/n.png --flip red --axes y,x,z", 2,
-                "--flip, --axes: both say what becomes of the axes"},
-        Refused{"relief-bake convert map.png out/n.png --flip green --green up", 2,
-                "--flip, --green: both say what becomes of green"},
-        Refused{"relief-bake convert map.png out/n.png --axes x,y", 2,
-                "--axes x,y: not x, y and z in some order, like x,-y,z"},
-        Refused{"relief-bake convert map.png out/n.png --axes x,x,z", 2,
-                "--axes x,x,z: not x, y and z in some order"},
-        Refused{"relief-bake convert map.png out/n.png --axes x,y,z", 2,
-                "--axes x,y,z: changes nothing"},
-        Refused{"relief-bake convert map.png out/n.png --blend udn", 2,
-                "--blend: has no effect without --detail"},
-        Refused{"relief-bake convert map.png out/n.png --detail-repeat 4", 2,
-                "--detail-repeat: has no effect without --detail"},
-        Refused{"relief-bake convert map.png out/n.png --wrap clamp", 2,
-                "--wrap: has no effect without --resize"},
-        Refused{"relief-bake convert map.png out/n.png --resize-filter box", 2,
-                "--resize-filter: has no effect without --resize or --detail"},
-        Refused{"relief-bake convert map.png out/n.png --roughness-from-variance 0.2", 2,
-                "--roughness-from-variance: has no effect without --mips"},
-        Refused{"relief-bake convert map.png out/n.png --normalize --rebuild-z rg", 2,
-                "--normalize: normals with a computed z are of length 1 anyway"},
-        Refused{"relief-bake convert map.png out/n.png --resize 0x4", 2, "--resize 0x4: "},
-        Refused{"relief-bake convert map.png out/n.png --resize 50", 2,
-                "--resize 50: not a size like 512x512 or 50%"},
-        Refused{"relief-bake convert map.png out/n.png --dither ordered", 2,
-                "--dither: has no effect where every code is kept"},
-        Refused{"relief-bake convert map.png out/n.png --detail missing.png", 1, "missing.png: "},
-        Refused{"relief-bake convert map.png out/old.png --detail out/old.png", 2,
-                "out/old.png: would replace the detail map"},
-        Refused{"relief-bake convert map.png n.png --mips --detail n-mip01.png", 2,
-                "n-mip01.png: would replace the detail map"},
-        Refused{"relief-bake convert n-mip01.png n.png --mips", 2,
-                "n-mip01.png: would replace the normal map"},
-        Refused{"relief-bake convert n.png n-mip01.png -o out/ --mips", 2,
-                "n.png and n-mip01.png: would both be written to out/n-mip01.png (convert them by "
-                "separate calls, to different folders)"},
-        Refused{"relief-bake convert n-roughness.png n.png -o out/ --mips "
-                "--roughness-from-variance 0.4",
-                2, "n-roughness.png and n.png: would both be written to out/n-roughness.png"},
-        Refused{"relief-bake convert map.png", 2, ""}));
 
 }  // namespace
 }  // namespace relief::tools

@@ -20,8 +20,7 @@ namespace relief::tools {
 namespace {
 
 using nlohmann::json;
-using test::expect_refusal;
-using test::Refused;
+using test::expect_refusals;
 using test::Workplace;
 using testing::HasSubstr;
 using testing::StartsWith;
@@ -213,39 +212,34 @@ TEST(MeshPreview, AFailureSaysThatTheMapsAreComplete) {
     EXPECT_EQ(read_image(workplace / "out/map.png", ImageUse::data).width, 8);
 }
 
-class MeshPreviewRefusal : public testing::TestWithParam<Refused> {};
-
-TEST_P(MeshPreviewRefusal, LeavesEverythingAsItWas) {
+TEST(MeshPreviewRefusal, LeavesEverythingAsItWas) {
     const Workplace workplace;
     write_pair(workplace);
-    expect_refusal(workplace, "relief-bake", GetParam(), "map.png");
+    expect_refusals(
+        workplace, "relief-bake", "map.png",
+        {{"relief-bake mesh high.obj low.obj out/map.png --preview-size 64x64", 2,
+          "--preview-size: has no effect without --preview"},
+         {"relief-bake mesh high.obj low.obj out/map.png --preview out/map.png", 2,
+          "--preview out/map.png: is also the input or the output"},
+         {"relief-bake mesh high.obj low.obj out/map.png --preview out/p.jpg", 2,
+          "--preview out/p.jpg: no format to write it in (use .png)"},
+         {"relief-bake mesh high.obj low.obj out/map.png --report out/r.png --preview "
+          "out/r.png",
+          2, "--preview out/r.png: is also the input or the output"},
+         {"relief-bake mesh high.obj low.obj out/map.png --height-map out/h.png --preview "
+          "out/h.png",
+          2, "--preview out/h.png: is also the input or the output"},
+         {"relief-bake mesh high.obj low.obj out/map.png --height-map out/h.png --report "
+          "out/h.png",
+          2, "--report out/h.png: is also the input or the output"},
+         {"relief-bake mesh high.obj low.obj 'out/m_<UDIM>.png' --height-map "
+          "'out/h_<UDIM>.png' --preview out/h_1001.png",
+          2, "--preview out/h_1001.png: is also the input or the output"},
+         {"relief-bake mesh high.obj low.obj 'out/m_<UDIM>.png' --preview out/m_1001.png", 2,
+          "--preview out/m_1001.png: is also the input or the output"},
+         {"relief-bake mesh high.obj low.obj out/map.png --preview out/no/p.png", 1,
+          "out/no/p.png: the folder out/no does not exist"}});
 }
-
-INSTANTIATE_TEST_SUITE_P(
-    All, MeshPreviewRefusal,
-    testing::Values(
-        Refused{"relief-bake mesh high.obj low.obj out/map.png --preview-size 64x64", 2,
-                "--preview-size: has no effect without --preview"},
-        Refused{"relief-bake mesh high.obj low.obj out/map.png --preview out/map.png", 2,
-                "--preview out/map.png: is also the input or the output"},
-        Refused{"relief-bake mesh high.obj low.obj out/map.png --preview out/p.jpg", 2,
-                "--preview out/p.jpg: no format to write it in (use .png)"},
-        Refused{"relief-bake mesh high.obj low.obj out/map.png --report out/r.png --preview "
-                "out/r.png",
-                2, "--preview out/r.png: is also the input or the output"},
-        Refused{"relief-bake mesh high.obj low.obj out/map.png --height-map out/h.png --preview "
-                "out/h.png",
-                2, "--preview out/h.png: is also the input or the output"},
-        Refused{"relief-bake mesh high.obj low.obj out/map.png --height-map out/h.png --report "
-                "out/h.png",
-                2, "--report out/h.png: is also the input or the output"},
-        Refused{"relief-bake mesh high.obj low.obj 'out/m_<UDIM>.png' --height-map "
-                "'out/h_<UDIM>.png' --preview out/h_1001.png",
-                2, "--preview out/h_1001.png: is also the input or the output"},
-        Refused{"relief-bake mesh high.obj low.obj 'out/m_<UDIM>.png' --preview out/m_1001.png", 2,
-                "--preview out/m_1001.png: is also the input or the output"},
-        Refused{"relief-bake mesh high.obj low.obj out/map.png --preview out/no/p.png", 1,
-                "out/no/p.png: the folder out/no does not exist"}));
 
 }  // namespace
 }  // namespace relief::tools

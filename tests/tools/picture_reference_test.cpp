@@ -16,9 +16,8 @@ namespace relief::tools {
 namespace {
 
 using nlohmann::json;
-using test::expect_refusal;
+using test::expect_refusals;
 using test::ProgramResult;
-using test::Refused;
 using test::Workplace;
 using testing::HasSubstr;
 
@@ -131,48 +130,38 @@ TEST_F(Reference, WithFullAlphaIsTheSameAsWithout) {
         << "the reference has a background there";
 }
 
-class ReferenceRefusal : public testing::TestWithParam<Refused> {};
-
-TEST_P(ReferenceRefusal, SaysWhyAndLeavesNothingBehind) {
+TEST(ReferenceRefusal, SaysWhyAndLeavesNothingBehind) {
     const Workplace workplace;
     workplace.write_square("square.obj");
     write_image(workplace / "small.png", make_image(8, 4, 3, 8, ColorSpace::srgb));
     write_image(workplace / "words.png", make_image(8, 4, 3, 16, ColorSpace::srgb));
     write_image(workplace / "linear.exr", make_image(8, 4, 3, 32, ColorSpace::linear));
-    const std::string line = std::string("relief-view ") + GetParam().line;
-    expect_refusal(workplace, "relief-view", {line.c_str(), GetParam().exit_code, GetParam().error},
-                   "old.png");
+    expect_refusals(
+        workplace, "relief-view", "old.png",
+        {{"square.obj --output out/old.png --max-difference 2", 2,
+          "--max-difference: there is no --reference to compare with (give one, or leave it "
+          "out)"},
+         {"square.obj --output out/old.png --difference-map out/map.png", 2,
+          "--difference-map: there is no --reference to compare with"},
+         {"square.obj --reference small.png --max-difference -1", 2,
+          "--max-difference -1: not between 0 and 65535"},
+         {"square.obj --reference out/old.png --output out/old.png", 2,
+          "--output: would overwrite the reference"},
+         {"square.obj --reference small.png --difference-map small.png", 2,
+          "--difference-map: would overwrite the model or a picture"},
+         {"square.obj --reference small.png --difference-map out/map.jpg", 2,
+          "--difference-map out/map.jpg: no format to write a map in"},
+         {"square.obj --reference linear.exr --output out/old.png", 2,
+          "--reference linear.exr: sRGB and linear light cannot be compared"},
+         {"square.obj --reference missing.png", 1, "missing.png: "},
+         {"square.obj --reference small.png --output out/old.png", 1,
+          "small.png: has 8 x 4 pixels, but 1024 x 1024 would be drawn (add "
+          "--size 8x4)"},
+         {"square.obj --reference words.png --size 8x4", 1,
+          "words.png: images cannot be compared: "},
+         {"square.obj --reference small.png --difference-map nowhere/map.png", 1,
+          "nowhere/map.png: "}});
 }
-
-INSTANTIATE_TEST_SUITE_P(
-    Usage, ReferenceRefusal,
-    testing::Values(
-        Refused{"square.obj --output out/old.png --max-difference 2", 2,
-                "--max-difference: there is no --reference to compare with (give one, or leave it "
-                "out)"},
-        Refused{"square.obj --output out/old.png --difference-map out/map.png", 2,
-                "--difference-map: there is no --reference to compare with"},
-        Refused{"square.obj --reference small.png --max-difference -1", 2,
-                "--max-difference -1: not between 0 and 65535"},
-        Refused{"square.obj --reference out/old.png --output out/old.png", 2,
-                "--output: would overwrite the reference"},
-        Refused{"square.obj --reference small.png --difference-map small.png", 2,
-                "--difference-map: would overwrite the model or a picture"},
-        Refused{"square.obj --reference small.png --difference-map out/map.jpg", 2,
-                "--difference-map out/map.jpg: no format to write a map in"},
-        Refused{"square.obj --reference linear.exr --output out/old.png", 2,
-                "--reference linear.exr: sRGB and linear light cannot be compared"}));
-
-INSTANTIATE_TEST_SUITE_P(
-    Files, ReferenceRefusal,
-    testing::Values(Refused{"square.obj --reference missing.png", 1, "missing.png: "},
-                    Refused{"square.obj --reference small.png --output out/old.png", 1,
-                            "small.png: has 8 x 4 pixels, but 1024 x 1024 would be drawn (add "
-                            "--size 8x4)"},
-                    Refused{"square.obj --reference words.png --size 8x4", 1,
-                            "words.png: images cannot be compared: "},
-                    Refused{"square.obj --reference small.png --difference-map nowhere/map.png", 1,
-                            "nowhere/map.png: "}));
 
 }  // namespace
 }  // namespace relief::tools

@@ -4,8 +4,8 @@
 /// and the old output file as it was.
 #pragma once
 
-#include <ostream>
 #include <string>
+#include <vector>
 
 #include "tools/workplace.h"
 
@@ -13,16 +13,16 @@ namespace relief::test {
 
 /// A command line that must fail.
 struct Refused {
-    const char* line;
+    std::string line;  ///< With or without the tool's name.
     int exit_code;
-    const char* error;  ///< What the line on stderr holds, after "TOOL: error: ".
+    std::string error;  ///< A part of the line on stderr, after "TOOL: error: ".
 };
 
-/// Names the test by its command line.
-void PrintTo(const Refused& refused, std::ostream* stream);
-
-/// Runs the line where out/ holds nothing but `old_file`, with "old" in it.
+/// Runs a line where out/ contains only `old_file`, with "old" in it.
 void expect_refusal(const Workplace& workplace, const std::string& tool, const Refused& refused,
                     const std::string& old_file);
+/// The same for each row of a table.
+void expect_refusals(const Workplace& workplace, const std::string& tool,
+                     const std::string& old_file, const std::vector<Refused>& rows);
 
 }  // namespace relief::test

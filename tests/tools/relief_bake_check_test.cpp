@@ -19,7 +19,6 @@ using nlohmann::json;
 using test::bricks_map;
 using test::expect_refusal;
 using test::ProgramResult;
-using test::Refused;
 using test::Workplace;
 using testing::HasSubstr;
 

@@ -17,9 +17,8 @@ namespace relief::tools {
 namespace {
 
 using nlohmann::json;
-using test::expect_refusal;
+using test::expect_refusals;
 using test::ProgramResult;
-using test::Refused;
 using test::Workplace;
 using testing::HasSubstr;
 
@@ -183,41 +182,35 @@ TEST(MeshBakeLayers, HaveTheNamesOfTilesToo) {
     EXPECT_EQ(workplace.outputs(), "no-material-ao.1001.png no-material.1001.png");
 }
 
-class MeshBakeLayerRefusal : public testing::TestWithParam<Refused> {};
-
-TEST_P(MeshBakeLayerRefusal, LeavesEverythingAsItWas) {
+TEST(MeshBakeLayerRefusal, LeavesEverythingAsItWas) {
     const Workplace workplace;
     workplace.write_square("low.obj");
     workplace.write("high.obj", raised_square());
-    expect_refusal(workplace, "relief-bake", GetParam(), "map.png");
+    expect_refusals(
+        workplace, "relief-bake", "map.png",
+        {{"relief-bake mesh high.obj low.obj out/map.png --height-map out/h.jpg", 2,
+          "--height-map out/h.jpg: no format for it"},
+         {"relief-bake mesh high.obj low.obj out/map.png --height-map out/h.png --layer-bits 32", 2,
+          "--layer-bits 32: .png holds 16 or 8 bits"},
+         {"relief-bake mesh high.obj low.obj out/map.png --layer-bits 8", 2,
+          "--layer-bits: has no effect without a layer's file"},
+         {"relief-bake mesh high.obj low.obj out/map.png --height-range 1", 2,
+          "--height-range: has no effect without --height-map"},
+         {"relief-bake mesh high.obj low.obj out/map.png --curvature-map out/c.exr "
+          "--curvature-range 1",
+          2, "--curvature-range: has no effect on floats"},
+         {"relief-bake mesh high.obj low.obj out/map.png --occlusion-rays 9", 2,
+          "--occlusion-rays, --occlusion-distance: have no effect without --occlusion-map"},
+         {"relief-bake mesh high.obj low.obj out/map.png --occlusion-map out/o.png "
+          "--occlusion-rays 0",
+          2, "--occlusion-rays 0"},
+         {"relief-bake mesh high.obj low.obj out/map.png --occlusion-map 'out/o.<UDIM>.png'", 2,
+          "out/o.<UDIM>.png: <UDIM> must be in the names of all files, or of none"},
+         {"relief-bake mesh high.obj low.obj out/map.png --occlusion-map out/map.png", 1,
+          "low.obj: the map and ambient occlusion would be the same file out/map.png"},
+         {"relief-bake mesh high.obj low.obj out/map.png --color-map out/none/k.png", 1,
+          "out/none/k.png: the folder out/none does not exist"}});
 }
-
-INSTANTIATE_TEST_SUITE_P(
-    All, MeshBakeLayerRefusal,
-    testing::Values(
-        Refused{"relief-bake mesh high.obj low.obj out/map.png --height-map out/h.jpg", 2,
-                "--height-map out/h.jpg: no format for it"},
-        Refused{
-            "relief-bake mesh high.obj low.obj out/map.png --height-map out/h.png --layer-bits 32",
-            2, "--layer-bits 32: .png holds 16 or 8 bits"},
-        Refused{"relief-bake mesh high.obj low.obj out/map.png --layer-bits 8", 2,
-                "--layer-bits: has no effect without a layer's file"},
-        Refused{"relief-bake mesh high.obj low.obj out/map.png --height-range 1", 2,
-                "--height-range: has no effect without --height-map"},
-        Refused{"relief-bake mesh high.obj low.obj out/map.png --curvature-map out/c.exr "
-                "--curvature-range 1",
-                2, "--curvature-range: has no effect on floats"},
-        Refused{"relief-bake mesh high.obj low.obj out/map.png --occlusion-rays 9", 2,
-                "--occlusion-rays, --occlusion-distance: have no effect without --occlusion-map"},
-        Refused{"relief-bake mesh high.obj low.obj out/map.png --occlusion-map out/o.png "
-                "--occlusion-rays 0",
-                2, "--occlusion-rays 0"},
-        Refused{"relief-bake mesh high.obj low.obj out/map.png --occlusion-map 'out/o.<UDIM>.png'",
-                2, "out/o.<UDIM>.png: <UDIM> must be in the names of all files, or of none"},
-        Refused{"relief-bake mesh high.obj low.obj out/map.png --occlusion-map out/map.png", 1,
-                "low.obj: the map and ambient occlusion would be the same file out/map.png"},
-        Refused{"relief-bake mesh high.obj low.obj out/map.png --color-map out/none/k.png", 1,
-                "out/none/k.png: the folder out/none does not exist"}));
 
 }  // namespace
 }  // namespace relief::tools

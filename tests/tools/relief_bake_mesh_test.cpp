@@ -14,9 +14,8 @@ namespace relief::tools {
 namespace {
 
 using nlohmann::json;
-using test::expect_refusal;
+using test::expect_refusals;
 using test::ProgramResult;
-using test::Refused;
 using test::Workplace;
 using testing::AnyOf;
 using testing::ElementsAre;
@@ -154,40 +153,34 @@ TEST(MeshBakeCommand, ReportsAndPicturesAreFilesOfTheirOwn) {
     }
 }
 
-class MeshBakeRefusal : public testing::TestWithParam<Refused> {};
-
-TEST_P(MeshBakeRefusal, LeavesEverythingAsItWas) {
+TEST(MeshBakeRefusal, LeavesEverythingAsItWas) {
     const Workplace workplace;
     workplace.write_square("low.obj");
     workplace.write_square("plain.obj", true);
     workplace.write("high.obj", tilted_square("0 0 1"));
-    expect_refusal(workplace, "relief-bake", GetParam(), "map.png");
+    expect_refusals(
+        workplace, "relief-bake", "map.png",
+        {{"relief-bake mesh high.obj plain.obj out/map.png", 1,
+          "plain.obj: no texture coordinates"},
+         {"relief-bake mesh high.obj none.obj out/map.png", 1, "none.obj: no such file"},
+         {"relief-bake mesh high.obj out/map.png", 2, "2 files are too few"},
+         {"relief-bake mesh high.obj low.obj out/map.jpg", 2, "out/map.jpg: JPEG distorts normals"},
+         {"relief-bake mesh high.txt low.obj out/map.png", 2,
+          "high.txt: .txt is not a format that can be read"},
+         {"relief-bake mesh high.obj low.obj out/map.png --samples 3", 2,
+          "--samples 3: not one of 1, 4, 16, 64, 256, auto"},
+         {"relief-bake mesh high.obj low.obj out/map.png --sample-angle 3", 2,
+          "--sample-angle: has no effect without --samples auto"},
+         {"relief-bake mesh high.obj low.obj out/map.png --cage low.obj --offset 1", 2,
+          "--offset, --rays, --hardness: have no effect with --cage"},
+         {"relief-bake mesh high.obj low.obj out/map.png --rays face --hardness 1", 2,
+          "--hardness: is for --rays averaged"},
+         {"relief-bake mesh high.obj low.obj out/map.png --size 16384 --samples 64", 2,
+          "--size 16384x16384: with 64 samples a texel, 8192 are the most along a side"},
+         {"relief-bake mesh high.obj low.obj out/map.png --size 0", 2, "--size 0"},
+         {"relief-bake mesh high.obj low.obj out/none/map.png", 1,
+          "out/none/map.png: the folder out/none does not exist"}});
 }
-
-INSTANTIATE_TEST_SUITE_P(
-    All, MeshBakeRefusal,
-    testing::Values(
-        Refused{"relief-bake mesh high.obj plain.obj out/map.png", 1,
-                "plain.obj: no texture coordinates"},
-        Refused{"relief-bake mesh high.obj none.obj out/map.png", 1, "none.obj: no such file"},
-        Refused{"relief-bake mesh high.obj out/map.png", 2, "2 files are too few"},
-        Refused{"relief-bake mesh high.obj low.obj out/map.jpg", 2,
-                "out/map.jpg: JPEG distorts normals"},
-        Refused{"relief-bake mesh high.txt low.obj out/map.png", 2,
-                "high.txt: .txt is not a format that can be read"},
-        Refused{"relief-bake mesh high.obj low.obj out/map.png --samples 3", 2,
-                "--samples 3: not one of 1, 4, 16, 64, 256, auto"},
-        Refused{"relief-bake mesh high.obj low.obj out/map.png --sample-angle 3", 2,
-                "--sample-angle: has no effect without --samples auto"},
-        Refused{"relief-bake mesh high.obj low.obj out/map.png --cage low.obj --offset 1", 2,
-                "--offset, --rays, --hardness: have no effect with --cage"},
-        Refused{"relief-bake mesh high.obj low.obj out/map.png --rays face --hardness 1", 2,
-                "--hardness: is for --rays averaged"},
-        Refused{"relief-bake mesh high.obj low.obj out/map.png --size 16384 --samples 64", 2,
-                "--size 16384x16384: with 64 samples a texel, 8192 are the most along a side"},
-        Refused{"relief-bake mesh high.obj low.obj out/map.png --size 0", 2, "--size 0"},
-        Refused{"relief-bake mesh high.obj low.obj out/none/map.png", 1,
-                "out/none/map.png: the folder out/none does not exist"}));
 
 }  // namespace
 }  // namespace relief::tools

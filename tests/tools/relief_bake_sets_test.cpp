@@ -15,9 +15,8 @@ namespace relief::tools {
 namespace {
 
 using nlohmann::json;
-using test::expect_refusal;
+using test::expect_refusals;
 using test::ProgramResult;
-using test::Refused;
 using test::Workplace;
 using testing::HasSubstr;
 
@@ -208,30 +207,25 @@ TEST_F(Sets, NoneIsWrittenIfOneCannotBe) {
     EXPECT_EQ(place_.outputs(), "B.png");
 }
 
-class SetsRefusal : public testing::TestWithParam<Refused> {};
-
-TEST_P(SetsRefusal, LeavesEverythingAsItWas) {
+TEST(SetsRefusal, LeavesEverythingAsItWas) {
     const Workplace workplace;
     workplace.write_square("low.obj");
     workplace.write_square("high.obj");
     workplace.write("far.obj",
                     "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt -5 0\nvt -4 0\nvt -5 1\n"
                     "f 1/1 2/2 3/3\n");
-    expect_refusal(workplace, "relief-bake", GetParam(), "map.png");
+    expect_refusals(workplace, "relief-bake", "map.png",
+                    {{"relief-bake mesh high.obj low.obj '<UDIM>/n.png'", 2,
+                      "<UDIM>/n.png: <UDIM> is in a folder's name"},
+                     {"relief-bake mesh high.obj low.obj 'out/<material><material>.png'", 2,
+                      "out/<material><material>.png: <material> is there twice"},
+                     {"relief-bake mesh high.obj low.obj 'out/<UDIM>.png' --outside repeat", 2,
+                      "--outside repeat: has no effect with <UDIM>"},
+                     {"relief-bake mesh high.obj far.obj 'out/<UDIM>.png'", 1,
+                      "far.obj: no triangle lies in a UDIM tile"},
+                     {"relief-bake mesh high.obj low.obj 'none/<UDIM>.png'", 1,
+                      "none/<UDIM>.png: the folder none does not exist"}});
 }
-
-INSTANTIATE_TEST_SUITE_P(
-    All, SetsRefusal,
-    testing::Values(Refused{"relief-bake mesh high.obj low.obj '<UDIM>/n.png'", 2,
-                            "<UDIM>/n.png: <UDIM> is in a folder's name"},
-                    Refused{"relief-bake mesh high.obj low.obj 'out/<material><material>.png'", 2,
-                            "out/<material><material>.png: <material> is there twice"},
-                    Refused{"relief-bake mesh high.obj low.obj 'out/<UDIM>.png' --outside repeat",
-                            2, "--outside repeat: has no effect with <UDIM>"},
-                    Refused{"relief-bake mesh high.obj far.obj 'out/<UDIM>.png'", 1,
-                            "far.obj: no triangle lies in a UDIM tile"},
-                    Refused{"relief-bake mesh high.obj low.obj 'none/<UDIM>.png'", 1,
-                            "none/<UDIM>.png: the folder none does not exist"}));
 
 }  // namespace
 }  // namespace relief::tools

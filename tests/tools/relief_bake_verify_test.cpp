@@ -15,9 +15,8 @@ namespace relief::tools {
 namespace {
 
 using nlohmann::json;
-using test::expect_refusal;
+using test::expect_refusals;
 using test::ProgramResult;
-using test::Refused;
 using test::Workplace;
 using testing::HasSubstr;
 using testing::Not;
@@ -211,38 +210,31 @@ TEST_F(Verify, ErrorsInDegreesAreWrittenAsFloats) {
     EXPECT_NEAR(std::sqrt(squares / (64 * 64)), surface["error"]["rms"].get<double>(), 1e-6);
 }
 
-class VerifyRefusal : public testing::TestWithParam<Refused> {};
-
-TEST_P(VerifyRefusal, LeavesEverythingAsItWas) {
+TEST(VerifyRefusal, LeavesEverythingAsItWas) {
     const Workplace workplace;
     workplace.write_square("low.obj");
     workplace.write("high.obj", verified_waves());
     ASSERT_EQ(workplace.run("relief-bake mesh high.obj low.obj map.png --size 8 --quiet").exit_code,
               0);
-    expect_refusal(workplace, "relief-bake", GetParam(), "e.png");
+    expect_refusals(
+        workplace, "relief-bake", "e.png",
+        {{"relief-bake check map.png --low low.obj", 2, "--low: has no effect without --high"},
+         {"relief-bake check map.png --high high.obj", 2,
+          "--high: needs the model that the map is for"},
+         {"relief-bake check map.png map.png --high high.obj --low low.obj", 2,
+          "--high: is for one map, not 2"},
+         {"relief-bake check map.png --max-error 1", 2,
+          "--max-error: has no effect without --high"},
+         {"relief-bake check map.png --high high.obj --low low.obj --max-error-kind max", 2,
+          "--max-error-kind: is for --max-error"},
+         {"relief-bake check map.png --high high.obj --low low.obj --error-map map.png", 2,
+          "--error-map map.png: is also the input or the output"},
+         {"relief-bake check map.png --high high.obj --low low.obj --error-map e.jpg", 2,
+          "--error-map e.jpg: no format to write it in"},
+         {"relief-bake check map.png --high none.obj --low low.obj", 1, "none.obj: no such file"},
+         {"relief-bake mesh high.obj low.obj out/map.png --error-map out/e.png", 2,
+          "--error-map: has no effect without --verify"}});
 }
-
-INSTANTIATE_TEST_SUITE_P(
-    All, VerifyRefusal,
-    testing::Values(
-        Refused{"relief-bake check map.png --low low.obj", 2,
-                "--low: has no effect without --high"},
-        Refused{"relief-bake check map.png --high high.obj", 2,
-                "--high: needs the model that the map is for"},
-        Refused{"relief-bake check map.png map.png --high high.obj --low low.obj", 2,
-                "--high: is for one map, not 2"},
-        Refused{"relief-bake check map.png --max-error 1", 2,
-                "--max-error: has no effect without --high"},
-        Refused{"relief-bake check map.png --high high.obj --low low.obj --max-error-kind max", 2,
-                "--max-error-kind: is for --max-error"},
-        Refused{"relief-bake check map.png --high high.obj --low low.obj --error-map map.png", 2,
-                "--error-map map.png: is also the input or the output"},
-        Refused{"relief-bake check map.png --high high.obj --low low.obj --error-map e.jpg", 2,
-                "--error-map e.jpg: no format to write it in"},
-        Refused{"relief-bake check map.png --high none.obj --low low.obj", 1,
-                "none.obj: no such file"},
-        Refused{"relief-bake mesh high.obj low.obj out/map.png --error-map out/e.png", 2,
-                "--error-map: has no effect without --verify"}));
 
 }  // namespace
 }  // namespace relief::tools

@@ -14,9 +14,8 @@ namespace relief::tools {
 namespace {
 
 using nlohmann::json;
-using test::expect_refusal;
+using test::expect_refusals;
 using test::ProgramResult;
-using test::Refused;
 using test::Workplace;
 using testing::HasSubstr;
 using testing::Not;
@@ -242,29 +241,23 @@ TEST(CompareCommand, RealModelsKeepWhatProcessingKeeps) {
     EXPECT_EQ(result["primitives"].size(), 7U);
 }
 
-class CompareRefusal : public testing::TestWithParam<Refused> {};
-
-TEST_P(CompareRefusal, IsOneLine) {
+TEST(CompareRefusal, IsOneLine) {
     const Workplace workplace;
     workplace.write_square("square.obj");
-    expect_refusal(workplace, "relief-mesh", GetParam(), "old");
+    expect_refusals(workplace, "relief-mesh", "old",
+                    {{"relief-mesh compare square.obj", 2, "B is"},
+                     {"relief-mesh compare square.obj none.obj", 1, "none.obj: "},
+                     {"relief-mesh compare square.obj square.png", 2,
+                      "square.png: .png is not a format that can be read"},
+                     {"relief-mesh compare square.obj square.obj --max-angle 181", 2,
+                      "--max-angle 181: not between 0 and 180 degrees"},
+                     {"relief-mesh compare square.obj square.obj --tolerance -1", 2,
+                      "--tolerance -1: not at least 0 units"},
+                     {"relief-mesh compare square.obj square.obj --json --quiet", 2,
+                      "--json and --quiet contradict each other"},
+                     {"relief-mesh compare square.obj square.obj --ignore-uv --uv-tolerance 1", 2,
+                      "--ignore-uv and --uv-tolerance contradict each other"}});
 }
-
-INSTANTIATE_TEST_SUITE_P(
-    All, CompareRefusal,
-    testing::Values(Refused{"relief-mesh compare square.obj", 2, "B is"},
-                    Refused{"relief-mesh compare square.obj none.obj", 1, "none.obj: "},
-                    Refused{"relief-mesh compare square.obj square.png", 2,
-                            "square.png: .png is not a format that can be read"},
-                    Refused{"relief-mesh compare square.obj square.obj --max-angle 181", 2,
-                            "--max-angle 181: not between 0 and 180 degrees"},
-                    Refused{"relief-mesh compare square.obj square.obj --tolerance -1", 2,
-                            "--tolerance -1: not at least 0 units"},
-                    Refused{"relief-mesh compare square.obj square.obj --json --quiet", 2,
-                            "--json and --quiet contradict each other"},
-                    Refused{
-                        "relief-mesh compare square.obj square.obj --ignore-uv --uv-tolerance 1", 2,
-                        "--ignore-uv and --uv-tolerance contradict each other"}));
 
 }  // namespace
 }  // namespace relief::tools

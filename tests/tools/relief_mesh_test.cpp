@@ -17,10 +17,9 @@ namespace {
 
 using nlohmann::json;
 using test::degrees_between;
-using test::expect_refusal;
+using test::expect_refusals;
 using test::ProgramResult;
 using test::read_document;
-using test::Refused;
 using test::Workplace;
 using testing::ElementsAre;
 using testing::HasSubstr;
@@ -372,9 +371,7 @@ TEST(ProcessCommand, SaysThatACompressedFileIsWrittenUncompressed) {
     EXPECT_EQ(info["compression"], json::array());
 }
 
-class MeshRefusal : public testing::TestWithParam<Refused> {};
-
-TEST_P(MeshRefusal, SaysWhyAndLeavesNothingBehind) {
+TEST(MeshRefusal, SaysWhyAndLeavesNothingBehind) {
     const Workplace workplace;
     workplace.write_square("square.obj");
     workplace.write_square("plain.obj", true);
@@ -382,54 +379,47 @@ TEST_P(MeshRefusal, SaysWhyAndLeavesNothingBehind) {
     workplace.write("noise.glb", "this is no glTF");
     workplace.write("index.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n");
     write_two_primitives(workplace, "pair");
-    expect_refusal(workplace, "relief-mesh", GetParam(), "old.glb");
+    expect_refusals(
+        workplace, "relief-mesh", "old.glb",
+        {{"relief-mesh process missing.obj out/old.glb", 1, "missing.obj: "},
+         {"relief-mesh process missing.glb out/old.glb", 1, "missing.glb: "},
+         {"relief-mesh process empty.obj out/old.glb", 1, "empty.obj: "},
+         {"relief-mesh process noise.glb out/old.glb", 1, "noise.glb: "},
+         {"relief-mesh process index.obj out/old.glb", 1, "index.obj: "},
+         {"relief-mesh process . out/old.glb", 2, ".: is a folder (name the files in it)"},
+         {"relief-mesh process square.txt out/old.glb", 2,
+          "square.txt: .txt is not a format that can be read (use one of .glb, .gltf, .obj, "
+          ".ply, .stl, .off)"},
+         {"relief-mesh process square.obj out/square.stl", 2,
+          "out/square.stl: .stl is not a format that can be written (use one of .glb, .gltf, "
+          ".obj, .ply)"},
+         {"relief-mesh process square.obj out/square", 2,
+          "out/square: no extension says what format this is (use one of .glb, "},
+         {"relief-mesh process square.obj out/square.obj --tangents mikktspace", 2,
+          "--tangents mikktspace: .obj cannot hold tangents (write .glb or .gltf)"},
+         {"relief-mesh process square.obj out/old.glb --crease 30", 2,
+          "--crease: is for averaged normals: --normals auto, angle, max, ..."},
+         {"relief-mesh process square.obj out/old.glb --normals flat --weld 1", 2,
+          "--weld: is for averaged normals"},
+         {"relief-mesh process square.obj out/old.glb --normals max --repair-normals", 2,
+          "--repair-normals: is for normals that are kept"},
+         {"relief-mesh process square.obj out/old.glb --normals max --crease 181", 2,
+          "--crease 181: "},
+         {"relief-mesh process square.obj out/old.glb --normals max --weld -1", 2, "--weld -1: "},
+         {"relief-mesh process plain.obj out/old.glb --tangents mikktspace", 1,
+          "plain.obj: no texture coordinates, so there can be no tangents (unwrap the model "
+          "first, or leave --tangents out)"},
+         {"relief-mesh process square.obj nowhere/square.glb", 1,
+          "nowhere/square.glb: the folder nowhere does not exist (create it first)"},
+         {"relief-mesh process square.obj /dev/full/square.glb", 1, "/dev/full/square.glb: "},
+         {"relief-mesh process square.obj out/new.glb --report nowhere/r.json", 1,
+          "nowhere/r.json: the folder nowhere does not exist (create it first)"},
+         {"relief-mesh process square.obj out/new.glb --report ./out/new.glb", 2,
+          "--report ./out/new.glb: is also the input or the output"},
+         {"relief-mesh info missing.obj", 1, "missing.obj: "},
+         {"relief-mesh info noise.glb --json", 1, "noise.glb: "},
+         {"relief-mesh info", 2, "IN is missing (see relief-mesh info --help)"}});
 }
-
-INSTANTIATE_TEST_SUITE_P(
-    Process, MeshRefusal,
-    testing::Values(
-        Refused{"relief-mesh process missing.obj out/old.glb", 1, "missing.obj: "},
-        Refused{"relief-mesh process missing.glb out/old.glb", 1, "missing.glb: "},
-        Refused{"relief-mesh process empty.obj out/old.glb", 1, "empty.obj: "},
-        Refused{"relief-mesh process noise.glb out/old.glb", 1, "noise.glb: "},
-        Refused{"relief-mesh process index.obj out/old.glb", 1, "index.obj: "},
-        Refused{"relief-mesh process . out/old.glb", 2, ".: is a folder (name the files in it)"},
-        Refused{"relief-mesh process square.txt out/old.glb", 2,
-                "square.txt: .txt is not a format that can be read (use one of .glb, .gltf, .obj, "
-                ".ply, .stl, .off)"},
-        Refused{"relief-mesh process square.obj out/square.stl", 2,
-                "out/square.stl: .stl is not a format that can be written (use one of .glb, .gltf, "
-                ".obj, .ply)"},
-        Refused{"relief-mesh process square.obj out/square", 2,
-                "out/square: no extension says what format this is (use one of .glb, "},
-        Refused{"relief-mesh process square.obj out/square.obj --tangents mikktspace", 2,
-                "--tangents mikktspace: .obj cannot hold tangents (write .glb or .gltf)"},
-        Refused{"relief-mesh process square.obj out/old.glb --crease 30", 2,
-                "--crease: is for averaged normals: --normals auto, angle, max, ..."},
-        Refused{"relief-mesh process square.obj out/old.glb --normals flat --weld 1", 2,
-                "--weld: is for averaged normals"},
-        Refused{"relief-mesh process square.obj out/old.glb --normals max --repair-normals", 2,
-                "--repair-normals: is for normals that are kept"},
-        Refused{"relief-mesh process square.obj out/old.glb --normals max --crease 181", 2,
-                "--crease 181: "},
-        Refused{"relief-mesh process square.obj out/old.glb --normals max --weld -1", 2,
-                "--weld -1: "},
-        Refused{"relief-mesh process plain.obj out/old.glb --tangents mikktspace", 1,
-                "plain.obj: no texture coordinates, so there can be no tangents (unwrap the model "
-                "first, or leave --tangents out)"},
-        Refused{"relief-mesh process square.obj nowhere/square.glb", 1,
-                "nowhere/square.glb: the folder nowhere does not exist (create it first)"},
-        Refused{"relief-mesh process square.obj /dev/full/square.glb", 1, "/dev/full/square.glb: "},
-        Refused{"relief-mesh process square.obj out/new.glb --report nowhere/r.json", 1,
-                "nowhere/r.json: the folder nowhere does not exist (create it first)"},
-        Refused{"relief-mesh process square.obj out/new.glb --report ./out/new.glb", 2,
-                "--report ./out/new.glb: is also the input or the output"}));
-
-INSTANTIATE_TEST_SUITE_P(
-    Info, MeshRefusal,
-    testing::Values(Refused{"relief-mesh info missing.obj", 1, "missing.obj: "},
-                    Refused{"relief-mesh info noise.glb --json", 1, "noise.glb: "},
-                    Refused{"relief-mesh info", 2, "IN is missing (see relief-mesh info --help)"}));
 
 }  // namespace
 }  // namespace relief::tools

@@ -17,10 +17,9 @@ namespace relief::tools {
 namespace {
 
 using nlohmann::json;
-using test::expect_refusal;
+using test::expect_refusals;
 using test::picture_in;
 using test::ProgramResult;
-using test::Refused;
 using test::Workplace;
 using testing::HasSubstr;
 
@@ -416,9 +415,7 @@ TEST(ViewCommand, ImagesOfMtlAndSceneFilesThatCannotBeReadAreNamedAndDrawnWithou
     }
 }
 
-class ViewRefusal : public testing::TestWithParam<Refused> {};
-
-TEST_P(ViewRefusal, SaysWhyAndLeavesNothingBehind) {
+TEST(ViewRefusal, SaysWhyAndLeavesNothingBehind) {
     const Workplace workplace;
     workplace.write_square("square.obj");
     workplace.write_square("plain.obj", true);
@@ -426,89 +423,76 @@ TEST_P(ViewRefusal, SaysWhyAndLeavesNothingBehind) {
     write_sky(workplace);
     std::filesystem::create_directory(workplace / "empty");
     workplace.write("noise.png", "this is no image");
-    const std::string line = std::string("relief-view ") + GetParam().line;
-    expect_refusal(workplace, "relief-view", {line.c_str(), GetParam().exit_code, GetParam().error},
-                   "old.png");
+    expect_refusals(
+        workplace, "relief-view", "old.png",
+        {{"--explain-effects", 2, "MODEL is missing (see relief-view --help)"},
+         {"square.obj --normal-map gone.png --output out/old.png", 1, "gone.png: no such file"},
+         {"square.obj --diffuse-map gone.png --output out/old.png", 1, "gone.png: no such file"},
+         {"square.obj --strict", 2,
+          "--strict: is about the exit code of a picture, and a window shows its findings "
+          "(name a picture with --output)"},
+         {"square.obj --json", 2,
+          "--json: is a summary, and a window has none (name a picture with --output)"},
+         {"square.obj --output out/old.png --dump-state out/state.json", 2,
+          "--dump-state: is what a window shows, and none is opened (leave --output and the "
+          "like out)"},
+         {"square.obj --output out/old.png --ui-scale 2", 2,
+          "--ui-scale: is of a window, and none is opened (leave it out)"},
+         {"square.obj --ui-scale 5", 2, "--ui-scale 5: not between 0.5 and 4"},
+         {"square.obj --output out/old.png --no-state", 2,
+          "--no-state: is of a window, and none is opened (leave it out)"},
+         {"square.obj --output out/p.jpg", 2,
+          "--output out/p.jpg: no format to write a picture in (use .png, .exr or .apng)"},
+         {"square.obj --output out/old.png --size 5", 2, "--size 5: not a size like 1920x1080"},
+         {"square.obj --output out/old.png --samples 2", 2, "--samples 2: not one of 1, 4"},
+         {"square.obj --output out/old.png --fov 180", 2,
+          "--fov 180: not between 1 and 170 degrees"},
+         {"square.obj --output out/old.png --camera 10", 2,
+          "--camera 10: not azimuth,elevation or azimuth,elevation,factor"},
+         {"square.obj --output out/old.png --camera 10,x", 2, "--camera 10,x: 'x': not a number"},
+         {"square.obj --output out/old.png --camera 0,0,0", 2,
+          "--camera 0,0,0: '0': not between 0.01 and 1000"},
+         {"square.obj --output out/old.png --light sun", 2,
+          "--light sun: not a light (begin with directional:, point: or spot:, or say none)"},
+         {"square.obj --output out/old.png --light none --light point:0,0,1", 2,
+          "--light none: contradicts the other lights"},
+         {"square.obj --output out/old.png --normal-map map.png --height-map map.png", 2,
+          "--height-map: contradicts --normal-map"},
+         {"square.obj --output out/old.png --green up", 2,
+          "--green: says how to read a --normal-map"},
+         {"square.obj --output out/old.png --strength 2", 2,
+          "--strength: says how to read a --height-map"},
+         {"square.obj --output out/old.png --kernel sobel3", 2,
+          "--kernel: says how to read a --height-map"},
+         {"square.obj --output out/old.png --normal-scale 2", 2,
+          "--normal-scale: the model has no normal map to scale (give one with --normal-map "
+          "or --height-map)"},
+         {"square.obj --output out/old.png --no-skybox", 2,
+          "--no-skybox: there is no --environment to hide"},
+         {"square.obj --output out/old.png --reflectivity 0.5", 2,
+          "--reflectivity: there is no --environment to reflect"},
+         {"square.obj --output out/old.png --environment sky --background '#000000'", 2,
+          "--background: the environment hides it"},
+         {"square.obj --output out/old.png --environment sky --no-skybox", 2,
+          "--environment: would show nowhere"},
+         {"square.obj --output out/old.png --environment sky map.png", 2,
+          "--environment: takes one file, six files or a folder, not 2 files"},
+         {"square.obj --output out/old.png --backend vulkan", 2,
+          "--backend vulkan: not one of auto, osmesa, egl"},
+         {"missing.obj --output out/old.png", 1, "missing.obj: "},
+         {"map.png --output out/old.png", 1, "map.png: "},
+         {"square.obj --output nowhere/p.png", 1, "nowhere/p.png: "},
+         {"plain.obj --output out/old.png --normal-map map.png", 1,
+          "plain.obj: no texture coordinates, which --normal-map needs (unwrap the model "
+          "first, or leave --normal-map out)"},
+         {"square.obj --output out/old.png --normal-map missing.png", 1, "missing.png: "},
+         {"square.obj --output out/old.png --height-map noise.png", 1, "noise.png: "},
+         {"square.obj --output out/old.png --diffuse-map noise.png", 1, "noise.png: "},
+         {"square.obj --output out/old.png --environment missing.hdr", 1, "missing.hdr: "},
+         {"square.obj --output out/old.png --environment empty", 1,
+          "empty: no file whose name ends in posx (name the six files in the order +x -x +y "
+          "-y +z -z)"}});
 }
-
-INSTANTIATE_TEST_SUITE_P(
-    Usage, ViewRefusal,
-    testing::Values(
-        Refused{"--explain-effects", 2, "MODEL is missing (see relief-view --help)"},
-        Refused{"square.obj --normal-map gone.png --output out/old.png", 1,
-                "gone.png: no such file"},
-        Refused{"square.obj --diffuse-map gone.png --output out/old.png", 1,
-                "gone.png: no such file"},
-        Refused{"square.obj --strict", 2,
-                "--strict: is about the exit code of a picture, and a window shows its findings "
-                "(name a picture with --output)"},
-        Refused{"square.obj --json", 2,
-                "--json: is a summary, and a window has none (name a picture with --output)"},
-        Refused{"square.obj --output out/old.png --dump-state out/state.json", 2,
-                "--dump-state: is what a window shows, and none is opened (leave --output and the "
-                "like out)"},
-        Refused{"square.obj --output out/old.png --ui-scale 2", 2,
-                "--ui-scale: is of a window, and none is opened (leave it out)"},
-        Refused{"square.obj --ui-scale 5", 2, "--ui-scale 5: not between 0.5 and 4"},
-        Refused{"square.obj --output out/old.png --no-state", 2,
-                "--no-state: is of a window, and none is opened (leave it out)"},
-        Refused{"square.obj --output out/p.jpg", 2,
-                "--output out/p.jpg: no format to write a picture in (use .png, .exr or .apng)"},
-        Refused{"square.obj --output out/old.png --size 5", 2,
-                "--size 5: not a size like 1920x1080"},
-        Refused{"square.obj --output out/old.png --samples 2", 2, "--samples 2: not one of 1, 4"},
-        Refused{"square.obj --output out/old.png --fov 180", 2,
-                "--fov 180: not between 1 and 170 degrees"},
-        Refused{"square.obj --output out/old.png --camera 10", 2,
-                "--camera 10: not azimuth,elevation or azimuth,elevation,factor"},
-        Refused{"square.obj --output out/old.png --camera 10,x", 2,
-                "--camera 10,x: 'x': not a number"},
-        Refused{"square.obj --output out/old.png --camera 0,0,0", 2,
-                "--camera 0,0,0: '0': not between 0.01 and 1000"},
-        Refused{"square.obj --output out/old.png --light sun", 2,
-                "--light sun: not a light (begin with directional:, point: or spot:, or say none)"},
-        Refused{"square.obj --output out/old.png --light none --light point:0,0,1", 2,
-                "--light none: contradicts the other lights"},
-        Refused{"square.obj --output out/old.png --normal-map map.png --height-map map.png", 2,
-                "--height-map: contradicts --normal-map"},
-        Refused{"square.obj --output out/old.png --green up", 2,
-                "--green: says how to read a --normal-map"},
-        Refused{"square.obj --output out/old.png --strength 2", 2,
-                "--strength: says how to read a --height-map"},
-        Refused{"square.obj --output out/old.png --kernel sobel3", 2,
-                "--kernel: says how to read a --height-map"},
-        Refused{"square.obj --output out/old.png --normal-scale 2", 2,
-                "--normal-scale: the model has no normal map to scale (give one with --normal-map "
-                "or --height-map)"},
-        Refused{"square.obj --output out/old.png --no-skybox", 2,
-                "--no-skybox: there is no --environment to hide"},
-        Refused{"square.obj --output out/old.png --reflectivity 0.5", 2,
-                "--reflectivity: there is no --environment to reflect"},
-        Refused{"square.obj --output out/old.png --environment sky --background '#000000'", 2,
-                "--background: the environment hides it"},
-        Refused{"square.obj --output out/old.png --environment sky --no-skybox", 2,
-                "--environment: would show nowhere"},
-        Refused{"square.obj --output out/old.png --environment sky map.png", 2,
-                "--environment: takes one file, six files or a folder, not 2 files"},
-        Refused{"square.obj --output out/old.png --backend vulkan", 2,
-                "--backend vulkan: not one of auto, osmesa, egl"}));
-
-INSTANTIATE_TEST_SUITE_P(
-    Files, ViewRefusal,
-    testing::Values(
-        Refused{"missing.obj --output out/old.png", 1, "missing.obj: "},
-        Refused{"map.png --output out/old.png", 1, "map.png: "},
-        Refused{"square.obj --output nowhere/p.png", 1, "nowhere/p.png: "},
-        Refused{"plain.obj --output out/old.png --normal-map map.png", 1,
-                "plain.obj: no texture coordinates, which --normal-map needs (unwrap the model "
-                "first, or leave --normal-map out)"},
-        Refused{"square.obj --output out/old.png --normal-map missing.png", 1, "missing.png: "},
-        Refused{"square.obj --output out/old.png --height-map noise.png", 1, "noise.png: "},
-        Refused{"square.obj --output out/old.png --diffuse-map noise.png", 1, "noise.png: "},
-        Refused{"square.obj --output out/old.png --environment missing.hdr", 1, "missing.hdr: "},
-        Refused{"square.obj --output out/old.png --environment empty", 1,
-                "empty: no file whose name ends in posx (name the six files in the order +x -x +y "
-                "-y +z -z)"}));
 
 }  // namespace
 }  // namespace relief::tools

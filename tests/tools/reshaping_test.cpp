@@ -16,10 +16,9 @@ namespace relief::tools {
 namespace {
 
 using nlohmann::json;
-using test::expect_refusal;
+using test::expect_refusals;
 using test::ProgramResult;
 using test::read_document;
-using test::Refused;
 using test::Workplace;
 using testing::HasSubstr;
 
@@ -182,37 +181,32 @@ TEST(SubdivideCommand, ARiggedModelIsRefused) {
     EXPECT_EQ(workplace.outputs(), "");
 }
 
-class ReshapingRefusal : public testing::TestWithParam<Refused> {};
-
-TEST_P(ReshapingRefusal, SaysWhyAndLeavesNothingBehind) {
+TEST(ReshapingRefusal, SaysWhyAndLeavesNothingBehind) {
     const Workplace workplace;
     workplace.write_square("square.obj");
     workplace.write("flat.obj", "v 0 0 0\nv 1 0 0\nf 1 2 2\n");
-    expect_refusal(workplace, "relief-mesh", GetParam(), "old.glb");
+    expect_refusals(
+        workplace, "relief-mesh", "old.glb",
+        {{"relief-mesh decimate square.obj out/old.glb", 2,
+          "nothing says when to stop (give --triangles N, --ratio R or --max-error E)"},
+         {"relief-mesh decimate square.obj out/old.glb --triangles 1 --ratio 0.5", 2,
+          "--triangles and --ratio: both say how many (give one of them)"},
+         {"relief-mesh decimate square.obj out/old.glb --triangles 0", 2,
+          "--triangles 0: not between 1 and "},
+         {"relief-mesh decimate square.obj out/old.glb --ratio 1.5", 2,
+          "--ratio 1.5: not between 0 and 1"},
+         {"relief-mesh decimate square.obj out/old.glb --max-error -1", 2,
+          "--max-error -1: not at least 0"},
+         {"relief-mesh decimate missing.obj out/old.glb --ratio 0.5", 1, "missing.obj: "},
+         {"relief-mesh decimate flat.obj out/old.glb --ratio 0.5", 1,
+          "flat.obj: none of its triangles has an area"},
+         {"relief-mesh subdivide flat.obj out/old.glb", 1,
+          "flat.obj: none of its triangles has an area"},
+         {"relief-mesh subdivide square.obj out/old.glb --levels 0", 2,
+          "--levels 0: not between 1 and 12"},
+         {"relief-mesh subdivide square.obj out/new.stl", 2,
+          "out/new.stl: .stl is not a format that can be written"}});
 }
-
-INSTANTIATE_TEST_SUITE_P(
-    All, ReshapingRefusal,
-    testing::Values(
-        Refused{"relief-mesh decimate square.obj out/old.glb", 2,
-                "nothing says when to stop (give --triangles N, --ratio R or --max-error E)"},
-        Refused{"relief-mesh decimate square.obj out/old.glb --triangles 1 --ratio 0.5", 2,
-                "--triangles and --ratio: both say how many (give one of them)"},
-        Refused{"relief-mesh decimate square.obj out/old.glb --triangles 0", 2,
-                "--triangles 0: not between 1 and "},
-        Refused{"relief-mesh decimate square.obj out/old.glb --ratio 1.5", 2,
-                "--ratio 1.5: not between 0 and 1"},
-        Refused{"relief-mesh decimate square.obj out/old.glb --max-error -1", 2,
-                "--max-error -1: not at least 0"},
-        Refused{"relief-mesh decimate missing.obj out/old.glb --ratio 0.5", 1, "missing.obj: "},
-        Refused{"relief-mesh decimate flat.obj out/old.glb --ratio 0.5", 1,
-                "flat.obj: none of its triangles has an area"},
-        Refused{"relief-mesh subdivide flat.obj out/old.glb", 1,
-                "flat.obj: none of its triangles has an area"},
-        Refused{"relief-mesh subdivide square.obj out/old.glb --levels 0", 2,
-                "--levels 0: not between 1 and 12"},
-        Refused{"relief-mesh subdivide square.obj out/new.stl", 2,
-                "out/new.stl: .stl is not a format that can be written"}));
 
 }  // namespace
 }  // namespace relief::tools
