@@ -46,6 +46,8 @@ TEST(CanonicalFeatures, HoldNothingThatCannotShow) {
             (c.point_lights + c.spot_lights > 0 ||
              (!c.light_ranges && c.falloff == FalloffTerm::inverse_square)) &&
             (c.emission || !c.emission_texture) && (all_around || !c.occlusion_texture) &&
+            (c.metallic_roughness || !c.metallic_roughness_texture) &&
+            (c.specular != SpecularTerm::none || (!c.specular_texture && !c.highlight_colors)) &&
             (scatters || c.alpha != AlphaMode::opaque ||
              (!c.diffuse_texture && !c.vertex_colors)) &&
             (c.alpha != AlphaMode::opaque || !c.opacity_texture) &&
