@@ -8,6 +8,7 @@
 
 #include "common/command.h"
 #include "common/text.h"
+#include "field_options.h"
 #include "relief/mesh/image_file.h"
 #include "relief/shade/environment_files.h"
 
@@ -56,11 +57,13 @@ void add_image_options(CLI::App& app, ViewOptions& options) {
 }
 
 void add_reflection_options(CLI::App& app, ViewOptions& options) {
-    add_number(app, "--reflectivity", "R", options.reflectivity, {0, 1, ""},
+    add_number(app, "--reflectivity", "R", options.reflectivity,
+               field_limits(&Material::reflectivity),
                "Share of the environment that materials reflect, seen head on; more at grazing "
                "angles. With an exact --fresnel it multiplies. Default: as the model says, else 0.")
         .group(environment_group);
-    add_number(app, "--reflection-roughness", "R", options.reflection_roughness, {0, 1, ""},
+    add_number(app, "--reflection-roughness", "R", options.reflection_roughness,
+               field_limits(&Material::reflection_roughness),
                "How blurred reflections are, from 0, a mirror, to 1. Default: as the model says.")
         .group(environment_group);
     add_value(app, "--fresnel", "none|schlick|dielectric|conductor",
@@ -74,10 +77,12 @@ void add_reflection_options(CLI::App& app, ViewOptions& options) {
                   if (chosen >= 0) options.fresnel = static_cast<FresnelModel>(chosen);
               })
         .group(environment_group);
-    add_number(app, "--refractive-index", "N", options.refractive_index, {1, 1000, ""},
+    add_number(app, "--refractive-index", "N", options.refractive_index,
+               field_limits(&Material::refractive_index),
                "Of --fresnel dielectric and --transmission. Default: 1.5, glass.")
         .group(environment_group);
-    add_number(app, "--transmission", "T", options.transmission, {0, 1, ""},
+    add_number(app, "--transmission", "T", options.transmission,
+               field_limits(&Material::transmission),
                "Share of what is not mirrored that shows the environment through the surface, bent "
                "once. Default: as the model says, else 0.")
         .group(environment_group);

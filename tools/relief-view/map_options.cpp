@@ -2,6 +2,7 @@
 #include "map_options.h"
 
 #include "common/map_choices.h"
+#include "field_options.h"
 
 namespace relief::tools {
 namespace {
@@ -14,18 +15,14 @@ void add_normal_options(CLI::App& app, ViewOptions& options) {
                "Where the normal map's green is bright: on slopes facing up in the image (OpenGL, "
                "glTF) or down (DirectX). Default: up.")
         .group(maps_group);
-    add_choice(
-        app, "--normal-space", options.normal_space,
-        Choices<NormalSpace>{{"tangent", NormalSpace::tangent}, {"object", NormalSpace::object}},
-        "The space of the normal map's vectors. Default: tangent.")
+    add_choice(app, "--normal-space", options.normal_space, enum_choices<NormalSpace>(),
+               "The space of the normal map's vectors. Default: tangent.")
         .group(maps_group);
     add_number(app, "--normal-scale", "S", options.normal_scale, {-100, 100, ""},
                "Multiplies the slopes of normal maps, the model's own too. Default: as the model "
                "says, else 1.")
         .group(maps_group);
-    add_choice(app, "--tangent-frame", options.tangent_frame,
-               Choices<TangentFrame>{{"stored", TangentFrame::stored},
-                                     {"derivatives", TangentFrame::derivatives}},
+    add_choice(app, "--tangent-frame", options.tangent_frame, enum_choices<TangentFrame>(),
                "Where normal and bump maps get their frame from: the mesh's tangents (MikkTSpace's "
                "where it has none), or how texture coordinates change from pixel to pixel. "
                "Default: stored.")

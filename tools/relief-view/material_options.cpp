@@ -4,6 +4,8 @@
 #include <array>
 #include <utility>
 
+#include "field_options.h"
+
 namespace relief::tools {
 namespace {
 
@@ -25,7 +27,7 @@ void add_model_options(CLI::App& app, ViewOptions& options) {
                "glTF's materials by their own metallic-roughness model, or translated to Phong's. "
                "Default: as_authored, unless an option asks for what only Phong's model has.")
         .group(materials_group);
-    add_choice(app, "--interpolation", options.interpolation, interpolation_choices(),
+    add_choice(app, "--interpolation", options.interpolation, enum_choices<Interpolation>(),
                "Light at every pixel, at vertices only (Phong's model), or from the triangles' own "
                "planes. Default: as the scene says, else per_pixel.")
         .group(materials_group);
@@ -45,24 +47,14 @@ void add_model_options(CLI::App& app, ViewOptions& options) {
 
 }  // namespace
 
-Choices<Interpolation> interpolation_choices() {
-    return {{"per_pixel", Interpolation::per_pixel},
-            {"gouraud", Interpolation::gouraud},
-            {"flat", Interpolation::flat}};
-}
-
 void add_material_options(CLI::App& app, ViewOptions& options) {
     add_model_options(app, options);
-    const Choices<SpecularModel> models = {
-        {"phong", SpecularModel::phong},
-        {"blinn_phong", SpecularModel::blinn_phong},
-        {"blinn_phong_normalized", SpecularModel::blinn_phong_normalized}};
-    add_choice(app, "--specular", options.specular, models,
+    add_choice(app, "--specular", options.specular, enum_choices<SpecularModel>(),
                "Model of highlights; the normalized one keeps their light whatever the shininess. "
                "Materials without a specular colour get a grey one of 0.25. "
                "Default: as the model says, else blinn_phong.")
         .group(materials_group);
-    add_number(app, "--shininess", "N", options.shininess, {0, 1e6, ""},
+    add_number(app, "--shininess", "N", options.shininess, field_limits(&Material::shininess),
                "Exponent of highlights: larger is smaller and sharper. Materials without a "
                "specular colour get a grey one of 0.25. Default: as the model says, else 32.")
         .group(materials_group);

@@ -8,9 +8,6 @@
 
 namespace relief::tools {
 
-/// The words for where light is computed.
-Choices<Interpolation> interpolation_choices();
-
 void add_material_options(CLI::App& app, ViewOptions& options);
 
 /// \throws UsageError if one contradicts another

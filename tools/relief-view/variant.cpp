@@ -8,7 +8,7 @@
 
 #include "common/frame_choices.h"
 #include "common/map_choices.h"
-#include "material_options.h"
+#include "field_options.h"
 
 namespace relief::tools {
 namespace {
@@ -40,7 +40,7 @@ std::string unknown(const VariantTopic& topic) {
 
 const std::vector<VariantTopic>& variant_topics() {
     static const std::vector<VariantTopic> topics = {
-        topic("interpolation", "Where light is computed", interpolation_choices()),
+        topic("interpolation", "Where light is computed", enum_choices<Interpolation>()),
         topic("map", "What bends the normals",
               Choices<MapUse>{{"none", MapUse::none},
                               {"bump_map", MapUse::bump_map},

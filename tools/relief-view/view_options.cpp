@@ -11,6 +11,7 @@
 #include "debug_options.h"
 #include "effect_options.h"
 #include "environment_options.h"
+#include "field_options.h"
 #include "map_options.h"
 #include "material_options.h"
 #include "picture_reference.h"
@@ -60,10 +61,7 @@ void add_output_options(CLI::App& app, ViewOptions& options) {
                       static_cast<float>(std::exp2(parse_number(subject, text, range)));
               })
         .group(group);
-    add_choice(app, "--tone-mapping", options.tone_mapping,
-               Choices<ToneMapping>{{"none", ToneMapping::none},
-                                    {"reinhard", ToneMapping::reinhard},
-                                    {"aces", ToneMapping::aces}},
+    add_choice(app, "--tone-mapping", options.tone_mapping, enum_choices<ToneMapping>(),
                "How light brighter than white is shown: as white, or brought down by a curve. "
                "Default: as the scene says, else none.")
         .group(group);

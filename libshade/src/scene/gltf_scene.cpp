@@ -1,29 +1,349 @@
 // SPDX-License-Identifier: Apache-2.0
-// From a glTF document to a scene graph: primitives become meshes (one for each, however often
-// placed) with the texture coordinates that their material uses, light units become irradiance over
-// pi, node animations become key frames. World space is glTF's. What cannot be drawn as meant is
-// counted in the report; see scene_file.h for the list.
-// Tests: tests/shade/scene/scene_file_test.cpp.
-#include "scene/gltf_scene.h"
-
+// glTF documents as scene graphs. Primitives become meshes (one for each, however many instances it
+// has) with the texture coordinates that their material uses, light units become irradiance over
+// pi, and node animations become key frames. Materials stay metallic-roughness, or become Phong's
+// with the means of the textures that Phong has no place for. World space is glTF's; colors are
+// linear. Factors that glTF forbids count as the nearest allowed ones. What cannot be drawn as
+// intended is counted in the report; scene_file.h has the list. Source: glTF 2.0, section 3.9.
 #include <fmt/format.h>
 
+#include <cmath>
+#include <limits>
 #include <map>
 #include <numbers>
 #include <set>
+#include <string>
+#include <type_traits>
 #include <utility>
+#include <variant>
 #include <vector>
 
+#include "parallel.h"
 #include "progress_stage.h"
+#include "relief/mesh/error.h"
 #include "relief/mesh/frames.h"
-#include "scene/gltf_materials.h"
+#include "relief/shade/image_source.h"
+#include "scene/scene_import.h"
 
 namespace relief {
 
+// Mean colors of images
+
 namespace {
 
-/// A primitive with the texture coordinates at which its material looks its images up, and its own
-/// tangents, which belong to the coordinates as stored, turned as these are.
+double decoded(double sample, ColorSpace space) {
+    return space == ColorSpace::srgb
+               ? static_cast<double>(linear_from_srgb(static_cast<float>(sample)))
+               : sample;
+}
+
+/// The mean of one channel of integer codes: codes are counted first and decoded once each.
+template <typename Code>
+double mean_of_codes(const std::vector<Code>& samples, std::size_t channel, std::size_t channels,
+                     ColorSpace space) {
+    constexpr std::size_t code_count = std::size_t{1} << (8 * sizeof(Code));
+    std::vector<std::size_t> counts(code_count, 0);
+    for (std::size_t i = channel; i < samples.size(); i += channels)
+        ++counts[samples[i]];
+    double sum = 0.0;
+    for (std::size_t code = 0; code < code_count; ++code) {
+        if (counts[code] == 0) continue;
+        const double value =
+            static_cast<double>(code) / static_cast<double>(std::numeric_limits<Code>::max());
+        sum += static_cast<double>(counts[code]) * decoded(value, space);
+    }
+    return sum / static_cast<double>(samples.size() / channels);
+}
+
+double mean_of_floats(const std::vector<float>& samples, std::size_t channel, std::size_t channels,
+                      ColorSpace space) {
+    double sum = 0.0;
+    std::size_t count = 0;
+    for (std::size_t i = channel; i < samples.size(); i += channels) {
+        if (!std::isfinite(samples[i])) continue;
+        sum += decoded(samples[i], space);
+        ++count;
+    }
+    return count == 0 ? 1.0 : sum / static_cast<double>(count);
+}
+
+}  // namespace
+
+glm::vec3 mean_color(const Image& image) {
+    if (image.empty()) return glm::vec3(1.0F);
+    const auto channels = static_cast<std::size_t>(image.channels);
+    glm::vec3 mean(1.0F);
+    for (int i = 0; i < 3; ++i) {
+        const std::size_t channel = channels < 3 ? 0 : static_cast<std::size_t>(i);
+        mean[i] = static_cast<float>(std::visit(
+            [&](const auto& samples) {
+                using Sample = typename std::decay_t<decltype(samples)>::value_type;
+                if constexpr (std::is_same_v<Sample, float>) {
+                    return mean_of_floats(samples, channel, channels, image.color_space);
+                } else {
+                    return mean_of_codes(samples, channel, channels, image.color_space);
+                }
+            },
+            image.samples));
+    }
+    return mean;
+}
+
+// Materials
+
+namespace {
+
+/// The reflectivity of every dielectric at normal incidence, as glTF fixes it.
+constexpr float dielectric_f0 = 0.04F;
+/// The smallest roughness that the exponent of the highlight represents.
+constexpr float min_roughness = 0.045F;
+/// tan^2 of 3 degrees: facets with a smaller tilt mirror a recognizable picture.
+constexpr float mirror_tan_squared = 0.0027465F;
+
+}  // namespace
+
+Material phong_from_metallic_roughness(const GltfMaterial& material, const TextureMeans& means) {
+    const glm::vec3 base = usable(glm::vec3(material.base_color), 1.0F);
+    const float metallic = usable(material.metallic * means.metallic, 1.0F);
+    const float roughness =
+        std::max(usable(material.roughness * means.roughness, 1.0F), min_roughness);
+    const float alpha_squared = roughness * roughness * roughness * roughness;
+    const glm::vec3 f0 = glm::mix(glm::vec3(dielectric_f0), base * means.base_color, metallic);
+    const float mirror = mirror_tan_squared / (mirror_tan_squared + alpha_squared);
+
+    Material phong;
+    phong.name = material.name;
+    phong.specular_model = SpecularModel::blinn_phong;
+    phong.shininess = 2.0F / alpha_squared - 2.0F;
+    phong.specular = f0 * ((phong.shininess + 2.0F) / 8.0F);
+    phong.reflectivity = f0 * mirror;
+    phong.grazing_reflectivity = glm::vec3(mirror);
+    phong.diffuse = base * (1.0F - metallic);
+    phong.ambient = phong.diffuse + glm::mix(glm::vec3(dielectric_f0), base, metallic);
+    phong.emission = usable(material.emission, max_reflectance);
+    phong.double_sided = material.double_sided;
+    phong.unlit = material.unlit;
+    if (material.unlit) phong.diffuse = base;
+    return phong;
+}
+
+namespace {
+
+/// The texture coordinates at which a material looks up its images. A mesh of the scene carries one
+/// set, so they are those of the material's first texture, in the order base color, normal,
+/// metallic-roughness, occlusion, emission.
+struct TexcoordSource {
+    int set = 0;
+    GltfTextureTransform transform;
+};
+
+TexcoordSource texcoord_source(const GltfMaterial& material) {
+    for (const std::optional<GltfTexture>* texture :
+         {&material.base_color_texture, &material.normal_texture,
+          &material.metallic_roughness_texture, &material.occlusion_texture,
+          &material.emission_texture}) {
+        if (*texture) return {(*texture)->texcoord_set, (*texture)->transform};
+    }
+    return {};
+}
+
+/// The texture of the scene, or none if its mesh has no coordinates for it.
+std::optional<Texture> texture_from(const std::optional<GltfTexture>& texture,
+                                    const TexcoordSource& source, std::size_t material,
+                                    Report& report) {
+    if (!texture) return std::nullopt;
+    if (texture->texcoord_set != source.set) {
+        report.add("texture on a further texture coordinate set", "material", material, "left out");
+        return std::nullopt;
+    }
+    if (texture->transform != source.transform) {
+        report.add("texture transform of its own", "material", material,
+                   "drawn with that of the material's first texture");
+    }
+    return Texture{texture->image, texture->wrap_u, texture->wrap_v, texture->filter};
+}
+
+/// The mean of an image's texels, or the error of decoding it.
+using MeanOrError = std::variant<glm::vec3, std::string>;
+
+/// \param keep  the image stays decoded, so that drawing need not decode it again
+MeanOrError mean_of(ImageSource& image, ImageUse use, bool keep) {
+    try {
+        Image decoded = decode(image, use);
+        const glm::vec3 mean = mean_color(decoded);
+        if (keep) image.source = std::move(decoded);
+        return mean;
+    } catch (const Cancelled&) {
+        throw;
+    } catch (const Error& error) {
+        return error.what();
+    }
+}
+
+/// The means of one kind of texture over all materials that request them. Each image is decoded
+/// once, on all threads.
+class MeansOfImages {
+  public:
+    MeansOfImages(std::vector<ImageSource>& images, ImageUse use, const std::vector<bool>& keep)
+        : images_(images), use_(use), keep_(keep) {}
+
+    void request(std::size_t image) { means_.try_emplace(image); }
+
+    void decode_all() {
+        std::vector<std::size_t> requested;
+        for (const auto& [image, mean] : means_)
+            requested.push_back(image);
+        std::vector<MeanOrError> results(requested.size());
+        ProgressStage stage("images", requested.size());
+        parallel_for(requested.size(), 1, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) {
+                results[i] = mean_of(images_[requested[i]], use_, keep_[requested[i]]);
+                stage.advance(1);
+            }
+        });
+        for (std::size_t i = 0; i < requested.size(); ++i)
+            means_[requested[i]] = results[i];
+    }
+
+    /// The mean; 1 if the image could not be read, which is reported.
+    glm::vec3 mean(std::size_t image, const char* texture, const std::string& material,
+                   Report& report) const {
+        const MeanOrError& result = means_.at(image);
+        if (const auto* mean = std::get_if<glm::vec3>(&result)) return *mean;
+        report.add(fmt::format("unreadable {} of {} for its mean", texture, material), "image",
+                   image,
+                   "counts as 1 in the material's Phong equivalent: " +
+                       with_origin(images_[image], std::get<std::string>(result)));
+        return glm::vec3(1.0F);
+    }
+
+  private:
+    std::vector<ImageSource>& images_;
+    ImageUse use_;
+    const std::vector<bool>& keep_;
+    std::map<std::size_t, MeanOrError> means_;
+};
+
+/// The images that are used as color textures only.
+std::vector<bool> color_only(const GltfView& view) {
+    std::vector<bool> result(view.images.size(), true);
+    for (const GltfMaterial& material : view.materials) {
+        if (material.normal_texture) result[material.normal_texture->image] = false;
+        if (material.metallic_roughness_texture) {
+            result[material.metallic_roughness_texture->image] = false;
+        }
+    }
+    return result;
+}
+
+std::string label(const GltfView& view, std::size_t material) {
+    const std::string& name = view.materials[material].name;
+    return name.empty() ? fmt::format("material {}", material) : fmt::format("material '{}'", name);
+}
+
+std::vector<TextureMeans> texture_means(const GltfView& view, std::vector<ImageSource>& images,
+                                        Report& report) {
+    const std::size_t count = view.materials.size();
+    std::vector<TextureMeans> means(count);
+
+    const std::vector<bool> keep_none(images.size(), false);
+    MeansOfImages surfaces(images, ImageUse::data, keep_none);
+    const auto has_surface = [&](const GltfMaterial& material) {
+        return material.metallic_roughness_texture && !material.unlit &&
+               (material.metallic > 0.0F || material.roughness > 0.0F);
+    };
+    for (const GltfMaterial& material : view.materials) {
+        if (has_surface(material)) surfaces.request(material.metallic_roughness_texture->image);
+    }
+    surfaces.decode_all();
+    for (std::size_t i = 0; i < count; ++i) {
+        if (!has_surface(view.materials[i])) continue;
+        const glm::vec3 mean = surfaces.mean(view.materials[i].metallic_roughness_texture->image,
+                                             "metallic-roughness texture", label(view, i), report);
+        means[i].roughness = mean.y;
+        means[i].metallic = mean.z;
+    }
+
+    // The mean of a base color tints reflections, and only those of metals.
+    const std::vector<bool> keep = color_only(view);
+    MeansOfImages colors(images, ImageUse::color, keep);
+    const auto is_textured_metal = [&](std::size_t i) {
+        const GltfMaterial& material = view.materials[i];
+        return material.base_color_texture && !material.unlit &&
+               material.metallic * means[i].metallic > 0.0F;
+    };
+    for (std::size_t i = 0; i < count; ++i) {
+        if (is_textured_metal(i)) colors.request(view.materials[i].base_color_texture->image);
+    }
+    colors.decode_all();
+    for (std::size_t i = 0; i < count; ++i) {
+        if (!is_textured_metal(i)) continue;
+        means[i].base_color = colors.mean(view.materials[i].base_color_texture->image,
+                                          "diffuse texture", label(view, i), report);
+    }
+    return means;
+}
+
+AlphaMode alpha_mode_from(GltfMaterial::AlphaMode mode) {
+    switch (mode) {
+        case GltfMaterial::AlphaMode::mask:
+            return AlphaMode::mask;
+        case GltfMaterial::AlphaMode::blend:
+            return AlphaMode::blend;
+        case GltfMaterial::AlphaMode::opaque:
+            break;
+    }
+    return AlphaMode::opaque;
+}
+
+/// Sets textures and alpha, which are the same in both material models.
+void add_textures(Material& result, const GltfMaterial& material, std::size_t index,
+                  Report& report) {
+    const TexcoordSource source = texcoord_source(material);
+    const auto texture = [&](const std::optional<GltfTexture>& given) {
+        return texture_from(given, source, index, report);
+    };
+    result.diffuse_texture = texture(material.base_color_texture);
+    if (result.metallic_roughness) {
+        result.metallic_roughness->texture = texture(material.metallic_roughness_texture);
+    }
+    result.emission_texture = texture(material.emission_texture);
+    result.occlusion_texture = texture(material.occlusion_texture);
+    result.occlusion_strength = usable(material.occlusion_strength, 1.0F);
+    if (const auto normal = texture(material.normal_texture)) {
+        result.normal_map = NormalMap{*normal, material.normal_scale, Green::up, std::nullopt};
+    }
+    result.alpha_mode = alpha_mode_from(material.alpha_mode);
+    result.opacity = usable(material.base_color.a, 1.0F);
+    result.alpha_cutoff = usable(material.alpha_cutoff, max_reflectance);
+}
+
+/// The materials of the document, in order. For MaterialModel::phong some images are decoded for
+/// their means, and kept decoded if nothing else needs their bytes.
+std::vector<Material> materials_from(const GltfView& view, const SceneOptions& options,
+                                     std::vector<ImageSource>& images, Report& report) {
+    const bool phong = options.model == SceneOptions::MaterialModel::phong;
+    std::vector<TextureMeans> means(view.materials.size());
+    if (phong) means = texture_means(view, images, report);
+    std::vector<Material> materials;
+    for (std::size_t i = 0; i < view.materials.size(); ++i) {
+        const GltfMaterial& material = view.materials[i];
+        Material& result =
+            materials.emplace_back(phong_from_metallic_roughness(material, means[i]));
+        if (!phong && !material.unlit) {
+            result.metallic_roughness = MetallicRoughness{
+                usable(glm::vec3(material.base_color), 1.0F), usable(material.metallic, 1.0F),
+                usable(material.roughness, 1.0F), std::nullopt};
+        }
+        add_textures(result, material, i, report);
+    }
+    return materials;
+}
+
+// Nodes, meshes, lights, cameras and animations
+
+/// A primitive with the texture coordinates at which its material looks up its images. Its tangents
+/// belong to the stored coordinates, so they are transformed together with them.
 Mesh mesh_from(const GltfDocument& document, GltfPrimitiveId id,
                const std::vector<GltfMaterial>& materials) {
     Mesh mesh = document.mesh(id);
@@ -34,45 +354,44 @@ Mesh mesh_from(const GltfDocument& document, GltfPrimitiveId id,
     if (source.transform == GltfTextureTransform{}) return mesh;
     for (glm::vec2& texcoord : mesh.texcoords)
         texcoord = transformed(source.transform, texcoord);
-    if (mesh.normals.empty()) return mesh;  // Its tangents do not count.
+    if (mesh.normals.empty()) return mesh;  // Tangents without normals are ignored.
     for (std::size_t v = 0; v < mesh.tangents.size(); ++v)
         mesh.tangents[v] = transformed(source.transform, mesh.tangents[v], mesh.normals[v]);
     return mesh;
 }
 
-/// Counts, once a node, meshes that would bend.
+/// Reports meshes that would be deformed, once for each node.
 void report_rest(const GltfView& view, Report& report) {
-    std::set<std::size_t> told;
-    for (const auto& placed : view.primitives) {
-        if (!told.insert(placed.node).second) continue;
-        const GltfNode& node = view.nodes[placed.node];
-        if (node.has_skin) report.add("skinned mesh", "node", placed.node, "drawn at rest");
-        if (node.has_morph_targets)
-            report.add("morph targets", "node", placed.node, "drawn without");
+    std::set<std::size_t> reported;
+    for (const auto& item : view.primitives) {
+        if (!reported.insert(item.node).second) continue;
+        const GltfNode& node = view.nodes[item.node];
+        if (node.has_skin) report.add("skinned mesh", "node", item.node, "drawn at rest");
+        if (node.has_morph_targets) report.add("morph targets", "node", item.node, "drawn without");
     }
 }
 
-/// Meshes and their places; a primitive that stands in several places is read once.
+/// Adds meshes and instances. A primitive with several instances is read once.
 void add_instances(const GltfDocument& document, const GltfView& view, SceneGraph& graph,
                    Report& report) {
-    // Without normals, glTF asks for flat ones and says that tangents given do not count; new ones
-    // are left to the effect plan.
+    // For a mesh without normals glTF demands flat ones and ignores its tangents; the effect plan
+    // computes tangents where it needs them.
     FrameOptions options;
     options.if_missing = NormalMode::flat;
     options.tangents = TangentMode::none;
     Scene& scene = graph.scene;
     std::map<std::pair<std::size_t, std::size_t>, std::size_t> mesh_of;
     ProgressStage stage("meshes", view.primitives.size());
-    for (const auto& placed : view.primitives) {
-        const auto key = std::pair(placed.what.mesh, placed.what.primitive);
+    for (const auto& item : view.primitives) {
+        const auto key = std::pair(item.what.mesh, item.what.primitive);
         const auto [entry, is_new] = mesh_of.try_emplace(key, scene.meshes.size());
         if (is_new) {
-            Mesh mesh = mesh_from(document, placed.what, view.materials);
+            Mesh mesh = mesh_from(document, item.what, view.materials);
             if (mesh.normals.empty()) mesh = with_frames(std::move(mesh), options, report).mesh;
             scene.meshes.push_back(std::move(mesh));
         }
-        scene.instances.push_back({entry->second, placed.world_from_object, placed.name});
-        graph.instances.push_back({placed.node, placed.node_from_object});
+        scene.instances.push_back({entry->second, item.world_from_object, item.name});
+        graph.instances.push_back({item.node, item.node_from_object});
         stage.advance(1);
     }
     report_rest(view, report);
@@ -80,11 +399,11 @@ void add_instances(const GltfDocument& document, const GltfView& view, SceneGrap
 
 void add_lights(const GltfView& view, SceneGraph& graph) {
     Scene& scene = graph.scene;
-    for (const auto& placed : view.lights) {
-        const GltfLight& light = placed.what;
+    for (const auto& item : view.lights) {
+        const GltfLight& light = item.what;
         const glm::vec3 power = light.color * light.intensity * std::numbers::inv_pi_v<float>;
         const PointLight point{glm::vec3(0.0F), power, light.range};
-        const Carried carried{placed.node};
+        const Carried carried{item.node};
         switch (light.type) {
             case GltfLight::Type::directional:
                 scene.directional_lights.push_back({glm::vec3(0.0F, 0.0F, -1.0F), power});
@@ -103,21 +422,21 @@ void add_lights(const GltfView& view, SceneGraph& graph) {
     }
 }
 
-/// The first camera.
+/// Adds the first camera.
 void add_camera(const GltfView& view, SceneGraph& graph, Report& report) {
     if (view.cameras.empty()) return;
-    const auto& placed = view.cameras.front();
-    const glm::mat3 axes(placed.world_from_object);
+    const auto& item = view.cameras.front();
+    const glm::mat3 axes(item.world_from_object);
     if (!(glm::length(glm::cross(axes[1], axes[2])) > 0.0F)) {
         report.add("camera without a direction", "camera", 0, "left out");
         return;
     }
     Camera& camera = graph.scene.camera.emplace();
-    camera.vertical_fov = placed.what.vertical_fov;
-    camera.near = placed.what.near;
-    camera.far = placed.what.far.value_or(2.0F * camera.near);
-    graph.camera_sees_all = !placed.what.far;
-    graph.camera = Carried{placed.node};
+    camera.vertical_fov = item.what.vertical_fov;
+    camera.near = item.what.near;
+    camera.far = item.what.far.value_or(2.0F * camera.near);
+    graph.camera_sees_all = !item.what.far;
+    graph.camera = Carried{item.node};
 }
 
 void add_nodes(const GltfView& view, SceneGraph& graph, Report& report) {
@@ -155,7 +474,7 @@ KeyChannel channel_from(const GltfChannel& channel) {
     return result;
 }
 
-/// Animations that move a node; those of skins and morphs alone would only take time.
+/// Adds animations that move a node. Those of skins and morph targets have no channels here.
 void add_animations(const GltfDocument& document, SceneGraph& graph, Report& report) {
     for (const GltfAnimation& animation : document.animations(report)) {
         if (animation.channels.empty()) continue;

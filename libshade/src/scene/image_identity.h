@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Whether an image is what it was when it was decoded last. Tests:
-/// tests/shade/render/render_cache_test.cpp.
+/// Tells whether an image is unchanged since it was decoded.
 #pragma once
 
 #include <filesystem>
@@ -16,7 +15,7 @@ class ImageIdentity {
   public:
     explicit ImageIdentity(const ImageSource& source);
 
-    /// The same value in memory; or a file of the same name whose stamp is what it was.
+    /// Whether the source is the same value in memory, or a file of the same name and stamp.
     [[nodiscard]] bool is(const ImageSource& source) const;
 
   private:

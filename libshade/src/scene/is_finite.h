@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// Whether all numbers of a vector or matrix are neither NaN nor infinite.
-/// Tests: tests/shade/scene/scene_test.cpp, scene_graph_test.cpp.
 #pragma once
 
 #include <cmath>

@@ -1,48 +1,43 @@
 // SPDX-License-Identifier: Apache-2.0
-// Boxes of scenes, and the camera that frames one. World space, radians. Non-finite vertices have
-// no place and no say. Tests: tests/shade/scene/scene_test.cpp.
+// What can be said of a scene as a whole: its box, the names of its parts in messages, and the use
+// of the default material. World space.
 #include "relief/shade/scene.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
-#include <numbers>
 
-#include "relief/mesh/error.h"
+#include "relief/shade/effects.h"
+#include "relief/shade/labels.h"
+#include "relief/shade/name_materials.h"
 #include "scene/is_finite.h"
-#include "scene/orbit_axes.h"
 
 namespace relief {
 
 namespace {
 
-/// How much more than the box is seen, so that nothing touches the picture's edge.
-constexpr float framing_margin = 1.05F;
-
-/// The eight corners of a box, seen from its centre along the axes of a camera.
-std::array<glm::vec3, 8> corners_in(const glm::mat3& world_from_view, const glm::vec3& half_size) {
-    std::array<glm::vec3, 8> corners;
-    for (std::size_t i = 0; i < 8; ++i) {
-        const glm::vec3 sign((i & 1) != 0 ? 1 : -1, (i & 2) != 0 ? 1 : -1, (i & 4) != 0 ? 1 : -1);
-        corners[i] = glm::transpose(world_from_view) * (sign * half_size);
-    }
-    return corners;
+/// The name in quotes, or the number if the name is empty.
+std::string label(const char* kind, std::size_t index, const std::string& name) {
+    if (!name.empty()) return fmt::format("{} '{}'", kind, name);
+    return fmt::format("{} {}", kind, index);
 }
 
-void check_view(float azimuth, float elevation, float vertical_fov, float aspect) {
-    if (!std::isfinite(azimuth) || !std::isfinite(elevation)) {
-        throw InvalidInput(
-            fmt::format("camera direction {}, {} is not finite", azimuth, elevation));
-    }
-    if (!(vertical_fov > 0.0F && vertical_fov < std::numbers::pi_v<float>)) {
-        throw InvalidInput(
-            fmt::format("vertical field of view is {}, but must be within (0, pi)", vertical_fov));
-    }
-    if (!(aspect > 0.0F) || !std::isfinite(aspect)) {
-        throw InvalidInput(fmt::format("aspect ratio is {}, but must be positive", aspect));
-    }
+/// The name of a part; empty if there is no such part.
+template <typename Named>
+std::string name_of(const std::vector<Named>& parts, std::size_t index) {
+    return index < parts.size() ? parts[index].name : std::string();
+}
+
+std::string name_of(const std::vector<Shared<Mesh>>& meshes, std::size_t index) {
+    return index < meshes.size() ? meshes[index]->name : std::string();
+}
+
+/// Whether a mesh has triangles without a material.
+bool has_bare_triangles(const Mesh& mesh) {
+    if (mesh.triangles.empty()) return false;
+    return mesh.material_ranges.empty() ||
+           std::any_of(mesh.material_ranges.begin(), mesh.material_ranges.end(),
+                       [](const MaterialRange& range) { return !range.material; });
 }
 
 }  // namespace
@@ -60,36 +55,45 @@ Bounds world_bounds(const Scene& scene) {
     return bounds;
 }
 
-Camera framed(const Bounds& world, float azimuth, float elevation, float vertical_fov,
-              float aspect) {
-    check_view(azimuth, elevation, vertical_fov, aspect);
-    const glm::mat3 axes = orbit_axes(static_cast<double>(azimuth), static_cast<double>(elevation));
-    const glm::vec3 center =
-        world.empty() ? glm::vec3(0.0F) : world.min + (world.max - world.min) * 0.5F;
-    const glm::vec3 half_size =
-        world.empty() ? glm::vec3(0.0F) : (world.max - world.min) * (0.5F * framing_margin);
+std::string material_label(const Scene& scene, std::optional<std::size_t> material) {
+    if (!material) return "the default material";
+    return label("material", *material, name_of(scene.materials, *material));
+}
 
-    const float tan_y = std::tan(vertical_fov * 0.5F);
-    const float tan_x = tan_y * aspect;
-    float distance = 0.0F;
-    float depth = 0.0F;  // Half of the box's extent along the view.
-    for (const glm::vec3& corner : corners_in(axes, half_size)) {
-        distance = std::max(
-            distance, corner.z + std::max(std::abs(corner.x) / tan_x, std::abs(corner.y) / tan_y));
-        depth = std::max(depth, std::abs(corner.z));
+std::string instance_label(const Scene& scene, std::size_t instance) {
+    const std::string name = name_of(scene.instances, instance);
+    if (name.empty() && instance < scene.instances.size()) {
+        const std::size_t mesh = scene.instances[instance].mesh;
+        if (!name_of(scene.meshes, mesh).empty()) return mesh_label(scene, mesh);
     }
-    // A flat box seen edge-on, or none at all: distance 1 for a point, else the eye stays outside.
-    const float size = glm::length(half_size);
-    if (!(size > 0.0F)) distance = 1.0F;
-    distance = std::max(distance, depth + 0.01F * size);
+    return label("instance", instance, name);
+}
 
-    Camera camera;
-    camera.vertical_fov = vertical_fov;
-    camera.world_from_view = glm::mat4(axes);
-    camera.world_from_view[3] = glm::vec4(center + axes[2] * distance, 1.0F);
-    camera.near = size > 0.0F ? std::max(distance - depth, 0.001F * distance) : 0.1F;
-    camera.far = size > 0.0F ? distance + depth + 0.01F * size : 10.0F;
-    return camera;
+std::string mesh_label(const Scene& scene, std::size_t mesh) {
+    return label("mesh", mesh, name_of(scene.meshes, mesh));
+}
+
+bool uses_default_material(const Scene& scene) {
+    return std::any_of(scene.meshes.begin(), scene.meshes.end(),
+                       [](const Mesh& mesh) { return has_bare_triangles(mesh); });
+}
+
+void name_default_material(Scene& scene) {
+    const auto index = static_cast<std::uint32_t>(scene.materials.size());
+    bool is_used = false;
+    for (Shared<Mesh>& shared : scene.meshes) {
+        if (!has_bare_triangles(*shared)) continue;
+        is_used = true;
+        Mesh& mesh = shared.edit();
+        if (mesh.material_ranges.empty()) {
+            mesh.material_ranges.push_back(
+                {0, static_cast<std::uint32_t>(mesh.triangles.size()), std::nullopt});
+        }
+        for (MaterialRange& range : mesh.material_ranges) {
+            if (!range.material) range.material = index;
+        }
+    }
+    if (is_used) scene.materials.push_back(default_material());
 }
 
 }  // namespace relief

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Scenes from model files, by extension: glTF as a document with places, lights and cameras, the
-// others as one mesh with MTL materials. World space is the file's. Bad files throw FileError.
-// Tests: tests/shade/scene/scene_file_test.cpp.
+// Scenes from model files, by extension: glTF with nodes, lights and cameras (gltf_scene.cpp),
+// scene files (scene_reader.cpp), and the other formats as one mesh with MTL materials. World space
+// is the file's. Invalid files throw FileError.
 #include "relief/shade/scene_file.h"
 
 #include <algorithm>
@@ -12,14 +12,13 @@
 #include "file_bytes.h"
 #include "relief/mesh/error.h"
 #include "relief/mesh/frames.h"
-#include "scene/gltf_scene.h"
-#include "scene/scene_json.h"
+#include "scene/scene_import.h"
 
 namespace relief {
 
 namespace {
 
-/// The scene's images by path, each once.
+/// The images of the scene by path; each file is one image.
 class ImagesByPath {
   public:
     ImagesByPath(const std::filesystem::path& model, std::vector<ImageSource>& images)
@@ -37,9 +36,9 @@ class ImagesByPath {
     std::map<std::filesystem::path, std::size_t> index_of_;
 };
 
-/// A material that cannot be seen at all is nobody's wish: some programs write opacity where MTL
-/// has transparency (Tr).
-MtlMaterial made_visible(MtlMaterial material, std::size_t index, Report& report) {
+/// Makes an invisible material opaque: some programs write opacity where MTL expects transparency
+/// (Tr).
+MtlMaterial visible_material(MtlMaterial material, std::size_t index, Report& report) {
     if (material.opacity <= 0.0F && !material.opacity_map) {
         material.opacity = 1.0F;
         report.add("invisible material (Tr 1 or d 0)", "material", index, "drawn opaque");
@@ -49,18 +48,18 @@ MtlMaterial made_visible(MtlMaterial material, std::size_t index, Report& report
 
 Material material_from(const MtlMaterial& read, std::size_t index, ImagesByPath& images,
                        Report& report) {
-    const MtlMaterial material = made_visible(read, index, report);
+    const MtlMaterial material = visible_material(read, index, report);
     Material phong = phong_from_mtl(material);
     if (material.diffuse_map) phong.diffuse_texture = images.texture(*material.diffuse_map);
     if (material.specular_map) {
         phong.specular_texture = images.texture(*material.specular_map);
-        // map_Ks alone means the map as it is.
+        // map_Ks without Ks is not scaled.
         if (phong.specular == glm::vec3(0.0F) && material.illumination_model >= 2)
             phong.specular = glm::vec3(1.0F);
     }
     if (material.emission_map) {
         phong.emission_texture = images.texture(*material.emission_map);
-        // map_Ke alone means the map as it is.
+        // map_Ke without Ke is not scaled.
         if (phong.emission == glm::vec3(0.0F)) phong.emission = glm::vec3(1.0F);
     }
     if (material.normal_map) {
@@ -73,7 +72,7 @@ Material material_from(const MtlMaterial& read, std::size_t index, ImagesByPath&
         phong.bump_map = BumpMap{images.texture(*material.bump_map)};
         phong.bump_map->strength *= material.bump_strength;
     }
-    // The diffuse map itself as map_d means its alpha, which blending takes anyway.
+    // If map_d names the diffuse map, it means its alpha, which blending uses in any case.
     if (material.opacity_map && material.opacity_map != material.diffuse_map)
         phong.opacity_texture = images.texture(*material.opacity_map);
     for (const std::string& statement : material.more)
@@ -81,7 +80,7 @@ Material material_from(const MtlMaterial& read, std::size_t index, ImagesByPath&
     return phong;
 }
 
-/// Gives every range that names no material one that both sides show.
+/// Gives every range without a material a double-sided one.
 void name_missing_materials(Scene& scene) {
     Mesh& mesh = scene.meshes.front().edit();
     if (mesh.material_ranges.empty()) {
@@ -116,6 +115,35 @@ Scene scene_from(MeshFile contents, const std::filesystem::path& file, Report& r
 }
 
 }  // namespace
+
+Material phong_from_mtl(const MtlMaterial& material) {
+    Material phong;
+    phong.name = material.name;
+    phong.ambient = usable(material.ambient, max_reflectance);
+    phong.diffuse = usable(material.diffuse, max_reflectance);
+    phong.emission = usable(material.emission, max_reflectance);
+    const glm::vec3 specular = usable(material.specular, max_reflectance);
+    const int illumination = material.illumination_model;
+    if (illumination >= 2) phong.specular = specular;
+    phong.specular_model = SpecularModel::blinn_phong;
+    phong.shininess = usable(material.shininess, 1e6F);
+    if (illumination >= 3 && illumination <= 9) {
+        phong.reflectivity = glm::min(specular, glm::vec3(1.0F));
+        const bool fresnel = illumination == 5 || illumination == 7;
+        phong.grazing_reflectivity = fresnel ? glm::vec3(1.0F) : phong.reflectivity;
+    }
+    phong.refractive_index = std::max(usable(material.refractive_index, 1e3F), 1.0F);
+    const float opacity = usable(material.opacity, 1.0F);
+    if (illumination == 6 || illumination == 7) {
+        phong.transmission = 1.0F - opacity;
+    } else {
+        phong.opacity = opacity;
+    }
+    if (phong.opacity < 1.0F || material.opacity_map) phong.alpha_mode = AlphaMode::blend;
+    phong.unlit = illumination == 0;
+    phong.double_sided = true;
+    return phong;
+}
 
 SceneGraph load_scene_graph(const std::filesystem::path& file, const SceneOptions& options,
                             Report& report) {

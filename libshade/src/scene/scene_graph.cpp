@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Poses: nodes at a time, then what hangs on them. World space, radians, seconds. Angles grow in
-// double, so that a turn after a day is as smooth as the first. Nodes that form a cycle throw
-// InvalidInput. Tests: tests/shade/scene/scene_graph_test.cpp.
+// Scene graphs: key frames, poses of nodes and of what hangs on them, and the union of two graphs.
+// World space, radians, seconds. Angles grow in double, so that a rotation is as smooth after a day
+// as at the start. Source of key frames: glTF 2.0, section 3.11 and appendix C.
 #include "relief/shade/scene_graph.h"
 
 #include <fmt/format.h>
@@ -9,47 +9,155 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
+#include <iterator>
 #include <numbers>
+#include <utility>
 
 #include "relief/mesh/error.h"
-#include "scene/key_channel.h"
-#include "scene/orbit_axes.h"
+#include "scene/graph.h"
 
 namespace relief {
 
+// Key frames
+
 namespace {
 
-/// What stands for a direction where a scale of nothing leaves none.
+std::size_t values_per_key(const KeyChannel& channel) {
+    return channel.interpolation == KeyInterpolation::cubic_spline ? 3 : 1;
+}
+
+/// The value of a key itself, without its tangents.
+const glm::vec4& key_value(const KeyChannel& channel, std::size_t key) {
+    const std::size_t per_key = values_per_key(channel);
+    return channel.values[key * per_key + per_key / 2];
+}
+
+/// Interpolates two unit quaternions along the shortest arc.
+glm::vec4 slerp(const glm::vec4& a, const glm::vec4& b, float t) {
+    const glm::quat result =
+        glm::slerp(glm::quat(a.w, a.x, a.y, a.z), glm::quat(b.w, b.x, b.y, b.z), t);
+    return {result.x, result.y, result.z, result.w};
+}
+
+/// Hermite interpolation between a key and the next one; tangents are per second.
+glm::vec4 hermite(const KeyChannel& channel, std::size_t key, float t) {
+    const float span = channel.times[key + 1] - channel.times[key];
+    const glm::vec4& from = channel.values[3 * key + 1];
+    const glm::vec4& out_tangent = channel.values[3 * key + 2];
+    const glm::vec4& in_tangent = channel.values[3 * key + 3];
+    const glm::vec4& to = channel.values[3 * key + 4];
+    const float t2 = t * t;
+    const float t3 = t2 * t;
+    return (2.0F * t3 - 3.0F * t2 + 1.0F) * from + span * (t3 - 2.0F * t2 + t) * out_tangent +
+           (3.0F * t2 - 2.0F * t3) * to + span * (t3 - t2) * in_tangent;
+}
+
+/// The unit quaternion, or the fallback if the length is 0 or not finite.
+glm::vec4 unit_or(const glm::vec4& quaternion, const glm::vec4& fallback) {
+    const float length = glm::length(quaternion);
+    return length > 0.0F && std::isfinite(length) ? quaternion / length : fallback;
+}
+
+glm::vec4 between(const KeyChannel& channel, std::size_t key, float t) {
+    const bool rotates = channel.property == KeyChannel::Property::rotation;
+    const glm::vec4 from =
+        rotates ? glm::normalize(key_value(channel, key)) : key_value(channel, key);
+    if (channel.interpolation == KeyInterpolation::step) return from;
+    if (channel.interpolation == KeyInterpolation::cubic_spline) {
+        const glm::vec4 value = hermite(channel, key, t);
+        return rotates ? unit_or(value, from) : value;
+    }
+    const glm::vec4& to = key_value(channel, key + 1);
+    return rotates ? slerp(from, glm::normalize(to), t) : glm::mix(from, to, t);
+}
+
+}  // namespace
+
+void check_keys(const KeyChannel& channel) {
+    const std::size_t keys = channel.times.size();
+    if (keys == 0) throw InvalidInput("a channel has no keys");
+    const std::size_t needed = keys * values_per_key(channel);
+    if (channel.values.size() != needed) {
+        throw InvalidInput(fmt::format("a channel of {} keys has {} values, but needs {}", keys,
+                                       channel.values.size(), needed));
+    }
+    for (std::size_t i = 0; i < keys; ++i) {
+        const float time = channel.times[i];
+        if (!std::isfinite(time) || (i > 0 && !(time > channel.times[i - 1]))) {
+            throw InvalidInput(fmt::format(
+                "time {} of a channel is {}, but times must be finite and ascending", i, time));
+        }
+    }
+    for (std::size_t i = 0; i < needed; ++i) {
+        const glm::vec4& value = channel.values[i];
+        const bool finite = std::isfinite(value.x) && std::isfinite(value.y) &&
+                            std::isfinite(value.z) && std::isfinite(value.w);
+        if (!finite) {
+            throw InvalidInput(
+                fmt::format("value {} of a channel is ({}, {}, {}, {}), but must be "
+                            "finite",
+                            i, value.x, value.y, value.z, value.w));
+        }
+    }
+    if (channel.property != KeyChannel::Property::rotation) return;
+    for (std::size_t i = 0; i < keys; ++i) {
+        if (!(glm::length(key_value(channel, i)) > 0.0F))
+            throw InvalidInput(fmt::format("rotation {} of a channel has no length", i));
+    }
+}
+
+glm::vec4 value_at(const KeyChannel& channel, double seconds) {
+    const std::vector<float>& times = channel.times;
+    if (times.empty() || channel.values.size() != times.size() * values_per_key(channel))
+        check_keys(channel);  // Throws.
+    const auto after =
+        std::upper_bound(times.begin(), times.end(), seconds,
+                         [](double t, float key) { return t < static_cast<double>(key); });
+    const auto next = static_cast<std::size_t>(after - times.begin());
+    if (next == 0 || next == times.size()) {
+        const glm::vec4& held = key_value(channel, next == 0 ? 0 : next - 1);
+        return channel.property == KeyChannel::Property::rotation ? glm::normalize(held) : held;
+    }
+    const auto from = static_cast<double>(times[next - 1]);
+    const double span = static_cast<double>(times[next]) - from;
+    return between(channel, next - 1, static_cast<float>((seconds - from) / span));
+}
+
+// Poses
+
+namespace {
+
+/// The direction of an object whose node is scaled to 0.
 constexpr glm::vec3 default_back{0.0F, 0.0F, 1.0F};
 
-/// A node's own transform as its animations make it.
-struct LocalPlace {
+/// The transform of a node within its parent at one time.
+struct LocalTransform {
     glm::vec3 translation{0.0F};
     glm::quat rotation{1.0F, 0.0F, 0.0F, 0.0F};
     glm::vec3 scale{1.0F};
     std::optional<glm::mat4> matrix;
-    std::optional<glm::mat4> turn;  ///< A turntable's, innermost.
+    std::optional<glm::mat4> turntable;  ///< Applied first.
 };
 
-glm::vec3 unit_or(const glm::vec3& direction, const glm::vec3& otherwise) {
+glm::vec3 unit_or(const glm::vec3& direction, const glm::vec3& fallback) {
     const glm::dvec3 precise(direction);
     const double length = glm::length(precise);
-    return length > 0.0 && std::isfinite(length) ? glm::vec3(precise / length) : otherwise;
+    return length > 0.0 && std::isfinite(length) ? glm::vec3(precise / length) : fallback;
 }
 
-glm::mat4 matrix_of(const LocalPlace& place) {
+glm::mat4 matrix_of(const LocalTransform& transform) {
     glm::mat4 matrix(1.0F);
-    if (place.matrix) {
-        matrix = *place.matrix;
+    if (transform.matrix) {
+        matrix = *transform.matrix;
     } else {
-        matrix = glm::translate(glm::mat4(1.0F), place.translation) *
-                 glm::mat4_cast(glm::normalize(place.rotation)) *
-                 glm::scale(glm::mat4(1.0F), place.scale);
+        matrix = glm::translate(glm::mat4(1.0F), transform.translation) *
+                 glm::mat4_cast(glm::normalize(transform.rotation)) *
+                 glm::scale(glm::mat4(1.0F), transform.scale);
     }
-    return place.turn ? matrix * *place.turn : matrix;
+    return transform.turntable ? matrix * *transform.turntable : matrix;
 }
 
-/// The time within one run of key frames that lasts so long.
+/// The time within one run of an animation of this length.
 double wrapped(double seconds, double length) {
     if (!(length > 0.0)) return 0.0;
     const double rest = std::fmod(seconds, length);
@@ -65,25 +173,26 @@ double length_of(const KeyAnimation& animation) {
     return length;
 }
 
-/// Moves nodes at rest to where one kind of animation has them at a time.
-class Mover {
+/// Applies one animation at a time to the transforms of nodes at rest.
+class Animator {
   public:
-    Mover(std::vector<LocalPlace>& places, double seconds) : places_(places), seconds_(seconds) {}
+    Animator(std::vector<LocalTransform>& transforms, double seconds)
+        : transforms_(transforms), seconds_(seconds) {}
 
     void operator()(const KeyAnimation& animation) const {
         const double now = wrapped(seconds_, length_of(animation));
         for (const KeyChannel& channel : animation.channels) {
             const glm::vec4 value = value_at(channel, now);
-            LocalPlace& place = at(channel.node);
+            LocalTransform& transform = at(channel.node);
             switch (channel.property) {
                 case KeyChannel::Property::translation:
-                    place.translation = glm::vec3(value);
+                    transform.translation = glm::vec3(value);
                     break;
                 case KeyChannel::Property::rotation:
-                    place.rotation = glm::quat(value.w, value.x, value.y, value.z);
+                    transform.rotation = glm::quat(value.w, value.x, value.y, value.z);
                     break;
                 case KeyChannel::Property::scale:
-                    place.scale = glm::vec3(value);
+                    transform.scale = glm::vec3(value);
                     break;
             }
         }
@@ -92,47 +201,48 @@ class Mover {
     void operator()(const Orbit& orbit) const {
         const glm::mat3 axes = orbit_axes(angle(orbit.azimuth, orbit.azimuth_speed),
                                           angle(orbit.elevation, orbit.elevation_speed));
-        LocalPlace& place = at(orbit.node);
-        place.translation = orbit.center + orbit.radius * axes[2];
-        if (orbit.faces_center) place.rotation = glm::quat_cast(axes);
+        LocalTransform& transform = at(orbit.node);
+        transform.translation = orbit.center + orbit.radius * axes[2];
+        if (orbit.faces_center) transform.rotation = glm::quat_cast(axes);
     }
 
     void operator()(const Turntable& turntable) const {
         const double turned = angle(turntable.angle, turntable.speed);
         const glm::dvec3 axis = glm::normalize(glm::dvec3(turntable.axis));
-        at(turntable.node).turn = glm::mat4(glm::rotate(glm::dmat4(1.0), turned, axis));
+        at(turntable.node).turntable = glm::mat4(glm::rotate(glm::dmat4(1.0), turned, axis));
     }
 
   private:
-    [[nodiscard]] LocalPlace& at(std::size_t node) const {
-        if (node >= places_.size()) {
+    [[nodiscard]] LocalTransform& at(std::size_t node) const {
+        if (node >= transforms_.size()) {
             throw InvalidInput(fmt::format("an animation names node {}, but there are only {}",
-                                           node, places_.size()));
+                                           node, transforms_.size()));
         }
-        return places_[node];
+        return transforms_[node];
     }
 
     [[nodiscard]] double angle(float start, float speed) const {
         return static_cast<double>(start) + static_cast<double>(speed) * seconds_;
     }
 
-    std::vector<LocalPlace>& places_;
+    std::vector<LocalTransform>& transforms_;
     double seconds_;
 };
 
-std::vector<LocalPlace> places_at(const SceneGraph& graph, double seconds) {
-    std::vector<LocalPlace> places;
-    places.reserve(graph.nodes.size());
+std::vector<LocalTransform> transforms_at(const SceneGraph& graph, double seconds) {
+    std::vector<LocalTransform> transforms;
+    transforms.reserve(graph.nodes.size());
     for (const SceneNode& node : graph.nodes)
-        places.push_back({node.translation, node.rotation, node.scale, node.matrix, std::nullopt});
+        transforms.push_back(
+            {node.translation, node.rotation, node.scale, node.matrix, std::nullopt});
     for (const Animation& animation : graph.animations)
-        std::visit(Mover(places, seconds), animation);
-    return places;
+        std::visit(Animator(transforms, seconds), animation);
+    return transforms;
 }
 
-/// From each node's space to the world's; every chain of parents is walked once.
+/// The transform from each node to the world. Every chain of parents is walked once.
 std::vector<glm::mat4> world_matrices(const SceneGraph& graph,
-                                      const std::vector<LocalPlace>& places) {
+                                      const std::vector<LocalTransform>& transforms) {
     const std::size_t count = graph.nodes.size();
     std::vector<glm::mat4> world(count);
     std::vector<bool> is_done(count, false);
@@ -153,7 +263,7 @@ std::vector<glm::mat4> world_matrices(const SceneGraph& graph,
         for (; !chain.empty(); chain.pop_back()) {
             const std::size_t node = chain.back();
             const std::optional<std::size_t>& parent = graph.nodes[node].parent;
-            const glm::mat4 local = matrix_of(places[node]);
+            const glm::mat4 local = matrix_of(transforms[node]);
             world[node] = parent ? world[*parent] * local : local;
             is_done[node] = true;
         }
@@ -161,12 +271,13 @@ std::vector<glm::mat4> world_matrices(const SceneGraph& graph,
     return world;
 }
 
-/// Where what hangs on a node is, or nothing where it hangs on none.
-class Places {
+/// The world transforms of objects that nodes carry.
+class NodeMatrices {
   public:
-    explicit Places(std::vector<glm::mat4> world_from_node)
+    explicit NodeMatrices(std::vector<glm::mat4> world_from_node)
         : world_from_node_(std::move(world_from_node)) {}
 
+    /// Empty if no node carries the object.
     [[nodiscard]] std::optional<glm::mat4> world_from_object(const Carried& carried) const {
         if (!carried.node) return std::nullopt;
         if (*carried.node >= world_from_node_.size()) {
@@ -184,12 +295,12 @@ class Places {
     std::vector<glm::mat4> world_from_node_;
 };
 
-/// Calls move(thing, matrix) for everything in a list that hangs on a node.
-template <typename Thing, typename Move>
-void move_all(std::vector<Thing>& things, const std::vector<Carried>& carried, const Places& places,
-              const Move& move) {
-    for (std::size_t i = 0; i < std::min(things.size(), carried.size()); ++i) {
-        if (const auto matrix = places.world_from_object(carried[i])) move(things[i], *matrix);
+/// Calls move(object, matrix) for every object of a list that hangs on a node.
+template <typename Object, typename Move>
+void move_all(std::vector<Object>& objects, const std::vector<Carried>& carried,
+              const NodeMatrices& nodes, const Move& move) {
+    for (std::size_t i = 0; i < std::min(objects.size(), carried.size()); ++i) {
+        if (const auto matrix = nodes.world_from_object(carried[i])) move(objects[i], *matrix);
     }
 }
 
@@ -197,7 +308,7 @@ glm::vec3 direction_of(const glm::mat4& world_from_light) {
     return -unit_or(glm::vec3(world_from_light[2]), default_back);
 }
 
-/// Rotation and translation alone.
+/// The camera's matrix: rotation and translation without scale.
 glm::mat4 camera_matrix(const glm::mat4& world_from_object) {
     const glm::vec3 back = unit_or(glm::vec3(world_from_object[2]), default_back);
     const glm::vec3 right =
@@ -207,7 +318,7 @@ glm::mat4 camera_matrix(const glm::mat4& world_from_object) {
             world_from_object[3]};
 }
 
-/// A far plane behind the farthest corner of every mesh's box.
+/// A far distance behind the farthest corner of the boxes of all meshes.
 float far_behind_all(SceneGraph& graph, const Camera& camera) {
     for (std::size_t i = graph.mesh_bounds.size(); i < graph.scene.meshes.size(); ++i)
         graph.mesh_bounds.push_back(bounds_of(graph.scene.meshes[i]));
@@ -227,10 +338,10 @@ float far_behind_all(SceneGraph& graph, const Camera& camera) {
     return std::max(2.0F * camera.near, 1.01F * reach);
 }
 
-void pose_camera(SceneGraph& graph, const Places& places) {
+void pose_camera(SceneGraph& graph, const NodeMatrices& nodes) {
     if (!graph.scene.camera) return;
     Camera& camera = *graph.scene.camera;
-    if (const auto matrix = places.world_from_object(graph.camera))
+    if (const auto matrix = nodes.world_from_object(graph.camera))
         camera.world_from_view = camera_matrix(*matrix);
     if (graph.camera_sees_all) camera.far = far_behind_all(graph, camera);
 }
@@ -240,30 +351,30 @@ void pose_camera(SceneGraph& graph, const Places& places) {
 void pose(SceneGraph& graph, double seconds) {
     if (!std::isfinite(seconds))
         throw InvalidInput(fmt::format("the time is {}, but must be finite", seconds));
-    const Places places(world_matrices(graph, places_at(graph, seconds)));
+    const NodeMatrices nodes(world_matrices(graph, transforms_at(graph, seconds)));
     Scene& scene = graph.scene;
     move_all(
-        scene.instances, graph.instances, places,
+        scene.instances, graph.instances, nodes,
         [](Instance& instance, const glm::mat4& matrix) { instance.world_from_object = matrix; });
-    move_all(scene.directional_lights, graph.directional_lights, places,
+    move_all(scene.directional_lights, graph.directional_lights, nodes,
              [](DirectionalLight& light, const glm::mat4& matrix) {
                  light.direction_world = direction_of(matrix);
              });
-    move_all(scene.point_lights, graph.point_lights, places,
+    move_all(scene.point_lights, graph.point_lights, nodes,
              [](PointLight& light, const glm::mat4& matrix) {
                  light.position_world = glm::vec3(matrix[3]);
              });
-    move_all(scene.spot_lights, graph.spot_lights, places,
+    move_all(scene.spot_lights, graph.spot_lights, nodes,
              [](SpotLight& light, const glm::mat4& matrix) {
                  light.point.position_world = glm::vec3(matrix[3]);
                  light.direction_world = direction_of(matrix);
              });
-    pose_camera(graph, places);
+    pose_camera(graph, nodes);
 }
 
 double duration(const SceneGraph& graph) {
     double longest = 0.0;
-    const auto turn = [&](float speed) {
+    const auto add_rotation = [&](float speed) {
         if (speed != 0.0F)
             longest =
                 std::max(longest, 2.0 * std::numbers::pi / std::abs(static_cast<double>(speed)));
@@ -272,23 +383,144 @@ double duration(const SceneGraph& graph) {
         if (const auto* keys = std::get_if<KeyAnimation>(&animation)) {
             longest = std::max(longest, length_of(*keys));
         } else if (const auto* orbit = std::get_if<Orbit>(&animation)) {
-            turn(orbit->azimuth_speed);
-            turn(orbit->elevation_speed);
+            add_rotation(orbit->azimuth_speed);
+            add_rotation(orbit->elevation_speed);
         } else if (const auto* turntable = std::get_if<Turntable>(&animation)) {
-            turn(turntable->speed);
+            add_rotation(turntable->speed);
         }
     }
     return longest;
 }
 
+glm::mat3 orbit_axes(double azimuth, double elevation) {
+    const glm::dvec3 back(std::sin(azimuth) * std::cos(elevation), std::sin(elevation),
+                          std::cos(azimuth) * std::cos(elevation));
+    const glm::dvec3 right(std::cos(azimuth), 0.0, -std::sin(azimuth));
+    return {glm::vec3(right), glm::vec3(glm::cross(back, right)), glm::vec3(back)};
+}
+
 glm::mat4 looking_along(const glm::vec3& position, const glm::vec3& direction) {
     const glm::vec3 back = -unit_or(direction, -default_back);
-    // Straight up or down, the world's z takes the place of its y.
+    // For a vertical direction the world's z replaces its y.
     const bool is_vertical = std::abs(back.y) > 0.9999F;
     const glm::vec3 up = is_vertical ? glm::vec3(0.0F, 0.0F, 1.0F) : glm::vec3(0.0F, 1.0F, 0.0F);
     const glm::vec3 right = glm::normalize(glm::cross(up, back));
     return {glm::vec4(right, 0.0F), glm::vec4(glm::cross(back, right), 0.0F), glm::vec4(back, 0.0F),
             glm::vec4(position, 1.0F)};
+}
+
+// The union of two graphs
+
+namespace {
+
+template <typename T>
+void join(std::vector<T>& all, std::vector<T>&& more) {
+    all.insert(all.end(), std::make_move_iterator(more.begin()),
+               std::make_move_iterator(more.end()));
+}
+
+void shift(std::optional<Texture>& texture, std::size_t by) {
+    if (texture) texture->image += by;
+}
+
+void shift_images(Material& material, std::size_t by) {
+    shift(material.diffuse_texture, by);
+    shift(material.specular_texture, by);
+    shift(material.emission_texture, by);
+    shift(material.occlusion_texture, by);
+    shift(material.opacity_texture, by);
+    if (material.normal_map) material.normal_map->texture.image += by;
+    if (material.bump_map) material.bump_map->texture.image += by;
+    if (material.metallic_roughness) shift(material.metallic_roughness->texture, by);
+}
+
+void shift_node(Animation& animation, std::size_t by) {
+    if (auto* keys = std::get_if<KeyAnimation>(&animation)) {
+        for (KeyChannel& channel : keys->channels)
+            channel.node += by;
+    } else if (auto* orbit = std::get_if<Orbit>(&animation)) {
+        orbit->node += by;
+    } else if (auto* turntable = std::get_if<Turntable>(&animation)) {
+        turntable->node += by;
+    }
+}
+
+/// Moves the objects of the part to the nodes of the whole graph. Objects that stood in the part's
+/// world hang on the given node.
+class Carriers {
+  public:
+    Carriers(std::size_t node, std::size_t first_node) : node_(node), first_node_(first_node) {}
+
+    /// \param matrix_in_part  the transform of an object from its own space to the part's world
+    template <typename Object, typename MatrixInPart>
+    void join_all(std::vector<Object>& all, std::vector<Carried>& carried,
+                  std::vector<Object>&& more, const std::vector<Carried>& more_carried,
+                  const MatrixInPart& matrix_in_part) const {
+        carried.resize(all.size());
+        for (std::size_t i = 0; i < more.size(); ++i) {
+            const bool hangs = i < more_carried.size() && more_carried[i].node;
+            Carried& result = carried.emplace_back(hangs ? more_carried[i] : Carried{});
+            if (hangs) {
+                *result.node += first_node_;
+            } else {
+                result = Carried{node_, matrix_in_part(more[i])};
+            }
+        }
+        join(all, std::move(more));
+    }
+
+  private:
+    std::size_t node_;
+    std::size_t first_node_;
+};
+
+void append_objects(SceneGraph& graph, SceneGraph& part, const Carriers& carriers) {
+    carriers.join_all(graph.scene.instances, graph.instances, std::move(part.scene.instances),
+                      part.instances,
+                      [](const Instance& instance) { return instance.world_from_object; });
+    carriers.join_all(graph.scene.directional_lights, graph.directional_lights,
+                      std::move(part.scene.directional_lights), part.directional_lights,
+                      [](const DirectionalLight& light) {
+                          return looking_along(glm::vec3(0.0F), light.direction_world);
+                      });
+    carriers.join_all(graph.scene.point_lights, graph.point_lights,
+                      std::move(part.scene.point_lights), part.point_lights,
+                      [](const PointLight& light) {
+                          return looking_along(light.position_world, glm::vec3(0.0F, 0.0F, -1.0F));
+                      });
+    carriers.join_all(graph.scene.spot_lights, graph.spot_lights, std::move(part.scene.spot_lights),
+                      part.spot_lights, [](const SpotLight& light) {
+                          return looking_along(light.point.position_world, light.direction_world);
+                      });
+}
+
+}  // namespace
+
+void append(SceneGraph& graph, SceneGraph part, std::size_t node) {
+    const std::size_t first_image = graph.scene.images.size();
+    const std::size_t first_mesh = graph.scene.meshes.size();
+    const auto first_material = static_cast<std::uint32_t>(graph.scene.materials.size());
+    const std::size_t first_node = graph.nodes.size();
+    for (Material& material : part.scene.materials)
+        shift_images(material, first_image);
+    for (Shared<Mesh>& mesh : part.scene.meshes) {
+        for (MaterialRange& range : mesh.edit().material_ranges) {
+            if (range.material) *range.material += first_material;
+        }
+    }
+    for (Instance& instance : part.scene.instances)
+        instance.mesh += first_mesh;
+    for (SceneNode& child : part.nodes)
+        child.parent = child.parent ? *child.parent + first_node : node;
+    for (Animation& animation : part.animations)
+        shift_node(animation, first_node);
+    append_objects(graph, part, Carriers(node, first_node));
+    join(graph.scene.images, std::move(part.scene.images));
+    join(graph.scene.materials, std::move(part.scene.materials));
+    join(graph.scene.meshes, std::move(part.scene.meshes));
+    join(graph.nodes, std::move(part.nodes));
+    join(graph.animations, std::move(part.animations));
+    graph.scene.ambient += part.scene.ambient;
 }
 
 }  // namespace relief

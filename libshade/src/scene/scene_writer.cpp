@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is different from the scene as its file gives it, found by comparing both as JSON.
-// Tests: tests/tools/window/saving_test.cpp.
+// Writes the differences from the scene as its file gives it. Materials and lights are compared as
+// JSON, the form in which they are written.
 #include "relief/shade/scene_writer.h"
 
 #include <fmt/format.h>
@@ -13,8 +13,7 @@
 #include "relief/mesh/error.h"
 #include "relief/mesh/image_file.h"
 #include "relief/shade/name_materials.h"
-#include "scene/json_values.h"
-#include "scene/json_words.h"
+#include "scene/json_fields.h"
 
 namespace relief {
 namespace {
@@ -23,23 +22,38 @@ bool is_scene_file(const std::filesystem::path& file) {
     return file.extension() == ".json";
 }
 
-/// A path as a file in that folder names it.
-std::string named_from(const std::filesystem::path& folder, const std::filesystem::path& file) {
+/// The path of a file relative to a folder.
+std::string relative_path(const std::filesystem::path& folder, const std::filesystem::path& file) {
     namespace fs = std::filesystem;
-    const fs::path whole = fs::absolute(file).lexically_normal();
+    const fs::path absolute = fs::absolute(file).lexically_normal();
     const fs::path begin = fs::absolute(folder.empty() ? "." : folder).lexically_normal();
-    // Without the slash that "." leaves at its end.
+    // The path of "." ends in a slash, which has no file name.
     const fs::path relative =
-        whole.lexically_relative(begin.has_filename() ? begin : begin.parent_path());
-    return relative.empty() ? whole.string() : relative.string();
+        absolute.lexically_relative(begin.has_filename() ? begin : begin.parent_path());
+    return relative.empty() ? absolute.string() : relative.string();
 }
 
-class Writer {
+/// All lights, in the world.
+Json lights_json(const Scene& scene) {
+    Json lights = Json::array();
+    const auto add = [&](const char* type, const auto& all) {
+        for (const auto& light : all) {
+            Json& object = lights.emplace_back(Json{{"type", type}});
+            add_fields(object, light, {});
+        }
+    };
+    add("directional", scene.directional_lights);
+    add("point", scene.point_lights);
+    add("spot", scene.spot_lights);
+    return lights;
+}
+
+class SceneWriter {
   public:
-    Writer(const std::filesystem::path& file, const SceneToSave& saved)
+    SceneWriter(const std::filesystem::path& file, const SceneToSave& saved)
         : file_(file), saved_(saved), scene_(saved.scene) {
-        Report told;
-        loaded_ = load_scene(saved.source, told);
+        Report ignored;
+        loaded_ = load_scene(saved.source, ignored);
         name_default_material(loaded_);
         name_default_material(scene_);
     }
@@ -47,12 +61,14 @@ class Writer {
     void write() {
         check_meshes();
         begin();
-        say_materials();
-        say_lights();
-        say_surroundings();
-        json_["camera"] = camera_json(saved_.camera);
+        write_materials();
+        write_lights();
+        write_settings();
+        // The matrix keeps the camera without loss.
+        json_["camera"] = {{"matrix", matrix_json(saved_.camera.world_from_view)}};
+        add_fields(json_["camera"], saved_.camera, {});
         json_["picture"] = {{"width", saved_.size.x}, {"height", saved_.size.y}};
-        for (const auto& [image, path] : made_images_)
+        for (const auto& [image, path] : new_images_)
             write_image(path, *std::get<Shared<Image>>(scene_.images[image].source));
         const std::string text = json_.dump(2) + "\n";
         replace_file(file_, std::as_bytes(std::span(text)));
@@ -76,11 +92,12 @@ class Writer {
         }
     }
 
+    /// Starts from the source: a scene with the model, or the scene file itself.
     void begin() {
         if (!is_scene_file(saved_.source)) {
             json_["relief_scene"] = 1;
             json_["nodes"] =
-                Json::array({{{"model", named_from(file_.parent_path(), saved_.source)}}});
+                Json::array({{{"model", relative_path(file_.parent_path(), saved_.source)}}});
             return;
         }
         if (std::filesystem::absolute(file_).parent_path().lexically_normal() !=
@@ -92,7 +109,7 @@ class Writer {
         if (json_.contains("nodes")) drop_cameras(json_["nodes"]);
     }
 
-    /// The scene has one camera.
+    /// Removes the cameras of nodes: a scene has one camera, which is written below.
     static void drop_cameras(Json& nodes) {
         for (Json& node : nodes) {
             node.erase("camera");
@@ -100,12 +117,12 @@ class Writer {
         }
     }
 
-    void say_materials() {
+    void write_materials() {
         Json edits = json_.contains("material_edits") ? json_["material_edits"] : Json::array();
         bool is_edited = !edits.empty();
         for (std::size_t i = 0; i < scene_.materials.size(); ++i) {
-            const Json before = material_json(loaded_.materials[i], loaded_name());
-            const Json now = material_json(scene_.materials[i], name());
+            const Json before = fields_json(loaded_.materials[i], loaded_name());
+            const Json now = fields_json(scene_.materials[i], name());
             if (edits.size() <= i) edits.push_back(nullptr);
             for (const auto& [key, value] : now.items()) {
                 if (value == before[key]) continue;
@@ -116,20 +133,20 @@ class Writer {
         if (is_edited) json_["material_edits"] = std::move(edits);
     }
 
-    void say_lights() {
+    void write_lights() {
         if (lights_json(loaded_) == lights_json(scene_) && loaded_.ambient == scene_.ambient)
             return;
         json_["only_lights"] = lights_json(scene_);
-        json_["ambient"] = json_vector(scene_.ambient);
+        json_["ambient"] = vector_json(scene_.ambient);
     }
 
-    void say_surroundings() {
+    void write_settings() {
         const glm::vec4& back = scene_.background;
-        Json background = json_vector(glm::vec3(back));
-        background.push_back(json_number(back.a));
+        Json background = vector_json(glm::vec3(back));
+        background.push_back(number_json(back.a));
         json_["background"] = std::move(background);
-        json_["exposure"] = json_number(scene_.exposure);
-        json_["tone_mapping"] = word_for(scene_.tone_mapping, tone_mapping_words);
+        json_["exposure"] = number_json(scene_.exposure);
+        json_["tone_mapping"] = enum_name(scene_.tone_mapping);
         json_.erase("environment");
         if (!scene_.environment) return;
         json_["environment"] =
@@ -137,11 +154,11 @@ class Writer {
                 const auto* path = std::get_if<std::filesystem::path>(&source.source);
                 if (path == nullptr)
                     throw InvalidInput("the environment is no file, but " + source.name);
-                return named_from(file_.parent_path(), *path);
+                return relative_path(file_.parent_path(), *path);
             });
     }
 
-    /// Images of the model keep their number: what is the same has the same name.
+    /// Images of the model keep their numbers, so that unchanged textures compare equal.
     [[nodiscard]] static ImageName loaded_name() {
         return [](std::size_t image) { return Json(image); };
     }
@@ -151,20 +168,20 @@ class Writer {
             if (image < loaded_.images.size()) return image;
             const ImageSource& source = scene_.images.at(image);
             if (const auto* path = std::get_if<std::filesystem::path>(&source.source))
-                return named_from(file_.parent_path(), *path);
+                return relative_path(file_.parent_path(), *path);
             if (!std::holds_alternative<Shared<Image>>(source.source))
                 throw InvalidInput(source.name + " is an image in memory, which cannot be named");
-            return made_image(image).filename().string();
+            return new_image(image).filename().string();
         };
     }
 
-    /// The file for an image that was made here.
-    const std::filesystem::path& made_image(std::size_t image) {
-        const auto [entry, is_new] = made_images_.try_emplace(image);
+    /// The file for an image that exists in memory only.
+    const std::filesystem::path& new_image(std::size_t image) {
+        const auto [entry, is_new] = new_images_.try_emplace(image);
         if (is_new) {
             entry->second =
                 file_.parent_path() /
-                fmt::format("{}-image-{}.png", file_.stem().string(), made_images_.size());
+                fmt::format("{}-image-{}.png", file_.stem().string(), new_images_.size());
             if (std::filesystem::exists(entry->second))
                 throw FileError(entry->second, "is there already");
         }
@@ -176,13 +193,13 @@ class Writer {
     Scene scene_;
     Scene loaded_;
     Json json_;
-    std::map<std::size_t, std::filesystem::path> made_images_;
+    std::map<std::size_t, std::filesystem::path> new_images_;
 };
 
 }  // namespace
 
 void save_scene(const std::filesystem::path& file, const SceneToSave& saved) {
-    Writer(file, saved).write();
+    SceneWriter(file, saved).write();
 }
 
 }  // namespace relief

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Checks every index and number of a scene that drawing relies on, and names the first offence as
-// thing, value and limit. Nothing is repaired. Tests: tests/shade/scene/scene_test.cpp.
+// Checks every index and number of a scene and of its graph that drawing and poses rely on, and
+// names the first offence as thing, value and limit. The ranges of fields stand in scene_fields.h.
+// Nothing is repaired.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -9,9 +10,13 @@
 
 #include "relief/mesh/error.h"
 #include "relief/shade/labels.h"
-#include "relief/shade/scene.h"
+#include "relief/shade/scene_fields.h"
+#include "scene/graph.h"
+#include "scene/is_finite.h"
 
 namespace relief {
+
+// Fields by their descriptions
 
 namespace {
 
@@ -19,34 +24,10 @@ std::string text(const glm::vec3& v) {
     return fmt::format("({}, {}, {})", v.x, v.y, v.z);
 }
 
-void check_range(const std::string& thing, float value, float low, float high) {
-    if (!(value >= low && value <= high)) {
+void check_index(const std::string& thing, const char* names, std::size_t index, std::size_t size) {
+    if (index >= size) {
         throw InvalidInput(
-            fmt::format("{} is {}, but must be within [{}, {}]", thing, value, low, high));
-    }
-}
-
-void check_color(const std::string& thing, const glm::vec3& value, float limit) {
-    for (int i = 0; i < 3; ++i) {
-        if (!(value[i] >= 0.0F && value[i] <= limit)) {
-            throw InvalidInput(fmt::format("{} is {}, but every channel must be within [0, {}]",
-                                           thing, text(value), limit));
-        }
-    }
-}
-
-void check_finite(const std::string& thing, const glm::vec3& value) {
-    for (int i = 0; i < 3; ++i) {
-        if (!std::isfinite(value[i])) {
-            throw InvalidInput(fmt::format("{} is {}, but must be finite", thing, text(value)));
-        }
-    }
-}
-
-void check_direction(const std::string& thing, const glm::vec3& value) {
-    check_finite(thing, value);
-    if (value == glm::vec3(0.0F)) {
-        throw InvalidInput(fmt::format("{} is {}, but must have a length", thing, text(value)));
+            fmt::format("{} names {} {}, but there are only {}", thing, names, index, size));
     }
 }
 
@@ -61,55 +42,94 @@ void check_finite(const std::string& thing, const glm::mat4& matrix) {
     }
 }
 
-void check_index(const std::string& thing, const char* names, std::size_t index, std::size_t size) {
-    if (index >= size) {
-        throw InvalidInput(
-            fmt::format("{} names {} {}, but there are only {}", thing, names, index, size));
-    }
-}
+/// Checks the fields of a value by their descriptions.
+class FieldChecker {
+  public:
+    /// \param owner        begins every message: "material 'paint': "
+    /// \param image_count  limits the images of textures
+    FieldChecker(std::string owner, std::size_t image_count)
+        : owner_(std::move(owner)), image_count_(image_count) {}
 
-void validate_textures(const std::string& thing, const Material& material,
-                       std::size_t image_count) {
-    const auto check = [&](const char* name, const std::optional<Texture>& texture) {
-        if (texture) check_index(thing + name, "image", texture->image, image_count);
-    };
-    check("diffuse texture", material.diffuse_texture);
-    check("specular texture", material.specular_texture);
-    check("emission texture", material.emission_texture);
-    check("occlusion texture", material.occlusion_texture);
-    check("opacity texture", material.opacity_texture);
-    if (material.normal_map) {
-        check("normal map", material.normal_map->texture);
-        check_range(thing + "normal map scale", material.normal_map->scale, -1e6F, 1e6F);
+    template <typename Owner>
+    void check(const Owner& value) const {
+        for_each_field<Owner>([&](const auto& field) { check_value(field, value.*field.member); });
     }
-    if (material.bump_map) {
-        check("bump map", material.bump_map->texture);
-        check_range(thing + "bump map strength", material.bump_map->strength, -1e6F, 1e6F);
-        if (material.normal_map) {
-            throw InvalidInput(thing + "has a normal map and a bump map, but one normal");
+
+    template <typename Field, typename Value>
+    void check_value(const Field& field, const std::optional<Value>& value) const {
+        if (value) check_value(field, *value);
+    }
+
+    template <typename Field>
+    void check_value(const Field& field, float value) const {
+        if (field.range == positive_range) {
+            if (value > 0.0F && std::isfinite(value)) return;
+            fail(field, value, "must be positive and finite");
         }
+        if (value >= field.range.min && value <= field.range.max) return;
+        fail(field, value,
+             fmt::format("must be within [{}, {}]", field.range.min, field.range.max));
     }
-    if (material.metallic_roughness) {
-        check("metallic-roughness texture", material.metallic_roughness->texture);
+
+    template <typename Field>
+    void check_value(const Field& field, const glm::vec3& value) const {
+        if (field.unit == FieldUnit::color) {
+            for (int i = 0; i < 3; ++i) {
+                if (value[i] >= field.range.min && value[i] <= field.range.max) continue;
+                fail(field, text(value),
+                     fmt::format("every channel must be within [{}, {}]", field.range.min,
+                                 field.range.max));
+            }
+            return;
+        }
+        if (!is_finite(value)) fail(field, text(value), "must be finite");
+        if (field.unit == FieldUnit::world_direction && value == glm::vec3(0.0F))
+            fail(field, text(value), "must have a length");
     }
-}
 
-void validate_reflection(const std::string& thing, const Material& material) {
-    check_color(thing + "reflectivity", material.reflectivity, 1.0F);
-    check_color(thing + "grazing reflectivity", material.grazing_reflectivity, 1.0F);
-    check_range(thing + "refractive index", material.refractive_index, 1.0F, 1e3F);
-    check_color(thing + "conductor index", material.conductor_index, 1e3F);
-    check_color(thing + "conductor absorption", material.conductor_absorption, 1e3F);
-    check_range(thing + "reflection roughness", material.reflection_roughness, 0.0F, 1.0F);
-    check_range(thing + "transmission", material.transmission, 0.0F, 1.0F);
-}
+    template <typename Field>
+    void check_value(const Field& field, const glm::vec4& value) const {
+        check_value(field, glm::vec3(value));
+        if (value.a >= 0.0F && value.a <= 1.0F) return;
+        throw InvalidInput(fmt::format("{}{} alpha is {}, but must be within [0, 1]", owner_,
+                                       field.label(), value.a));
+    }
 
-/// What only Phong's model has is refused beside metallic-roughness.
-void validate_metallic_roughness(const std::string& thing, const Material& material) {
-    const MetallicRoughness& model = *material.metallic_roughness;
-    check_color(thing + "base colour", model.base_color, 1.0F);
-    check_range(thing + "metallic", model.metallic, 0.0F, 1.0F);
-    check_range(thing + "roughness", model.roughness, 0.0F, 1.0F);
+    template <typename Field>
+    void check_value(const Field& field, const Texture& texture) const {
+        check_index(owner_ + field.label(), "image", texture.image, image_count_);
+    }
+
+    /// A value with fields of its own; names, flags and enumerations are always valid.
+    template <typename Field, typename Value>
+    void check_value(const Field& /*field*/, const Value& value) const {
+        if constexpr (has_fields<Value>) check(value);
+    }
+
+  private:
+    template <typename Field, typename Value>
+    [[noreturn]] void fail(const Field& field, const Value& value, const std::string& rule) const {
+        throw InvalidInput(fmt::format("{}{} is {}, but {}", owner_, field.label(), value, rule));
+    }
+
+    std::string owner_;
+    std::size_t image_count_;
+};
+
+}  // namespace
+
+// Scenes
+
+namespace {
+
+/// Checks a material: its fields, and what contradicts another field.
+void validate_material(const Scene& scene, std::size_t index) {
+    const Material& material = scene.materials[index];
+    const std::string thing = material_label(scene, index) + ": ";
+    FieldChecker(thing, scene.images.size()).check(material);
+    if (material.normal_map && material.bump_map)
+        throw InvalidInput(thing + "has a normal map and a bump map, but one normal");
+    if (!material.metallic_roughness) return;
     if (material.interpolation == Interpolation::gouraud) {
         throw InvalidInput(thing +
                            "is metallic-roughness, which varies by pixel, and asks for Gouraud "
@@ -121,60 +141,21 @@ void validate_metallic_roughness(const std::string& thing, const Material& mater
     }
 }
 
-void validate_material(const Scene& scene, std::size_t index) {
-    const Material& material = scene.materials[index];
-    const std::string thing = material_label(scene, index) + ": ";
-    check_color(thing + "ambient", material.ambient, max_reflectance);
-    check_color(thing + "diffuse", material.diffuse, max_reflectance);
-    check_color(thing + "specular", material.specular, max_reflectance);
-    check_color(thing + "emission", material.emission, max_reflectance);
-    check_range(thing + "shininess", material.shininess, 0.0F, 1e6F);
-    check_range(thing + "occlusion strength", material.occlusion_strength, 0.0F, 1.0F);
-    check_range(thing + "opacity", material.opacity, 0.0F, 1.0F);
-    check_range(thing + "alpha cutoff", material.alpha_cutoff, 0.0F, max_reflectance);
-    validate_reflection(thing, material);
-    validate_textures(thing, material, scene.images.size());
-    if (material.metallic_roughness) validate_metallic_roughness(thing, material);
+void check_cones(const FieldChecker& checker, const std::string& thing, const SpotLight& light) {
+    checker.check_value(outer_cone_field, light.outer_cone);
+    if (light.inner_cone >= 0.0F && light.inner_cone < light.outer_cone) return;
+    throw InvalidInput(
+        fmt::format("{}inner cone is {}, but must be at least 0 and below its outer cone {}", thing,
+                    light.inner_cone, light.outer_cone));
 }
 
-void validate_point(const std::string& thing, const PointLight& light) {
-    check_finite(thing + " position", light.position_world);
-    check_color(thing + " intensity", light.intensity, max_light);
-    if (light.highlight_intensity) {
-        check_color(thing + " highlight intensity", *light.highlight_intensity, max_light);
-    }
-    if (light.range && !(*light.range > 0.0F && std::isfinite(*light.range))) {
-        throw InvalidInput(
-            fmt::format("{} range is {}, but must be positive and finite", thing, *light.range));
-    }
-}
-
-void validate_spot(const std::string& thing, const SpotLight& light) {
-    validate_point(thing, light.point);
-    check_direction(thing + " direction", light.direction_world);
-    check_range(thing + " outer cone", light.outer_cone, 0.0F, std::numbers::pi_v<float> * 0.5F);
-    if (!(light.inner_cone >= 0.0F && light.inner_cone < light.outer_cone)) {
-        throw InvalidInput(
-            fmt::format("{} inner cone is {}, but must be at least 0 and below its outer cone {}",
-                        thing, light.inner_cone, light.outer_cone));
-    }
-}
-
-void validate_lights(const Scene& scene) {
-    check_color("ambient light", scene.ambient, max_light);
-    for (std::size_t i = 0; i < scene.directional_lights.size(); ++i) {
-        const std::string thing = fmt::format("directional light {}", i);
-        check_direction(thing + " direction", scene.directional_lights[i].direction_world);
-        check_color(thing + " irradiance", scene.directional_lights[i].irradiance, max_light);
-        if (const auto& highlights = scene.directional_lights[i].highlight_irradiance) {
-            check_color(thing + " highlight irradiance", *highlights, max_light);
-        }
-    }
-    for (std::size_t i = 0; i < scene.point_lights.size(); ++i) {
-        validate_point(fmt::format("point light {}", i), scene.point_lights[i]);
-    }
-    for (std::size_t i = 0; i < scene.spot_lights.size(); ++i) {
-        validate_spot(fmt::format("spot light {}", i), scene.spot_lights[i]);
+template <typename Light>
+void validate_lights(const char* kind, const std::vector<Light>& lights) {
+    for (std::size_t i = 0; i < lights.size(); ++i) {
+        const std::string thing = fmt::format("{} light {} ", kind, i);
+        const FieldChecker checker(thing, 0);
+        if constexpr (std::is_same_v<Light, SpotLight>) check_cones(checker, thing, lights[i]);
+        checker.check(lights[i]);
     }
 }
 
@@ -211,7 +192,10 @@ void validate(const Camera& camera) {
 void validate_places(const Scene& scene) {
     for (std::size_t i = 0; i < scene.instances.size(); ++i)
         validate_instance(scene, i);
-    validate_lights(scene);
+    FieldChecker("", 0).check_value(ambient_field, scene.ambient);
+    validate_lights("directional", scene.directional_lights);
+    validate_lights("point", scene.point_lights);
+    validate_lights("spot", scene.spot_lights);
 }
 
 void validate(const Scene& scene) {
@@ -225,13 +209,121 @@ void validate(const Scene& scene) {
     for (std::size_t i = 0; i < scene.materials.size(); ++i)
         validate_material(scene, i);
     validate_places(scene);
-    if (scene.environment) {
-        check_range("environment intensity", scene.environment->intensity, 0.0F, max_reflectance);
-    }
     if (scene.camera) validate(*scene.camera);
-    check_color("background", glm::vec3(scene.background), max_light);
-    check_range("background alpha", scene.background.a, 0.0F, 1.0F);
-    check_range("exposure", scene.exposure, 0.0F, max_reflectance);
+    FieldChecker("", 0).check(scene);
+}
+
+// Scene graphs
+
+namespace {
+
+std::string node_label(const SceneGraph& graph, std::size_t node) {
+    const std::string& name = graph.nodes[node].name;
+    return name.empty() ? fmt::format("node {}", node) : fmt::format("node '{}'", name);
+}
+
+void check_node(const SceneGraph& graph, const std::string& thing, std::size_t node) {
+    if (node >= graph.nodes.size()) {
+        throw InvalidInput(fmt::format("{} names node {}, but there are only {}", thing, node,
+                                       graph.nodes.size()));
+    }
+}
+
+void validate_node(const SceneGraph& graph, std::size_t index) {
+    const SceneNode& node = graph.nodes[index];
+    const std::string thing = node_label(graph, index);
+    if (node.parent) check_node(graph, thing + "'s parent", *node.parent);
+    const glm::quat& q = node.rotation;
+    const bool finite = is_finite(node.translation) && is_finite(node.scale) &&
+                        is_finite(glm::vec3(q.x, q.y, q.z)) && std::isfinite(q.w) &&
+                        (!node.matrix || is_finite(*node.matrix));
+    if (!finite) throw InvalidInput(thing + " has a transform that is not finite");
+    if (!(glm::length(q) > 0.0F)) throw InvalidInput(thing + " has a rotation without a length");
+    // A chain of parents is no longer than the number of nodes, unless it is a cycle.
+    std::optional<std::size_t> above = node.parent;
+    for (std::size_t steps = 0; above && *above < graph.nodes.size(); ++steps) {
+        if (*above == index || steps > graph.nodes.size())
+            throw InvalidInput(thing + " is its own ancestor");
+        above = graph.nodes[*above].parent;
+    }
+}
+
+void validate_carried(const SceneGraph& graph, const char* things,
+                      const std::vector<Carried>& carried, std::size_t count) {
+    if (carried.size() > count) {
+        throw InvalidInput(
+            fmt::format("nodes carry {} {}, but there are only {}", carried.size(), things, count));
+    }
+    for (std::size_t i = 0; i < carried.size(); ++i) {
+        const std::string thing = fmt::format("number {} of the {}", i, things);
+        if (carried[i].node) check_node(graph, thing, *carried[i].node);
+        if (!is_finite(carried[i].node_from_object))
+            throw InvalidInput(thing + " has a matrix that is not finite");
+    }
+}
+
+/// An animation of translation, rotation or scale needs a node that has them.
+void check_parts(const SceneGraph& graph, const std::string& thing, std::size_t node) {
+    check_node(graph, thing, node);
+    if (graph.nodes[node].matrix) {
+        throw InvalidInput(
+            fmt::format("{} moves {}, which has a matrix instead of translation, "
+                        "rotation and scale",
+                        thing, node_label(graph, node)));
+    }
+}
+
+void validate_motion(const SceneGraph& graph, const std::string& thing,
+                     const KeyAnimation& animation) {
+    for (const KeyChannel& channel : animation.channels) {
+        check_parts(graph, thing, channel.node);
+        try {
+            check_keys(channel);
+        } catch (const InvalidInput& error) {
+            throw InvalidInput(thing + ": " + error.what());
+        }
+    }
+}
+
+void validate_motion(const SceneGraph& graph, const std::string& thing, const Orbit& orbit) {
+    check_parts(graph, thing, orbit.node);
+    const bool finite = is_finite(orbit.center) && std::isfinite(orbit.azimuth) &&
+                        std::isfinite(orbit.elevation) && std::isfinite(orbit.azimuth_speed) &&
+                        std::isfinite(orbit.elevation_speed);
+    if (!finite) throw InvalidInput(thing + " has a number that is not finite");
+    if (!(orbit.radius >= 0.0F && std::isfinite(orbit.radius))) {
+        throw InvalidInput(fmt::format("{} has radius {}, but it must be finite and not negative",
+                                       thing, orbit.radius));
+    }
+}
+
+void validate_motion(const SceneGraph& graph, const std::string& thing,
+                     const Turntable& turntable) {
+    check_node(graph, thing, turntable.node);
+    if (!is_finite(turntable.axis) || turntable.axis == glm::vec3(0.0F))
+        throw InvalidInput(thing + " has an axis without a length");
+    if (!std::isfinite(turntable.speed) || !std::isfinite(turntable.angle))
+        throw InvalidInput(thing + " has a number that is not finite");
+}
+
+}  // namespace
+
+void validate(const SceneGraph& graph) {
+    for (std::size_t i = 0; i < graph.nodes.size(); ++i)
+        validate_node(graph, i);
+    const Scene& scene = graph.scene;
+    validate_carried(graph, "instances", graph.instances, scene.instances.size());
+    validate_carried(graph, "directional lights", graph.directional_lights,
+                     scene.directional_lights.size());
+    validate_carried(graph, "point lights", graph.point_lights, scene.point_lights.size());
+    validate_carried(graph, "spot lights", graph.spot_lights, scene.spot_lights.size());
+    validate_carried(graph, "cameras", {graph.camera}, 1);
+    for (std::size_t i = 0; i < graph.animations.size(); ++i) {
+        const std::string thing = fmt::format("animation {}", i);
+        std::visit([&](const auto& motion) { validate_motion(graph, thing, motion); },
+                   graph.animations[i]);
+    }
+    validate(scene);
 }
 
 }  // namespace relief

@@ -12,7 +12,7 @@
 
 #include "relief/mesh/error.h"
 #include "relief/shade/scene_file.h"
-#include "scene/key_channel.h"
+#include "scene/graph.h"
 #include "support/shapes.h"
 #include "support/shared_data.h"
 

@@ -159,6 +159,16 @@ TEST_F(SceneFile, MaterialsHaveEveryMemberByItsName) {
     EXPECT_EQ(bumpy.transmission, 0.5F);
 }
 
+TEST_F(SceneFile, ImagesAreNumberedInTheOrderOfTheKeys) {
+    // Saved scenes refer to the images of their source by number.
+    const SceneGraph graph = load(R"("materials": {"m": {"specular_texture": "posx.png",
+        "normal_map": "b.png", "diffuse_texture": "a.png"}})");
+    const Material& m = graph.scene.materials[0];
+    EXPECT_EQ(m.diffuse_texture->image, 0U);
+    EXPECT_EQ(m.normal_map->texture.image, 1U);
+    EXPECT_EQ(m.specular_texture->image, 2U);
+}
+
 TEST_F(SceneFile, LampsHaveTheThreeColoursOfCourses) {
     const SceneGraph graph = load(R"("ambient": 0.1, "lights": [
         {"type": "point", "position": [1, 2, 3], "ambient": 0.2, "diffuse": [1, 0, 0], "specular": 1,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Means of images, by hand.
-#include "scene/texture_means.h"
+#include "scene/scene_import.h"
 
 #include <gtest/gtest.h>
 

@@ -9,18 +9,10 @@
 #include <type_traits>
 
 #include "relief/shade/labels.h"
-#include "window/scene_fields.h"
+#include "relief/shade/scene_fields.h"
 
 namespace relief::tools {
 namespace {
-
-template <typename T>
-inline constexpr bool is_optional = false;
-template <typename T>
-inline constexpr bool is_optional<std::optional<T>> = true;
-
-template <typename T>
-inline constexpr bool has_fields = std::tuple_size_v<std::decay_t<decltype(fields_of<T>)>> != 0;
 
 /// By name and place: what is in the file may have changed.
 bool is_same_image(const ImageSource& a, const ImageSource& b) {
@@ -32,12 +24,13 @@ bool is_same_image(const ImageSource& a, const ImageSource& b) {
 /// Whether two values are, each as its scene means it.
 template <typename T>
 bool is_same(const T& a, const Scene& of_a, const T& b, const Scene& of_b) {
-    if constexpr (is_optional<T>) {
+    if constexpr (is_optional_value<T>) {
         return a.has_value() == b.has_value() && (!a || is_same(*a, of_a, *b, of_b));
     } else if constexpr (has_fields<T>) {
-        const bool are_same = std::apply(
-            [&](auto... members) { return (is_same(a.*members, of_a, b.*members, of_b) && ...); },
-            fields_of<T>);
+        bool are_same = true;
+        for_each_field<T>([&](const auto& field) {
+            are_same = are_same && is_same(a.*field.member, of_a, b.*field.member, of_b);
+        });
         if constexpr (std::is_same_v<T, Texture>)
             return are_same && is_same_image(of_a.images[a.image], of_b.images[b.image]);
         return are_same;
@@ -105,19 +98,19 @@ std::size_t Keeper::adopted(std::size_t image) {
 
 template <typename T>
 void Keeper::adopt(T& value) {
-    if constexpr (is_optional<T>) {
+    if constexpr (is_optional_value<T>) {
         if (value) adopt(*value);
     } else if constexpr (std::is_same_v<T, Texture>) {
         value.image = adopted(value.image);
     } else if constexpr (has_fields<T>) {
-        std::apply([&](auto... members) { (adopt(value.*members), ...); }, fields_of<T>);
+        for_each_field<T>([&](const auto& field) { adopt(value.*field.member); });
     }
 }
 
 template <typename T>
 void Keeper::keep(const T& read, const T& edited, T& fresh) {
     if (is_same(read, read_, edited, edited_)) return;
-    if constexpr (is_optional<T>) {
+    if constexpr (is_optional_value<T>) {
         if (read && edited && fresh) return keep(*read, *edited, *fresh);
         // Put in, taken out, or a part of what the file has no more.
         const bool is_put = read.has_value() != edited.has_value();
@@ -129,9 +122,9 @@ void Keeper::keep(const T& read, const T& edited, T& fresh) {
             has_lost_ = true;
         }
     } else if constexpr (has_fields<T>) {
-        std::apply(
-            [&](auto... members) { (keep(read.*members, edited.*members, fresh.*members), ...); },
-            fields_of<T>);
+        for_each_field<T>([&](const auto& field) {
+            keep(read.*field.member, edited.*field.member, fresh.*field.member);
+        });
         if constexpr (std::is_same_v<T, Texture>) {
             if (is_same_image(read_.images[read.image], edited_.images[edited.image])) return;
             fresh.image = adopted(edited.image);

@@ -4,8 +4,8 @@
 /// another map dropped on it. Pure: neither a window nor files.
 ///
 /// Each number that differs between a scene as it was read and as it was edited is an edit. What is
-/// as it was read follows the file. A panel that edits a number unknown here adds it to the lists
-/// in scene_fields.h. Tests: tests/tools/window/kept_edits_test.cpp.
+/// as it was read follows the file. The fields that can be edited are those of
+/// relief/shade/scene_fields.h.
 #pragma once
 
 #include <string>
