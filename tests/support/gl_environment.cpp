@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "gl/handle.h"
+#include "gl/api.h"
 #include "relief/shade/error.h"
 
 namespace relief {

@@ -8,7 +8,7 @@
 #include <memory>
 #include <numbers>
 
-#include "reference/fresnel.h"
+#include "reference/shading.h"
 
 namespace relief {
 namespace {

@@ -12,7 +12,7 @@
 namespace relief {
 namespace {
 
-/// Cube maps below 256 texels are blurred into fewer, smaller levels (libshade/src/gl/prefilter.h).
+/// Cube maps below 256 texels are blurred into fewer, smaller levels (libshade/src/gl/cube_map.h).
 constexpr int large = 256;
 constexpr int small_map_side = 128;
 /// Of pictures of balls, in pixels.

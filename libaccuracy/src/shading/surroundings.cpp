@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "drawn/lit_scene.h"
-#include "environment/cube_faces.h"
+#include "environment/environment_images.h"
 #include "parallel.h"
 #include "relief/mesh/shapes.h"
 

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Loads a context's table and collects what its driver says. See api.h.
-// Tests: tests/shade/gl/context_test.cpp.
+// Loads the entry points of a context and collects the messages of its driver.
 #include "gl/api.h"
 
 #include <fmt/format.h>
@@ -15,12 +14,12 @@ namespace relief::gl {
 
 namespace {
 
-/// A frame that fails says the same thing for every draw: more than this tells nothing new.
+/// The limit of stored messages: a frame that fails repeats its message for every draw.
 constexpr std::size_t max_messages = 64;
 
 void GLAD_API_PTR collect(GLenum /*source*/, GLenum type, GLuint /*id*/, GLenum /*severity*/,
                           GLsizei length, const GLchar* message, const void* user) {
-    // OpenGL hands the pointer through as const; it is the vector that collect_messages() gave.
+    // The pointer is the vector of collect_messages(), which OpenGL passes as const.
     auto& messages = *static_cast<std::vector<DebugMessage>*>(const_cast<void*>(user));
     if (messages.size() >= max_messages) return;
     std::string text(message, length >= 0 ? static_cast<std::size_t>(length)
@@ -76,7 +75,8 @@ Api::~Api() {
 void Api::collect_messages() {
     if (!has_debug_messages()) return;
     table_.Enable(GL_DEBUG_OUTPUT);
-    // On the calling thread, before the call returns: check() would miss what comes later.
+    // Messages arrive on the calling thread before the call returns; otherwise check() would miss
+    // them.
     table_.Enable(GL_DEBUG_OUTPUT_SYNCHRONOUS);
     table_.DebugMessageControl(GL_DONT_CARE, GL_DONT_CARE, GL_DONT_CARE, 0, nullptr, GL_TRUE);
     table_.DebugMessageControl(GL_DONT_CARE, GL_DEBUG_TYPE_PERFORMANCE, GL_DONT_CARE, 0, nullptr,
@@ -98,9 +98,9 @@ void Api::read_limits() {
     limits_.uniform_block_bytes = integer(table_, GL_MAX_UNIFORM_BLOCK_SIZE);
     limits_.texture_units = integer(table_, GL_MAX_TEXTURE_IMAGE_UNITS);
     limits_.samples = integer(table_, GL_MAX_SAMPLES);
-    // Mesa's rasteriser filters anisotropically by weights of its own even where a texture is
-    // magnified, or looked up at a given level: texels 10 20 30 40, looked up in the middle of the
-    // first without any filter, give 13.5. So it does without.
+    // Mesa's rasterizer applies the weights of its anisotropic filter even if a texture is
+    // magnified, or looked up at a given level: texels 10 20 30 40, looked up in the center of the
+    // first one, give 13.5. So anisotropic filtering is disabled there.
     const bool is_anisotropic =
         table_.ARB_texture_filter_anisotropic != 0 || table_.EXT_texture_filter_anisotropic != 0;
     if (is_anisotropic && !is_software()) {
@@ -115,20 +115,20 @@ std::string Api::text(GLenum name) const {
 
 bool Api::is_software() const {
     const std::string name = renderer();
-    const std::array<std::string_view, 4> rasterisers{"llvmpipe", "softpipe", "swrast", "SWR"};
-    return std::ranges::any_of(rasterisers, [&](std::string_view rasteriser) {
-        return name.find(rasteriser) != std::string::npos;
+    const std::array<std::string_view, 4> rasterizers{"llvmpipe", "softpipe", "swrast", "SWR"};
+    return std::ranges::any_of(rasterizers, [&](std::string_view rasterizer) {
+        return name.find(rasterizer) != std::string::npos;
     });
 }
 
 std::vector<DebugMessage> Api::take_messages() const {
-    // A lost context reports errors for ever: hence the bound.
+    // The loop is limited because a lost context reports errors forever.
     for (std::size_t i = 0; i < max_messages; ++i) {
         const GLenum error = table_.GetError();
         if (error == GL_NO_ERROR) break;
-        // The callback has said the same in more words, unless the driver has none.
-        const bool told = std::ranges::any_of(messages_, &DebugMessage::error);
-        if (!told) messages_.push_back({true, error_name(error)});
+        // The callback has reported the error with more detail, unless the driver lacks KHR_debug.
+        const bool is_reported = std::ranges::any_of(messages_, &DebugMessage::error);
+        if (!is_reported) messages_.push_back({true, error_name(error)});
     }
     return std::exchange(messages_, {});
 }
@@ -137,7 +137,7 @@ void Api::check(std::string_view doing) const {
     std::vector<DebugMessage> messages = take_messages();
     const auto error = std::ranges::find_if(messages, &DebugMessage::error);
     if (error != messages.end()) throw GpuError(fmt::format("{}: {}", doing, error->text));
-    messages_ = std::move(messages);  // Warnings wait for who asks for them.
+    messages_ = std::move(messages);  // Warnings stay until take_messages().
 }
 
 }  // namespace relief::gl

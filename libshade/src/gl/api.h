@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// The OpenGL entry points of one context, and what its driver complained about.
+/// The OpenGL entry points of one context, the messages of its driver, and the owners of OpenGL
+/// names.
 ///
-/// OSMesa's functions differ from EGL's, and calling one with the other current is silently
-/// nothing. So there is no global table: whoever calls OpenGL is handed the Api of its context.
-/// Tests: tests/shade/gl/context_test.cpp.
+/// OSMesa's functions differ from EGL's, and a call of one has no effect while the other is
+/// current. So there is no global table: callers of OpenGL receive the Api of their context.
 #pragma once
 
 #include <glad/gl.h>
@@ -12,39 +12,42 @@
 #include <cstddef>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace relief::gl {
 
-/// What the driver said through KHR_debug.
+// Entry points
+
+/// A message of the driver through KHR_debug.
 struct DebugMessage {
     bool error = false;  ///< An OpenGL error, not a warning or a hint.
     std::string text;
 };
 
-/// What the context can hold.
+/// The limits of a context.
 struct Limits {
     int texture_size = 0;       ///< Texels along a side of a 2D texture.
     int cube_size = 0;          ///< Texels along a side of a cube face.
     int renderbuffer_size = 0;  ///< Pixels along a side.
     int viewport_width = 0;
     int viewport_height = 0;
-    int buffer_texels = 0;        ///< Of a buffer texture.
-    int uniform_block_bytes = 0;  ///< Of one uniform block.
-    int texture_units = 0;        ///< Of a fragment shader.
+    int buffer_texels = 0;        ///< The size of a buffer texture.
+    int uniform_block_bytes = 0;  ///< The size of one uniform block.
+    int texture_units = 0;        ///< The units of a fragment shader.
     int samples = 0;              ///< Per pixel.
-    float anisotropy = 1.0F;      ///< 1 where filtering is isotropic only, or wrong otherwise.
+    float anisotropy = 1.0F;  ///< 1 if filtering is isotropic, or anisotropic filtering is wrong.
 };
 
 /// The table of one context: `api->Clear(...)`.
 ///
-/// Only OpenGL 3.3 core is called without asking; the rest only where has_...() says so.
+/// Only OpenGL 3.3 core is always available; for the rest there are has_...() functions.
 class Api {
   public:
     using Loader = GLADapiproc (*)(const char* name);
 
-    /// Loads the table of the context that is current, and sets the two states that hold for all of
-    /// relief: seamless cube maps, tightly packed rows in uploads and readbacks.
+    /// Loads the table of the context that is current, and sets the two states that all of relief
+    /// relies on: seamless cube maps, tightly packed rows in uploads and readbacks.
     /// \throws GpuError if it offers less than OpenGL 3.3
     explicit Api(Loader loader);
     ~Api();
@@ -58,18 +61,19 @@ class Api {
     /// GL_RENDERER and GL_VERSION.
     [[nodiscard]] std::string renderer() const { return text(GL_RENDERER); }
     [[nodiscard]] std::string version() const { return text(GL_VERSION); }
-    /// Rasterised by the processor (Mesa's llvmpipe, softpipe and swr): no timer queries.
+    /// Whether the processor rasterizes (Mesa's llvmpipe, softpipe and swr); then timer queries are
+    /// wrong.
     [[nodiscard]] bool is_software() const;
 
-    /// Errors and warnings since the last call, at most 64; hints of performance are not among
-    /// them. Where there is no KHR_debug, what glGetError says.
+    /// Errors and warnings since the last call, at most 64, without performance hints. Without
+    /// KHR_debug, the errors of glGetError.
     [[nodiscard]] std::vector<DebugMessage> take_messages() const;
 
     /// \param doing  "uploading texture 'bricks.png'"
-    /// \throws GpuError if OpenGL reported an error since the last check: "DOING: WHAT IT SAID"
+    /// \throws GpuError if OpenGL reported an error since the last check: "DOING: MESSAGE"
     void check(std::string_view doing) const;
 
-    /// GL names that live, for finding leaks: counted by the owners in handle.h.
+    /// The number of live OpenGL names, for finding leaks; the owners below count them.
     [[nodiscard]] std::size_t live_names() const { return live_names_; }
     void count_name(int change) const { live_names_ += static_cast<std::size_t>(change); }
 
@@ -84,7 +88,97 @@ class Api {
     mutable std::size_t live_names_ = 0;
 };
 
-/// "GL_INVALID_OPERATION" and so on; hexadecimal where unknown.
+/// "GL_INVALID_OPERATION" and so on; hexadecimal if unknown.
 std::string error_name(GLenum error);
+
+// Owners of names
+
+/// The owner of one OpenGL name: moved, never copied, deleted at the end of life. The context must
+/// be current when an owner is made, replaced or destroyed, and must outlive it. An empty owner
+/// holds 0.
+///
+/// \tparam Kind  creates and deletes a name: static create(api, ...) and destroy(api, name)
+template <typename Kind>
+class Handle {
+  public:
+    Handle() = default;
+
+    /// Makes a name; a shader also needs its stage.
+    template <typename... Arguments>
+    explicit Handle(const Api& api, Arguments... arguments)
+        : api_(&api), name_(Kind::create(api, arguments...)) {
+        api.count_name(+1);
+    }
+
+    ~Handle() { reset(); }
+    Handle(const Handle&) = delete;
+    Handle& operator=(const Handle&) = delete;
+    Handle(Handle&& other) noexcept
+        : api_(std::exchange(other.api_, nullptr)), name_(std::exchange(other.name_, 0)) {}
+    Handle& operator=(Handle&& other) noexcept {
+        if (this != &other) {
+            reset();
+            api_ = std::exchange(other.api_, nullptr);
+            name_ = std::exchange(other.name_, 0);
+        }
+        return *this;
+    }
+
+    /// The OpenGL name; 0 if empty.
+    [[nodiscard]] GLuint name() const { return name_; }
+    explicit operator bool() const { return name_ != 0; }
+
+    /// Deletes the name and holds 0.
+    void reset() noexcept {
+        if (api_ == nullptr) return;
+        Kind::destroy(*api_, name_);
+        api_->count_name(-1);
+        api_ = nullptr;
+        name_ = 0;
+    }
+
+  private:
+    const Api* api_ = nullptr;
+    GLuint name_ = 0;
+};
+
+namespace kind {
+
+/// The kinds that OpenGL creates and deletes in arrays.
+template <auto Gen, auto Delete>
+struct Generated {
+    static GLuint create(const Api& api) {
+        GLuint name = 0;
+        (api.operator->()->*Gen)(1, &name);
+        return name;
+    }
+    static void destroy(const Api& api, GLuint name) { (api.operator->()->*Delete)(1, &name); }
+};
+
+struct Program {
+    static GLuint create(const Api& api) { return api->CreateProgram(); }
+    static void destroy(const Api& api, GLuint name) { api->DeleteProgram(name); }
+};
+
+struct Shader {
+    static GLuint create(const Api& api, GLenum stage) { return api->CreateShader(stage); }
+    static void destroy(const Api& api, GLuint name) { api->DeleteShader(name); }
+};
+
+}  // namespace kind
+
+using Buffer = Handle<kind::Generated<&GladGLContext::GenBuffers, &GladGLContext::DeleteBuffers>>;
+using Texture =
+    Handle<kind::Generated<&GladGLContext::GenTextures, &GladGLContext::DeleteTextures>>;
+using Sampler =
+    Handle<kind::Generated<&GladGLContext::GenSamplers, &GladGLContext::DeleteSamplers>>;
+using VertexArray =
+    Handle<kind::Generated<&GladGLContext::GenVertexArrays, &GladGLContext::DeleteVertexArrays>>;
+using Framebuffer =
+    Handle<kind::Generated<&GladGLContext::GenFramebuffers, &GladGLContext::DeleteFramebuffers>>;
+using Renderbuffer =
+    Handle<kind::Generated<&GladGLContext::GenRenderbuffers, &GladGLContext::DeleteRenderbuffers>>;
+using Program = Handle<kind::Program>;
+using Shader = Handle<kind::Shader>;
 
 }  // namespace relief::gl

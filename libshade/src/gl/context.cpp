@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Chooses the library that gives the context, and says why where none can. See context.h.
-// Tests: tests/shade/gl/context_test.cpp.
+// Chooses the library that provides the context, and reports the reasons if none can.
 #include "relief/shade/context.h"
 
 #include <fmt/format.h>
@@ -15,17 +14,17 @@ namespace relief {
 
 namespace {
 
-/// This thread has a Context: OSMesa and EGL would not notice that the other is current as well.
+/// Whether this thread has a Context. OSMesa and EGL would not notice that both are current.
 thread_local bool thread_has_context = false;
 
 /// A context that works.
 struct Opened {
-    std::unique_ptr<gl::PlatformContext> platform;  ///< None where the caller owns it.
+    std::unique_ptr<gl::PlatformContext> platform;  ///< Empty if the caller owns it.
     std::unique_ptr<gl::Api> api;
     std::string name;
 };
 
-/// What was tried in vain: "OSMesa: libOSMesa.so.8: cannot open shared object file; ...".
+/// The failed attempts: "OSMesa: libOSMesa.so.8: cannot open shared object file; ...".
 using Failures = std::vector<std::string>;
 
 /// The table of a context that has just been made current.
@@ -60,7 +59,7 @@ Opened open_egl(bool hardware, Failures& failures) {
         tried = true;
         try {
             Opened opened = with_api(gl::make_egl_context(display), title);
-            // A display adapter without a driver is rasterised on the processor all the same.
+            // A display adapter without a driver is rasterized on the processor as well.
             if (opened.api->is_software() != hardware) return opened;
             failures.push_back(fmt::format("{}: {}: it is drawn by {}", title, display.name,
                                            opened.api->renderer()));
@@ -121,7 +120,7 @@ Context::~Context() {
            "a context is destroyed on the thread that made it");
     assert(implementation_->opened.api->live_names() == 0 &&
            "whatever lives in a context goes before it");
-    implementation_->opened.api.reset();  // Before the context, in which it is still registered.
+    implementation_->opened.api.reset();  // The context must outlive it.
     implementation_.reset();
     thread_has_context = false;
 }

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// What differs between the libraries that give a context. Neither OSMesa nor EGL notices the
+/// The libraries that provide contexts, OSMesa and EGL, behind one interface. Neither notices the
 /// other: each context is released before another is made current.
-/// Tests: tests/shade/gl/context_test.cpp.
 #pragma once
 
 #include <memory>
@@ -28,16 +27,16 @@ class PlatformContext {
 /// \throws GpuError saying why not
 std::unique_ptr<PlatformContext> make_osmesa_context();
 
-/// A way to OpenGL that EGL offers.
+/// A display that EGL offers.
 struct EglDisplay {
     enum class Kind { hardware, software, unknown };
 
-    void* display = nullptr;  ///< EGLDisplay, not initialised yet.
+    void* display = nullptr;  ///< EGLDisplay, not initialized yet.
     Kind kind = Kind::unknown;
     std::string name;  ///< For messages: "device 1 (/dev/dri/card0)", "surfaceless".
 };
 
-/// All of them: the devices in EGL's order, then Mesa's surfaceless platform.
+/// All displays: the devices in EGL's order, then Mesa's surfaceless platform.
 /// \throws GpuError if EGL is missing or offers none
 std::vector<EglDisplay> egl_displays();
 

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Compiling, linking, and asking the driver what it kept. See program.h.
-// Tests: tests/shade/gl/program_test.cpp.
+// Compiles and links programs, and queries their active variables.
 #include "gl/program.h"
 
 #include <fmt/format.h>

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Shader source to linked program, and what the linked program really uses.
-/// Tests: tests/shade/gl/program_test.cpp.
+/// Programs: from shader source to a linked program and its active variables.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -11,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#include "gl/handle.h"
+#include "gl/api.h"
 
 namespace relief::gl {
 
@@ -21,12 +20,12 @@ struct Location {
     GLuint location = 0;
 };
 
-/// What a program is made of.
+/// The sources of a program.
 struct ProgramSources {
     std::string name;  ///< For messages: "surface (normal map, 2 point lights)".
     std::string vertex;
     std::string fragment;
-    std::vector<Location> attributes;  ///< Others are placed by the driver.
+    std::vector<Location> attributes;  ///< The driver places the others.
     std::vector<Location> outputs;     ///< Empty: the one output is at 0.
 };
 
@@ -35,19 +34,18 @@ struct ActiveVariable {
     std::string name;
     GLenum type = 0;      ///< GL_FLOAT_VEC3, GL_SAMPLER_2D, ...
     GLint size = 1;       ///< Elements of an array, else 1.
-    GLint location = -1;  ///< -1 where it has none.
+    GLint location = -1;  ///< -1 if it has none.
 };
 
-/// What the driver kept of a program, each list sorted by name.
+/// The active variables of a program, each list sorted by name.
 struct ProgramInterface {
-    std::vector<ActiveVariable> attributes;  ///< Without gl_VertexID and its like.
-    std::vector<ActiveVariable> uniforms;    ///< Outside blocks, samplers apart.
+    std::vector<ActiveVariable> attributes;  ///< Without built-in ones such as gl_VertexID.
+    std::vector<ActiveVariable> uniforms;    ///< Without those in blocks and without samplers.
     std::vector<ActiveVariable> samplers;
     std::vector<std::string> uniform_blocks;
 };
 
-/// A linked program. Uniforms are set by name; the program need not be current for looking up, but
-/// must be (use()) for setting.
+/// A linked program. Uniforms are set by name while the program is current (use()).
 class LinkedProgram {
   public:
     /// \throws GpuError with the driver's log if a stage does not compile or the program does not
@@ -57,11 +55,11 @@ class LinkedProgram {
     [[nodiscard]] GLuint name() const { return program_.name(); }
     [[nodiscard]] const ProgramInterface& interface() const { return interface_; }
 
-    /// Makes it current.
+    /// Makes the program current.
     void use() const;
 
-    /// Sets a uniform of the current program. False, and nothing else, if the program has no such
-    /// uniform: an effect left out, or one that the driver found to be unused.
+    /// Sets a uniform of the current program. Returns false without effect if the program has no
+    /// such uniform, because an effect is left out or the driver removed an unused variable.
     /// \throws GpuError if the uniform's type differs
     bool set(std::string_view name, int value) const;  ///< int, or the unit of a sampler.
     bool set(std::string_view name, float value) const;

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// A scene's picture, pixel by pixel: what the ray through the centre meets, each shaded, composed
-// front to back, the skybox behind. Linear light, in double; hard cases as in shaders/README.md.
-// Composition: [Porter and Duff 1984]. Tests: tests/shade/reference/reference_test.cpp.
+// The reference picture, pixel by pixel: the hits of the ray through the center of a pixel are
+// shaded and composed front to back over the skybox, and radiance becomes a picture by exposure,
+// tone mapping and sRGB codes over the background. Linear light, in double; hard cases as in
+// shaders/README.md. Sources: [Porter and Duff 1984] (composition), [Narkowicz 2016] (the fit to
+// the film curve).
 #include "relief/shade/reference.h"
 
 #include <algorithm>
@@ -10,8 +12,6 @@
 #include <optional>
 
 #include "parallel.h"
-#include "reference/limited.h"
-#include "reference/prepared_scene.h"
 #include "reference/shading.h"
 #include "reference/surface.h"
 #include "reference/visibility.h"
@@ -21,21 +21,40 @@ namespace relief {
 
 namespace {
 
+/// The largest radiance in a linear picture.
+constexpr double max_radiance = 3e38;
+
+/// Clamps to [0, limit]; NaN becomes 0.
+glm::dvec3 limited(const glm::dvec3& radiance, double limit) {
+    glm::dvec3 result(0.0);
+    for (int i = 0; i < 3; ++i) {
+        if (radiance[i] > 0.0) result[i] = std::min(radiance[i], limit);
+    }
+    return result;
+}
+
+}  // namespace
+
+// Radiance
+
+namespace {
+
 using reference::Hit;
 using reference::PreparedScene;
 using reference::Trace;
 
-/// One ray's outcome.
+/// The result of one ray.
 struct Sample {
     glm::dvec4 color{0.0};    ///< Alpha not multiplied in.
-    std::vector<Hit> layers;  ///< What it met, nearest first; holes as well, but no hidden sides.
+    std::vector<Hit> layers;  ///< The hits, nearest first, including transparent
+                              ///< ones; without culled sides.
     std::optional<Hit> first_shown;
     Trace trace;
     bool ambiguous = false;  ///< Two surfaces at depths that OpenGL may not tell apart.
 };
 
-/// How much of what is behind it a surface hides; NaN hides nothing.
-double shown_alpha(const Material& material, double alpha) {
+/// The coverage of a surface by its alpha mode; 0 for NaN.
+double coverage(const Material& material, double alpha) {
     switch (material.alpha_mode) {
         case AlphaMode::mask:
             return alpha >= static_cast<double>(material.alpha_cutoff) ? 1.0 : 0.0;
@@ -54,7 +73,7 @@ std::vector<reference::ViewMesh> view_meshes(const PreparedScene& prepared) {
     return meshes;
 }
 
-/// Draws rays through a picture.
+/// Traces the rays of a picture.
 class Tracer {
   public:
     Tracer(const PreparedScene& prepared, const ReferenceSettings& settings)
@@ -68,7 +87,7 @@ class Tracer {
     /// \param x, y  in pixels from the upper left corner
     [[nodiscard]] Sample trace(double x, double y) const;
 
-    /// Whether going from one sample to the other nothing jumps.
+    /// Whether the picture is continuous between two samples.
     [[nodiscard]] bool is_continuous(const Sample& a, const Sample& b) const;
 
     /// Whether the next pixel may lie beyond the horizon of a textured triangle's plane, where the
@@ -83,9 +102,10 @@ class Tracer {
     }
     [[nodiscard]] bool is_same_surface(const Hit& a, const Hit& b) const;
     [[nodiscard]] bool is_too_close(const Hit& front, const Hit& behind) const;
-    /// Adds what a hit shows to the colour, alpha multiplied in. \return whether it hides the rest
+    /// Adds the color of a hit, alpha multiplied in. \return whether it hides all hits behind it
     bool add(const Hit& hit, Sample& sample) const;
-    [[nodiscard]] glm::dvec4 behind(const glm::dvec2& view_plane, Trace& trace) const;
+    /// The skybox, or transparency.
+    [[nodiscard]] glm::dvec4 skybox(const glm::dvec2& view_plane, Trace& trace) const;
 
     const PreparedScene& prepared_;
     const ReferenceSettings& settings_;
@@ -104,26 +124,27 @@ bool Tracer::add(const Hit& hit, Sample& sample) const {
     if (!is_drawn(hit, material)) return false;
     sample.layers.push_back(hit);
     const reference::Shaded shaded = reference::shade(prepared_, hit, material, sample.trace);
-    const double alpha = shown_alpha(material, shaded.alpha);
+    const double alpha = coverage(material, shaded.alpha);
     sample.trace.decide(alpha > 0.0 ? 1 : 0);
     if (alpha == 0.0) return false;
     if (!sample.first_shown) sample.first_shown = hit;
-    const glm::dvec3 radiance = reference::limited(shaded.radiance, reference::largest_radiance);
+    const glm::dvec3 radiance = limited(shaded.radiance, max_radiance);
     const double share = (1.0 - sample.color.a) * alpha;
     sample.color += glm::dvec4(radiance * share, share);
     return alpha == 1.0;
 }
 
-glm::dvec4 Tracer::behind(const glm::dvec2& view_plane, Trace& trace) const {
-    const auto& described = prepared_.scene.environment;
-    if (!described || !described->skybox) return glm::dvec4(0.0);
+glm::dvec4 Tracer::skybox(const glm::dvec2& view_plane, Trace& trace) const {
+    const auto& environment = prepared_.scene.environment;
+    if (!environment || !environment->skybox) return glm::dvec4(0.0);
     const glm::dmat3 world_from_view(camera().world_from_view);
-    const glm::dvec3 way = world_from_view * glm::dvec3(view_plane, -1.0);
-    const glm::dvec3 radiance = prepared_.environment->looked_up(way, trace);
-    return {reference::limited(radiance, reference::largest_radiance), 1.0};
+    const glm::dvec3 direction = world_from_view * glm::dvec3(view_plane, -1.0);
+    const glm::dvec3 radiance = prepared_.environment->looked_up(direction, trace);
+    return {limited(radiance, max_radiance), 1.0};
 }
 
-/// Half a millionth of the depth range: what a depth buffer of 24 bits tells apart, twenty times.
+/// Whether the depths differ by less than half a millionth of the depth range, about twenty steps
+/// of a 24-bit depth buffer.
 bool Tracer::is_too_close(const Hit& front, const Hit& behind) const {
     const double near = static_cast<double>(camera().near);
     const double far = static_cast<double>(camera().far);
@@ -137,9 +158,9 @@ Sample Tracer::trace(double x, double y) const {
     const std::vector<Hit> hits = visibility_.hits(view_plane.x, view_plane.y);
     Sample sample;
     for (std::size_t i = 0; i < hits.size(); ++i) {
-        const std::size_t shown = sample.layers.size();
+        const std::size_t layers_before = sample.layers.size();
         const bool hides_the_rest = add(hits[i], sample);
-        if (sample.layers.size() > shown && i + 1 < hits.size()) {
+        if (sample.layers.size() > layers_before && i + 1 < hits.size()) {
             const Material& next =
                 prepared_.material_of(hits[i + 1].instance, hits[i + 1].triangle);
             sample.ambiguous = sample.ambiguous ||
@@ -148,14 +169,14 @@ Sample Tracer::trace(double x, double y) const {
         if (hides_the_rest) break;
     }
     if (sample.color.a < 1.0)
-        sample.color += (1.0 - sample.color.a) * behind(view_plane, sample.trace);
+        sample.color += (1.0 - sample.color.a) * skybox(view_plane, sample.trace);
     if (sample.color.a > 0.0) {
         sample.color = {glm::dvec3(sample.color) / sample.color.a, sample.color.a};
     }
     return sample;
 }
 
-/// Whether two hits lie on one piece of surface whose attributes go on from one to the other.
+/// Whether two hits lie on one piece of surface with continuous attributes.
 bool Tracer::is_same_surface(const Hit& a, const Hit& b) const {
     if (a.instance != b.instance || reference::is_back(prepared_, a) != is_back(prepared_, b)) {
         return false;
@@ -202,22 +223,23 @@ bool Tracer::is_edge_on(const Sample& sample, double x, double y) const {
     });
 }
 
-/// Whether textures pass by faster than most of a texel a pixel between two rays.
-/// \param apart  how many pixels they are apart
-bool passes_fast(const Sample& a, const Sample& b, double apart) {
-    constexpr double most = 0.7;
+/// Whether a texture lookup moves by more than 0.7 texels a pixel between two rays. \param apart
+/// the distance of the rays in pixels
+bool moves_fast(const Sample& a, const Sample& b, double apart) {
+    constexpr double max_texels = 0.7;
     const auto& from = a.trace.places();
     const auto& to = b.trace.places();
     if (from.size() != to.size()) return true;
     for (std::size_t i = 0; i < from.size(); ++i) {
-        if (!(glm::length(to[i] - from[i]) <= most * apart)) return true;
+        if (!(glm::length(to[i] - from[i]) <= max_texels * apart)) return true;
     }
     return false;
 }
 
-/// Whether OpenGL averages a texture: by how fast it passes here, and, since it takes differences
-/// within blocks of four pixels, on the way to all pixels around. Where another surface begins
-/// there, OpenGL goes on along this one, and nothing is known: that counts as averaged.
+/// Whether OpenGL minifies a texture: by the derivative of its lookup here and, since OpenGL takes
+/// differences within blocks of four pixels, between this pixel and all its neighbors. If another
+/// surface begins there, OpenGL extrapolates this one, which is not known here: that counts as
+/// minified.
 bool is_minified(const Tracer& tracer, const Sample& center, double x, double y, double margin) {
     if (center.trace.places().empty()) return false;
     for (const double apart : {margin, 1.0}) {
@@ -225,7 +247,7 @@ bool is_minified(const Tracer& tracer, const Sample& center, double x, double y,
             for (const double right : {-apart, 0.0, apart}) {
                 if (right == 0.0 && down == 0.0) continue;
                 const Sample beside = tracer.trace(x + right, y + down);
-                if (passes_fast(center, beside, std::hypot(right, down))) return true;
+                if (moves_fast(center, beside, std::hypot(right, down))) return true;
             }
         }
     }
@@ -234,8 +256,8 @@ bool is_minified(const Tracer& tracer, const Sample& center, double x, double y,
 
 bool is_near_edge(const Tracer& tracer, const Sample& center, double x, double y, double margin) {
     if (!(margin > 0.0)) return false;
-    for (const glm::dvec2& way : {glm::dvec2(1, 1), {1, -1}, {-1, 1}, {-1, -1}}) {
-        const Sample beside = tracer.trace(x + margin * way.x, y + margin * way.y);
+    for (const glm::dvec2& corner : {glm::dvec2(1, 1), {1, -1}, {-1, 1}, {-1, -1}}) {
+        const Sample beside = tracer.trace(x + margin * corner.x, y + margin * corner.y);
         if (!tracer.is_continuous(center, beside)) return true;
     }
     return tracer.is_edge_on(center, x, y) || is_minified(tracer, center, x, y, margin);
@@ -280,6 +302,64 @@ Reference render_reference(const Scene& scene, const ReferenceSettings& settings
         }
     });
     return result;
+}
+
+// Pictures
+
+namespace {
+
+double tone_mapped(double x, ToneMapping mapping) {
+    switch (mapping) {
+        case ToneMapping::reinhard:
+            return x / (1.0 + x);
+        case ToneMapping::aces:
+            return x * (2.51 * x + 0.03) / (x * (2.43 * x + 0.59) + 0.14);
+        case ToneMapping::none:
+            break;
+    }
+    return x;
+}
+
+/// Radiance as a picture shows it, before coding.
+glm::dvec3 shown(const glm::dvec3& radiance, const Scene& scene, OutputCoding output) {
+    if (output == OutputCoding::linear) return limited(radiance, max_radiance);
+    if (output == OutputCoding::clamped) return limited(radiance, 1.0);
+    glm::dvec3 light = limited(radiance * static_cast<double>(scene.exposure), max_radiance);
+    for (int i = 0; i < 3; ++i)
+        light[i] = std::min(tone_mapped(light[i], scene.tone_mapping), 1.0);
+    return light;
+}
+
+/// Composes a color over the background; neither is multiplied by its alpha.
+glm::dvec4 over(const glm::dvec4& front, const glm::dvec4& background) {
+    const double behind = background.a * (1.0 - front.a);
+    const double alpha = front.a + behind;
+    if (alpha <= 0.0) return glm::dvec4(0.0);
+    return {(glm::dvec3(front) * front.a + glm::dvec3(background) * behind) / alpha, alpha};
+}
+
+}  // namespace
+
+Image reference_picture(const Image& radiance, const Scene& scene, OutputCoding output) {
+    if (output == OutputCoding::half) throw InvalidInput("half is no picture's coding");
+    const bool codes = output == OutputCoding::srgb;
+    Image picture = make_image(radiance.width, radiance.height, 4, 32,
+                               codes ? ColorSpace::srgb : ColorSpace::linear);
+    const std::span<const float> from = radiance.as<float>();
+    const std::span<float> to = picture.as<float>();
+    glm::dvec4 background(scene.background);
+    if (output != OutputCoding::linear) background = glm::min(background, glm::dvec4(1.0));
+    for (std::size_t i = 0; i < to.size(); i += 4) {
+        const glm::dvec3 color(from[i], from[i + 1], from[i + 2]);
+        const glm::dvec4 pixel =
+            over({shown(color, scene, output), static_cast<double>(from[i + 3])}, background);
+        for (int channel = 0; channel < 4; ++channel) {
+            const auto value = static_cast<float>(pixel[channel]);
+            to[i + static_cast<std::size_t>(channel)] =
+                codes && channel < 3 ? srgb_from_linear(value) : value;
+        }
+    }
+    return picture;
 }
 
 }  // namespace relief

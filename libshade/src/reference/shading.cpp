@@ -1,25 +1,142 @@
 // SPDX-License-Identifier: Apache-2.0
 // Material's formula as material.h states it: Phong's model [Phong 1975], [Blinn 1977], and glTF's
 // metallic-roughness (glTF 2.0, appendix B; [Walter et al. 2007]). World space, linear light, in
-// double; hard cases as in shaders/README.md. Tests: tests/shade/reference/shading_test.cpp.
+// double; hard cases as in shaders/README.md. Fresnel's formulas have a complex index of
+// refraction. Sources: [Born and Wolf 1999], sections 1.5.2 and 14.2; [Schlick 1994];
+// KHR_lights_punctual for ranges and cones.
 #include "reference/shading.h"
 
 #include <algorithm>
 #include <cmath>
+#include <glm/glm.hpp>
 #include <numbers>
+#include <vector>
 
-#include "reference/fresnel.h"
-#include "reference/lamps.h"
 #include "reference/surface.h"
+#include "relief/shade/scene.h"
 
 namespace relief::reference {
 
+// Fresnel
+
+double fresnel(std::complex<double> index, double cosine) {
+    if (index == 1.0) return 0.0;
+    if (index == 0.0 || cosine <= 0.0) return 1.0;
+    // Snell's law: the sine inside is the sine outside divided by the index.
+    const std::complex<double> cosine_inside =
+        std::sqrt(1.0 - (1.0 - cosine * cosine) / (index * index));
+    const std::complex<double> across =
+        (cosine - index * cosine_inside) / (cosine + index * cosine_inside);
+    const std::complex<double> along =
+        (index * cosine - cosine_inside) / (index * cosine + cosine_inside);
+    return 0.5 * (std::norm(across) + std::norm(along));
+}
+
+glm::dvec3 fresnel_factor(const Material& material, double n_dot_v) {
+    const glm::dvec3 reflectivity(material.reflectivity);
+    if (reflectivity == glm::dvec3(0.0)) return glm::dvec3(0.0);
+    const double cosine = glm::clamp(n_dot_v, 0.0, 1.0);
+    glm::dvec3 factor(0.0);
+    switch (material.fresnel) {
+        case FresnelModel::schlick:
+            factor = reflectivity + (glm::dvec3(material.grazing_reflectivity) - reflectivity) *
+                                        std::pow(1.0 - cosine, 5.0);
+            break;
+        case FresnelModel::dielectric:
+            factor = reflectivity * fresnel(static_cast<double>(material.refractive_index), cosine);
+            break;
+        case FresnelModel::conductor:
+            for (int i = 0; i < 3; ++i) {
+                const std::complex<double> index(
+                    static_cast<double>(material.conductor_index[i]),
+                    static_cast<double>(material.conductor_absorption[i]));
+                factor[i] = reflectivity[i] * fresnel(index, cosine);
+            }
+            break;
+    }
+    return glm::clamp(factor, 0.0, 1.0);
+}
+
+// Lights
+
 namespace {
 
-/// The least roughness of metallic-roughness: smoother, highlights of lamps without size vanish.
-constexpr double least_roughness = 0.045;
+/// The light of one source at a point, as lights.h defines it: irradiance over pi at normal
+/// incidence. A light that touches the point sends nothing; a close one no more than max_light.
+struct Incoming {
+    glm::dvec3 light_world;  ///< Unit, to the light.
+    glm::dvec3 irradiance;
+    glm::dvec3 highlight_irradiance;
+};
 
-/// Where a point is shaded, and what its textures hold there.
+/// A light closer than this touches the point: a float can square this distance.
+constexpr double touching = 1e-18;
+
+double fall_off(const PointLight& light, double distance) {
+    double share = light.falloff == Falloff::none ? 1.0 : 1.0 / (distance * distance);
+    if (light.range) {
+        const double part = distance / static_cast<double>(*light.range);
+        share *= std::clamp(1.0 - part * part * part * part, 0.0, 1.0);
+    }
+    return share;
+}
+
+glm::dvec3 limited_light(const glm::dvec3& irradiance) {
+    return glm::min(irradiance, glm::dvec3(static_cast<double>(max_light)));
+}
+
+/// \param share  the share of the light that its cone transmits, by the direction to the light
+template <typename Share>
+void add(const PointLight& light, const glm::dvec3& position, Share share,
+         std::vector<Incoming>& incoming) {
+    const glm::dvec3 offset = glm::dvec3(light.position_world) - position;
+    const double distance = glm::length(offset);
+    if (!(distance > touching)) return;
+    const glm::dvec3 to_light = offset / distance;
+    const double factor = fall_off(light, distance) * share(to_light);
+    const glm::vec3 highlights = light.highlight_intensity.value_or(light.intensity);
+    incoming.push_back({to_light, limited_light(glm::dvec3(light.intensity) * factor),
+                        limited_light(glm::dvec3(highlights) * factor)});
+}
+
+double cone_share(const SpotLight& spot, const glm::dvec3& light_world) {
+    // Cones with a smaller difference of cosines have a sharp edge (KHR_lights_punctual).
+    constexpr double min_difference = 1e-3;
+    const double cosine = glm::dot(-light_world, glm::normalize(glm::dvec3(spot.direction_world)));
+    const double inner = std::cos(static_cast<double>(spot.inner_cone));
+    const double outer = std::cos(static_cast<double>(spot.outer_cone));
+    const double share =
+        std::clamp((cosine - outer) / std::max(min_difference, inner - outer), 0.0, 1.0);
+    return share * share;
+}
+
+/// The light of all sources but those that touch the point.
+std::vector<Incoming> incoming_light(const Scene& scene, const glm::dvec3& position_world) {
+    std::vector<Incoming> incoming;
+    for (const DirectionalLight& light : scene.directional_lights) {
+        incoming.push_back({-glm::normalize(glm::dvec3(light.direction_world)),
+                            glm::dvec3(light.irradiance),
+                            glm::dvec3(light.highlight_irradiance.value_or(light.irradiance))});
+    }
+    for (const PointLight& light : scene.point_lights) {
+        add(
+            light, position_world, [](const glm::dvec3&) { return 1.0; }, incoming);
+    }
+    for (const SpotLight& spot : scene.spot_lights) {
+        add(
+            spot.point, position_world,
+            [&](const glm::dvec3& to_light) { return cone_share(spot, to_light); }, incoming);
+    }
+    return incoming;
+}
+
+// Materials
+
+/// The smallest roughness of metallic-roughness. On smoother surfaces, highlights of point lights
+/// would vanish.
+constexpr double min_roughness = 0.045;
+
+/// A point to be shaded, with its textures.
 struct Context {
     const PreparedScene& prepared;
     const Material& material;
@@ -32,12 +149,12 @@ struct Context {
     }
 };
 
-/// 1 at x = 0, whatever the cosine.
+/// The power of a cosine; 1 for the exponent 0, for every cosine.
 double power(double cosine, double exponent) {
     return exponent == 0.0 ? 1.0 : std::pow(std::max(cosine, 0.0), exponent);
 }
 
-/// s of the formula.
+/// The term s of the formula.
 double highlight(const Material& material, const Surface& at, const glm::dvec3& light) {
     const double shininess = static_cast<double>(material.shininess);
     const glm::dvec3& n = at.normal_world;
@@ -47,40 +164,41 @@ double highlight(const Material& material, const Surface& at, const glm::dvec3& 
     }
     const glm::dvec3 sum = light + at.view_world;
     const double length = glm::length(sum);
-    // Without a half vector it counts as perpendicular to the normal.
+    // An undefined half vector counts as perpendicular to the normal.
     const double cosine = length > 1e-15 ? glm::dot(n, sum) / length : 0.0;
     const double s = power(cosine, shininess);
     const bool normalized = material.specular_model == SpecularModel::blinn_phong_normalized;
     return normalized ? s * (shininess + 2.0) / 8.0 : s;
 }
 
-/// What lamps do at one point, before the surface's colours.
-struct LampSums {
+/// The sums over all lights at one point, before they are multiplied by the surface's colors.
+struct LightSums {
     glm::dvec3 scattered{0.0};   ///< sum L max(n.l, 0)
     glm::dvec3 highlights{0.0};  ///< sum H s [n.l > 0]
 };
 
-LampSums lamp_sums(const Context& context, const Surface& at) {
-    LampSums sums;
-    for (const Incoming& lamp : incoming_light(context.prepared.scene, at.position_world)) {
-        const double n_dot_l = glm::dot(at.normal_world, lamp.light_world);
+LightSums light_sums(const Context& context, const Surface& at) {
+    LightSums sums;
+    for (const Incoming& light : incoming_light(context.prepared.scene, at.position_world)) {
+        const double n_dot_l = glm::dot(at.normal_world, light.light_world);
         context.trace.decide(n_dot_l > 0.0 ? 1 : 0);
         if (!(n_dot_l > 0.0)) continue;
-        sums.scattered += lamp.irradiance * n_dot_l;
+        sums.scattered += light.irradiance * n_dot_l;
         sums.highlights +=
-            lamp.highlight_irradiance * highlight(context.material, at, lamp.light_world);
+            light.highlight_irradiance * highlight(context.material, at, light.light_world);
     }
     return sums;
 }
 
-/// Lamps at the pixel, or at the triangle's corners and interpolated from there.
-LampSums interpolated_lamp_sums(const Context& context, const Hit& hit) {
+/// The sums at the pixel, or interpolated from the corners of the triangle.
+LightSums interpolated_light_sums(const Context& context, const Hit& hit) {
     if (context.material.interpolation != Interpolation::gouraud) {
-        return lamp_sums(context, context.surface);
+        return light_sums(context, context.surface);
     }
-    LampSums sums;
+    LightSums sums;
     for (int corner = 0; corner < 3; ++corner) {
-        const LampSums there = lamp_sums(context, surface_at_corner(context.prepared, hit, corner));
+        const LightSums there =
+            light_sums(context, surface_at_corner(context.prepared, hit, corner));
         sums.scattered += there.scattered * hit.barycentric[corner];
         sums.highlights += there.highlights * hit.barycentric[corner];
     }
@@ -93,14 +211,15 @@ double occlusion(const Context& context) {
     return 1.0 + strength * (share - 1.0);
 }
 
-/// E(n) of the formula.
-glm::dvec3 shed(const Context& context) {
+/// The term E(n) of the formula.
+glm::dvec3 environment_irradiance(const Context& context) {
     const auto& described = context.prepared.scene.environment;
     if (!described || !described->lights) return glm::dvec3(0.0);
     return context.prepared.environment->diffuse(context.surface.normal_world);
 }
 
-glm::dvec3 surroundings(const Context& context, double roughness) {
+/// The reflected environment.
+glm::dvec3 reflected(const Context& context, double roughness) {
     if (!context.prepared.environment) return glm::dvec3(0.0);
     const Surface& at = context.surface;
     const glm::dvec3 mirrored =
@@ -108,7 +227,7 @@ glm::dvec3 surroundings(const Context& context, double roughness) {
     return context.prepared.environment->blurred(mirrored, roughness, context.trace);
 }
 
-/// The environment behind, by Snell's law at the first surface.
+/// The refracted environment, by Snell's law at the first surface.
 glm::dvec3 refracted(const Context& context) {
     if (!context.prepared.environment) return glm::dvec3(0.0);
     const double ratio = 1.0 / static_cast<double>(context.material.refractive_index);
@@ -130,16 +249,17 @@ glm::dvec3 phong_radiance(const Context& context, const Hit& hit, const glm::dve
     const Material& material = context.material;
     const Surface& at = context.surface;
     const glm::dvec3 diffuse(material.diffuse);
-    const LampSums lamps = interpolated_lamp_sums(context, hit);
+    const LightSums lights = interpolated_light_sums(context, hit);
     const glm::dvec3 ambient =
         glm::dvec3(material.ambient) * glm::dvec3(context.prepared.scene.ambient);
 
-    const glm::dvec3 scattered = occlusion(context) * tint * (ambient + diffuse * shed(context)) +
-                                 tint * diffuse * lamps.scattered;
+    const glm::dvec3 scattered =
+        occlusion(context) * tint * (ambient + diffuse * environment_irradiance(context)) +
+        tint * diffuse * lights.scattered;
     const glm::dvec3 highlights =
         glm::dvec3(material.specular) *
-        glm::dvec3(context.look_up(material.specular_texture, ImageUse::color)) * lamps.highlights;
-    // Without an environment nothing is mirrored, and nothing seen through the surface.
+        glm::dvec3(context.look_up(material.specular_texture, ImageUse::color)) * lights.highlights;
+    // Without an environment there are neither reflections nor transmitted light.
     glm::dvec3 mirrors(0.0);
     double transmission = 0.0;
     if (context.prepared.environment) {
@@ -150,13 +270,13 @@ glm::dvec3 phong_radiance(const Context& context, const Hit& hit, const glm::dve
     radiance += (1.0 - mirrors) * (1.0 - transmission) * scattered;
     if (mirrors != glm::dvec3(0.0)) {
         const double roughness = static_cast<double>(material.reflection_roughness);
-        radiance += mirrors * surroundings(context, roughness);
+        radiance += mirrors * reflected(context, roughness);
     }
     if (transmission > 0.0) radiance += (1.0 - mirrors) * transmission * refracted(context);
     return radiance;
 }
 
-/// What metallic-roughness is made of at a point.
+/// The quantities of metallic-roughness at a point.
 struct Microfacets {
     glm::dvec3 scattering;  ///< c
     glm::dvec3 f0;
@@ -172,15 +292,15 @@ Microfacets microfacets_at(const Context& context, const glm::dvec3& tint) {
     const double roughness = static_cast<double>(model.roughness) * texel.g;
     const glm::dvec3 base = glm::dvec3(model.base_color) * tint;
     return {base * (1.0 - metallic), glm::mix(glm::dvec3(0.04), base, metallic),
-            std::max(roughness, least_roughness)};
+            std::max(roughness, min_roughness)};
 }
 
-/// pi D V f + (1 - f) c: what one lamp's light becomes. \param n_dot_l  positive
+/// pi D V f + (1 - f) c, the factor of one light. \param n_dot_l  positive
 glm::dvec3 scattered_by(const Microfacets& facets, const Surface& at, const glm::dvec3& light,
                         double n_dot_l) {
     const glm::dvec3 sum = light + at.view_world;
     const double length = glm::length(sum);
-    // Without a half vector nothing is mirrored.
+    // Without a half vector there is no reflection.
     if (!(length > 1e-15)) return facets.scattering;
     const glm::dvec3 half = sum / length;
     const double n_dot_v = std::clamp(glm::dot(at.normal_world, at.view_world), 0.0, 1.0);
@@ -198,16 +318,16 @@ glm::dvec3 scattered_by(const Microfacets& facets, const Surface& at, const glm:
            fresnel * (std::numbers::pi * distribution * visibility);
 }
 
-/// Light from everywhere: ambient, and what the environment sheds and mirrors.
-glm::dvec3 surrounding_light(const Context& context, const Microfacets& facets) {
+/// The light from all directions: ambient light, and the scattered and reflected environment.
+glm::dvec3 indirect_light(const Context& context, const Microfacets& facets) {
     const Surface& at = context.surface;
     glm::dvec3 light = glm::dvec3(context.prepared.scene.ambient) * (facets.scattering + facets.f0);
     if (context.prepared.environment) {
         const double n_dot_v = std::clamp(glm::dot(at.normal_world, at.view_world), 0.0, 1.0);
         const glm::dvec2 albedo = directional_albedo(n_dot_v, facets.roughness);
         const glm::dvec3 mirrors = facets.f0 * albedo.x + albedo.y;
-        light += (1.0 - mirrors) * facets.scattering * shed(context);
-        light += mirrors * surroundings(context, facets.roughness);
+        light += (1.0 - mirrors) * facets.scattering * environment_irradiance(context);
+        light += mirrors * reflected(context, facets.roughness);
     }
     return light;
 }
@@ -215,13 +335,13 @@ glm::dvec3 surrounding_light(const Context& context, const Microfacets& facets) 
 glm::dvec3 metallic_roughness_radiance(const Context& context, const glm::dvec3& tint) {
     const Surface& at = context.surface;
     const Microfacets facets = microfacets_at(context, tint);
-    glm::dvec3 radiance =
-        occlusion(context) * surrounding_light(context, facets) + emitted(context);
-    for (const Incoming& lamp : incoming_light(context.prepared.scene, at.position_world)) {
-        const double n_dot_l = glm::dot(at.normal_world, lamp.light_world);
+    glm::dvec3 radiance = occlusion(context) * indirect_light(context, facets) + emitted(context);
+    for (const Incoming& light : incoming_light(context.prepared.scene, at.position_world)) {
+        const double n_dot_l = glm::dot(at.normal_world, light.light_world);
         context.trace.decide(n_dot_l > 0.0 ? 1 : 0);
         if (!(n_dot_l > 0.0)) continue;
-        radiance += lamp.irradiance * n_dot_l * scattered_by(facets, at, lamp.light_world, n_dot_l);
+        radiance +=
+            light.irradiance * n_dot_l * scattered_by(facets, at, light.light_world, n_dot_l);
     }
     return radiance;
 }

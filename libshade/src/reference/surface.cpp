@@ -1,20 +1,172 @@
 // SPDX-License-Identifier: Apache-2.0
-// Attributes and normals at a hit, in double, world space. See surface.h for what has no direction.
-// The basis of a map is used as interpolated, not made unit and not made perpendicular, as
-// MikkTSpace asks [Mikkelsen 2008]; heights bend the normal as in [Blinn 1978].
-// Tests: tests/shade/reference/surface_test.cpp.
+// Frames, matrices and textures of a scene, and attributes and normals at a hit, in double. Normals
+// are transformed by the matrix of cofactors, which for a singular matrix is the limit of the
+// inverse transpose. The basis of a map is used as interpolated, neither normalized nor
+// orthogonalized, as MikkTSpace requires [Mikkelsen 2008]; heights bend the normal as in
+// [Blinn 1978].
 #include "reference/surface.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <set>
 
 #include "geometry/direction.h"
+#include "relief/mesh/error.h"
+#include "relief/mesh/frames.h"
+#include "relief/shade/effects.h"
+#include "relief/shade/image_source.h"
+#include "render/material_textures.h"
 
 namespace relief::reference {
 
+// Prepared scenes
+
 namespace {
 
-/// A unit vector, or the fallback where there is none that a float could square.
+const Material& material_of_range(const std::vector<Material>& materials,
+                                  const MaterialRange& range) {
+    return range.material ? materials[*range.material] : default_material();
+}
+
+bool uses_stored_tangents(const Material& material) {
+    if (material.tangent_frame != TangentFrame::stored) return false;
+    return material.bump_map ||
+           (material.normal_map && material.normal_map->space == NormalSpace::tangent);
+}
+
+bool needs_tangents(const std::vector<Material>& materials, const Mesh& mesh) {
+    if (mesh.texcoords.empty() || !mesh.tangents.empty()) return false;
+    return std::any_of(mesh.material_ranges.begin(), mesh.material_ranges.end(),
+                       [&](const MaterialRange& range) {
+                           return uses_stored_tangents(material_of_range(materials, range));
+                       });
+}
+
+Mesh framed_mesh(const std::vector<Material>& materials, const Mesh& mesh, Report& report) {
+    FrameOptions options;
+    if (needs_tangents(materials, mesh)) options.tangents = TangentMode::mikktspace;
+    const bool complete = !mesh.normals.empty() && options.tangents == TangentMode::keep;
+    return complete ? mesh : with_frames(mesh, options, report).mesh;
+}
+
+/// The matrix of normals, up to a positive factor, and whether the instance is mirrored.
+struct NormalMatrix {
+    glm::dmat3 matrix;
+    bool mirrors = false;
+};
+
+NormalMatrix normal_matrix(const glm::dmat3& m) {
+    const glm::dmat3 cofactors(glm::cross(m[1], m[2]), glm::cross(m[2], m[0]),
+                               glm::cross(m[0], m[1]));
+    const bool mirrors = glm::dot(m[0], cofactors[0]) < 0.0;
+    return {mirrors ? -cofactors : cofactors, mirrors};
+}
+
+PreparedInstance prepared(const Instance& instance, const Mesh& mesh,
+                          const glm::dmat4& view_from_world) {
+    const glm::dmat4 world_from_object(instance.world_from_object);
+    const auto [matrix, mirrors] = normal_matrix(glm::dmat3(world_from_object));
+    PreparedInstance result;
+    result.mesh = &mesh;
+    result.mirrors = mirrors;
+    result.world_from_object_normal = matrix;
+    for (const glm::vec3& position : mesh.positions) {
+        const glm::dvec4 world = world_from_object * glm::dvec4(glm::dvec3(position), 1.0);
+        result.positions_world.emplace_back(world);
+        result.positions_view.emplace_back(view_from_world * world);
+    }
+    for (const glm::vec3& normal : mesh.normals)
+        result.normals_world.push_back(direction_or_zero(matrix * glm::dvec3(normal)));
+    for (const glm::vec4& tangent : mesh.tangents) {
+        const glm::dvec3 along =
+            direction_or_zero(glm::dmat3(world_from_object) * glm::dvec3(tangent));
+        const double w = static_cast<double>(tangent.w);
+        result.tangents_world.emplace_back(along, mirrors ? -w : w);
+    }
+    return result;
+}
+
+void find_flat_code(PreparedScene& prepared, const Scene& scene, const Material& material) {
+    if (!material.normal_map) return;
+    const std::size_t image = material.normal_map->texture.image;
+    const Image decoded = decode(scene.images[image], ImageUse::data);
+    prepared.normal_map_bits[image] = decoded.bits();
+    prepared.detected_flat_codes[image] = detected_flat_code(scene.images[image], decoded);
+}
+
+/// Decodes the textures of all materials that are on meshes with texture coordinates.
+void decode_textures(PreparedScene& prepared, const Scene& scene, Report& report) {
+    std::set<std::uint32_t> textured;
+    for (const Mesh& mesh : scene.meshes) {
+        for (const MaterialRange& range : mesh.material_ranges) {
+            if (!mesh.texcoords.empty() && range.material) textured.insert(*range.material);
+        }
+    }
+    for (const std::uint32_t number : textured)
+        prepared.texels.request(scene, scene.materials[number]);
+    for (const std::uint32_t number : textured) {
+        Material& material = prepared.materials[number];
+        leave_out_textures(scene, prepared.texels.unreadable(), number, material, report);
+        find_flat_code(prepared, scene, material);
+    }
+}
+
+/// Reports triangles with a vertex that is not finite.
+void report_non_finite(const Mesh& mesh, Report& report) {
+    for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+        const glm::uvec3& corners = mesh.triangles[i];
+        for (int corner = 0; corner < 3; ++corner) {
+            if (is_finite(mesh.positions[corners[corner]])) continue;
+            report.add("vertex that is not finite", "triangle", i, "is not drawn");
+            break;
+        }
+    }
+}
+
+}  // namespace
+
+PreparedScene::PreparedScene(const Scene& described, Report& report)
+    : scene(described), materials(described.materials) {
+    validate(scene);
+    if (!scene.camera) throw InvalidInput("the scene has no camera");
+    const glm::dmat4 world_from_view(scene.camera->world_from_view);
+    eye_world = glm::dvec3(world_from_view[3]);
+    decode_textures(*this, scene, report);
+    for (const Mesh& mesh : scene.meshes) {
+        meshes.push_back(framed_mesh(materials, mesh, report));
+        report_non_finite(mesh, report);
+    }
+    for (const Instance& instance : scene.instances) {
+        instances.push_back(
+            prepared(instance, meshes[instance.mesh], glm::inverse(world_from_view)));
+    }
+    if (scene.environment) environment.emplace(*scene.environment, report);
+}
+
+std::size_t PreparedScene::range_of(std::uint32_t instance, std::uint32_t triangle) const {
+    const auto& ranges = instances[instance].mesh->material_ranges;
+    const auto after = std::upper_bound(
+        ranges.begin(), ranges.end(), triangle,
+        [](std::uint32_t t, const MaterialRange& range) { return t < range.first_triangle; });
+    return after == ranges.begin() ? 0 : static_cast<std::size_t>(after - ranges.begin()) - 1;
+}
+
+const Material& PreparedScene::material_of(std::uint32_t instance, std::uint32_t triangle) const {
+    const auto& ranges = instances[instance].mesh->material_ranges;
+    if (ranges.empty()) return default_material();
+    return material_of_range(materials, ranges[range_of(instance, triangle)]);
+}
+
+FlatCode PreparedScene::flat_code(const NormalMap& map) const {
+    return map.flat ? *map.flat : detected_flat_codes.at(map.texture.image);
+}
+
+// Surfaces
+
+namespace {
+
+/// The unit vector, or the fallback if a float cannot hold the squared length.
 glm::dvec3 unit_or(const glm::dvec3& vector, const glm::dvec3& fallback) {
     const double squared = glm::dot(vector, vector);
     return squared > 1e-30 && squared < 1e30 ? vector / std::sqrt(squared) : fallback;
@@ -22,7 +174,7 @@ glm::dvec3 unit_or(const glm::dvec3& vector, const glm::dvec3& fallback) {
 
 const glm::dvec3 z_axis(0.0, 0.0, 1.0);
 
-/// One hit with its triangle's corners at hand.
+/// A hit with the corners of its triangle.
 struct Triangle {
     const PreparedInstance& instance;
     glm::uvec3 corners;
@@ -46,8 +198,8 @@ Triangle triangle_of(const PreparedScene& prepared, const Hit& hit) {
     return {instance, instance.mesh->triangles[hit.triangle], hit.barycentric};
 }
 
-/// The normal of the triangle's plane on its front side: where it is counter-clockwise, or
-/// clockwise where the instance is mirrored.
+/// The normal of the triangle's plane on its front side, from which its corners are
+/// counter-clockwise, or clockwise if the instance is mirrored.
 glm::dvec3 front_of_plane(const Triangle& triangle) {
     const auto& positions = triangle.instance.positions_world;
     const glm::dvec3 a = positions[triangle.corners.x];
@@ -56,7 +208,7 @@ glm::dvec3 front_of_plane(const Triangle& triangle) {
     return triangle.instance.mirrors ? -normal : normal;
 }
 
-/// The basis of tangent space, none of it necessarily unit or perpendicular.
+/// The basis of tangent space. Its vectors need not be unit or perpendicular.
 struct Basis {
     glm::dvec3 tangent{0.0};
     glm::dvec3 bitangent{0.0};
@@ -70,8 +222,8 @@ Basis stored_basis(const Triangle& triangle, const glm::dvec3& normal) {
     return {along, tangent.w * glm::cross(normal, along), normal};
 }
 
-/// From how positions change with texture coordinates over the triangle. Where those span nothing,
-/// neither does the basis.
+/// The basis from the derivatives of positions by texture coordinates over the triangle. If the
+/// texture coordinates have no area, tangent and bitangent are zero.
 Basis derived_basis(const Triangle& triangle, const glm::dvec3& normal) {
     const auto& positions = triangle.instance.positions_world;
     const auto& texcoords = triangle.instance.mesh->texcoords;
@@ -90,7 +242,7 @@ Basis derived_basis(const Triangle& triangle, const glm::dvec3& normal) {
     return {tangent, (upright ? 1.0 : -1.0) * glm::cross(unit_normal, tangent), unit_normal};
 }
 
-/// The vector that a normal map's filtered codes stand for; y up, without the scale of x and y.
+/// The vector of a normal map's filtered codes; y up, without the scale of x and y.
 glm::dvec3 decoded(const glm::dvec3& sample, int bits, FlatCode flat, Green green) {
     glm::dvec3 vector = 2.0 * sample - 1.0;
     if (bits < 32 && flat == FlatCode::middle) {
@@ -109,13 +261,13 @@ glm::dvec3 mapped_vector(const PreparedScene& prepared, const NormalMap& map,
                    map.green);
 }
 
-/// The normal of heights: central differences over one texel to either side.
+/// The normal of a height map, by central differences over one texel on either side.
 glm::dvec3 bumped_vector(const PreparedScene& prepared, const BumpMap& map,
                          const glm::dvec2& texcoord, Trace& trace) {
     const Texels& texels = prepared.texels.get(map.texture.image, ImageUse::data);
     const auto height = [&](double x, double y) {
-        const glm::dvec2 place = texcoord + glm::dvec2(x / texels.width(), y / texels.height());
-        return prepared.texels.look_up(map.texture, ImageUse::data, place, trace).x;
+        const glm::dvec2 uv = texcoord + glm::dvec2(x / texels.width(), y / texels.height());
+        return prepared.texels.look_up(map.texture, ImageUse::data, uv, trace).x;
     };
     const double strength = static_cast<double>(map.strength);
     const double along_u = 0.5 * strength * (height(1.0, 0.0) - height(-1.0, 0.0));
@@ -123,7 +275,7 @@ glm::dvec3 bumped_vector(const PreparedScene& prepared, const BumpMap& map,
     return {-along_u, along_v, 1.0};
 }
 
-/// The vector of tangent space that a material's normal or bump map asks for at a point.
+/// The tangent-space normal of a material's normal or bump map at a point.
 glm::dvec3 vector_tangent(const PreparedScene& prepared, const Material& material,
                           const glm::dvec2& texcoord, Trace& trace) {
     if (material.bump_map) return bumped_vector(prepared, *material.bump_map, texcoord, trace);
@@ -132,16 +284,16 @@ glm::dvec3 vector_tangent(const PreparedScene& prepared, const Material& materia
            glm::dvec3(scale, scale, 1.0);
 }
 
-/// The mean of three codes' rounding: shorter vectors are none.
-bool holds_nothing(const glm::dvec3& vector) {
+/// Whether a vector is shorter than the rounding of its codes.
+bool is_undefined(const glm::dvec3& vector) {
     return !(glm::dot(vector, vector) > 1e-12);
 }
 
-/// The normal that an object-space map stores, in world space; zero where it stores none.
+/// The normal of an object-space map, in world space; zero if the map defines none.
 glm::dvec3 stored_normal(const PreparedScene& prepared, const Hit& hit, const NormalMap& map,
                          const glm::dvec2& texcoord, Trace& trace) {
     const glm::dvec3 normal_object = mapped_vector(prepared, map, texcoord, trace);
-    if (holds_nothing(normal_object)) return glm::dvec3(0.0);
+    if (is_undefined(normal_object)) return glm::dvec3(0.0);
     return direction_or_zero(prepared.instances[hit.instance].world_from_object_normal *
                              normal_object);
 }
@@ -154,7 +306,7 @@ glm::dvec3 front_normal(const PreparedScene& prepared, const Hit& hit, const Mat
                                   ? front_of_plane(triangle)
                                   : triangle.interpolated(triangle.instance.normals_world);
     const glm::dvec3 fallback = unit_or(normal, z_axis);
-    // Flat shading knows the triangle's plane only, and Gouraud's the normals of vertices.
+    // Flat shading uses the plane of the triangle only, and Gouraud shading the vertex normals.
     const bool has_map = material.interpolation == Interpolation::per_pixel &&
                          (material.normal_map || material.bump_map);
     if (!has_map || triangle.instance.mesh->texcoords.empty()) return fallback;
@@ -163,7 +315,7 @@ glm::dvec3 front_normal(const PreparedScene& prepared, const Hit& hit, const Mat
                        fallback);
     }
     const glm::dvec3 vector = vector_tangent(prepared, material, texcoord, trace);
-    if (holds_nothing(vector)) return fallback;
+    if (is_undefined(vector)) return fallback;
     const Basis basis = material.tangent_frame == TangentFrame::derivatives
                             ? derived_basis(triangle, normal)
                             : stored_basis(triangle, normal);
@@ -171,7 +323,7 @@ glm::dvec3 front_normal(const PreparedScene& prepared, const Hit& hit, const Mat
                    fallback);
 }
 
-/// What needs no material.
+/// The attributes that need no material.
 Surface attributes_at(const PreparedScene& prepared, const Hit& hit) {
     const Triangle triangle = triangle_of(prepared, hit);
     const Mesh& mesh = *triangle.instance.mesh;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Embree sees the scene divided by the camera's far distance, so that no scale is too large or too
-// small for its floats. See visibility.h.
-// Tests: tests/shade/reference/visibility_test.cpp.
+// Embree gets the scene divided by the camera's far distance, so that no scale is too large or too
+// small for its floats.
 #include "reference/visibility.h"
 
 #include <algorithm>
@@ -28,8 +27,8 @@ Visibility::Visibility(std::vector<ViewMesh> meshes, double near, double far)
 
 Visibility::~Visibility() = default;
 
-/// Whether b meets the ray where a does, and has the edge or the vertex of a that is there: all
-/// corners of a whose weights are not 0.
+/// Whether b has the edge or the vertex of a on which the hit a lies: all corners of a whose
+/// weights are not 0.
 bool Visibility::shares_place(const Hit& a, const Hit& b) const {
     if (a.instance != b.instance) return false;
     const ViewMesh& mesh = meshes_[a.instance];
@@ -37,16 +36,15 @@ bool Visibility::shares_place(const Hit& a, const Hit& b) const {
     const glm::uvec3& others = mesh.triangles[b.triangle];
     for (int i = 0; i < 3; ++i) {
         if (a.barycentric[i] == 0.0) continue;
-        const glm::dvec3& place = mesh.positions_view[corners[i]];
-        if (place != mesh.positions_view[others.x] && place != mesh.positions_view[others.y] &&
-            place != mesh.positions_view[others.z])
+        const glm::dvec3& position = mesh.positions_view[corners[i]];
+        if (position != mesh.positions_view[others.x] &&
+            position != mesh.positions_view[others.y] && position != mesh.positions_view[others.z])
             return false;
     }
     return true;
 }
 
-/// Whether a triangle on whose edge or vertex the ray is lies behind another one there: the first
-/// of them counts.
+/// Whether a hit on an edge or a vertex repeats an earlier hit there.
 bool Visibility::is_repeated(const std::vector<Hit>& all, std::size_t index) const {
     const glm::dvec3& weights = all[index].barycentric;
     if (weights.x != 0.0 && weights.y != 0.0 && weights.z != 0.0) return false;
@@ -56,13 +54,13 @@ bool Visibility::is_repeated(const std::vector<Hit>& all, std::size_t index) con
 
 std::vector<Hit> Visibility::hits(double x, double y) const {
     const glm::dvec3 direction(x, y, -1.0);
-    // A little beyond both ends, for the depth to decide.
-    std::vector<MetTriangle> found;
-    embree_->find_all({glm::dvec3(0.0), direction, 0.999 * near_, 1.001 * far_}, found);
+    // The search range is slightly larger; the exact depth decides below.
+    std::vector<MetTriangle> candidates;
+    embree_->find_all({glm::dvec3(0.0), direction, 0.999 * near_, 1.001 * far_}, candidates);
 
     const RayFrame ray = frame_of(glm::dvec3(0.0), direction);
     std::vector<Hit> all;
-    for (const MetTriangle& met : found) {
+    for (const MetTriangle& met : candidates) {
         const std::array<glm::dvec3, 3> corners = embree_->corners(met);
         ExactHit exact;
         if (!intersect(ray, corners, exact)) continue;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Which triangles a ray from the eye meets, and exactly where. View space: the eye at the origin,
-/// looking along -z. By the rules of rays/embree_scene.h, so the result is the same on every
-/// processor. Tests: tests/shade/reference/visibility_test.cpp.
+/// The triangles that a ray from the eye hits, with exact positions. View space: the eye is at the
+/// origin and looks along -z. The rules of rays/embree_scene.h make the result the same on every
+/// processor.
 #pragma once
 
 #include <cstddef>
@@ -34,15 +34,14 @@ struct Hit {
 
 class Visibility {
   public:
-    /// \param near, far  depths within which there is something to see
+    /// \param near, far  the depth range of hits
     Visibility(std::vector<ViewMesh> meshes, double near, double far);
     ~Visibility();
     Visibility(const Visibility&) = delete;
     Visibility& operator=(const Visibility&) = delete;
 
-    /// All hits of the ray through (x, y, -1), nearest first; of the triangles of an instance that
-    /// share the edge or the vertex that the ray meets, the nearest, and of equally near ones the
-    /// first.
+    /// All hits of the ray through (x, y, -1), nearest first. If the ray hits an edge or a vertex
+    /// that triangles of an instance share, only the nearest of them is a hit; ties: the first one.
     [[nodiscard]] std::vector<Hit> hits(double x, double y) const;
 
   private:

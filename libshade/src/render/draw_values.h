@@ -1,14 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// The numbers that a draw's shaders take, by their GLSL names: the one home of each uniform.
-/// Tests: tests/shade/render/draw_values_test.cpp.
+/// The values that draw calls upload: the uniforms of a draw by their GLSL names, each defined here
+/// only, and the lights of a scene.
 #pragma once
 
 #include <array>
 #include <glm/glm.hpp>
+#include <map>
 #include <string_view>
+#include <tuple>
 
 #include "gl/program.h"
+#include "gl/resources.h"
+#include "relief/shade/effects.h"
 #include "relief/shade/scene.h"
 
 namespace relief {
@@ -75,5 +79,30 @@ void set_normal_map(DrawValues& values, const NormalMap& map, int bits, FlatCode
 
 /// The camera's perspective, OpenGL's clip space. \param aspect  width / height
 glm::dmat4 clip_from_world(const Camera& camera, double aspect);
+
+/// The lights of a scene on the GPU: a uniform block, or a buffer texture if they are too many.
+/// There is one buffer for each layout of lights; more than one only if a plan is forced.
+class LightStorage {
+  public:
+    /// Uploads the lights for these features on their first use. \throws GpuError
+    void add(const gl::Api& api, const Scene& scene, const Features& features);
+
+    /// Uploads the lights of the same scene at another time. \throws GpuError
+    void update(const gl::Api& api, const Scene& scene);
+
+    /// Binds the lights for the program of these features.
+    void bind(const gl::Api& api, const Features& features) const;
+
+  private:
+    struct Lights {
+        Features features;
+        gl::Buffer rows;
+        gl::Texture texture;  ///< Only for lights in a buffer.
+    };
+    using Key = std::tuple<std::uint32_t, std::uint32_t, std::uint32_t, bool, bool>;
+    static Key key(const Features& features);
+
+    std::map<Key, Lights> lights_;
+};
 
 }  // namespace relief

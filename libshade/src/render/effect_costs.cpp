@@ -9,6 +9,7 @@
 #include <array>
 
 #include "relief/shade/effect_forcing.h"
+#include "relief/shade/frame_timing.h"
 
 namespace relief {
 
@@ -181,6 +182,19 @@ BudgetedPlan plan_within_budget(const MeasuredFrame& frame, const FramePlan& pla
     const std::unique_ptr<Renderer> less = renderer_of(frame, result.plan);
     result.change = picture_change(whole->draw(frame.camera).image, less->draw(frame.camera).image);
     return result;
+}
+
+std::vector<FrameSeries> time_frames(std::span<Renderer* const> renderers, const Camera& camera,
+                                     const Repeats& repeats) {
+    std::vector<FrameSeries> series(renderers.size());
+    interleave(renderers.size(), repeats, [&](std::size_t i, bool counted) {
+        const FrameTimes times = renderers[i]->draw(camera).times;
+        if (!counted) return;
+        series[i].draw.push_back(times.draw);
+        series[i].read_back.push_back(times.read_back);
+        series[i].frame.push_back(times.draw + times.read_back);
+    });
+    return series;
 }
 
 }  // namespace relief

@@ -9,10 +9,10 @@
 
 #include "effects/environment_needs.h"
 #include "effects/surface_program.h"
-#include "environment/cube_faces.h"
-#include "environment/environment_brdf.h"
-#include "gl/prefilter.h"
-#include "gl/texture.h"
+#include "environment/environment_images.h"
+#include "environment/ggx.h"
+#include "gl/cube_map.h"
+#include "gl/resources.h"
 #include "parallel.h"
 #include "progress_stage.h"
 #include "relief/shade/image_source.h"
@@ -73,7 +73,7 @@ std::array<glm::vec4, 9> padded(const IrradianceSh& sh, float intensity) {
 }
 
 /// Column for the root of n.v, row for roughness; red is A, green B
-/// (environment/environment_brdf.h).
+/// (environment/ggx.h).
 gl::Texture brdf_texture(const gl::Api& api) {
     constexpr int size = 64;
     gl::Texture texture =

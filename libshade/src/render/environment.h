@@ -9,7 +9,7 @@
 #include <optional>
 #include <vector>
 
-#include "environment/irradiance_sh.h"
+#include "environment/convolution.h"
 #include "gl/cube_map.h"
 #include "gl/program.h"
 #include "relief/mesh/report.h"

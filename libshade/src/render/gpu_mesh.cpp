@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Uploads vertex streams, object space, as they are in the mesh. Missing frames are computed by
-// libmesh's with_frames, which counts its fallbacks. Tests: tests/shade/render/renderer_test.cpp.
+// Uploads vertex streams in object space without conversion. Missing frames are computed by
+// libmesh's with_frames, which counts its fallbacks.
 #include "render/gpu_mesh.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
 #include <utility>
 
 #include "progress_stage.h"
@@ -11,14 +14,16 @@
 
 namespace relief {
 
+// Meshes
+
 void PlannedStreams::add(const PlannedInterface& planned) {
-    const auto takes = [&](const char* name) {
+    const auto uses = [&](const char* name) {
         return std::binary_search(planned.attributes.begin(), planned.attributes.end(), name);
     };
-    normals |= takes("normal_object");
-    texcoords |= takes("texcoord");
-    tangents |= takes("tangent_object");
-    colors |= takes("color_linear");
+    normals |= uses("normal_object");
+    texcoords |= uses("texcoord");
+    tangents |= uses("tangent_object");
+    colors |= uses("color_linear");
 }
 
 Mesh with_planned_frames(const Mesh& mesh, const PlannedStreams& streams, Report& report) {
@@ -80,6 +85,73 @@ void set_attribute_constants(const gl::Api& api) {
     set(Attribute::texcoord, glm::vec4(0.0F));
     set(Attribute::tangent_object, {1.0F, 0.0F, 0.0F, 1.0F});
     set(Attribute::color_linear, glm::vec4(1.0F));
+}
+
+// The cache
+
+namespace {
+
+std::shared_ptr<GpuMesh> uploaded(const gl::Api& api, const Mesh& mesh,
+                                  const PlannedStreams& streams, Report& findings) {
+    const bool lacks_normals = streams.normals && mesh.normals.empty();
+    const bool lacks_tangents =
+        streams.tangents && mesh.tangents.empty() && !mesh.texcoords.empty();
+    if (!lacks_normals && !lacks_tangents) return std::make_shared<GpuMesh>(api, mesh, streams);
+    return std::make_shared<GpuMesh>(api, with_planned_frames(mesh, streams, findings), streams);
+}
+
+}  // namespace
+
+std::shared_ptr<GpuMesh> MeshCache::get(const Shared<Mesh>& mesh, const PlannedStreams& streams,
+                                        Report& report) {
+    auto entry = std::find_if(meshes_.begin(), meshes_.end(), [&](const Entry& known) {
+        return known.streams == streams && known.identity.is(mesh);
+    });
+    if (entry == meshes_.end()) {
+        Report findings;
+        std::shared_ptr<GpuMesh> made = uploaded(*api_, mesh, streams, findings);
+        meshes_.push_back({mesh.identity(), streams, std::move(findings), std::move(made)});
+        entry = std::prev(meshes_.end());
+    }
+    report.merge(entry->findings);
+    return entry->mesh;
+}
+
+void MeshCache::drop_unused() {
+    std::erase_if(meshes_, [](const Entry& entry) { return entry.mesh.use_count() == 1; });
+}
+
+// Painter's order
+
+SortedTriangles::SortedTriangles(const Mesh& mesh, const MaterialRange& range) {
+    const auto first = mesh.triangles.begin() + static_cast<std::ptrdiff_t>(range.first_triangle);
+    triangles_.assign(first, first + static_cast<std::ptrdiff_t>(range.triangle_count));
+    centers_.reserve(triangles_.size());
+    glm::dvec3 sum(0.0);
+    for (const glm::uvec3& t : triangles_) {
+        const glm::vec3 center =
+            (mesh.positions[t.x] + mesh.positions[t.y] + mesh.positions[t.z]) / 3.0F;
+        centers_.push_back(center);
+        const glm::dvec3 finite(center);
+        if (std::isfinite(finite.x + finite.y + finite.z)) sum += finite;
+    }
+    if (!centers_.empty()) center_ = glm::vec3(sum / static_cast<double>(centers_.size()));
+    order_.resize(triangles_.size());
+    depths_.resize(triangles_.size());
+    sorted_.resize(triangles_.size());
+}
+
+std::span<const glm::uvec3> SortedTriangles::sort(const glm::vec3& farther_object) {
+    for (std::size_t i = 0; i < centers_.size(); ++i) {
+        const float depth = glm::dot(centers_[i], farther_object);
+        depths_[i] = std::isfinite(depth) ? depth : -std::numeric_limits<float>::infinity();
+    }
+    std::iota(order_.begin(), order_.end(), 0U);
+    std::stable_sort(order_.begin(), order_.end(),
+                     [&](std::uint32_t a, std::uint32_t b) { return depths_[a] > depths_[b]; });
+    for (std::size_t i = 0; i < order_.size(); ++i)
+        sorted_[i] = triangles_[order_[i]];
+    return sorted_;
 }
 
 }  // namespace relief

@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-#include "gl/framebuffer.h"
+#include "gl/resources.h"
 
 namespace relief {
 

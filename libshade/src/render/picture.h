@@ -6,13 +6,39 @@
 
 #include <glm/glm.hpp>
 #include <memory>
+#include <vector>
 
+#include "gl/resources.h"
 #include "relief/shade/frame_settings.h"
 #include "relief/shade/scene.h"
 #include "render/program_cache.h"
-#include "render/target_pool.h"
 
 namespace relief {
+
+/// Render targets that pictures take and return, since memory for millions of samples is slow to
+/// allocate.
+class TargetPool {
+  public:
+    explicit TargetPool(const gl::Api& api) : api_(&api) {}
+
+    /// A target without another owner; its content is undefined. \throws as RenderTarget does
+    std::shared_ptr<const gl::RenderTarget> take(int width, int height, gl::ColorFormat format,
+                                                 int samples);
+
+    void drop_unused();
+    [[nodiscard]] std::size_t size() const { return targets_.size(); }
+
+  private:
+    struct Entry {
+        int width, height;
+        gl::ColorFormat format;
+        int samples;
+        std::shared_ptr<const gl::RenderTarget> target;
+    };
+
+    const gl::Api* api_;
+    std::vector<Entry> targets_;
+};
 
 /// Without a finishing pass (one sample a pixel, nothing blended) the shaders write the picture's
 /// own codes, and it is read back as it is. With one they write linear radiance with alpha

@@ -16,16 +16,29 @@
 #include "progress_stage.h"
 #include "relief/mesh/error.h"
 #include "relief/mesh/timing.h"
+#include "relief/shade/render_cache.h"
 #include "render/draw_values.h"
-#include "render/gpu_cache.h"
-#include "render/light_storage.h"
+#include "render/environment.h"
+#include "render/gpu_mesh.h"
 #include "render/material_textures.h"
 #include "render/overlays.h"
 #include "render/picture.h"
+#include "render/program_cache.h"
 #include "render/scene_textures.h"
-#include "render/sorted_triangles.h"
 
 namespace relief {
+
+/// The resources that renderers of one context share.
+struct RenderCache::Implementation {
+    explicit Implementation(const gl::Api& api)
+        : programs(api), meshes(api), textures(api), environments(api), targets(api) {}
+
+    ProgramCache programs;
+    MeshCache meshes;
+    TextureCache textures;
+    EnvironmentCache environments;
+    TargetPool targets;
+};
 
 namespace {
 
@@ -63,11 +76,11 @@ ImagePurpose purpose_of(const UsedTexture& used) {
     return {used.use, used.unit == TextureUnit::normal_texture};
 }
 
-void want_planned(SceneTextures& textures, const Scene& scene, const FramePlan& plan) {
+void request_planned(SceneTextures& textures, const Scene& scene, const FramePlan& plan) {
     for (const DrawPlan& draw : plan.draws) {
         const Planned p = planned(scene, draw);
         for (const UsedTexture& used : used_textures(p.features, p.material, p.mesh)) {
-            if (used.texture != nullptr) textures.want(used.texture->image, purpose_of(used));
+            if (used.texture != nullptr) textures.request(used.texture->image, purpose_of(used));
         }
     }
 }
@@ -141,7 +154,7 @@ Renderer::Implementation::Implementation(const Context& context, const Scene& sc
     report_missing_texcoords(scene, plan, report);
 
     Stopwatch stopwatch;  // Not OpenGL's timer queries: they are wrong on llvmpipe.
-    want_planned(textures, scene, plan);
+    request_planned(textures, scene, plan);
     leave_out_textures(scene, textures.decode(scene.images), plan, report);
     const bool shows_environment = plan.environment_map && scene.environment.has_value();
     if (shows_environment) cache.environments.decode(*scene.environment);
@@ -458,6 +471,28 @@ Frame Renderer::draw(const Camera& camera) {
     frame.image = implementation_->picture.read();
     frame.times.read_back = 1e3 * stopwatch.seconds();
     return frame;
+}
+
+RenderCache::RenderCache(const Context& context)
+    : implementation_(std::make_unique<Implementation>(context.api())) {}
+
+RenderCache::~RenderCache() = default;
+
+void RenderCache::drop_unused() {
+    implementation_->meshes.drop_unused();
+    implementation_->textures.drop_unused();
+    implementation_->environments.drop_unused();
+    implementation_->targets.drop_unused();
+}
+
+void RenderCache::drop_programs() {
+    implementation_->programs.clear();
+}
+
+RenderCache::Contents RenderCache::contents() const {
+    return {implementation_->programs.size(), implementation_->meshes.size(),
+            implementation_->textures.size(), implementation_->environments.size(),
+            implementation_->targets.size()};
 }
 
 }  // namespace relief

@@ -1,36 +1,112 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// The images that one scene's plan calls for: those that a cache does not have are decoded on all
-/// threads and uploaded once each. Tests: tests/shade/render/renderer_test.cpp.
+/// Images on the GPU: the cache of a context by image identity, and the images that the plan of one
+/// scene uses. Images that are not in the cache are decoded on all threads and uploaded once each.
 #pragma once
 
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
+#include "gl/resources.h"
 #include "relief/mesh/image.h"
+#include "relief/mesh/image_file.h"
+#include "relief/mesh/normal_map.h"
 #include "relief/shade/scene.h"
-#include "render/texture_cache.h"
+#include "scene/image_identity.h"
 
 namespace relief {
 
+/// The use of an image.
+struct ImagePurpose {
+    ImageUse use = ImageUse::color;
+    bool normals = false;  ///< A normal map, whose code of zero is detected.
+
+    friend auto operator<=>(const ImagePurpose&, const ImagePurpose&) = default;
+};
+
+/// An image on the GPU, with the properties that the processor needs.
+struct GpuImage {
+    gl::Texture texture;
+    int bits = 8;
+    FlatCode flat = FlatCode::half;  ///< Detected for normal maps only.
+};
+
+/// A texture and its sampler for one unit.
+struct BoundTexture {
+    GLuint texture = 0;
+    GLuint sampler = 0;
+};
+
+/// The images of a context by identity and use.
+class TextureCache {
+  public:
+    explicit TextureCache(const gl::Api& api) : api_(&api) {}
+
+    /// Null if the image is not in the cache.
+    std::shared_ptr<const GpuImage> find(const ImageSource& source, const ImagePurpose& purpose);
+
+    /// Uploads a decoded image and keeps it. \throws GpuError
+    std::shared_ptr<const GpuImage> add(const ImageSource& source, const ImagePurpose& purpose,
+                                        const Image& image);
+
+    /// The error of an image that could not be decoded, while its file or its bytes are unchanged;
+    /// otherwise null.
+    [[nodiscard]] const std::string* find_fault(const ImageSource& source,
+                                                const ImagePurpose& purpose) const;
+
+    /// \param identity  taken before decoding, so that a file that changes meanwhile is read again
+    void add_fault(ImageIdentity identity, const ImagePurpose& purpose, std::string fault);
+
+    GLuint sampler(TextureWrap u, TextureWrap v, TextureFilter filter);
+    BoundTexture white();
+    BoundTexture flat();  ///< Every lookup gives (0, 0, 1).
+
+    void drop_unused();
+    [[nodiscard]] std::size_t size() const { return images_.size(); }
+
+  private:
+    BoundTexture constant(std::optional<gl::Texture>& texture, float rg, float b, const char* name);
+
+    struct Entry {
+        ImageIdentity identity;
+        ImagePurpose purpose;
+        std::shared_ptr<const GpuImage> image;
+    };
+
+    struct Fault {
+        ImageIdentity identity;
+        ImagePurpose purpose;
+        std::string text;
+    };
+
+    const gl::Api* api_;
+    std::vector<Entry> images_;
+    std::vector<Fault> faults_;
+    std::map<std::tuple<TextureWrap, TextureWrap, TextureFilter>, gl::Sampler> samplers_;
+    std::optional<gl::Texture> white_;
+    std::optional<gl::Texture> flat_;
+};
+
+/// The images that one scene uses.
 class SceneTextures {
   public:
     explicit SceneTextures(TextureCache& cache) : cache_(&cache) {}
 
-    void want(std::size_t image, const ImagePurpose& purpose) {
+    void request(std::size_t image, const ImagePurpose& purpose) {
         images_.try_emplace({image, purpose});
     }
 
-    /// Decodes what is wanted and not in the cache. Images that cannot be read are not wanted any
-    /// more.
-    /// \return those images, by index, each with what is wrong
-    /// \throws FileError if an image that is required cannot be read
+    /// Decodes the requested images that are not in the cache. Requests of images that cannot be
+    /// read are dropped. \return those images, by index, each with its error \throws FileError if
+    /// an image that is required cannot be read
     std::map<std::size_t, std::string> decode(const std::vector<ImageSource>& sources);
 
-    /// Uploads what was decoded. \throws GpuError
+    /// Uploads the decoded images. \throws GpuError
     void upload(const std::vector<ImageSource>& sources);
 
     [[nodiscard]] const GpuImage& image(std::size_t image, const ImagePurpose& purpose) const {

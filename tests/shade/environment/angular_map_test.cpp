@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Light probes: where directions stand.
-#include "environment/angular_map.h"
+#include "environment/environment_images.h"
 
 #include <gtest/gtest.h>
 

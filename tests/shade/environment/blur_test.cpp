@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Blurred surroundings: by integrals known by hand, and the walk down the tree against the sum over
 // all texels.
-#include "environment/blur.h"
+#include "environment/convolution.h"
 
 #include <gtest/gtest.h>
 

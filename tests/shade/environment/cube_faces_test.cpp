@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Six images around a point: directions, solid angles, crosses and turned hands.
-#include "environment/cube_faces.h"
+#include "environment/environment_images.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // The directional albedo of GGX: against integrals by brute force, and its known ends.
-#include "environment/environment_brdf.h"
+#include "environment/ggx.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
-#include "environment/ggx.h"
 #include "relief/mesh/error.h"
 #include "relief/mesh/threads.h"
 

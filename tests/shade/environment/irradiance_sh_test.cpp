@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Irradiance by nine numbers: exact where it must be, and by how much it is off elsewhere.
-#include "environment/irradiance_sh.h"
+#include "environment/convolution.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -8,7 +8,7 @@
 #include <glm/glm.hpp>
 #include <vector>
 
-#include "environment/cube_faces.h"
+#include "environment/environment_images.h"
 #include "relief/mesh/image.h"
 
 namespace relief::test {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Bytes go to the GPU and come back unchanged, and nobody else's bindings move.
-#include "gl/buffer.h"
+#include "gl/resources.h"
 
 #include <gtest/gtest.h>
 

@@ -9,7 +9,7 @@
 #include <cmath>
 #include <thread>
 
-#include "gl/framebuffer.h"
+#include "gl/resources.h"
 #include "relief/shade/error.h"
 #include "support/gl_environment.h"
 

@@ -9,10 +9,8 @@
 #include <numbers>
 #include <vector>
 
-#include "gl/buffer.h"
 #include "gl/cube_map.h"
-#include "gl/framebuffer.h"
-#include "gl/texture.h"
+#include "gl/resources.h"
 #include "support/angle.h"
 #include "support/gl_environment.h"
 

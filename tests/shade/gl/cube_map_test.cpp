@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "cube_lookup.h"
-#include "gl/texture.h"
+#include "gl/resources.h"
 #include "relief/mesh/error.h"
 #include "relief/shade/error.h"
 #include "relief/shade/image_compare.h"

@@ -9,9 +9,8 @@
 #include <string_view>
 
 #include "gl/cube_map.h"
-#include "gl/framebuffer.h"
 #include "gl/program.h"
-#include "gl/texture.h"
+#include "gl/resources.h"
 #include "relief/shade/context.h"
 #include "relief/shade/error.h"
 #include "support/gl_environment.h"

@@ -11,8 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "gl/framebuffer.h"
-#include "gl/texture.h"
+#include "gl/resources.h"
 #include "relief/mesh/frame_encoding.h"
 #include "support/angle.h"
 #include "support/gl_environment.h"

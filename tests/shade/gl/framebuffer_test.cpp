@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Targets: what is drawn is what is read, the right way up, in every format.
-#include "gl/framebuffer.h"
+#include "gl/resources.h"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -11,8 +11,6 @@
 #include <limits>
 #include <set>
 
-#include "gl/buffer.h"
-#include "gl/texture.h"
 #include "relief/mesh/error.h"
 #include "relief/shade/error.h"
 #include "support/gl_environment.h"

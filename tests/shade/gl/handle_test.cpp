@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Owners of GL names: one deletes exactly what it made, once.
-#include "gl/handle.h"
+#include "gl/api.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The blurred levels of a cube map, on every backend: what they hold, for which surroundings.
-#include "gl/prefilter.h"
+#include "gl/cube_map.h"
 
 #include <gtest/gtest.h>
 
@@ -8,9 +8,8 @@
 #include <cmath>
 
 #include "../environment/test_environments.h"
-#include "environment/blur.h"
-#include "gl/framebuffer.h"
-#include "gl/texture.h"
+#include "environment/convolution.h"
+#include "gl/resources.h"
 #include "relief/shade/image_compare.h"
 #include "support/gl_environment.h"
 

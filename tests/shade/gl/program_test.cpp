@@ -5,8 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "gl/buffer.h"
-#include "gl/framebuffer.h"
+#include "gl/resources.h"
 #include "relief/shade/error.h"
 #include "support/gl_environment.h"
 #include "support/samples.h"

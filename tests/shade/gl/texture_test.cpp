@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Textures: every format goes up and comes back exactly, and is looked up as the image means it.
-#include "gl/texture.h"
+#include "gl/resources.h"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -12,8 +12,6 @@
 #include <limits>
 #include <random>
 
-#include "gl/buffer.h"
-#include "gl/framebuffer.h"
 #include "relief/mesh/error.h"
 #include "relief/shade/error.h"
 #include "relief/shade/image_compare.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Environments by direction: layouts, blur and spherical harmonics against closed forms.
-#include "reference/environment_lookup.h"
+#include "reference/lookups.h"
 
 #include <gtest/gtest.h>
 

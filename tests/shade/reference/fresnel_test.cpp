@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Fresnel's formulas at angles where they have a short answer.
-#include "reference/fresnel.h"
+#include "reference/shading.h"
 
 #include <gtest/gtest.h>
 

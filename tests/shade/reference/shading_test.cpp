@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "reference/environment_lookup.h"
+#include "reference/lookups.h"
 #include "support/shapes.h"
 #include "traced.h"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Lookups of small textures by hand.
-#include "reference/texels.h"
+#include "reference/lookups.h"
 
 #include <gtest/gtest.h>
 

@@ -8,9 +8,9 @@
 
 #include "../environment/test_environments.h"
 #include "draw_test.h"
-#include "environment/blur.h"
-#include "environment/cube_faces.h"
-#include "environment/environment_brdf.h"
+#include "environment/convolution.h"
+#include "environment/environment_images.h"
+#include "environment/ggx.h"
 #include "relief/mesh/error.h"
 #include "relief/shade/image_compare.h"
 #include "support/shapes.h"

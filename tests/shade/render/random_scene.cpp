@@ -9,7 +9,7 @@
 #include <numbers>
 
 #include "draw_test.h"
-#include "environment/cube_faces.h"
+#include "environment/environment_images.h"
 #include "relief/mesh/shapes.h"
 #include "support/shapes.h"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Painter's order, by hand.
-#include "render/sorted_triangles.h"
+#include "render/gpu_mesh.h"
 
 #include <gtest/gtest.h>
 

@@ -1,19 +1,24 @@
 // SPDX-License-Identifier: Apache-2.0
-// Directions of cube faces, and cutting and turning of their images; see cube_faces.h. Sets that do
-// not fit together throw InvalidInput. Tests: tests/shade/environment/cube_faces_test.cpp.
-#include "environment/cube_faces.h"
+// The images of an environment; environment_images.h has the conventions. Angular maps are computed
+// in double; their GLSL counterpart is in gl/cube_map.cpp. Images that do not fit together throw
+// InvalidInput.
+#include "environment/environment_images.h"
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "relief/mesh/error.h"
 
 namespace relief {
 
+// Cube faces
+
 namespace {
 
-/// An image of this size whose texel (x, y) is the other's texel source(x, y).
+/// An image of this size whose texel (x, y) is the texel source(x, y) of another image.
 template <typename Source>
 Image rearranged(const Image& from, int width, int height, Source source) {
     Image to = make_image(width, height, from.channels, from.bits(), from.color_space);
@@ -24,10 +29,10 @@ Image rearranged(const Image& from, int width, int height, Source source) {
             std::size_t i = 0;
             for (int y = 0; y < height; ++y) {
                 for (int x = 0; x < width; ++x) {
-                    const glm::ivec2 place = source(x, y);
-                    const auto texel =
-                        static_cast<std::size_t>(place.y) * static_cast<std::size_t>(from.width) +
-                        static_cast<std::size_t>(place.x);
+                    const glm::ivec2 from_texel = source(x, y);
+                    const auto texel = static_cast<std::size_t>(from_texel.y) *
+                                           static_cast<std::size_t>(from.width) +
+                                       static_cast<std::size_t>(from_texel.x);
                     for (std::size_t c = 0; c < channels; ++c)
                         moved[i++] = samples[texel * channels + c];
                 }
@@ -37,7 +42,7 @@ Image rearranged(const Image& from, int width, int height, Source source) {
     return to;
 }
 
-/// Columns and rows of the faces in a cross.
+/// The columns and rows of the faces in a cross.
 using Cells = std::array<glm::ivec2, 6>;
 constexpr Cells horizontal_cells{{{2, 1}, {0, 1}, {1, 0}, {1, 2}, {1, 1}, {3, 1}}};
 constexpr Cells vertical_cells{{{2, 1}, {0, 1}, {1, 0}, {1, 2}, {1, 1}, {1, 3}}};
@@ -107,20 +112,21 @@ std::vector<Image> faces_of_cross(const Image& cross, std::string_view name) {
     const bool is_horizontal = cross.width / 4 * 3 == cross.height && cross.width % 4 == 0;
     const bool is_vertical = cross.height / 4 * 3 == cross.width && cross.height % 4 == 0;
     if (cross.empty() || (!is_horizontal && !is_vertical)) {
-        throw InvalidInput(fmt::format(
-            "cross '{}' has {} x {} texels, but the faces of a cube lie in 4 x 3 (horizontal) or "
-            "3 x 4 (vertical) squares",
-            name, cross.width, cross.height));
+        throw InvalidInput(
+            fmt::format("cross '{}' has {} x {} texels, but the faces of a cube "
+                        "lie in 4 x 3 (horizontal) or "
+                        "3 x 4 (vertical) squares",
+                        name, cross.width, cross.height));
     }
     const int size = is_horizontal ? cross.width / 4 : cross.width / 3;
     std::vector<Image> faces;
     for (std::size_t face = 0; face < 6; ++face) {
         const glm::ivec2 corner =
             (is_horizontal ? horizontal_cells : vertical_cells).at(face) * size;
-        const bool is_turned = is_vertical && face == 5;
+        const bool is_rotated = is_vertical && face == 5;
         faces.push_back(rearranged(cross, size, size, [&](int x, int y) {
-            const glm::ivec2 place(x, y);
-            return corner + (is_turned ? glm::ivec2(size - 1) - place : place);
+            const glm::ivec2 texel(x, y);
+            return corner + (is_rotated ? glm::ivec2(size - 1) - texel : texel);
         }));
     }
     return faces;
@@ -135,6 +141,55 @@ std::vector<Image> other_handed(std::span<const Image> faces) {
         }));
     }
     return mirrored;
+}
+
+// Angular maps
+
+double angular_map_reach(int width) {
+    return std::max(0.0, 1.0 - 2.0 * angular_map_rim / width);
+}
+
+glm::dvec2 angular_map_place(const glm::dvec3& direction, int width) {
+    const double across = std::hypot(direction.x, direction.y);
+    const double angle = std::atan2(across, -direction.z) / std::numbers::pi;
+    const double radius = std::min(angle, angular_map_reach(width));
+    const glm::dvec2 side = across > 0.0 ? glm::dvec2(direction) / across : glm::dvec2(1.0, 0.0);
+    return {0.5 + 0.5 * radius * side.x, 0.5 - 0.5 * radius * side.y};
+}
+
+void check_angular_map(const Image& image, std::string_view name) {
+    if (image.empty()) throw InvalidInput(fmt::format("angular map '{}' has no texels", name));
+    if (image.width != image.height) {
+        throw InvalidInput(fmt::format("angular map '{}' has {} x {} texels, but must be square",
+                                       name, image.width, image.height));
+    }
+}
+
+// Radiance
+
+namespace {
+
+/// The nearest value that a half float can hold; changes are counted.
+float storable(float value, std::size_t texel, Report& report) {
+    if (std::isfinite(value) && std::abs(value) <= max_half) return value;
+    if (!std::isfinite(value)) {
+        report.add("radiance that is not finite", "texel", texel,
+                   "counts as 65504 if positive infinity, else as 0");
+        return value > 0.0F ? max_half : 0.0F;
+    }
+    report.add("radiance beyond half floats", "texel", texel, "is clamped to 65504");
+    return std::copysign(max_half, value);
+}
+
+}  // namespace
+
+Image storable_radiance(const Image& image, Report& report) {
+    Image linear = to_linear(image);
+    const auto samples = linear.as<float>();
+    const auto channels = static_cast<std::size_t>(linear.channels);
+    for (std::size_t i = 0; i < samples.size(); ++i)
+        samples[i] = storable(samples[i], i / channels, report);
+    return linear;
 }
 
 }  // namespace relief

@@ -1,27 +1,161 @@
 // SPDX-License-Identifier: Apache-2.0
-// Contexts from EGL without any window: on a device (a GPU, or Mesa's rasteriser, which EGL lists
-// as a device too), or on Mesa's surfaceless platform. OpenGL 3.3 core, current without a surface.
-// Source: the specifications EGL 1.5, EGL_EXT_device_enumeration, EGL_EXT_device_query,
-// EGL_EXT_platform_device, EGL_MESA_device_software, EGL_MESA_platform_surfaceless,
-// EGL_KHR_no_config_context, EGL_KHR_surfaceless_context, EGL_KHR_create_context.
-// Tests: tests/shade/gl/context_test.cpp.
+// OpenGL 3.3 core contexts without a window, from libraries that are loaded at run time.
+//
+// OSMesa is Mesa's rasterizer into memory: no display or device is needed. relief draws into its
+// own framebuffers only; the surface that OSMesa requires has one pixel. EGL provides contexts on a
+// device (a GPU, or Mesa's rasterizer, which EGL lists as a device too), or on Mesa's surfaceless
+// platform; they are current without a surface. Sources: the specifications EGL 1.5,
+// EGL_EXT_device_enumeration, EGL_EXT_device_query, EGL_EXT_platform_device,
+// EGL_MESA_device_software, EGL_MESA_platform_surfaceless, EGL_KHR_no_config_context,
+// EGL_KHR_surfaceless_context, EGL_KHR_create_context.
+#include "gl/platform_context.h"
+
 #define EGL_NO_X11
 #include <EGL/egl.h>
 #include <EGL/eglext.h>
+#include <dlfcn.h>
 #include <fmt/format.h>
 
 #include <array>
+#include <cstdlib>
+#include <span>
 #include <string_view>
 
-#include "gl/dynamic_library.h"
-#include "gl/platform_context.h"
 #include "relief/shade/error.h"
 
 namespace relief::gl {
 
+// Libraries
+
 namespace {
 
-/// Whether a list of names separated by blanks holds this one, whole.
+std::string loader_message() {
+    const char* message = dlerror();
+    return message == nullptr ? "unknown reason" : message;
+}
+
+/// A library loaded at run time. It stays loaded until the process ends, since drivers leave
+/// threads and exit handlers behind that need their code.
+class DynamicLibrary {
+  public:
+    /// Loads the first of `names` that exists.
+    ///
+    /// \param variable  an environment variable; if set and not empty, the only name tried
+    /// \throws GpuError with the loader's message for every name tried
+    DynamicLibrary(const char* variable, std::span<const char* const> names);
+
+    /// A function of the library. \throws GpuError if it has none of this name
+    template <typename Function>
+    Function function(const char* name) const {
+        return reinterpret_cast<Function>(symbol(name));
+    }
+
+  private:
+    void* symbol(const char* name) const;
+
+    void* library_ = nullptr;
+    std::string name_;
+};
+
+DynamicLibrary::DynamicLibrary(const char* variable, std::span<const char* const> names) {
+    const char* chosen = std::getenv(variable);
+    const bool is_chosen = chosen != nullptr && *chosen != '\0';
+    if (is_chosen) names = std::span(&chosen, 1);
+    std::string reasons;
+    for (const char* name : names) {
+        // RTLD_LOCAL: OSMesa has a second set of gl... symbols, which must not replace others.
+        library_ = dlopen(name, RTLD_NOW | RTLD_LOCAL | RTLD_NODELETE);
+        if (library_ != nullptr) {
+            name_ = name;
+            return;
+        }
+        reasons += (reasons.empty() ? "" : "; ") + loader_message();
+    }
+    throw GpuError(is_chosen ? fmt::format("{} ({} is set)", reasons, variable) : reasons);
+}
+
+void* DynamicLibrary::symbol(const char* name) const {
+    void* function = dlsym(library_, name);
+    if (function == nullptr) throw GpuError(fmt::format("{} has no function {}", name_, name));
+    return function;
+}
+
+}  // namespace
+
+// OSMesa
+
+namespace {
+
+// The necessary entry points and constants are declared here, because GL/osmesa.h is missing from
+// new versions of Mesa, whose library may still exist at run time, and because it includes GL/gl.h,
+// which contradicts glad's header.
+using OsmesaContext = struct osmesa_context*;
+using CreateContextAttribs = OsmesaContext (*)(const int* attributes, OsmesaContext shared);
+using DestroyContext = void (*)(OsmesaContext);
+using MakeCurrent = GLboolean (*)(OsmesaContext, void* pixels, GLenum type, GLsizei width,
+                                  GLsizei height);
+
+constexpr int osmesa_format = 0x22;
+constexpr int osmesa_depth_bits = 0x30;
+constexpr int osmesa_profile = 0x33;
+constexpr int osmesa_core_profile = 0x34;
+constexpr int osmesa_context_major_version = 0x36;
+constexpr int osmesa_context_minor_version = 0x37;
+
+class Osmesa final : public PlatformContext {
+  public:
+    Osmesa() {
+        const std::array<int, 11> attributes{osmesa_format,
+                                             GL_RGBA,
+                                             osmesa_depth_bits,
+                                             0,
+                                             osmesa_profile,
+                                             osmesa_core_profile,
+                                             osmesa_context_major_version,
+                                             3,
+                                             osmesa_context_minor_version,
+                                             3,
+                                             0};
+        context_ = create_(attributes.data(), nullptr);
+        if (context_ == nullptr) throw GpuError("it gives no OpenGL 3.3 core context");
+        if (make_current_(context_, pixel_.data(), GL_UNSIGNED_BYTE, 1, 1) == GL_FALSE) {
+            destroy_(context_);
+            throw GpuError("it cannot make its context current");
+        }
+    }
+
+    ~Osmesa() override {
+        make_current_(nullptr, nullptr, GL_UNSIGNED_BYTE, 0, 0);
+        destroy_(context_);
+    }
+
+    [[nodiscard]] Api::Loader loader() const override { return loader_; }
+
+  private:
+    static constexpr std::array<const char*, 3> names{"libOSMesa.so.8", "libOSMesa.so.6",
+                                                      "libOSMesa.so"};
+
+    DynamicLibrary library_{"RELIEF_OSMESA_LIBRARY", names};
+    CreateContextAttribs create_ =
+        library_.function<CreateContextAttribs>("OSMesaCreateContextAttribs");
+    DestroyContext destroy_ = library_.function<DestroyContext>("OSMesaDestroyContext");
+    MakeCurrent make_current_ = library_.function<MakeCurrent>("OSMesaMakeCurrent");
+    Api::Loader loader_ = library_.function<Api::Loader>("OSMesaGetProcAddress");
+    std::array<unsigned char, 4> pixel_{};
+    OsmesaContext context_ = nullptr;
+};
+
+}  // namespace
+
+std::unique_ptr<PlatformContext> make_osmesa_context() {
+    return std::make_unique<Osmesa>();
+}
+
+// EGL
+
+namespace {
+
+/// Whether a list of names separated by blanks contains this name.
 bool holds(const char* list, std::string_view name) {
     std::string_view rest = list == nullptr ? "" : list;
     while (!rest.empty()) {
@@ -32,7 +166,7 @@ bool holds(const char* list, std::string_view name) {
     return false;
 }
 
-/// EGL's entry points, of the library and of the extensions.
+/// The entry points of EGL and of its extensions.
 struct Egl {
     static constexpr std::array<const char*, 1> names{"libEGL.so.1"};
 
@@ -49,9 +183,9 @@ struct Egl {
         library.function<PFNEGLDESTROYCONTEXTPROC>("eglDestroyContext");
     PFNEGLMAKECURRENTPROC make_current = library.function<PFNEGLMAKECURRENTPROC>("eglMakeCurrent");
 
-    /// Of the library, before any display. Null before EGL 1.5 and EGL_EXT_client_extensions.
+    /// The extensions that need no display. Null before EGL 1.5 without EGL_EXT_client_extensions.
     const char* client_extensions = query_string(EGL_NO_DISPLAY, EGL_EXTENSIONS);
-    // Null where there is none: whoever uses one asks for its extension first.
+    // These are null without their extensions, which callers check first.
     PFNEGLGETPLATFORMDISPLAYEXTPROC get_platform_display =
         extension<PFNEGLGETPLATFORMDISPLAYEXTPROC>("eglGetPlatformDisplayEXT");
     PFNEGLQUERYDEVICESEXTPROC query_devices =
@@ -122,13 +256,13 @@ EglDisplay display_of_device(const Egl& egl, EGLDeviceEXT device, std::size_t in
 std::vector<EGLDeviceEXT> devices(const Egl& egl) {
     EGLint count = 0;
     if (egl.query_devices(0, nullptr, &count) == EGL_FALSE) return {};
-    std::vector<EGLDeviceEXT> found(static_cast<std::size_t>(count));
-    if (egl.query_devices(count, found.data(), &count) == EGL_FALSE) return {};
-    found.resize(static_cast<std::size_t>(count));
-    return found;
+    std::vector<EGLDeviceEXT> all(static_cast<std::size_t>(count));
+    if (egl.query_devices(count, all.data(), &count) == EGL_FALSE) return {};
+    all.resize(static_cast<std::size_t>(count));
+    return all;
 }
 
-/// A context on an initialised display.
+/// A context on an initialized display.
 class EglContext final : public PlatformContext {
   public:
     explicit EglContext(const EglDisplay& display) : display_(display.display) {
@@ -149,8 +283,8 @@ class EglContext final : public PlatformContext {
     [[nodiscard]] Api::Loader loader() const override { return egl_.get_proc_address; }
 
   private:
-    /// Displays are shared by all threads and stay initialised: eglTerminate would take the
-    /// contexts of other threads along.
+    /// Displays are shared by all threads and stay initialized, since eglTerminate would destroy
+    /// the contexts of other threads.
     void initialize() const {
         if (display_ == EGL_NO_DISPLAY) throw GpuError("eglGetPlatformDisplayEXT: no display");
         EGLint major = 0;
@@ -162,7 +296,7 @@ class EglContext final : public PlatformContext {
         for (const char* needed : {"EGL_KHR_no_config_context", "EGL_KHR_surfaceless_context"}) {
             if (!holds(extensions, needed)) throw GpuError(fmt::format("it lacks {}", needed));
         }
-        // The profile attributes belong to 1.5, and before it to this extension.
+        // The profile attributes are part of EGL 1.5; before, they need this extension.
         const bool chooses_profile =
             major > 1 || (major == 1 && minor >= 5) || holds(extensions, "EGL_KHR_create_context");
         if (!chooses_profile) throw GpuError("it lacks EGL_KHR_create_context");
@@ -203,7 +337,7 @@ std::vector<EglDisplay> egl_displays() {
         }
     }
     if (egl.is_surfaceless()) {
-        // With the devices listed, whatever this one leads to has been seen as a device.
+        // If devices are listed, the device of this platform is one of them.
         EglDisplay surfaceless;
         surfaceless.kind =
             displays.empty() ? EglDisplay::Kind::unknown : EglDisplay::Kind::software;

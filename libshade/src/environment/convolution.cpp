@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// GGX-blurred surroundings by a walk down a tree of texels; see blur.h. Directions in the same tile
-// of the result share one walk, and then go through the nodes it found side by side, in float, in
-// a fixed order. Tests: tests/shade/environment/blur_test.cpp.
-#include "environment/blur.h"
+// Convolutions of an environment. Blurred radiance is a walk down a tree of texels: directions in
+// the same tile of the result share one walk, and then go through its nodes side by side, in float,
+// in a fixed order. Irradiance is a sum of spherical harmonics: the convolution with the cosine
+// turns the radiance's coefficients L of order l into A_l L, A = pi, 2 pi / 3, pi / 4
+// [Ramamoorthi and Hanrahan 2001]; both normalization constants of each harmonic, one from L and
+// one from the sum that gives the irradiance, and the division by pi are multiplied in.
+#include "environment/convolution.h"
 
 #include <fmt/format.h>
 
@@ -10,21 +13,25 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <numbers>
+#include <vector>
 
-#include "environment/cube_faces.h"
+#include "environment/environment_images.h"
 #include "environment/ggx.h"
 #include "parallel.h"
 #include "relief/mesh/error.h"
 
 namespace relief {
 
+// Blurred radiance
+
 namespace {
 
 using Node = RadianceTree::Node;
 
-/// A node stands for its texels where it is narrower than this share of the distance over which the
-/// weight changes. Smaller for rougher surfaces, whose few directions cost little, and whose weight
-/// also ends at the horizon.
+/// A node replaces its texels if it is narrower than this share of the distance over which the
+/// weight changes. The share is smaller for rougher surfaces, whose few directions cost little, and
+/// whose weight also ends at the horizon.
 float opening(double roughness) {
     return static_cast<float>(0.36 - 0.3 * roughness);
 }
@@ -33,7 +40,7 @@ float opening(double roughness) {
 constexpr int tile_side = 8;
 constexpr std::size_t tile_size = tile_side * tile_side;
 
-/// Directions of a tile and sums over the nodes, in columns so that the compiler makes them wide.
+/// Directions of a tile and sums over the nodes, as arrays by component for vector instructions.
 struct Tile {
     std::array<float, tile_size> x{};
     std::array<float, tile_size> y{};
@@ -42,11 +49,11 @@ struct Tile {
     std::array<float, tile_size> green{};
     std::array<float, tile_size> blue{};
     std::array<float, tile_size> weight{};
-    glm::vec3 middle{0.0F};
-    float radius = 0.0F;  ///< Farthest direction from the middle, as a chord.
+    glm::vec3 center{0.0F};
+    float radius = 0.0F;  ///< The largest chord from the center to a direction.
 };
 
-/// The texels of a face from `corner` on, as far as there are any; the rest repeats the last.
+/// The texels of a face from `corner` on. Beyond the border the last texel repeats.
 Tile tile_of(std::size_t face, const glm::ivec2& corner, int size) {
     Tile tile;
     const auto direction = [&](double x, double y) {
@@ -54,7 +61,7 @@ Tile tile_of(std::size_t face, const glm::ivec2& corner, int size) {
             face_direction(face, 2.0 * (x + 0.5) / size - 1.0, 2.0 * (y + 0.5) / size - 1.0)));
     };
     const glm::ivec2 end = glm::min(corner + tile_side, glm::ivec2(size)) - 1;
-    tile.middle = direction(0.5 * (corner.x + end.x), 0.5 * (corner.y + end.y));
+    tile.center = direction(0.5 * (corner.x + end.x), 0.5 * (corner.y + end.y));
     for (int i = 0; i < tile_side * tile_side; ++i) {
         const glm::ivec2 texel = glm::min(corner + glm::ivec2(i % tile_side, i / tile_side), end);
         const glm::vec3 d = direction(texel.x, texel.y);
@@ -62,22 +69,22 @@ Tile tile_of(std::size_t face, const glm::ivec2& corner, int size) {
         tile.x.at(lane) = d.x;
         tile.y.at(lane) = d.y;
         tile.z.at(lane) = d.z;
-        tile.radius = std::max(tile.radius, glm::distance(d, tile.middle));
+        tile.radius = std::max(tile.radius, glm::distance(d, tile.center));
     }
     return tile;
 }
 
-/// Finds the nodes that stand for all texels, each no wider than the weight allows.
-class Walk {
+/// Selects the nodes that represent all texels, each as wide as the weight allows.
+class NodeSelection {
   public:
-    Walk(const RadianceTree& tree, float alpha, float opening)
+    NodeSelection(const RadianceTree& tree, float alpha, float opening)
         : tree_(tree), alpha_(alpha), opening_(opening) {}
 
     const std::vector<Node>& nodes_for(const Tile& tile) {
-        found_.clear();
+        selected_.clear();
         for (std::size_t face = 0; face < 6; ++face)
             descend(tile, 0, face, 0, 0);
-        return found_;
+        return selected_;
     }
 
   private:
@@ -85,13 +92,13 @@ class Walk {
                  std::size_t y) {
         const Node& node = tree_.node(level, face, x, y);
         const float width = std::sqrt(node.solid_angle);
-        // Wholly below the horizon of every direction in the tile.
-        if (glm::dot(node.direction, tile.middle) < -(tile.radius + width)) return;
+        // The node is below the horizon of every direction in the tile.
+        if (glm::dot(node.direction, tile.center) < -(tile.radius + width)) return;
         const float distance =
-            std::max(glm::distance(node.direction, tile.middle) - tile.radius, 0.0F);
+            std::max(glm::distance(node.direction, tile.center) - tile.radius, 0.0F);
         const float scale = std::sqrt(distance * distance + 4.0F * alpha_ * alpha_);
         if (width <= opening_ * scale || level + 1 == tree_.level_count()) {
-            found_.push_back(node);
+            selected_.push_back(node);
             return;
         }
         for (const std::size_t part : {0U, 1U, 2U, 3U})
@@ -101,15 +108,15 @@ class Walk {
     const RadianceTree& tree_;
     float alpha_;
     float opening_;
-    std::vector<Node> found_;
+    std::vector<Node> selected_;
 };
 
-/// D n.l for every direction of the tile, without the factors that all weights share: for a node's
-/// light from where most of it comes, so that a small sun stands in its place; for the sum of
-/// weights from the node's middle, so that even light stays even. As ggx_distribution(), with n.h^2
-/// = (1 + n.l) / 2, since the normal is the eye.
+/// Adds a node with the weight D n.l for every direction of the tile, without the factors that all
+/// weights share. The light is weighted by its average direction, so that a small sun stays in its
+/// place; the sum of weights uses the node's center, so that even light stays even. D is that of
+/// ggx_distribution(), with n.h^2 = (1 + n.l) / 2, since the normal is the eye.
 ///
-/// \param node  a copy, so that the compiler sees that the sums do not change it
+/// \param node  a copy, so that the compiler knows that the sums do not alias it
 void add(const Node node, float alpha, Tile& tile) {
     const float half_rest = 0.5F * (alpha * alpha - 1.0F);
     const float half_all = 0.5F * (alpha * alpha + 1.0F);
@@ -148,13 +155,14 @@ void check_tree_faces(std::span<const Image> faces) {
     const auto size = static_cast<unsigned>(faces[0].width);
     if (!std::has_single_bit(size) || faces[0].bits() != 32 || faces[0].channels != 3) {
         throw InvalidInput(
-            fmt::format("faces of {} texels, {} channels and {} bits cannot be blurred: it takes a "
+            fmt::format("faces of {} texels, {} channels and {} "
+                        "bits cannot be blurred: it takes a "
                         "power of two, three and 32",
                         size, faces[0].channels, faces[0].bits()));
     }
 }
 
-/// All nodes of a level, their light as set(node, face, x, y) says.
+/// All nodes of a level; set(node, face, x, y) sets their light.
 template <typename Set>
 std::vector<Node> level_of(std::size_t level, Set set) {
     const std::size_t parts = std::size_t{1} << level;
@@ -165,13 +173,13 @@ std::vector<Node> level_of(std::size_t level, Set set) {
             for (std::size_t x = 0; x < parts; ++x) {
                 const glm::dvec2 from(static_cast<double>(x) * side - 1.0,
                                       static_cast<double>(y) * side - 1.0);
-                const auto covered = static_cast<float>(solid_angle(from, from + side));
-                const glm::dvec2 middle = from + 0.5 * side;
+                const auto area = static_cast<float>(solid_angle(from, from + side));
+                const glm::dvec2 center = from + 0.5 * side;
                 for (std::size_t face = 0; face < 6; ++face) {
                     Node& node = nodes[(face * parts + y) * parts + x];
                     node.direction =
-                        glm::vec3(glm::normalize(face_direction(face, middle.x, middle.y)));
-                    node.solid_angle = covered;
+                        glm::vec3(glm::normalize(face_direction(face, center.x, center.y)));
+                    node.solid_angle = area;
                     set(node, face, x, y);
                 }
             }
@@ -196,21 +204,20 @@ RadianceTree::RadianceTree(std::span<const Image> faces) {
     for (std::size_t level = deepest; level-- > 0;) {
         levels_[level] =
             level_of(level, [&](Node& mean, std::size_t face, std::size_t x, std::size_t y) {
-                // Middles of what is covered and of where light comes from: the same for even
-                // light.
-                glm::vec3 middle(0.0F);
-                glm::vec3 middle_of_light(0.0F);
+                // The centers of the area and of the light coincide for even light.
+                glm::vec3 center(0.0F);
+                glm::vec3 light_center(0.0F);
                 for (const std::size_t part : {0U, 1U, 2U, 3U}) {
                     const Node& child = node(level + 1, face, 2 * x + part % 2, 2 * y + part / 2);
                     const float light = child.radiance.x + child.radiance.y + child.radiance.z;
                     mean.radiance += child.solid_angle / mean.solid_angle * child.radiance;
-                    middle += child.solid_angle * child.direction;
-                    middle_of_light +=
+                    center += child.solid_angle * child.direction;
+                    light_center +=
                         std::max(light, 0.0F) * child.solid_angle * child.light_direction;
                 }
-                const float length = glm::length(middle_of_light);
-                mean.direction = glm::normalize(middle);
-                mean.light_direction = length > 0.0F ? middle_of_light / length : mean.direction;
+                const float length = glm::length(light_center);
+                mean.direction = glm::normalize(center);
+                mean.light_direction = length > 0.0F ? light_center / length : mean.direction;
             });
     }
 }
@@ -220,13 +227,13 @@ std::vector<Image> blurred_faces(const RadianceTree& tree, int size, double roug
     std::vector<Image> faces(6, make_image(size, size, 3, 32, ColorSpace::linear));
     const auto tiles = static_cast<std::size_t>((size + tile_side - 1) / tile_side);
     parallel_for(6 * tiles * tiles, 1, [&](std::size_t begin, std::size_t end) {
-        Walk walk(tree, alpha, opening(roughness));
+        NodeSelection selection(tree, alpha, opening(roughness));
         for (std::size_t i = begin; i < end; ++i) {
             const std::size_t face = i / (tiles * tiles);
             const glm::ivec2 corner(static_cast<int>(i % tiles) * tile_side,
                                     static_cast<int>(i / tiles % tiles) * tile_side);
             Tile tile = tile_of(face, corner, size);
-            for (const Node& node : walk.nodes_for(tile))
+            for (const Node& node : selection.nodes_for(tile))
                 add(node, alpha, tile);
             store(tile, corner, faces[face]);
         }
@@ -244,14 +251,14 @@ glm::dvec3 blurred_radiance(std::span<const Image> faces, const glm::dvec3& dire
     for (int y = 0; y < size; ++y) {
         for (int x = 0; x < size; ++x) {
             const glm::dvec2 from(x * side - 1.0, y * side - 1.0);
-            const double covered = solid_angle(from, from + side);
-            const glm::dvec2 middle = from + 0.5 * side;
+            const double area = solid_angle(from, from + side);
+            const glm::dvec2 center = from + 0.5 * side;
             for (std::size_t face = 0; face < 6; ++face) {
-                const glm::dvec3 light = glm::normalize(face_direction(face, middle.x, middle.y));
+                const glm::dvec3 light = glm::normalize(face_direction(face, center.x, center.y));
                 const double n_l = glm::dot(normal, light);
                 if (n_l <= 0.0) continue;
                 const double n_h = std::min(std::sqrt(0.5 * (1.0 + n_l)), 1.0);
-                const double weight = covered * n_l * ggx_distribution(n_h, roughness * roughness);
+                const double weight = area * n_l * ggx_distribution(n_h, roughness * roughness);
                 const float* sample =
                     faces[face].as<float>().data() + static_cast<std::size_t>(3 * (y * size + x));
                 sum += weight * glm::dvec3(sample[0], sample[1], sample[2]);
@@ -260,6 +267,100 @@ glm::dvec3 blurred_radiance(std::span<const Image> faces, const glm::dvec3& dire
         }
     }
     return sum / weights;
+}
+
+// Irradiance
+
+namespace {
+
+using std::numbers::pi;
+
+/// The minimum number of cells along a side. Larger texels are divided, so that the harmonics
+/// hardly change within a cell.
+constexpr int min_cells = 64;
+
+/// The polynomials of the harmonics, in the order of IrradianceSh.
+std::array<double, 9> polynomials(const glm::dvec3& n) {
+    return {1.0,
+            n.y,
+            n.z,
+            n.x,
+            n.x * n.y,
+            n.y * n.z,
+            3.0 * n.z * n.z - 1.0,
+            n.x * n.z,
+            n.x * n.x - n.y * n.y};
+}
+
+/// A_l / pi times the square of the normalization constant of the harmonic.
+constexpr std::array<double, 9> factors{1.0 / (4 * pi),
+                                        2.0 / 3.0 * 3.0 / (4 * pi),
+                                        2.0 / 3.0 * 3.0 / (4 * pi),
+                                        2.0 / 3.0 * 3.0 / (4 * pi),
+                                        1.0 / 4.0 * 15.0 / (4 * pi),
+                                        1.0 / 4.0 * 15.0 / (4 * pi),
+                                        1.0 / 4.0 * 5.0 / (16 * pi),
+                                        1.0 / 4.0 * 15.0 / (4 * pi),
+                                        1.0 / 4.0 * 15.0 / (16 * pi)};
+
+void check(std::span<const Image> faces) {
+    check_faces(faces, "irradiance");
+    if (faces[0].bits() != 32 || faces[0].channels < 3)
+        throw InvalidInput("irradiance is computed from three float channels of linear light");
+    for (std::size_t face = 0; face < 6; ++face) {
+        const auto samples = faces[face].as<float>();
+        for (std::size_t i = 0; i < samples.size(); ++i) {
+            if (std::isfinite(samples[i])) continue;
+            throw InvalidInput(
+                fmt::format("irradiance: face {} holds {} in texel {}, which is not finite",
+                            cube_face_names.at(face), samples[i],
+                            i / static_cast<std::size_t>(faces[0].channels)));
+        }
+    }
+}
+
+glm::dvec3 radiance(const Image& face, int x, int y) {
+    const auto texel = static_cast<std::size_t>(y) * static_cast<std::size_t>(face.width) +
+                       static_cast<std::size_t>(x);
+    const float* sample = face.as<float>().data() + texel * static_cast<std::size_t>(face.channels);
+    return {sample[0], sample[1], sample[2]};
+}
+
+}  // namespace
+
+IrradianceSh irradiance_sh(std::span<const Image> faces) {
+    check(faces);
+    const int size = faces[0].width;
+    const int parts = (min_cells + size - 1) / size;
+    const int cells = size * parts;
+    const double side = 2.0 / cells;
+    std::array<glm::dvec3, 9> sums{};
+    for (int y = 0; y < cells; ++y) {
+        for (int x = 0; x < cells; ++x) {
+            const glm::dvec2 from(x * side - 1.0, y * side - 1.0);
+            const double weight = solid_angle(from, from + side);
+            const glm::dvec2 center = from + 0.5 * side;
+            for (std::size_t face = 0; face < 6; ++face) {
+                const glm::dvec3 normal = glm::normalize(face_direction(face, center.x, center.y));
+                const glm::dvec3 light = weight * radiance(faces[face], x / parts, y / parts);
+                const std::array<double, 9> values = polynomials(normal);
+                for (std::size_t i = 0; i < values.size(); ++i)
+                    sums.at(i) += light * values.at(i);
+            }
+        }
+    }
+    IrradianceSh coefficients{};
+    for (std::size_t i = 0; i < sums.size(); ++i)
+        coefficients.at(i) = glm::vec3(sums.at(i) * factors.at(i));
+    return coefficients;
+}
+
+glm::dvec3 irradiance_over_pi(const IrradianceSh& coefficients, const glm::dvec3& normal) {
+    const std::array<double, 9> values = polynomials(normal);
+    glm::dvec3 sum(0.0);
+    for (std::size_t i = 0; i < values.size(); ++i)
+        sum += glm::dvec3(coefficients.at(i)) * values.at(i);
+    return sum;
 }
 
 }  // namespace relief

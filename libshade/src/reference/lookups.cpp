@@ -1,39 +1,141 @@
 // SPDX-License-Identifier: Apache-2.0
-// The environment by direction, in double. World space, linear light. See environment_lookup.h.
-// Bilinear, across the edges of faces as well (OpenGL's seamless cube maps).
-// Tests: tests/shade/reference/environment_lookup_test.cpp.
-#include "reference/environment_lookup.h"
+// Texture and environment lookups in double. Lookups in cube maps are bilinear, also across the
+// edges of faces (OpenGL's seamless cube maps).
+#include "reference/lookups.h"
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
-#include "environment/angular_map.h"
-#include "environment/cube_faces.h"
-#include "environment/environment_brdf.h"
+#include "environment/environment_images.h"
 #include "environment/ggx.h"
-#include "environment/radiance.h"
+#include "geometry/direction.h"
 #include "relief/mesh/error.h"
 #include "relief/shade/image_source.h"
 
 namespace relief::reference {
 
+// Textures
+
+namespace {
+
+/// Calls each(texture, use) for every texture slot of a material.
+template <typename Each>
+void for_each_texture(const Material& material, Each each) {
+    each(material.diffuse_texture, ImageUse::color);
+    each(material.specular_texture, ImageUse::color);
+    each(material.emission_texture, ImageUse::color);
+    each(material.occlusion_texture, ImageUse::data);
+    each(material.opacity_texture, ImageUse::data);
+    if (material.metallic_roughness) each(material.metallic_roughness->texture, ImageUse::data);
+    if (material.normal_map) each(material.normal_map->texture, ImageUse::data);
+    if (material.bump_map) each(material.bump_map->texture, ImageUse::data);
+}
+
+constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
+
+}  // namespace
+
+int wrapped(double index, int size, TextureWrap wrap) {
+    const double n = size;
+    if (wrap == TextureWrap::clamp) return static_cast<int>(std::clamp(index, 0.0, n - 1.0));
+    const double period = wrap == TextureWrap::mirror ? 2.0 * n : n;
+    const double within = index - std::floor(index / period) * period;
+    // Far away, where doubles are coarser than texels, the remainder may round up to the period.
+    const double first = std::min(within, period - 1.0);
+    return static_cast<int>(first < n ? first : period - 1.0 - first);
+}
+
+Texels::Texels(const Image& image) : image_(to_linear(image)) {}
+
+glm::dvec4 Texels::at(int x, int y) const {
+    const std::span<const float> samples = image_.as<float>();
+    const auto first = (static_cast<std::size_t>(y) * static_cast<std::size_t>(image_.width) +
+                        static_cast<std::size_t>(x)) *
+                       static_cast<std::size_t>(image_.channels);
+    const auto sample = [&](std::size_t channel) {
+        return static_cast<double>(samples[first + channel]);
+    };
+    const double red = sample(0);
+    switch (image_.channels) {
+        case 1:
+            return {red, red, red, 1.0};
+        case 2:
+            return {red, red, red, sample(1)};
+        case 3:
+            return {red, sample(1), sample(2), 1.0};
+        default:
+            return {red, sample(1), sample(2), sample(3)};
+    }
+}
+
+glm::dvec4 Texels::bilinear(const glm::dvec2& uv, TextureWrap u, TextureWrap v) const {
+    if (!is_finite(uv)) return glm::dvec4(not_a_number);
+    const glm::dvec2 position = uv * glm::dvec2(image_.width, image_.height) - 0.5;
+    const glm::dvec2 corner = glm::floor(position);
+    const glm::dvec2 share = position - corner;
+    const int left = wrapped(corner.x, image_.width, u);
+    const int right = wrapped(corner.x + 1.0, image_.width, u);
+    const int top = wrapped(corner.y, image_.height, v);
+    const int bottom = wrapped(corner.y + 1.0, image_.height, v);
+    const glm::dvec4 upper = at(left, top) * (1.0 - share.x) + at(right, top) * share.x;
+    const glm::dvec4 lower = at(left, bottom) * (1.0 - share.x) + at(right, bottom) * share.x;
+    return upper * (1.0 - share.y) + lower * share.y;
+}
+
+glm::dvec4 Texels::nearest(const glm::dvec2& uv, TextureWrap u, TextureWrap v, Trace& trace) const {
+    if (!is_finite(uv)) return glm::dvec4(not_a_number);
+    const int x = wrapped(std::floor(uv.x * image_.width), image_.width, u);
+    const int y = wrapped(std::floor(uv.y * image_.height), image_.height, v);
+    trace.decide(x);
+    trace.decide(y);
+    return at(x, y);
+}
+
+void SceneTexels::request(const Scene& scene, const Material& material) {
+    for_each_texture(material, [&](const std::optional<Texture>& texture, ImageUse use) {
+        if (!texture) return;
+        const auto key = std::pair(texture->image, use);
+        if (texels_.contains(key) || unreadable_.contains(texture->image)) return;
+        const ImageSource& source = scene.images[texture->image];
+        try {
+            texels_.emplace(key, Texels(decode(source, use)));
+        } catch (const FileError& error) {
+            if (source.is_required) throw;
+            unreadable_.emplace(texture->image, error.what());
+        }
+    });
+}
+
+glm::dvec4 SceneTexels::look_up(const Texture& texture, ImageUse use, const glm::dvec2& uv,
+                                Trace& trace) const {
+    const Texels& texels = get(texture.image, use);
+    trace.look_up({uv * glm::dvec2(texels.width(), texels.height()), 0.0});
+    if (texture.filter == TextureFilter::nearest) {
+        return texels.nearest(uv, texture.wrap_u, texture.wrap_v, trace);
+    }
+    return texels.bilinear(uv, texture.wrap_u, texture.wrap_v);
+}
+
+// Environments
+
 namespace {
 
 using std::numbers::pi;
 
-/// Directions drawn for a blurred lookup: enough for the mean of a smooth environment to settle to
-/// a thousandth.
+/// The number of sampled directions of a blurred lookup: the mean of a smooth environment has an
+/// error of about a thousandth.
 constexpr unsigned blur_samples = 1024;
 
-/// Two directions that complete a unit one to a right-handed basis.
+/// A right-handed basis with this unit vector as its z axis.
 glm::dmat3 basis_about(const glm::dvec3& z) {
     const glm::dvec3 axis = std::abs(z.x) < 0.9 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);
     const glm::dvec3 x = glm::normalize(glm::cross(axis, z));
     return {x, glm::cross(z, x), z};
 }
 
-/// The images of an environment: six faces for our world, or one.
+/// The images of an environment: six faces for a right-handed world, or one image.
 std::vector<Image> images_of(const Environment& environment) {
     const auto decoded = [](const ImageSource& source) { return decode(source, ImageUse::color); };
     std::vector<Image> images;
@@ -68,8 +170,8 @@ EnvironmentLookup::EnvironmentLookup(const Environment& environment, Report& rep
     if (environment.lights) irradiance_ = irradiance_sh(faces());
 }
 
-/// A texel of a face, or beyond its border the one across the edge that the faces share. Beyond a
-/// corner, where three faces meet, their mean.
+/// A texel of a face, or beyond its border the texel of the adjacent face. Beyond a corner, where
+/// three faces meet, it is the mean of their texels.
 glm::dvec3 EnvironmentLookup::face_texel(std::size_t face, int x, int y) const {
     const int size = images_[face].width();
     if (x >= 0 && x < size && y >= 0 && y < size) return images_[face].at(x, y);
@@ -90,11 +192,11 @@ glm::dvec3 EnvironmentLookup::face_texel(std::size_t face, int x, int y) const {
 
 glm::dvec3 EnvironmentLookup::face_radiance(const glm::dvec3& direction) const {
     const FacePoint point = face_point(direction);
-    const glm::dvec2 place = (glm::dvec2(point.s, point.t) * 0.5 + 0.5) *
-                                 static_cast<double>(images_[point.face].width()) -
-                             0.5;
-    const glm::dvec2 corner = glm::floor(place);
-    const glm::dvec2 share = place - corner;
+    const glm::dvec2 position = (glm::dvec2(point.s, point.t) * 0.5 + 0.5) *
+                                    static_cast<double>(images_[point.face].width()) -
+                                0.5;
+    const glm::dvec2 corner = glm::floor(position);
+    const glm::dvec2 share = position - corner;
     const int x = static_cast<int>(corner.x);
     const int y = static_cast<int>(corner.y);
     const auto texel = [&](int right, int down) {
@@ -106,23 +208,23 @@ glm::dvec3 EnvironmentLookup::face_radiance(const glm::dvec3& direction) const {
 
 glm::dvec3 EnvironmentLookup::radiance(const glm::dvec3& direction_world) const {
     const glm::dvec3 d = glm::normalize(direction_world);
-    glm::dvec3 found(0.0);
+    glm::dvec3 result(0.0);
     if (layout_ == Layout::faces) {
-        found = face_radiance(d);
+        result = face_radiance(d);
     } else if (layout_ == Layout::equirectangular) {
         const double across = std::hypot(d.x, d.z);
         const glm::dvec2 uv(0.5 + std::atan2(d.x, -d.z) / (2.0 * pi),
                             0.5 - std::atan2(d.y, across) / pi);
-        found = images_.front().bilinear(uv, TextureWrap::repeat, TextureWrap::clamp);
+        result = images_.front().bilinear(uv, TextureWrap::repeat, TextureWrap::clamp);
     } else {
         const glm::dvec2 uv = angular_map_place(d, images_.front().width());
-        found = images_.front().bilinear(uv, TextureWrap::clamp, TextureWrap::clamp);
+        result = images_.front().bilinear(uv, TextureWrap::clamp, TextureWrap::clamp);
     }
-    return found * intensity_;
+    return result * intensity_;
 }
 
 glm::dvec3 EnvironmentLookup::looked_up(const glm::dvec3& direction_world, Trace& trace) const {
-    // Texels that pass by in a radian where they are finest, at the corner of a face; a panorama
+    // The number of texels in a radian where they are smallest, at the corner of a face. A panorama
     // becomes a cube map of a quarter of its width.
     const int width = images_.front().width();
     const double size = layout_ == Layout::faces ? width : width / 4.0;
@@ -146,8 +248,8 @@ glm::dvec3 EnvironmentLookup::blurred(const glm::dvec3& direction_world, double 
     return sum / weights;
 }
 
-/// A panorama or probe becomes faces of a quarter of its width, each texel the mean of four
-/// lookups.
+/// Six faces of the environment. A panorama or probe becomes faces of a quarter of its width, each
+/// texel the mean of four lookups.
 std::vector<Image> EnvironmentLookup::faces() const {
     const int wide = images_.front().width();
     const int size = layout_ == Layout::faces ? wide : std::max((wide + 3) / 4, 2);
@@ -180,7 +282,7 @@ glm::dvec3 EnvironmentLookup::diffuse(const glm::dvec3& normal_world) const {
 }
 
 glm::dvec2 directional_albedo(double n_dot_v, double roughness) {
-    // Where the surface is seen edge-on, what it tends to.
+    // A surface seen edge-on gets the limit.
     return environment_brdf(std::max(n_dot_v, 1e-4), roughness);
 }
 

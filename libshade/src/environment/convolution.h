@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// The environment as rough and as matte surfaces reflect it: its convolution with GGX's lobe and
+/// with the cosine. World space, linear light.
+#pragma once
+
+#include <array>
+#include <glm/glm.hpp>
+#include <span>
+#include <vector>
+
+#include "relief/mesh/image.h"
+
+namespace relief {
+
+// Blurred radiance
+
+/// Six faces, and their means over 2 x 2, 4 x 4, ... texels, weighted by solid angle.
+///
+/// Blurred radiance in a direction d is the average over the hemisphere around d with the weight
+/// D(h) n.l, where normal and eye are d itself and D is GGX's distribution of the half vector h:
+/// the first half of the split sum [Karis, SIGGRAPH 2013]. Far from d the weight changes slowly, so
+/// that many texels count as one there [Barnes and Hut 1986]: a texel of the result needs some
+/// hundred terms instead of a hundred thousand.
+class RadianceTree {
+  public:
+    /// A texel, or the mean of several texels.
+    struct Node {
+        glm::vec3 direction{0.0F};  ///< Of its center, unit.
+        float solid_angle = 0.0F;
+        glm::vec3 radiance{0.0F};         ///< Mean over the solid angle.
+        glm::vec3 light_direction{0.0F};  ///< The average direction of its light, unit.
+    };
+
+    /// \param faces  +x -x +y -y +z -z, three float channels of finite radiance, their size a power
+    ///               of two
+    /// \throws InvalidInput if they do not fit together or have another size or kind
+    explicit RadianceTree(std::span<const Image> faces);
+
+    /// Level 0 holds the whole faces, the last level the texels.
+    [[nodiscard]] std::size_t level_count() const { return levels_.size(); }
+
+    /// 2^level by 2^level nodes of a face.
+    [[nodiscard]] const Node& node(std::size_t level, std::size_t face, std::size_t x,
+                                   std::size_t y) const {
+        return levels_[level][(((face << level) + y) << level) + x];
+    }
+
+  private:
+    std::vector<std::vector<Node>> levels_;
+};
+
+/// Six faces of blurred radiance.
+///
+/// \param roughness  0.1 to 1, alpha = roughness^2; smoother lobes are narrower than a texel
+/// \return three float channels; the relative root mean square error against blurred_radiance() is
+///         within 2%, and within 1% for pictures of real places; the same bits for any number of
+///         threads
+std::vector<Image> blurred_faces(const RadianceTree& tree, int size, double roughness);
+
+/// The same for one direction of any length but zero, by a sum over all texels in double.
+///
+/// \param faces  as above, of any size
+glm::dvec3 blurred_radiance(std::span<const Image> faces, const glm::dvec3& direction,
+                            double roughness);
+
+// Irradiance
+
+/// Irradiance for every normal in nine numbers a color channel: spherical harmonics up to order 2
+/// [Ramamoorthi and Hanrahan 2001]. Values are over pi, so a white surface shows them unchanged. In
+/// pictures of real places the error is within 2% of the brightest value of the true integral; for
+/// one small light it is within 9.4% of the irradiance at normal incidence, and far from it the
+/// result is slightly negative. The irradiance over pi of a surface with the unit normal n is
+///
+///     c[0] + c[1] n.y + c[2] n.z + c[3] n.x + c[4] n.x n.y + c[5] n.y n.z
+///          + c[6] (3 n.z^2 - 1) + c[7] n.x n.z + c[8] (n.x^2 - n.y^2)
+using IrradianceSh = std::array<glm::vec3, 9>;
+
+/// \param faces  six images in linear light, +x -x +y -y +z -z, of three float channels or more
+/// \return sums in double, each texel weighted by its solid angle
+/// \throws InvalidInput if the faces do not fit together or are not float, or a texel is not finite
+IrradianceSh irradiance_sh(std::span<const Image> faces);
+
+/// The polynomial at a unit normal. It is not clamped to 0.
+glm::dvec3 irradiance_over_pi(const IrradianceSh& coefficients, const glm::dvec3& normal);
+
+}  // namespace relief
