@@ -83,7 +83,8 @@ glm::dvec3 direction(std::span<const float> samples, std::size_t texel) {
     return {samples[3 * texel], samples[3 * texel + 1], samples[3 * texel + 2]};
 }
 
-/// Whether the length is finite and not 0. Squares of floats neither overflow nor vanish in double.
+/// Tells whether the length is finite and not 0. Squares of floats neither overflow nor vanish in
+/// double.
 bool has_direction(const glm::dvec3& vector) {
     const double squared = glm::dot(vector, vector);
     return std::isfinite(squared) && squared > 0.0;

@@ -26,7 +26,7 @@ class RadianceTree {
   public:
     /// A texel, or the mean of several texels.
     struct Node {
-        glm::vec3 direction{0.0F};  ///< Of its center, unit.
+        glm::vec3 direction{0.0F};  ///< The unit direction of its center.
         float solid_angle = 0.0F;
         glm::vec3 radiance{0.0F};         ///< Mean over the solid angle.
         glm::vec3 light_direction{0.0F};  ///< The average direction of its light, unit.

@@ -61,8 +61,8 @@ class Api {
     /// GL_RENDERER and GL_VERSION.
     [[nodiscard]] std::string renderer() const { return text(GL_RENDERER); }
     [[nodiscard]] std::string version() const { return text(GL_VERSION); }
-    /// Whether the processor rasterizes (Mesa's llvmpipe, softpipe and swr); then timer queries are
-    /// wrong.
+    /// Tells whether the processor rasterizes (Mesa's llvmpipe, softpipe and swr); then timer
+    /// queries are wrong.
     [[nodiscard]] bool is_software() const;
 
     /// Errors and warnings since the last call, at most 64, without performance hints. Without

@@ -14,7 +14,7 @@ namespace relief {
 
 namespace {
 
-/// Whether this thread has a Context. OSMesa and EGL would not notice that both are current.
+/// True if this thread has a Context. OSMesa and EGL would not notice that both are current.
 thread_local bool thread_has_context = false;
 
 /// A context that works.

@@ -206,7 +206,7 @@ bool is_coded_color(const Image& image) {
     return image.bits() == 8 && image.color_space == ColorSpace::srgb;
 }
 
-/// Whether the faces are stored as sRGB codes.
+/// Tells whether the faces are stored as sRGB codes.
 bool holds_codes(const Api& api, const CubeMap& cube) {
     GLint format = 0;
     api->BindTexture(GL_TEXTURE_CUBE_MAP, cube.texture.name());

@@ -155,7 +155,7 @@ std::unique_ptr<PlatformContext> make_osmesa_context() {
 
 namespace {
 
-/// Whether a list of names separated by blanks contains this name.
+/// Tells whether a list of names separated by blanks contains this name.
 bool holds(const char* list, std::string_view name) {
     std::string_view rest = list == nullptr ? "" : list;
     while (!rest.empty()) {

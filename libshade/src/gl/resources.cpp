@@ -70,13 +70,13 @@ GLenum memory_type(int bits) {
     }
 }
 
-/// Grey and grey with alpha as RGB and RGB with alpha.
-Image spread_grey(const Image& grey) {
-    const int channels = grey.channels + 2;
-    Image rgb = make_image(grey.width, grey.height, channels, 8, grey.color_space);
-    const auto from = grey.as<std::uint8_t>();
+/// Gray and gray with alpha as RGB and RGB with alpha.
+Image spread_gray(const Image& gray) {
+    const int channels = gray.channels + 2;
+    Image rgb = make_image(gray.width, gray.height, channels, 8, gray.color_space);
+    const auto from = gray.as<std::uint8_t>();
     const auto to = rgb.as<std::uint8_t>();
-    const auto stride_from = static_cast<std::size_t>(grey.channels);
+    const auto stride_from = static_cast<std::size_t>(gray.channels);
     const auto stride_to = static_cast<std::size_t>(channels);
     for (std::size_t i = 0; i * stride_from < from.size(); ++i) {
         for (std::size_t c = 0; c < 3; ++c)
@@ -86,7 +86,7 @@ Image spread_grey(const Image& grey) {
     return rgb;
 }
 
-/// Grey is looked up as RGB, as images mean it, not as red.
+/// Gray is looked up as RGB, as images mean it, not as red.
 void set_swizzle(const Api& api, int channels) {
     if (channels > 2) return;
     const GLint alpha = channels == 2 ? GL_GREEN : GL_ONE;
@@ -99,7 +99,7 @@ GLenum binding_target(GLenum target) {
     return target == GL_TEXTURE_2D ? GL_TEXTURE_2D : GL_TEXTURE_CUBE_MAP;
 }
 
-/// What is asked for, as far as it goes; with nearest texels there is nothing to average.
+/// The requested anisotropy within the limit of the context; 1 for nearest filtering.
 float usable_anisotropy(const Api& api, const Sampling& sampling) {
     const bool is_linear =
         sampling.magnify == GL_LINEAR && sampling.minify == GL_LINEAR_MIPMAP_LINEAR;
@@ -140,7 +140,7 @@ TexelFormat texel_format(const Image& image, FloatStorage storage) {
 std::optional<Image> converted_for_upload(const Image& image) {
     if (image.color_space != ColorSpace::srgb) return std::nullopt;
     if (image.bits() != 8) return to_linear(image);
-    if (image.channels < 3) return spread_grey(image);
+    if (image.channels < 3) return spread_gray(image);
     return std::nullopt;
 }
 

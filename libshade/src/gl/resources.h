@@ -48,7 +48,7 @@ std::vector<std::byte> read_buffer(const Api& api, const Buffer& buffer);
 
 // Textures
 
-/// How texels are looked up.
+/// The sampling of texels.
 struct Sampling {
     GLenum wrap_s = GL_REPEAT;
     GLenum wrap_t = GL_REPEAT;
@@ -58,7 +58,7 @@ struct Sampling {
     float anisotropy = 16.0F;
 };
 
-/// How float samples are stored.
+/// The storage of float samples.
 enum class FloatStorage { full, half };
 
 /// An image as a complete 2D texture.
@@ -94,7 +94,7 @@ Texture make_buffer_texture(const Api& api, const Buffer& buffer, GLenum format,
 /// The format of samples in memory and on the GPU.
 struct TexelFormat {
     GLenum internal = 0;  ///< GL_SRGB8, GL_RGBA16F, ...
-    GLenum format = 0;    ///< Of the samples in memory: GL_RED, GL_RG, GL_RGB or GL_RGBA.
+    GLenum format = 0;    ///< The layout in memory: GL_RED, GL_RG, GL_RGB or GL_RGBA.
     GLenum type = 0;      ///< GL_UNSIGNED_BYTE, GL_UNSIGNED_SHORT or GL_FLOAT.
 };
 
@@ -147,8 +147,8 @@ class RenderTarget {
     [[nodiscard]] const Texture& color() const { return color_; }
 
     /// Waits for the drawing to finish and reads the color back, samples averaged: four channels,
-    /// row 0 on top. \param color_space  the color space that the shader wrote; nothing is
-    /// converted
+    /// row 0 on top.
+    /// \param color_space  the color space that the shader wrote; nothing is converted
     [[nodiscard]] Image read(ColorSpace color_space) const;
 
     /// Copies the color of another target of the same size; both have one sample a pixel.

@@ -48,7 +48,7 @@ class Trace {
     std::vector<glm::dvec3> places_;
 };
 
-/// An image as RGBA: grey as (g, g, g, 1), grey with alpha as (g, g, g, a), RGB as (r, g, b, 1).
+/// An image as RGBA: gray as (g, g, g, 1), gray with alpha as (g, g, g, a), RGB as (r, g, b, 1).
 class Texels {
   public:
     Texels() = default;
@@ -106,7 +106,8 @@ class EnvironmentLookup {
 
     /// The reflection in a surface whose microfacets have GGX's distribution, with normal and eye
     /// along the direction: the mean over directions l, mirrored at normals h that are sampled from
-    /// the distribution, weighted by n.l. \param roughness  0 is a mirror
+    /// the distribution, weighted by n.l.
+    /// \param roughness  0 is a mirror
     [[nodiscard]] glm::dvec3 blurred(const glm::dvec3& direction_world, double roughness,
                                      Trace& trace) const;
 

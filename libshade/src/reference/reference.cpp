@@ -87,11 +87,11 @@ class Tracer {
     /// \param x, y  in pixels from the upper left corner
     [[nodiscard]] Sample trace(double x, double y) const;
 
-    /// Whether the picture is continuous between two samples.
+    /// Tells whether the picture is continuous between two samples.
     [[nodiscard]] bool is_continuous(const Sample& a, const Sample& b) const;
 
-    /// Whether the next pixel may lie beyond the horizon of a textured triangle's plane, where the
-    /// differences between pixels by which OpenGL chooses a mip level mean nothing.
+    /// Tells whether the next pixel may lie beyond the horizon of a textured triangle's plane,
+    /// where the differences between pixels by which OpenGL chooses a mip level mean nothing.
     [[nodiscard]] bool is_edge_on(const Sample& sample, double x, double y) const;
 
   private:
@@ -110,7 +110,7 @@ class Tracer {
     const PreparedScene& prepared_;
     const ReferenceSettings& settings_;
     reference::Visibility visibility_;
-    double top_ = 1.0;  ///< Of the picture on the plane at distance 1.
+    double top_ = 1.0;  ///< The upper edge of the picture on the plane at distance 1.
 };
 
 glm::dvec2 Tracer::on_view_plane(double x, double y) const {
@@ -143,8 +143,8 @@ glm::dvec4 Tracer::skybox(const glm::dvec2& view_plane, Trace& trace) const {
     return {limited(radiance, max_radiance), 1.0};
 }
 
-/// Whether the depths differ by less than half a millionth of the depth range, about twenty steps
-/// of a 24-bit depth buffer.
+/// Tells whether the depths differ by less than half a millionth of the depth range, about twenty
+/// steps of a 24-bit depth buffer.
 bool Tracer::is_too_close(const Hit& front, const Hit& behind) const {
     const double near = static_cast<double>(camera().near);
     const double far = static_cast<double>(camera().far);
@@ -176,7 +176,7 @@ Sample Tracer::trace(double x, double y) const {
     return sample;
 }
 
-/// Whether two hits lie on one piece of surface with continuous attributes.
+/// Tells whether two hits lie on one piece of surface with continuous attributes.
 bool Tracer::is_same_surface(const Hit& a, const Hit& b) const {
     if (a.instance != b.instance || reference::is_back(prepared_, a) != is_back(prepared_, b)) {
         return false;
@@ -223,8 +223,8 @@ bool Tracer::is_edge_on(const Sample& sample, double x, double y) const {
     });
 }
 
-/// Whether a texture lookup moves by more than 0.7 texels a pixel between two rays. \param apart
-/// the distance of the rays in pixels
+/// Tells whether a texture lookup moves by more than 0.7 texels a pixel between two rays.
+/// \param apart  the distance of the rays in pixels
 bool moves_fast(const Sample& a, const Sample& b, double apart) {
     constexpr double max_texels = 0.7;
     const auto& from = a.trace.places();
@@ -236,10 +236,10 @@ bool moves_fast(const Sample& a, const Sample& b, double apart) {
     return false;
 }
 
-/// Whether OpenGL minifies a texture: by the derivative of its lookup here and, since OpenGL takes
-/// differences within blocks of four pixels, between this pixel and all its neighbors. If another
-/// surface begins there, OpenGL extrapolates this one, which is not known here: that counts as
-/// minified.
+/// Tells whether OpenGL minifies a texture: by the derivative of its lookup here and, since OpenGL
+/// takes differences within blocks of four pixels, between this pixel and all its neighbors. If
+/// another surface begins there, OpenGL extrapolates this one, which is not known here: that counts
+/// as minified.
 bool is_minified(const Tracer& tracer, const Sample& center, double x, double y, double margin) {
     if (center.trace.places().empty()) return false;
     for (const double apart : {margin, 1.0}) {

@@ -284,7 +284,7 @@ glm::dvec3 vector_tangent(const PreparedScene& prepared, const Material& materia
            glm::dvec3(scale, scale, 1.0);
 }
 
-/// Whether a vector is shorter than the rounding of its codes.
+/// Tells whether a vector is shorter than the rounding of its codes.
 bool is_undefined(const glm::dvec3& vector) {
     return !(glm::dot(vector, vector) > 1e-12);
 }

@@ -63,7 +63,7 @@ struct Surface {
     bool has_texcoord = false;  ///< Without them, no texture is looked up.
 };
 
-/// Whether the hit shows the back of its triangle.
+/// Tells whether the hit shows the back of its triangle.
 bool is_back(const PreparedScene& prepared, const Hit& hit);
 
 Surface surface_at(const PreparedScene& prepared, const Hit& hit, const Material& material,

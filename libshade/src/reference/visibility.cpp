@@ -27,7 +27,7 @@ Visibility::Visibility(std::vector<ViewMesh> meshes, double near, double far)
 
 Visibility::~Visibility() = default;
 
-/// Whether b has the edge or the vertex of a on which the hit a lies: all corners of a whose
+/// Tells whether b has the edge or the vertex of a on which the hit a lies: all corners of a whose
 /// weights are not 0.
 bool Visibility::shares_place(const Hit& a, const Hit& b) const {
     if (a.instance != b.instance) return false;
@@ -44,7 +44,7 @@ bool Visibility::shares_place(const Hit& a, const Hit& b) const {
     return true;
 }
 
-/// Whether a hit on an edge or a vertex repeats an earlier hit there.
+/// Tells whether a hit on an edge or a vertex repeats an earlier hit there.
 bool Visibility::is_repeated(const std::vector<Hit>& all, std::size_t index) const {
     const glm::dvec3& weights = all[index].barycentric;
     if (weights.x != 0.0 && weights.y != 0.0 && weights.z != 0.0) return false;

@@ -28,7 +28,7 @@ struct Hit {
     std::uint32_t instance = 0;
     std::uint32_t triangle = 0;
     double depth = 0.0;             ///< Distance along -z.
-    glm::dvec3 barycentric{0.0};    ///< Of the triangle itself: correct for perspective.
+    glm::dvec3 barycentric{0.0};    ///< On the triangle itself, correct for perspective.
     bool counter_clockwise = true;  ///< As the eye sees it.
 };
 

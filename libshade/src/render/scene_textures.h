@@ -102,8 +102,9 @@ class SceneTextures {
     }
 
     /// Decodes the requested images that are not in the cache. Requests of images that cannot be
-    /// read are dropped. \return those images, by index, each with its error \throws FileError if
-    /// an image that is required cannot be read
+    /// read are dropped.
+    /// \return those images, by index, each with its error
+    /// \throws FileError if an image that is required cannot be read
     std::map<std::size_t, std::string> decode(const std::vector<ImageSource>& sources);
 
     /// Uploads the decoded images. \throws GpuError

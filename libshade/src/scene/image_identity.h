@@ -15,7 +15,7 @@ class ImageIdentity {
   public:
     explicit ImageIdentity(const ImageSource& source);
 
-    /// Whether the source is the same value in memory, or a file of the same name and stamp.
+    /// Tells whether the source is the same value in memory, or a file of the same name and stamp.
     [[nodiscard]] bool is(const ImageSource& source) const;
 
   private:

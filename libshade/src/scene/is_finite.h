@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Whether all numbers of a vector or matrix are neither NaN nor infinite.
+/// Tells whether all numbers of a vector or matrix are neither NaN nor infinite.
 #pragma once
 
 #include <cmath>

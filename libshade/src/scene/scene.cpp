@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What can be said of a scene as a whole: its box, the names of its parts in messages, and the use
+// Properties of a scene as a whole: its box, the names of its parts in messages, and the use
 // of the default material. World space.
 #include "relief/shade/scene.h"
 
@@ -32,7 +32,7 @@ std::string name_of(const std::vector<Shared<Mesh>>& meshes, std::size_t index) 
     return index < meshes.size() ? meshes[index]->name : std::string();
 }
 
-/// Whether a mesh has triangles without a material.
+/// Tells whether a mesh has triangles without a material.
 bool has_bare_triangles(const Mesh& mesh) {
     if (mesh.triangles.empty()) return false;
     return mesh.material_ranges.empty() ||

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Environments from folders. Tests: tests/shade/scene/environment_files_test.cpp.
+/// Environments from folders.
 #pragma once
 
 #include <filesystem>
@@ -10,7 +10,7 @@
 namespace relief {
 
 /// Six images in a folder, by the ends of their names: posx, negx, posy, negy, posz, negz.
-/// \throws FileError naming the first that is missing, or two that claim one place
+/// \throws FileError naming the first missing face, or two files for one face
 CubeFaces cube_faces_in(const std::filesystem::path& folder);
 
 }  // namespace relief

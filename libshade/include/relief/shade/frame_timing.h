@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// What a frame takes, measured: renderers draw in turns, the first frames are dropped, and the
-/// wall clock is read around finished work (software drivers' timer queries are wrong).
-/// Tests: tests/shade/render/effect_costs_test.cpp.
+/// Measured times of frames: renderers draw interleaved, the first frames are dropped, and the wall
+/// clock is read around finished work, since the timer queries of software drivers are wrong.
 #pragma once
 
 #include <span>
@@ -20,7 +19,7 @@ struct FrameSeries {
     std::vector<double> frame;  ///< Their sum.
 };
 
-/// One series for each renderer, drawn in turns; frames while warming up are not in it.
+/// One series for each renderer, drawn interleaved, without warm-up frames.
 /// \throws what Renderer::draw does
 std::vector<FrameSeries> time_frames(std::span<Renderer* const> renderers, const Camera& camera,
                                      const Repeats& repeats);

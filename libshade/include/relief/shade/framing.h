@@ -1,27 +1,26 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Where the camera stands to see a scene as large as the picture allows. World space; angles in
-/// radians. Tests: tests/shade/scene/framing_test.cpp.
+/// Cameras that show a scene as large as the picture allows. World space; angles in radians.
 #pragma once
 
 #include "relief/shade/scene.h"
 
 namespace relief {
 
-/// A camera that sees every finite vertex of a scene, with a little room around them. Nearer than
+/// A camera that sees every finite vertex of a scene, with a small margin. It is closer than
 /// framed() of the scene's box, whose corners are mostly empty.
 ///
-/// \param azimuth          radians from +z towards +x, from where the camera looks
+/// \param azimuth          radians from +z towards +x, to the position of the camera
 /// \param elevation        radians above the horizon
 /// \param aspect           width / height of the picture
-/// \param distance_factor  multiplies the distance from the centre of the scene's box
+/// \param distance_factor  multiplies the distance from the center of the scene's box
 /// \return a valid camera. A scene without extent is seen from distance 1, times the factor
 /// \throws InvalidInput as framed() of a box does, and if the factor is not positive and finite
 Camera framed(const Scene& scene, float azimuth, float elevation, float vertical_fov, float aspect,
               float distance_factor = 1.0F);
 
-/// A camera on its line of sight: its distance from `target` times `factor`. The depth range moves
-/// along, and still ends behind what it ended behind before.
+/// Moves a camera along its line of sight: its distance from `target` is multiplied by `factor`.
+/// The depth range moves along and still contains the same objects.
 Camera at_distance(Camera camera, const glm::vec3& target, float factor);
 
 }  // namespace relief

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Pictures on their way from the thread that draws to the one that shows them.
-/// Tests: tests/shade/render/handover_test.cpp.
+/// Hands pictures from the thread that draws to the thread that shows them.
 #pragma once
 
 #include <memory>
@@ -10,11 +9,11 @@
 
 namespace relief {
 
-/// Three textures: one is shown, one waits to be, one is free to be copied into.
+/// Three textures: one is shown, one is the next, one is free for the next copy.
 ///
-/// The two threads have contexts that share their textures (a window library makes such). The one
-/// that draws owns this and calls put(), the other one calls get(): it never waits for a frame, and
-/// never sees half of one.
+/// The two threads have contexts that share textures (a window library creates them). The drawing
+/// thread owns this object and calls put(), the other thread calls get(): it never waits for a
+/// frame and never sees an incomplete one.
 class Handover {
   public:
     explicit Handover(const Context& context);
@@ -22,20 +21,20 @@ class Handover {
     Handover(const Handover&) = delete;
     Handover& operator=(const Handover&) = delete;
 
-    /// Copies what the renderer drew last, and waits until it is there. Of 8-bit pictures.
+    /// Copies the last picture of the renderer, which must have 8 bits, and waits for the copy.
     /// \param beside  another picture that is handed over at the same moment
     void put(const Renderer& renderer, const Renderer* beside = nullptr);
 
-    /// The same for a picture that was drawn elsewhere: 8-bit RGB or RGBA, sRGB.
+    /// Hands over a picture from elsewhere: 8-bit RGB or RGBA, sRGB.
     void put(const Image& picture);
 
     struct Shown {
-        unsigned texture = 0;  ///< 0: there is none yet. Row 0 at the bottom, sRGB codes.
+        unsigned texture = 0;  ///< 0 before the first. Row 0 at the bottom, sRGB codes.
         int width = 0;
         int height = 0;
-        unsigned beside = 0;  ///< Of the same size; 0: there is none.
+        unsigned beside = 0;  ///< The other picture, of the same size; 0 if there is none.
     };
-    /// The newest; its texture is left alone until the next call.
+    /// The newest picture; its texture stays unchanged until the next call.
     Shown get();
 
   private:

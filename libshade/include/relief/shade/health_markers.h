@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Where the health check of meshes (diagnose.h, `relief-mesh check`) found trouble, to be drawn
-/// over a picture, coloured by kind. No OpenGL. Tests: tests/shade/scene/health_markers_test.cpp.
+/// Markers for the findings of the mesh health check (diagnose.h, `relief-mesh check`), drawn over
+/// a picture and colored by kind. No OpenGL.
 #pragma once
 
 #include <memory>
@@ -14,11 +14,11 @@
 
 namespace relief {
 
-/// A kind of trouble, over all instances.
+/// A condition over all instances.
 struct MarkedCondition {
     MeshCondition condition;
-    std::size_t count = 0;   ///< Elements that show it; those of a mesh once for each instance.
-    std::size_t marked = 0;  ///< With a marker; others are nowhere, or beyond most_markers.
+    std::size_t count = 0;   ///< Affected elements; those of a mesh once for each instance.
+    std::size_t marked = 0;  ///< With a marker; others are not finite, or beyond most_markers.
     glm::vec3 color_srgb{1.0F};
 };
 
@@ -27,18 +27,18 @@ struct HealthMarkers {
     std::vector<MarkedCondition> conditions;             ///< The legend, in that order too.
 };
 
-/// Of one condition in one mesh.
+/// The maximum number of markers for one condition in one mesh.
 inline constexpr std::size_t most_markers = 10000;
 
-/// The colour of a condition, sRGB: another for each.
+/// The sRGB color of a condition; every condition has a different one.
 glm::vec3 marker_color(MeshCondition condition);
 
-/// Diagnoses every mesh that an instance shows. A vertex is marked where it is; a triangle, and an
-/// edge by the first triangle on it, at the middle of its corners. What is nowhere (not finite), or
-/// about the mesh as a whole, is counted and has no marker.
+/// Diagnoses every mesh that an instance shows. The marker of a vertex is at its position; that of
+/// a triangle, or of an edge by its first triangle, at the center of its corners. Elements that are
+/// not finite, and conditions of the whole mesh, are counted without a marker.
 ///
-/// \param severity  trouble alone (what makes `relief-mesh check` call a mesh unsound), which is
-///                  found sooner, or absent: remarks too
+/// \param severity  problems alone (for which `relief-mesh check` calls a mesh unsound), which is
+///                  faster; if absent, notes too
 HealthMarkers health_markers(const Scene& scene,
                              std::optional<Severity> severity = Severity::trouble);
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// How messages name the parts of a scene: by their name in quotes, and by number where they have
-/// none. Tests: tests/shade/scene/labels_test.cpp.
+/// The names of parts of a scene in messages: their name in quotes, or their number without a name.
 #pragma once
 
 #include <cstddef>
@@ -15,7 +14,7 @@ namespace relief {
 /// "material 'paint'", "material 3" if it has no name, "the default material" for none.
 std::string material_label(const Scene& scene, std::optional<std::size_t> material);
 
-/// "instance 'wheel'", else by its mesh: "mesh 'Wheel'", else "instance 3".
+/// "instance 'wheel'"; without a name that of its mesh: "mesh 'Wheel'"; otherwise "instance 3".
 std::string instance_label(const Scene& scene, std::size_t instance);
 
 /// "mesh 'Wheel'" or "mesh 3".

@@ -1,18 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// The default material among those that have a place in the list.
-/// Tests: tests/tools/window/material_models_test.cpp.
+/// The default material as an entry of the list of materials.
 #pragma once
 
 #include "relief/shade/scene.h"
 
 namespace relief {
 
-/// Gives the default material a place in the list, and every triangle without a material that one:
-/// so that it can be edited. Copies the meshes that it changes.
+/// Adds the default material to the list and assigns it to every triangle without a material, so
+/// that it can be edited. Copies the meshes that it changes.
 void name_default_material(Scene& scene);
 
-/// Whether some triangle has no material of its own.
+/// Tells whether a triangle has no material.
 bool uses_default_material(const Scene& scene);
 
 }  // namespace relief

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// What a plan feeds to the GPU, each with its reason: vertex attributes, textures with their mip
-/// chains, and the passes of a frame. Pure: no OpenGL, and no image is decoded.
-/// Tests: tests/shade/render/planned_inputs_test.cpp.
+/// The inputs of a plan with their reasons: vertex attributes, textures with their mip chains, and
+/// the passes of a frame. No OpenGL is needed, and no image is decoded.
 #pragma once
 
 #include <string>
@@ -15,15 +14,15 @@ namespace relief {
 /// One stream of vertices.
 struct PlannedAttribute {
     std::string name;     ///< GLSL: "tangent_object".
-    bool stored = false;  ///< Else it is computed, or a constant where it cannot be.
+    bool stored = false;  ///< Otherwise it is computed, or a constant.
     std::string reason;
 };
 
 /// One texture that a draw samples.
 struct PlannedTexture {
     std::string sampler;     ///< GLSL: "normal_texture".
-    std::string image;       ///< By its source's name; empty: relief's own.
-    bool mip_chain = false;  ///< Averaged to smaller levels, for where texels are below pixels.
+    std::string image;       ///< The name of its source; empty for relief's own.
+    bool mip_chain = false;  ///< It has smaller levels for minification.
     std::string reason;
 };
 
@@ -32,10 +31,10 @@ struct DrawInputs {
     std::vector<PlannedTexture> textures;
 };
 
-/// What the program of a draw takes: the attributes and samplers of planned_interface().
+/// The inputs of a draw's program: the attributes and samplers of planned_interface().
 DrawInputs planned_inputs(const Scene& scene, const DrawPlan& draw);
 
-/// What is drawn one after another, and why.
+/// A pass of a frame, with its reason.
 struct PlannedPass {
     std::string name;
     std::string reason;

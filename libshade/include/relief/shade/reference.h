@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// The picture that a scene ought to give: Material's formula (material.h) in double precision on
-/// the CPU, written down from that comment and not from the shaders. Ground truth for the renderer
-/// and for reports on accuracy.
+/// The reference picture of a scene: Material's formula (material.h) in double precision on the
+/// CPU, implemented from that comment and not from the shaders. It is the ground truth for the
+/// renderer and for reports on accuracy.
 ///
-/// World space, linear light. A library of its own, relief::reference, because it needs Embree.
-/// Tests: tests/shade/reference/, tests/shade/render/reference_test.cpp.
+/// World space, linear light. It is a library of its own, relief::reference, because it needs
+/// Embree.
 #pragma once
 
 #include <cstdint>
@@ -21,43 +21,43 @@ namespace relief {
 struct ReferenceSettings {
     int width = 256;
     int height = 256;
-    /// How far from the centre of a pixel, in pixels, an edge counts as near: at least as far as
-    /// OpenGL's rounding of vertices to 1/256 pixel moves one. 0: no edges are looked for.
+    /// The distance in pixels from the center of a pixel within which an edge is reported: at least
+    /// the shift of an edge by OpenGL's rounding of vertices to 1/256 pixel. 0: no edges are
+    /// searched.
     double edge_margin = 1.0 / 32.0;
 };
 
-/// What a pixel shows first.
+/// The first surface of a pixel.
 struct ReferenceHit {
     static constexpr std::uint32_t none = 0xFFFFFFFFU;
 
     std::uint32_t instance = none;  ///< Index into Scene::instances; none: skybox or background.
     std::uint32_t triangle = none;  ///< Index into its mesh's triangles.
-    bool back = false;              ///< Its back face is seen.
+    bool back = false;              ///< Its back face is visible.
 
     friend bool operator==(const ReferenceHit&, const ReferenceHit&) = default;
 };
 
 struct Reference {
-    /// Four float channels, linear, before exposure and tone mapping. Alpha is how much of the
-    /// background is covered (by surfaces, or all of it by a skybox) and not multiplied in.
+    /// Four float channels, linear, before exposure and tone mapping. Alpha is the coverage of the
+    /// background (by surfaces, or fully by a skybox) and not multiplied in.
     Image radiance;
     /// One channel of 8 bits: 255 where something discrete changes within edge_margin of the
-    /// pixel's centre (which surface, which texel of a nearest-filtered texture, which side of a
-    /// lamp), so that rounding may decide what is seen, and where a texture is so fine that OpenGL
-    /// averages it; else 0.
+    /// pixel's center (the surface, the texel of a nearest-filtered texture, the side of a light),
+    /// so that rounding may decide the color, and where a texture is so fine that OpenGL averages
+    /// it; otherwise 0.
     Image edges;
     std::vector<ReferenceHit> hits;  ///< By pixel, row 0 on top.
 };
 
-/// The scene as its camera sees it, at the centre of each pixel.
+/// The scene as its camera sees it, at the center of each pixel.
 ///
 /// \param report  counts fallbacks of normal and tangent computation, and triangles with a vertex
-///                that is not finite: they are not drawn; names textures that cannot be read, which
-///                are left out as renderer.h says
-/// \return as shaders/README.md says in every hard case; always finite. Textures are looked up at
-///         full resolution, bilinearly or nearest: minified ones show what OpenGL averages, which
-///         is not done here, and neither is Material::specular_antialiasing. The same bits for any
-///         number of threads.
+///                that is not finite, which are not drawn; names textures that cannot be read,
+///                which are omitted as in renderer.h
+/// \return always finite; hard cases are as shaders/README.md defines them. Textures are looked up
+///         at full resolution, bilinearly or nearest, without minification, and without
+///         Material::specular_antialiasing. The same bits for any number of threads.
 /// \throws InvalidInput if the scene or the settings are not valid or there is no camera; FileError
 ///         if an image of the environment, or one that is required (scene.h), cannot be read
 Reference render_reference(const Scene& scene, const ReferenceSettings& settings, Report& report);
@@ -65,8 +65,8 @@ Reference render_reference(const Scene& scene, const ReferenceSettings& settings
 /// The picture of a radiance, composed over the scene's background.
 ///
 /// \param radiance  as in Reference
-/// \return four float channels, alpha not multiplied in; as frame_settings.h says, but that srgb is
-///         not rounded to 8 bits
+/// \return four float channels, alpha not multiplied in; as frame_settings.h says, except that srgb
+///         is not rounded to 8 bits
 /// \throws InvalidInput for OutputCoding::half
 ///
 /// Source of ToneMapping::aces: [Narkowicz 2016].

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// What one renderer leaves for the next, so that an edited scene is on the screen at once.
-/// Tests: tests/shade/render/render_cache_test.cpp.
+/// Resources that renderers share, so that an edited scene is redrawn at once.
 #pragma once
 
 #include <cstddef>
@@ -13,11 +12,10 @@ namespace relief {
 
 /// Programs, vertex buffers, textures, environment maps and render targets of one context.
 ///
-/// A renderer made with a cache takes from it what it needs and finds there: programs by their
-/// Features; meshes and images that are the same Shared value as before; image files of the same
-/// name, size and time of change that were not replaced; the environment likewise. It draws the
-/// same pixels as one made without. The cache must outlive its renderers, and the context the
-/// cache.
+/// A renderer with a cache reuses its contents: programs by their Features, meshes and images that
+/// are the same Shared value, image files of the same name, size and time of change, and
+/// environments likewise. It draws the same pixels as a renderer without a cache. The cache must
+/// outlive its renderers, and the context the cache.
 class RenderCache {
   public:
     explicit RenderCache(const Context& context);
@@ -25,10 +23,10 @@ class RenderCache {
     RenderCache(const RenderCache&) = delete;
     RenderCache& operator=(const RenderCache&) = delete;
 
-    /// Frees what no renderer holds any more. Programs stay: they are small and slow to make.
+    /// Frees resources without a renderer. Programs stay, since they are small and slow to create.
     void drop_unused();
 
-    /// Forgets all programs: their sources were edited. Renderers that live keep theirs.
+    /// Removes all programs because their sources changed. Existing renderers keep theirs.
     void drop_programs();
 
     struct Contents {

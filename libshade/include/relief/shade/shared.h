@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Large values that copies have in common: a scene with millions of triangles is copied like a few
-/// numbers. Tests: tests/shade/scene/shared_test.cpp.
+/// Large values that copies share, so that copying a scene with millions of triangles is cheap.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +11,7 @@ namespace relief {
 
 /// A value that copies share until one of them is edited.
 ///
-/// Reading from several threads needs no lock, also while another thread edits its own copy.
+/// Several threads may read without a lock, also while another thread edits its own copy.
 template <typename T>
 class Shared {
     struct Held {
@@ -22,27 +21,27 @@ class Shared {
 
   public:
     Shared() : held_(std::make_shared<Held>()) {}
-    // Wherever a T is taken, so that sharing is no business of those who make one.
+    // The conversions are implicit, so that a Shared<T> can be used like a T.
     Shared(T value) : held_(std::make_shared<Held>(Held{std::move(value)})) {}  // NOLINT
 
     const T& operator*() const { return held_->value; }
     const T* operator->() const { return &held_->value; }
-    operator const T&() const { return held_->value; }  // NOLINT: likewise where one is read.
+    operator const T&() const { return held_->value; }  // NOLINT
 
-    /// To change it; copies keep what they have, for which it is copied if there are any.
+    /// The value for editing. It is copied first if other copies share it.
     T& edit() {
         if (held_.use_count() > 1) held_ = std::make_shared<Held>(*held_);
         ++held_->edits;
         return held_->value;
     }
 
-    /// Tells an unedited value from all others, without keeping it in memory.
+    /// Identifies an unedited value without keeping it in memory.
     class Identity {
       public:
         explicit Identity(const Shared& shared)
             : held_(shared.held_), edits_(shared.held_->edits) {}
 
-        /// Whether this is the very value, not only an equal one, and not edited since.
+        /// Tells whether this is the same object, not only an equal one, and not edited since.
         [[nodiscard]] bool is(const Shared& shared) const {
             const bool is_other =
                 held_.owner_before(shared.held_) || shared.held_.owner_before(held_);
