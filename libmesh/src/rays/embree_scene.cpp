@@ -1,19 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-// Triangles are "user geometry" to Embree: it asks back for the boxes of triangles, and for the
-// hits of each triangle whose box a ray meets. Tests: tests/mesh/rays/embree_scene_test.cpp.
+// Clusters of triangles are "user geometry" to Embree: it asks back for their boxes, and for the
+// hits of each cluster whose box a ray meets. Tests: tests/mesh/rays/embree_scene_test.cpp.
 #include "rays/embree_scene.h"
 
 #include <embree3/rtcore.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
 #include <limits>
 #include <tuple>
 #include <utility>
-
-#include "vector_targets.h"
 
 namespace relief {
 
@@ -25,266 +24,16 @@ struct TiedHit {
 };
 
 struct EmbreeScene::MeshOfScene {
-    const glm::vec3* floats = nullptr;
-    const glm::dvec3* doubles = nullptr;
-    std::span<const glm::uvec3> triangles;
-    std::uint32_t name = 0;
-    EmbreeSpace space;
-    /// Embree sees each entry as one shape: a triangle, or two that follow each other and share an
-    /// edge. An entry is twice the index of the first triangle, plus 1 for two triangles.
-    std::vector<std::uint32_t> shapes{};
-
-    [[nodiscard]] std::uint32_t first_of(std::uint32_t shape) const { return shapes[shape] / 2; }
-    [[nodiscard]] std::uint32_t last_of(std::uint32_t shape) const {
-        return shapes[shape] / 2 + shapes[shape] % 2;
-    }
-    [[nodiscard]] glm::dvec3 position(std::uint32_t vertex) const {
-        return doubles != nullptr ? doubles[vertex] : glm::dvec3(floats[vertex]);
-    }
-    [[nodiscard]] std::array<glm::dvec3, 3> corners(std::uint32_t triangle) const {
-        const glm::uvec3& all = triangles[triangle];
-        return {position(all.x), position(all.y), position(all.z)};
-    }
+    virtual ~MeshOfScene() = default;
+    [[nodiscard]] virtual std::array<glm::dvec3, 3> corners(std::uint32_t triangle) const = 0;
+    /// The distance of the nearest triangle of a cluster from a point.
+    [[nodiscard]] virtual double distance_from(const glm::dvec3& point,
+                                               std::uint32_t cluster) const = 0;
 };
 
 namespace {
 
-using MeshOfScene = EmbreeScene::MeshOfScene;
 using Corners = std::array<glm::dvec3, 3>;
-
-/// Boxes are larger than their triangles, and rays longer than requested, by this much in Embree's
-/// space. Embree's floats round origins by 4.8e-7 (they are at most 11 away), directions by 3e-8
-/// for each unit of length, and boxes by 6e-8. Embree's tests of boxes add 2^-22 of the distance
-/// from the origin, and 2^-24 of the origin. Together that makes less than 4e-6 within the scene.
-constexpr double margin = 8e-6;
-/// Hits this near to each other are equally near, in Embree's space: what doubles leave of
-/// distances along a ray, with a factor of 1000 for triangles that the ray grazes.
-constexpr double tie_share = 1e-12;
-/// Origins further away than this are moved along their rays, in Embree's space.
-constexpr double far_away = 4.0;
-/// Rays end here, in Embree's space: beyond the scene, and beyond what a camera sees, whose far
-/// distance is 1 there.
-constexpr double longest = 64.0;
-/// So far away doubles are as coarse as floats are within the scene.
-constexpr double too_far_away = 1e10;
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
-
-/// The state of one call of Embree. The context comes first, because Embree passes its address.
-struct Cast {
-    RTCIntersectContext context;
-    RayPacket* packet;
-    std::vector<TiedHit>* tied;
-    std::vector<MetTriangle>* all;  ///< Not null: every hit is wanted.
-};
-
-/// The lanes of a packet that some of Embree's rays are.
-struct Lanes {
-    const int* valid;
-    const unsigned* lane;
-    float* far;
-    unsigned count;
-};
-
-/// Which of the lanes meet a triangle, or may do so.
-template <std::size_t count>
-RELIEF_INLINE void lanes_that_meet(const RayPacket& packet, std::size_t begin,
-                                   const Corners& corners, std::uint64_t* meets) {
-    for (std::size_t i = 0; i < count; ++i) {
-        const std::size_t lane = begin + i;
-        const double ox = packet.origin[0][lane];
-        const double oy = packet.origin[1][lane];
-        const double oz = packet.origin[2][lane];
-        const double ax = corners[0].x - ox, ay = corners[0].y - oy, az = corners[0].z - oz;
-        const double bx = corners[1].x - ox, by = corners[1].y - oy, bz = corners[1].z - oz;
-        const double cx = corners[2].x - ox, cy = corners[2].y - oy, cz = corners[2].z - oz;
-        const double fx = packet.first[0][lane];
-        const double fy = packet.first[1][lane];
-        const double fz = packet.first[2][lane];
-        const double sx = packet.second[0][lane];
-        const double sy = packet.second[1][lane];
-        const double sz = packet.second[2][lane];
-        const double au = ax * fx + ay * fy + az * fz, av = ax * sx + ay * sy + az * sz;
-        const double bu = bx * fx + by * fy + bz * fz, bv = bx * sx + by * sy + bz * sz;
-        const double cu = cx * fx + cy * fy + cz * fz, cv = cx * sx + cy * sy + cz * sz;
-        // The sign is right, or it is 0: see exact_cross().
-        const double first = bu * cv - bv * cu;
-        const double second = cu * av - cv * au;
-        const double third = au * bv - av * bu;
-        const double least = std::min(first, std::min(second, third));
-        const double greatest = std::max(first, std::max(second, third));
-        meets[i] = (least >= 0.0 ? 1U : 0U) | (greatest <= 0.0 ? 1U : 0U);
-    }
-}
-
-RELIEF_INLINE void lanes_that_meet(const RayPacket& packet, std::size_t begin, unsigned count,
-                                   const Corners& corners, std::uint64_t* meets) {
-    if (count == 16)
-        lanes_that_meet<16>(packet, begin, corners, meets);
-    else if (count == 8)
-        lanes_that_meet<8>(packet, begin, corners, meets);
-    else
-        lanes_that_meet<4>(packet, begin, corners, meets);
-}
-
-using LanesThatMeet = void(const RayPacket&, std::size_t, unsigned, const Corners&, std::uint64_t*);
-
-void lanes_that_meet_128(const RayPacket& packet, std::size_t begin, unsigned count,
-                         const Corners& corners, std::uint64_t* meets) {
-    lanes_that_meet(packet, begin, count, corners, meets);
-}
-RELIEF_TARGET_256 void lanes_that_meet_256(const RayPacket& packet, std::size_t begin,
-                                           unsigned count, const Corners& corners,
-                                           std::uint64_t* meets) {
-    lanes_that_meet(packet, begin, count, corners, meets);
-}
-RELIEF_TARGET_512 void lanes_that_meet_512(const RayPacket& packet, std::size_t begin,
-                                           unsigned count, const Corners& corners,
-                                           std::uint64_t* meets) {
-    lanes_that_meet(packet, begin, count, corners, meets);
-}
-
-/// The results are the same from all three: additions and multiplications, one after another.
-LanesThatMeet* const best_lanes_that_meet = [] {
-    switch (best_vector_target()) {
-        case VectorTarget::widest:
-            return lanes_that_meet_512;
-        case VectorTarget::wide:
-            return lanes_that_meet_256;
-        case VectorTarget::any:
-            break;
-    }
-    return lanes_that_meet_128;
-}();
-
-/// Calls each(i, hit) for those of Embree's rays that meet a triangle between their ends.
-template <typename Each>
-void for_hits(const RayPacket& packet, const Lanes& lanes, const Corners& corners,
-              const Each& each) {
-    std::array<std::uint64_t, RayPacket::size> meets;
-    unsigned active = 0;
-    for (unsigned i = 0; i < lanes.count; ++i)
-        active += lanes.valid[i] != 0 ? 1U : 0U;
-    const unsigned begin = lanes.lane[0];
-    const bool is_block = active > 2 && lanes.lane[lanes.count - 1] == begin + lanes.count - 1;
-    if (is_block) best_lanes_that_meet(packet, begin, lanes.count, corners, meets.data());
-    for (unsigned i = 0; i < lanes.count; ++i) {
-        if (lanes.valid[i] == 0 || (is_block && meets[i] == 0)) continue;
-        const std::size_t lane = lanes.lane[i];
-        ExactHit hit;
-        if (!intersect(packet.frame(lane), corners, hit)) continue;
-        if (hit.distance >= packet.near[lane] && hit.distance <= packet.far[lane]) each(i, hit);
-    }
-}
-
-/// A hit of a lane; keeps all that may be equally near in the end.
-void keep_nearest(Cast& cast, std::size_t lane, double distance, const MetTriangle& met) {
-    RayPacket& packet = *cast.packet;
-    const double nearest = packet.distance[lane];
-    const double tie = tie_share / packet.scale[lane];
-    if (packet.hits(lane) && distance > nearest + tie) return;
-    if (packet.hits(lane) && distance >= nearest) {
-        cast.tied->push_back({lane, distance, met});
-        return;
-    }
-    if (packet.hits(lane) && nearest <= distance + tie)
-        cast.tied->push_back({lane, nearest, {packet.mesh[lane], packet.triangle[lane]}});
-    packet.distance[lane] = distance;
-    packet.mesh[lane] = met.mesh;
-    packet.triangle[lane] = met.triangle;
-}
-
-void meet_nearest(const RTCIntersectFunctionNArguments* arguments) {
-    const auto& mesh = *static_cast<const MeshOfScene*>(arguments->geometryUserPtr);
-    Cast& cast = *reinterpret_cast<Cast*>(arguments->context);
-    RTCRayN* rays = RTCRayHitN_RayN(arguments->rayhit, arguments->N);
-    const Lanes lanes{arguments->valid, &RTCRayN_id(rays, arguments->N, 0),
-                      &RTCRayN_tfar(rays, arguments->N, 0), arguments->N};
-    const auto meet = [&](const MetTriangle& met, unsigned i, const ExactHit& hit) {
-        const std::size_t lane = lanes.lane[i];
-        if (cast.all != nullptr) {
-            cast.all->push_back(met);
-            return;
-        }
-        keep_nearest(cast, lane, hit.distance, met);
-        RayPacket& packet = *cast.packet;
-        if (hit.distance <= packet.until[lane])
-            packet.last[lane] = std::max(packet.last[lane], hit.distance);
-        // Hits that are farther away are not needed; the margin covers the errors of Embree's
-        // floats.
-        const double end = std::max(hit.distance, packet.until[lane]);
-        const double from_start = (end - packet.start[lane]) * packet.scale[lane];
-        lanes.far[i] = std::min(lanes.far[i], static_cast<float>(from_start + 3.0 * margin));
-    };
-    const std::uint32_t last = mesh.last_of(arguments->primID);
-    for (std::uint32_t triangle = mesh.first_of(arguments->primID); triangle <= last; ++triangle) {
-        for_hits(*cast.packet, lanes, mesh.corners(triangle), [&](unsigned i, const ExactHit& hit) {
-            meet({mesh.name, triangle}, i, hit);
-        });
-    }
-}
-
-void meet_any(const RTCOccludedFunctionNArguments* arguments) {
-    const auto& mesh = *static_cast<const MeshOfScene*>(arguments->geometryUserPtr);
-    const Cast& cast = *reinterpret_cast<Cast*>(arguments->context);
-    const Lanes lanes{arguments->valid, &RTCRayN_id(arguments->ray, arguments->N, 0),
-                      &RTCRayN_tfar(arguments->ray, arguments->N, 0), arguments->N};
-    const std::uint32_t last = mesh.last_of(arguments->primID);
-    for (std::uint32_t triangle = mesh.first_of(arguments->primID); triangle <= last; ++triangle) {
-        for_hits(*cast.packet, lanes, mesh.corners(triangle), [&](unsigned i, const ExactHit&) {
-            lanes.far[i] = -std::numeric_limits<float>::infinity();
-        });
-    }
-}
-
-/// Rounding to float is less than the margin. Without triangles that can be met the box is empty,
-/// which leaves the shape out.
-void find_box(const RTCBoundsFunctionArguments* arguments) {
-    const auto& mesh = *static_cast<const MeshOfScene*>(arguments->geometryUserPtr);
-    glm::dvec3 low(infinity);
-    glm::dvec3 high(-infinity);
-    const std::uint32_t last = mesh.last_of(arguments->primID);
-    for (std::uint32_t triangle = mesh.first_of(arguments->primID); triangle <= last; ++triangle) {
-        const auto [a, b, c] = mesh.corners(triangle);
-        const glm::dvec3 normal = glm::cross(b - a, c - a);
-        const double size = std::abs(normal.x) + std::abs(normal.y) + std::abs(normal.z);
-        if (!(size > 0.0 && size < infinity)) continue;
-        low = glm::min(low, glm::min(a, glm::min(b, c)));
-        high = glm::max(high, glm::max(a, glm::max(b, c)));
-    }
-    constexpr double beyond = 1e9;  // Of what rays reach; Embree leaves out what is too large.
-    const auto moved = [&](const glm::dvec3& place, double by) {
-        return glm::clamp((place - mesh.space.center) / mesh.space.half_size + by, -beyond, beyond);
-    };
-    const bool is_empty = !(low.x <= high.x);
-    const glm::vec3 lower(is_empty ? glm::dvec3(1.0) : moved(low, -margin));
-    const glm::vec3 upper(is_empty ? glm::dvec3(-1.0) : moved(high, margin));
-    RTCBounds& box = *arguments->bounds_o;
-    box.lower_x = lower.x;
-    box.lower_y = lower.y;
-    box.lower_z = lower.z;
-    box.upper_x = upper.x;
-    box.upper_y = upper.y;
-    box.upper_z = upper.z;
-}
-
-/// Two triangles that share an edge have a box hardly larger than one, and half as many boxes take
-/// half the time to build the tree of.
-std::vector<std::uint32_t> shapes_of(std::span<const glm::uvec3> triangles) {
-    std::vector<std::uint32_t> shapes;
-    shapes.reserve(triangles.size());
-    for (std::size_t i = 0; i < triangles.size(); ++i) {
-        int shared = 0;
-        for (int k = 0; k < 3 && i + 1 < triangles.size(); ++k) {
-            const std::uint32_t vertex = triangles[i + 1][k];
-            const glm::uvec3& here = triangles[i];
-            shared += vertex == here.x || vertex == here.y || vertex == here.z ? 1 : 0;
-        }
-        shapes.push_back(static_cast<std::uint32_t>(2 * i) + (shared >= 2 ? 1U : 0U));
-        if (shared >= 2) ++i;
-    }
-    return shapes;
-}
 
 /// The point of a triangle that is nearest to another. Source: [Ericson 2005], 5.1.5.
 glm::dvec3 nearest_point(const glm::dvec3& p, const Corners& corners) {
@@ -308,8 +57,158 @@ glm::dvec3 nearest_point(const glm::dvec3& p, const Corners& corners) {
     return a + vb / sum * ab + vc / sum * ac;
 }
 
+template <typename Number>
+struct ClusteredMesh : EmbreeScene::MeshOfScene {
+    std::uint32_t name = 0;
+    std::span<const glm::vec<3, Number>> positions;
+    std::span<const glm::uvec3> triangles;
+    TriangleClusters<Number> shapes{};  ///< Embree sees each cluster as one shape.
+
+    [[nodiscard]] Corners corners(std::uint32_t triangle) const override {
+        const glm::uvec3& all = triangles[triangle];
+        return {glm::dvec3(positions[all.x]), glm::dvec3(positions[all.y]),
+                glm::dvec3(positions[all.z])};
+    }
+    [[nodiscard]] double distance_from(const glm::dvec3& point,
+                                       std::uint32_t cluster) const override {
+        const TriangleCluster<Number>& all = shapes.clusters[cluster];
+        double distance = std::numeric_limits<double>::infinity();
+        for (std::size_t i = 0; i < all.size && all.triangles[i] != all.none; ++i) {
+            const glm::dvec3 nearest = nearest_point(point, all.corners_of(i));
+            distance = std::min(distance, glm::distance(point, nearest));
+        }
+        return distance;
+    }
+};
+
+/// Hits this near to each other are equally near, in Embree's space: what doubles leave of
+/// distances along a ray, with a factor of 1000 for triangles that the ray grazes.
+constexpr double tie_share = 1e-12;
+/// Origins further away than this are moved along their rays, in Embree's space.
+constexpr double far_away = 4.0;
+/// Rays end here, in Embree's space: beyond the scene, and beyond what a camera sees, whose far
+/// distance is 1 there.
+constexpr double longest = 64.0;
+/// So far away doubles are as coarse as floats are within the scene.
+constexpr double too_far_away = 1e10;
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+/// The state of one call of Embree. The context comes first, because Embree passes its address.
+struct Cast {
+    RTCIntersectContext context;
+    RayPacket* packet;
+    bool have_one_axis;  ///< All rays: RayLines::along.
+    std::vector<TiedHit>* tied;
+    std::vector<MetTriangle>* all;  ///< Not null: every hit is wanted.
+};
+
+/// A hit of a lane; keeps all that may be equally near in the end.
+void keep_nearest(Cast& cast, std::size_t lane, double distance, const MetTriangle& met) {
+    RayPacket& packet = *cast.packet;
+    const double nearest = packet.distance[lane];
+    const double tie = tie_share / packet.scale[lane];
+    if (packet.hits(lane) && distance > nearest + tie) return;
+    if (packet.hits(lane) && distance >= nearest) {
+        cast.tied->push_back({lane, distance, met});
+        return;
+    }
+    if (packet.hits(lane) && nearest <= distance + tie)
+        cast.tied->push_back({lane, nearest, {packet.mesh[lane], packet.triangle[lane]}});
+    packet.distance[lane] = distance;
+    packet.mesh[lane] = met.mesh;
+    packet.triangle[lane] = met.triangle;
+}
+
+/// Calls each(triangle, hit) for those of some triangles of a cluster that a ray meets between its
+/// ends, until that returns false. \param places  a bit for each triangle
+template <typename Number, typename Each>
+void for_hits(const RayPacket& packet, std::size_t lane, const TriangleCluster<Number>& cluster,
+              std::uint64_t places, const Each& each) {
+    for (; places != 0; places &= places - 1) {
+        const auto place = static_cast<std::size_t>(std::countr_zero(places));
+        ExactHit hit;
+        if (!intersect(packet.frame[lane], cluster.corners_of(place), hit)) continue;
+        if (hit.distance < packet.near[lane] || hit.distance > packet.far[lane]) continue;
+        if (!each(cluster.triangles[place], hit)) return;
+    }
+}
+
+/// Calls each(i, lane, candidates) for Embree's valid rays.
+template <typename Number, typename Each>
+void for_rays(const Cast& cast, const int* valid, const unsigned* lane, unsigned count,
+              const TriangleCluster<Number>& cluster, const Each& each) {
+    constexpr unsigned many = 4;  // So many rays are tested together.
+    const RayLines<16>& lines = cast.packet->lines;
+    unsigned active = 0;
+    for (unsigned i = 0; i < count; ++i)
+        active += valid[i] != 0 ? 1U : 0U;
+    const bool is_block = active >= many && cast.have_one_axis;
+    alignas(64) std::array<std::uint64_t, RayPacket::size> bits;
+    if (is_block) candidates<Number>(cluster, lines, lane[0], count, bits);
+    for (unsigned i = 0; i < count; ++i) {
+        if (valid[i] == 0) continue;
+        const std::uint64_t places =
+            is_block ? bits[i] : candidates<Number>(cluster, lines, lane[i]);
+        if (places != 0) each(i, static_cast<std::size_t>(lane[i]), places);
+    }
+}
+
+template <typename Number>
+void meet_nearest(const RTCIntersectFunctionNArguments* arguments) {
+    const auto& mesh = *static_cast<const ClusteredMesh<Number>*>(arguments->geometryUserPtr);
+    const TriangleCluster<Number>& cluster = mesh.shapes.clusters[arguments->primID];
+    Cast& cast = *reinterpret_cast<Cast*>(arguments->context);
+    RayPacket& packet = *cast.packet;
+    const unsigned count = arguments->N;
+    RTCRayN* rays = RTCRayHitN_RayN(arguments->rayhit, count);
+    float* const far = &RTCRayN_tfar(rays, count, 0);
+    const auto meet = [&](unsigned i, std::size_t lane, std::uint64_t places) {
+        for_hits(packet, lane, cluster, places, [&](std::uint32_t triangle, const ExactHit& hit) {
+            if (cast.all != nullptr) {
+                cast.all->push_back({mesh.name, triangle});
+                return true;
+            }
+            keep_nearest(cast, lane, hit.distance, {mesh.name, triangle});
+            if (hit.distance <= packet.until[lane])
+                packet.last[lane] = std::max(packet.last[lane], hit.distance);
+            // Hits that are farther away are not needed; the margin covers the errors of Embree's
+            // floats.
+            const double end = std::max(hit.distance, packet.until[lane]);
+            const double from_start = (end - packet.start[lane]) * packet.scale[lane];
+            far[i] = std::min(far[i], static_cast<float>(from_start + 3.0 * embree_margin));
+            return true;
+        });
+    };
+    for_rays(cast, arguments->valid, &RTCRayN_id(rays, count, 0), count, cluster, meet);
+}
+
+template <typename Number>
+void meet_any(const RTCOccludedFunctionNArguments* arguments) {
+    const auto& mesh = *static_cast<const ClusteredMesh<Number>*>(arguments->geometryUserPtr);
+    const TriangleCluster<Number>& cluster = mesh.shapes.clusters[arguments->primID];
+    const Cast& cast = *reinterpret_cast<Cast*>(arguments->context);
+    const unsigned count = arguments->N;
+    float* const far = &RTCRayN_tfar(arguments->ray, count, 0);
+    const auto meet = [&](unsigned i, std::size_t lane, std::uint64_t places) {
+        for_hits(*cast.packet, lane, cluster, places, [&](std::uint32_t, const ExactHit&) {
+            far[i] = -std::numeric_limits<float>::infinity();
+            return false;
+        });
+    };
+    for_rays(cast, arguments->valid, &RTCRayN_id(arguments->ray, count, 0), count, cluster, meet);
+}
+
+template <typename Number>
+void find_box(const RTCBoundsFunctionArguments* arguments) {
+    const auto& mesh = *static_cast<const ClusteredMesh<Number>*>(arguments->geometryUserPtr);
+    const EmbreeBox& box = mesh.shapes.boxes[arguments->primID];
+    *arguments->bounds_o = {box.lower.x, box.lower.y, box.lower.z, 0.0F,
+                            box.upper.x, box.upper.y, box.upper.z, 0.0F};
+}
+
 struct PointQuery {
-    std::span<const std::unique_ptr<MeshOfScene>> meshes;
+    std::span<const std::unique_ptr<EmbreeScene::MeshOfScene>> meshes;
     glm::dvec3 point;
     double enough;  ///< A triangle as near as that ends the query.
     double half_size;
@@ -318,22 +217,16 @@ struct PointQuery {
 
 bool come_nearer(RTCPointQueryFunctionArguments* arguments) {
     auto* query = static_cast<PointQuery*>(arguments->userPtr);
-    const MeshOfScene& mesh = *query->meshes[arguments->geomID];
-    double distance = infinity;
-    const std::uint32_t last = mesh.last_of(arguments->primID);
-    for (std::uint32_t triangle = mesh.first_of(arguments->primID); triangle <= last; ++triangle) {
-        const glm::dvec3 nearest = nearest_point(query->point, mesh.corners(triangle));
-        const double here = glm::distance(query->point, nearest);
-        if (here < distance) distance = here;
-    }
+    const double distance =
+        query->meshes[arguments->geomID]->distance_from(query->point, arguments->primID);
     if (!(distance < query->distance)) return false;
     query->distance = distance;
-    // Rounding of the radius is relative, that of boxes is within their margin.
+    // Rounding of the radius is relative, that of boxes is within their embree_margin.
     constexpr double relative_margin = 1.0 + 1e-6;
     arguments->query->radius =
         distance <= query->enough
             ? 0.0F
-            : static_cast<float>(distance / query->half_size * relative_margin + margin);
+            : static_cast<float>(distance / query->half_size * relative_margin + embree_margin);
     return true;
 }
 
@@ -341,9 +234,10 @@ RTCBuildQuality quality_of(SceneBuild build) {
     return build == SceneBuild::fast ? RTC_BUILD_QUALITY_LOW : RTC_BUILD_QUALITY_MEDIUM;
 }
 
-int rays_at_once() {
+std::optional<int> rays_at_once() {
     const char* text = std::getenv("RELIEF_RAY_PACKET");
-    const int wanted = text == nullptr ? 16 : std::atoi(text);
+    if (text == nullptr) return std::nullopt;
+    const int wanted = std::atoi(text);
     return wanted == 1 || wanted == 4 || wanted == 8 ? wanted : 16;
 }
 
@@ -356,12 +250,12 @@ void copy_rays(const RayPacket& packet, std::size_t begin, std::size_t count, RT
         // Where the processor has no packets of this size, Embree ignores which rays are valid. A
         // ray that ends before it begins meets nothing.
         const std::size_t lane = i < count ? begin + i : begin;
-        RTCRayN_org_x(all, size, i) = packet.float_origin[0][lane];
-        RTCRayN_org_y(all, size, i) = packet.float_origin[1][lane];
-        RTCRayN_org_z(all, size, i) = packet.float_origin[2][lane];
-        RTCRayN_dir_x(all, size, i) = packet.float_direction[0][lane];
-        RTCRayN_dir_y(all, size, i) = packet.float_direction[1][lane];
-        RTCRayN_dir_z(all, size, i) = packet.float_direction[2][lane];
+        RTCRayN_org_x(all, size, i) = packet.float_origin[lane].x;
+        RTCRayN_org_y(all, size, i) = packet.float_origin[lane].y;
+        RTCRayN_org_z(all, size, i) = packet.float_origin[lane].z;
+        RTCRayN_dir_x(all, size, i) = packet.float_direction[lane].x;
+        RTCRayN_dir_y(all, size, i) = packet.float_direction[lane].y;
+        RTCRayN_dir_z(all, size, i) = packet.float_direction[lane].z;
         RTCRayN_tnear(all, size, i) = 0.0F;
         RTCRayN_tfar(all, size, i) = i < count ? packet.length[lane] : -1.0F;
         RTCRayN_time(all, size, i) = 0.0F;
@@ -383,6 +277,12 @@ void cast_each(const RayPacket& packet, std::size_t count, const Rays& rays_of, 
         std::fill_n(valid.begin(), here, -1);
         call(begin, here, valid.data(), all);
     }
+}
+
+bool have_one_axis(const RayPacket& packet, std::size_t count) {
+    const auto& along = packet.lines.along;
+    return std::all_of(along.begin(), along.begin() + static_cast<std::ptrdiff_t>(count),
+                       [&](std::uint8_t axis) { return axis == along[0]; });
 }
 
 template <typename RTCRayHits, typename Call>
@@ -422,13 +322,6 @@ Place place_of(const Corners& corners) {
 
 }  // namespace
 
-RayFrame RayPacket::frame(std::size_t lane) const {
-    const auto at = [&](const std::array<Numbers, 3>& all) {
-        return glm::dvec3(all[0][lane], all[1][lane], all[2][lane]);
-    };
-    return {at(origin), at(direction), at(first), at(second)};
-}
-
 EmbreeScene::EmbreeScene(const EmbreeSpace& space, SceneBuild build, TriangleOrder order)
     : space_(space),
       order_(std::move(order)),
@@ -447,29 +340,32 @@ EmbreeScene::~EmbreeScene() {
 
 void EmbreeScene::add(std::uint32_t name, std::span<const glm::vec3> positions,
                       std::span<const glm::uvec3> triangles) {
-    add(std::make_unique<MeshOfScene>(
-        MeshOfScene{positions.data(), nullptr, triangles, name, space_}));
+    add<float>(name, positions, triangles);
 }
 
 void EmbreeScene::add(std::uint32_t name, std::span<const glm::dvec3> positions,
                       std::span<const glm::uvec3> triangles) {
-    add(std::make_unique<MeshOfScene>(
-        MeshOfScene{nullptr, positions.data(), triangles, name, space_}));
+    add<double>(name, positions, triangles);
 }
 
-void EmbreeScene::add(std::unique_ptr<MeshOfScene> mesh) {
-    mesh->shapes = shapes_of(mesh->triangles);
+template <typename Number>
+void EmbreeScene::add(std::uint32_t name, std::span<const glm::vec<3, Number>> positions,
+                      std::span<const glm::uvec3> triangles) {
+    auto mesh = std::make_unique<ClusteredMesh<Number>>();
+    mesh->name = name;
+    mesh->positions = positions;
+    mesh->triangles = triangles;
+    mesh->shapes = make_clusters(positions, triangles, space_);
     RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_USER);
     rtcSetGeometryBuildQuality(geometry, quality_of(build_));
-    rtcSetGeometryUserPrimitiveCount(geometry, static_cast<unsigned>(mesh->shapes.size()));
+    rtcSetGeometryUserPrimitiveCount(geometry, static_cast<unsigned>(mesh->shapes.boxes.size()));
     rtcSetGeometryUserData(geometry, mesh.get());
-    rtcSetGeometryBoundsFunction(geometry, find_box, nullptr);
-    rtcSetGeometryIntersectFunction(geometry, meet_nearest);
-    rtcSetGeometryOccludedFunction(geometry, meet_any);
+    rtcSetGeometryBoundsFunction(geometry, find_box<Number>, nullptr);
+    rtcSetGeometryIntersectFunction(geometry, meet_nearest<Number>);
+    rtcSetGeometryOccludedFunction(geometry, meet_any<Number>);
     rtcCommitGeometry(geometry);
-    rtcAttachGeometryByID(scene_, geometry, mesh->name);
+    rtcAttachGeometryByID(scene_, geometry, name);
     rtcReleaseGeometry(geometry);
-    const std::size_t name = mesh->name;
     if (name >= meshes_.size()) meshes_.resize(name + 1);
     meshes_[name] = std::move(mesh);
 }
@@ -486,48 +382,45 @@ std::array<glm::dvec3, 3> EmbreeScene::corners(const MetTriangle& met) const {
 /// away are coarse, and Embree ends the program at origins beyond 1.8e18.
 void EmbreeScene::set(RayPacket& packet, std::size_t lane, const Ray& ray, double until) const {
     packet.until[lane] = until;
-    packet.mesh[lane] = RayPacket::nothing;
     packet.near[lane] = ray.near;
     packet.far[lane] = ray.far;
     const double length = glm::length(ray.direction);
     const glm::dvec3 unit = ray.direction / length;
-    const glm::dvec3 origin = (ray.origin - space_.center) / space_.half_size;
-    const double away = glm::length(origin);
+    const glm::dvec3 origin = (ray.origin - space_.center) * (1.0 / space_.half_size);
+    const double away_squared = glm::dot(origin, origin);
     const double scale = length / space_.half_size;
     double near = ray.near * scale;
     double far = ray.far * scale;
-    bool is_usable = away <= too_far_away && length > 0.0 && std::isfinite(length) && near <= far;
-    if (away > far_away) {
+    double start = ray.near;
+    bool is_usable = away_squared <= too_far_away * too_far_away && length > 0.0 &&
+                     std::isfinite(length) && near <= far;
+    if (away_squared > far_away * far_away) {
         const double middle = -glm::dot(origin, unit);
         is_usable = is_usable && glm::length(origin + middle * unit) <= 2.0;
         near = std::max(near, middle - far_away);
         far = std::min(far, middle + far_away);
+        start = near / scale;
     } else {
         far = std::min(far, longest);
     }
-    RayFrame frame;
-    if (is_usable && near <= far) {
-        frame = frame_of(ray.origin, ray.direction);
-    } else {
-        near = 0.0;
-        far = -1.0;
+    packet.scale[lane] = scale;
+    if (!(is_usable && near <= far)) {
         packet.near[lane] = 0.0;
         packet.far[lane] = -1.0;
+        packet.start[lane] = 0.0;
+        packet.frame[lane] = {};
+        packet.lines.set(lane, {});
+        packet.float_origin[lane] = glm::vec3(9.0F);
+        packet.float_direction[lane] = glm::vec3(1.0F);
+        packet.length[lane] = 0.0F;
+        return;
     }
-    const bool is_nothing = far < near;
-    packet.start[lane] = is_nothing ? 0.0 : near / scale;
-    packet.scale[lane] = scale;
-    const glm::dvec3 start = origin + (near - margin) * unit;
-    packet.length[lane] = is_nothing ? 0.0F : static_cast<float>(far - near + 2.0 * margin);
-    for (int axis = 0; axis < 3; ++axis) {
-        const auto a = static_cast<std::size_t>(axis);
-        packet.origin[a][lane] = frame.origin[axis];
-        packet.direction[a][lane] = frame.direction[axis];
-        packet.first[a][lane] = frame.first[axis];
-        packet.second[a][lane] = frame.second[axis];
-        packet.float_origin[a][lane] = is_nothing ? 9.0F : static_cast<float>(start[axis]);
-        packet.float_direction[a][lane] = is_nothing ? 1.0F : static_cast<float>(unit[axis]);
-    }
+    packet.frame[lane] = frame_of(ray.origin, ray.direction);
+    packet.lines.set(lane, packet.frame[lane]);
+    packet.start[lane] = start;
+    packet.float_origin[lane] = glm::vec3(origin + (near - embree_margin) * unit);
+    packet.float_direction[lane] = glm::vec3(unit);
+    packet.length[lane] = static_cast<float>(far - near + 2.0 * embree_margin);
 }
 
 void EmbreeScene::find_nearest(RayPacket& packet, std::size_t count) const {
@@ -536,10 +429,11 @@ void EmbreeScene::find_nearest(RayPacket& packet, std::size_t count) const {
     rtcInitIntersectContext(&cast.context);
     cast.context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
     cast.packet = &packet;
+    cast.have_one_axis = have_one_axis(packet, count);
     cast.tied = &tied;
     packet.mesh.fill(RayPacket::nothing);
     packet.last.fill(-infinity);
-    switch (rays_at_once_) {
+    switch (rays_at_once_.value_or(16)) {
         case 1:
             cast_nearest<RTCRayHit>(packet, count, [&](const int*, RTCRayHit& rays) {
                 rtcIntersect1(scene_, &cast.context, &rays);
@@ -583,7 +477,7 @@ void EmbreeScene::settle_ties(RayPacket& packet, std::vector<TiedHit>& tied) con
         const double tie = tie_share / packet.scale[hit.lane];
         if (hit.distance > packet.distance[hit.lane] + tie) continue;
         const MetTriangle now{packet.mesh[hit.lane], packet.triangle[hit.lane]};
-        if (!is_before(packet.frame(hit.lane), hit.met, now)) continue;
+        if (!is_before(packet.frame[hit.lane], hit.met, now)) continue;
         packet.mesh[hit.lane] = hit.met.mesh;
         packet.triangle[hit.lane] = hit.met.triangle;
     }
@@ -593,7 +487,8 @@ void EmbreeScene::find_any(RayPacket& packet, std::size_t count) const {
     Cast cast{};
     rtcInitIntersectContext(&cast.context);
     cast.packet = &packet;
-    switch (rays_at_once_) {
+    // Such rays run in all directions: packets of them are slower.
+    switch (rays_at_once_.value_or(1)) {
         case 1:
             cast_any<RTCRay>(packet, count, [&](const int*, RTCRay& rays) {
                 rtcOccluded1(scene_, &cast.context, &rays);

@@ -3,10 +3,11 @@
 /// Which triangles rays meet: for the baker (bake/ray_scene.h) and for the reference shader's eye
 /// (libshade's reference/visibility.h). This is the only part of relief that knows Embree.
 ///
-/// Embree only proposes triangles: it walks through a tree of boxes, which are larger than their
-/// triangles by more than the errors of its floats. Whether a ray meets a triangle, and where, is
-/// decided in double from the mesh's own positions (rays/exact_hit.h). So the result depends
-/// neither on the processor, nor on the packet that a ray is in, nor on the order of the triangles.
+/// Embree only proposes triangles: it walks through a tree of boxes around clusters of triangles
+/// (rays/triangle_clusters.h), which are larger by more than the errors of its floats. Whether a
+/// ray meets a triangle, and where, is decided in double from the mesh's own positions
+/// (rays/exact_hit.h). So the result depends neither on the processor, nor on the packet that a ray
+/// is in, nor on the order of the triangles.
 ///
 /// Triangles with a vertex that is not finite and those without area are never met, neither are
 /// triangles that are seen exactly edge-on. A ray through an edge or a vertex meets all triangles
@@ -20,10 +21,12 @@
 #include <glm/glm.hpp>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "rays/exact_hit.h"
+#include "rays/triangle_clusters.h"
 
 struct RTCDeviceTy;
 struct RTCSceneTy;
@@ -51,10 +54,11 @@ struct alignas(64) RayPacket {
     static constexpr std::uint32_t nothing = 0xffffffff;
     using Numbers = std::array<double, size>;
 
-    std::array<Numbers, 3> origin, direction, first, second;  ///< RayFrame, by axis.
-    Numbers near, far;  ///< A ray whose `near` is greater than its `far` meets nothing.
+    std::array<RayFrame, size> frame;
+    RayLines<size> lines;  ///< The same rays.
+    Numbers near, far;     ///< A ray whose `near` is greater than its `far` meets nothing.
     /// The same ray for Embree, in its space, where a length of 1 along the ray is `scale`.
-    std::array<std::array<float, size>, 3> float_origin, float_direction;
+    std::array<glm::vec3, size> float_origin, float_direction;
     std::array<float, size> length;
     Numbers start, scale;  ///< It starts a little before `start` along the ray.
 
@@ -67,19 +71,12 @@ struct alignas(64) RayPacket {
     [[nodiscard]] bool hits(std::size_t lane) const { return mesh[lane] != nothing; }
     /// After find_any().
     [[nodiscard]] bool is_blocked(std::size_t lane) const { return blocked[lane]; }
-    [[nodiscard]] RayFrame frame(std::size_t lane) const;
 };
 
 /// How thoroughly a scene is built. Hits are the same.
 enum class SceneBuild {
     thorough,  ///< For many rays.
-    fast,      ///< A third of the time; each ray takes a fifth longer.
-};
-
-/// Where the box from -1 to 1 lies that Embree sees: around all meshes.
-struct EmbreeSpace {
-    glm::dvec3 center{0.0};
-    double half_size = 1.0;
+    fast,      ///< Two thirds of the time; each ray takes up to a twentieth longer.
 };
 
 /// Orders triangles that coincide by what else is known of their corners: whether the first comes
@@ -90,7 +87,8 @@ class EmbreeScene {
   public:
     /// Of tests alone: the environment variable RELIEF_EMBREE configures Embree's device
     /// ("isa=avx2"), and RELIEF_RAY_PACKET is the number of rays that Embree gets at a time (1, 4,
-    /// 8 or 16). Both are read when a scene is made.
+    /// 8 or 16; by default 16 for find_nearest() and 1 for find_any()). Both are read when a scene
+    /// is made.
     EmbreeScene(const EmbreeSpace& space, SceneBuild build, TriangleOrder order = {});
     ~EmbreeScene();
     EmbreeScene(const EmbreeScene&) = delete;
@@ -136,7 +134,9 @@ class EmbreeScene {
     struct MeshOfScene;  ///< Private to the implementation.
 
   private:
-    void add(std::unique_ptr<MeshOfScene> mesh);
+    template <typename Number>
+    void add(std::uint32_t name, std::span<const glm::vec<3, Number>> positions,
+             std::span<const glm::uvec3> triangles);
     void settle_ties(RayPacket& packet, std::vector<struct TiedHit>& tied) const;
 
     EmbreeSpace space_;
@@ -144,7 +144,7 @@ class EmbreeScene {
     RTCDeviceTy* device_;
     RTCSceneTy* scene_;
     SceneBuild build_;
-    int rays_at_once_;
+    std::optional<int> rays_at_once_;
     std::vector<std::unique_ptr<MeshOfScene>> meshes_;  ///< By name; null where there is none.
 };
 

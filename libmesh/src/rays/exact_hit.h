@@ -21,6 +21,7 @@ struct RayFrame {
     glm::dvec3 origin{0.0};
     glm::dvec3 direction{0.0};
     glm::dvec3 first{0.0}, second{0.0};
+    int along = 2;  ///< The axis that the direction has its largest component along.
 };
 
 /// The direction must be finite and not zero. It may have any length.
@@ -30,6 +31,7 @@ inline RayFrame frame_of(const glm::dvec3& origin, const glm::dvec3& direction) 
     const int x = (z + 1) % 3;
     const int y = (z + 2) % 3;
     RayFrame frame{origin, direction};
+    frame.along = z;
     frame.first[x] = 1.0;
     frame.first[z] = -direction[x] / direction[z];
     frame.second[y] = 1.0;
