@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A debug view of data: what <view> gives, stored as it is, with no light and no coding. What is
-// blended counts as opaque; a mask cuts its holes.
+// A debug view of data: stores the value of <view> as it is, without light and coding. A blended
+// surface counts as opaque; a mask cuts its holes.
 
 out vec4 color;
 

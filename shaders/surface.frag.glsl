@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // The radiance that a surface sends to the eye, as material.h's Material defines it. World space.
-// Every included <step> is chosen by the effect plan; one that cannot show is in absent/.
+// The effect plan chooses the code of every included <step>; an absent effect is a neutral value.
 
 invariant out vec4 color;
 
-#include "light/lighting.glsl"
+#include "light.glsl#lighting"
 #include <alpha>
 #include <surface>
-#include <lamps>
+#include <lights>
 #include <ambient>
 #include <environment_light>
 #include <tint>
@@ -22,7 +22,7 @@ void main() {
 
     Lighting lighting = Lighting(vec3(0.0), vec3(0.0));
     add_ambient(surface, lighting);
-    add_lamps(surface, lighting);
+    add_lights(surface, lighting);
     add_environment_light(surface, lighting);
 
     vec3 scattered = lighting.scattered * scattering_tint(surface);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A surface without any light: its diffuse colour is the picture.
+// An unlit surface: the picture shows its diffuse color.
 
 out vec4 color;
 

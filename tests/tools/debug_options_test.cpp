@@ -80,7 +80,7 @@ TEST_F(DebugOptions, PrintTheShadersOfTheView) {
     const ProgramResult result = run("--show texcoords --print-shaders");
     ASSERT_EQ(result.exit_code, 0) << result.error;
     EXPECT_THAT(result.out, HasSubstr("view of texcoords"));
-    EXPECT_THAT(result.out, HasSubstr("view/texcoords.glsl"));
+    EXPECT_THAT(result.out, HasSubstr("view.glsl#texcoords"));
 }
 
 TEST_F(DebugOptions, ThatShowNothingAreRefused) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// shaders/surface.frag.glsl with every effect compiled in, behind branches on uniforms: how most
-// renderers do it. Unset uniforms are 0, so that all but directional light is off.
+// shaders/surface.frag.glsl with every effect compiled in, behind branches on uniforms, as in most
+// renderers. Unset uniforms are 0, so that everything but directional light is off.
 
 out vec4 color;
 
@@ -9,10 +9,10 @@ uniform int use_environment_light;
 uniform int use_reflection;
 uniform int use_emission;
 
-#include "light/lighting.glsl"
+#include "light.glsl#lighting"
 #include <alpha>
 #include <surface>
-#include <lamps>
+#include <lights>
 #include <ambient>
 #include <environment_light>
 #include <tint>
@@ -27,7 +27,7 @@ void main() {
 
     Lighting lighting = Lighting(vec3(0.0), vec3(0.0));
     if (use_ambient != 0) add_ambient(surface, lighting);
-    add_lamps(surface, lighting);
+    add_lights(surface, lighting);
     if (use_environment_light != 0) add_environment_light(surface, lighting);
 
     vec3 scattered = lighting.scattered * scattering_tint(surface);

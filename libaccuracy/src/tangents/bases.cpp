@@ -15,8 +15,8 @@ auto interpolated(const Values& values, const glm::uvec3& corners, const glm::dv
            Double(values[corners.z]) * weights.z;
 }
 
-/// The formula of shaders/frame/derivatives.glsl, where "to the right" and "up" on the screen are
-/// two edges of the triangle: any two directions in its plane give the same.
+/// The formula of shaders/tangent_frame.glsl#derivatives, with two edges of the triangle in place
+/// of "right" and "up" on the screen: any two directions in its plane give the same.
 glm::dmat3 derived_basis(const Mesh& mesh, const glm::uvec3& corners, const glm::dvec3& normal) {
     const auto edge = [&](std::uint32_t to) {
         return glm::dvec3(mesh.positions[to]) - glm::dvec3(mesh.positions[corners.x]);

@@ -18,9 +18,9 @@ using CornerTangents = std::vector<glm::vec4>;
 
 /// What a fragment shader makes of interpolated vectors.
 enum class ShaderBasis {
-    as_interpolated,  ///< As it should be: shaders/frame/stored.glsl.
+    as_interpolated,  ///< As it should be: shaders/tangent_frame.glsl#stored.
     made_unit,        ///< Normal and tangent made unit first, as many shaders do.
-    derived,          ///< From derivatives: shaders/frame/derivatives.glsl.
+    derived,          ///< From derivatives: shaders/tangent_frame.glsl#derivatives.
 };
 
 /// A point of a triangle.

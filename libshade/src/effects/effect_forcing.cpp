@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Effects forced on and off: names looked up, each draw's features changed, what canonical() leaves
-// of them checked against what was asked for, and the reasons rewritten. Pure. Unknown names and
+// Forces effects on and off: looks up their names, changes the features of each draw, checks what
+// canonical() leaves of them against the request, and rewrites the reasons. Pure. Unknown names and
 // impossible sets throw InvalidInput. Tests: tests/shade/effects/effect_forcing_test.cpp.
 #include "relief/shade/effect_forcing.h"
 
@@ -12,8 +12,7 @@
 #include <optional>
 #include <string_view>
 
-#include "effects/neutral.h"
-#include "effects/why_hidden.h"
+#include "effects/effect_table.h"
 #include "near_names.h"
 #include "relief/mesh/error.h"
 
@@ -21,7 +20,7 @@ namespace relief {
 
 namespace {
 
-/// What is not a draw's own, and follows from the draws and the settings; but for the skybox.
+/// The frame-wide effects. All but the skybox follow from the draws and the settings.
 const std::vector<std::pair<std::string_view, bool FramePlan::*>>& frame_effects() {
     static const std::vector<std::pair<std::string_view, bool FramePlan::*>> all = {
         {"skybox", &FramePlan::skybox},
@@ -35,7 +34,7 @@ const std::vector<std::pair<std::string_view, bool FramePlan::*>>& frame_effects
     return all;
 }
 
-/// Letters and digits alone, lower case: how names are compared.
+/// Names are compared by their letters and digits, in lower case.
 std::string bare(std::string_view name) {
     std::string result;
     for (const char c : name) {
@@ -64,11 +63,11 @@ std::string known_name(std::string_view wanted) {
     throw InvalidInput(fmt::format("'{}' is no effect{}", wanted, did_you_mean(wanted, names)));
 }
 
-/// What is asked for, by known names.
-class Wishes {
+/// The requested effects by known names.
+class Requests {
   public:
-    explicit Wishes(const EffectWishes& wishes) : base_(wishes.base) {
-        for (const ForcedEffect& forced : wishes.forced) {
+    explicit Requests(const EffectWishes& request) : base_(request.base) {
+        for (const ForcedEffect& forced : request.forced) {
             const std::string name = known_name(forced.name);
             const auto [entry, is_new] = by_name_.emplace(name, forced.on);
             if (!is_new && entry->second != forced.on) {
@@ -91,24 +90,46 @@ class Wishes {
     std::map<std::string, bool, std::less<>> by_name_;
 };
 
-/// A draw's features as forced, and why those wished for are not there.
+/// The name of an effect that is on in `before` and excluded by what made `after` of it; "" if
+/// there is none. Mixed falloff excludes nothing: it is both laws.
+std::string displaced_effect(const Features& before, const Features& after) {
+    const bool mixes = after.falloff == FalloffTerm::mixed;
+    for (const Effect& effect : effects()) {
+        if (!effect.on(before) || effect.on(after)) continue;
+        if (!mixes || std::string_view(effect.name) != "no falloff") return effect.name;
+    }
+    return "";
+}
+
+/// Why an effect that is not planned would change the picture of this draw if it were forced on; ""
+/// if it is neutral.
+std::string why_not_neutral(const ForcingSubject& subject, const EffectRow& row) {
+    if (row.choice != nullptr && !row.neutral(subject)) return row.choice;
+    Features with = subject.planned;
+    row.effect.set(with, true);
+    const std::string displaced = displaced_effect(subject.planned, with);
+    return displaced.empty() ? "" : fmt::format("it would take the place of '{}'", displaced);
+}
+
+/// The features of a draw with effects forced, and why requested ones are not there.
 struct ForcedDraw {
     Features features;
     std::map<std::string, std::string, std::less<>> refused;  ///< By effect.
 };
 
-void take_out(const Wishes& wishes, Features& f) {
+void remove_effects(const Requests& requests, Features& f) {
     for (const Effect& effect : effects()) {
-        const bool all_off = wishes.base() == EffectBase::nothing && !wishes.on(effect.name);
-        if ((all_off || wishes.off(effect.name)) && effect.on(f)) effect.set(f, false);
+        const bool all_off = requests.base() == EffectBase::nothing && !requests.on(effect.name);
+        if ((all_off || requests.off(effect.name)) && effect.on(f)) effect.set(f, false);
     }
 }
 
-/// Puts in what was wished for by name. \throws InvalidInput if two wishes exclude each other
-void put_in_wished(const ForcingSubject& subject, const Wishes& wishes, ForcedDraw& draw) {
-    for (const Effect& effect : effects()) {
-        if (!wishes.on(effect.name) || effect.on(subject.planned)) continue;
-        const std::string why_not = why_not_neutral(subject, effect);
+/// Adds the effects requested by name. \throws InvalidInput if two of them exclude each other
+void add_requested(const ForcingSubject& subject, const Requests& requests, ForcedDraw& draw) {
+    for (const EffectRow& row : effect_rows()) {
+        const Effect& effect = row.effect;
+        if (!requests.on(effect.name) || effect.on(subject.planned)) continue;
+        const std::string why_not = why_not_neutral(subject, row);
         if (!why_not.empty()) {
             draw.refused.emplace(effect.name, why_not);
             continue;
@@ -126,54 +147,54 @@ void put_in_wished(const ForcingSubject& subject, const Wishes& wishes, ForcedDr
     }
 }
 
-/// Puts in every neutral effect that excludes none that is there already.
-void put_in_neutral(const ForcingSubject& subject, const Wishes& wishes, Features& f) {
-    for (const Effect& effect : effects()) {
-        if (wishes.off(effect.name) || effect.on(f)) continue;
-        if (!why_not_neutral(subject, effect).empty()) continue;
+/// Adds every neutral effect that excludes no present one.
+void add_neutral(const ForcingSubject& subject, const Requests& requests, Features& f) {
+    for (const EffectRow& row : effect_rows()) {
+        const Effect& effect = row.effect;
+        if (requests.off(effect.name) || effect.on(f)) continue;
+        if (!why_not_neutral(subject, row).empty()) continue;
         Features with = f;
         effect.set(with, true);
         if (displaced_effect(f, with).empty()) f = with;
     }
 }
 
-ForcedDraw forced_draw(const ForcingSubject& subject, const Wishes& wishes) {
+ForcedDraw forced_draw(const ForcingSubject& subject, const Requests& requests) {
     ForcedDraw draw{subject.planned, {}};
-    take_out(wishes, draw.features);
-    put_in_wished(subject, wishes, draw);
-    if (wishes.base() == EffectBase::all_neutral) put_in_neutral(subject, wishes, draw.features);
+    remove_effects(requests, draw.features);
+    add_requested(subject, requests, draw);
+    if (requests.base() == EffectBase::all_neutral) add_neutral(subject, requests, draw.features);
     const Features shown = canonical(draw.features);
-    for (const Effect& effect : effects()) {
-        if (!wishes.on(effect.name) || effect.on(shown)) continue;
-        draw.refused.emplace(effect.name, why_hidden(effect, draw.features, shown));
+    for (const EffectRow& row : effect_rows()) {
+        if (!requests.on(row.effect.name) || row.effect.on(shown)) continue;
+        draw.refused.emplace(row.effect.name, why_hidden(row, draw.features, shown));
     }
     draw.features = shown;
     return draw;
 }
 
-void rewrite_reasons(DrawPlan& draw, const ForcedDraw& forced, const Wishes& wishes) {
+void rewrite_reasons(DrawPlan& draw, const ForcedDraw& forced, const Requests& requests) {
     for (EffectReason& reason : draw.reasons) {
-        const auto& all = effects();
-        const auto effect = std::find_if(all.begin(), all.end(),
-                                         [&](const Effect& e) { return e.name == reason.effect; });
-        if (effect == all.end()) continue;
+        const EffectRow* const row = find_effect(reason.effect);
+        if (row == nullptr) continue;
         const auto refused = forced.refused.find(reason.effect);
-        const bool was_on = effect->on(draw.features);
-        const bool is_on = effect->on(forced.features);
+        const bool was_on = row->effect.on(draw.features);
+        const bool is_on = row->effect.on(forced.features);
         if (refused != forced.refused.end()) {
             reason = {reason.effect, false, "cannot be forced on: " + refused->second};
         } else if (is_on && !was_on) {
             reason = {reason.effect, true, "forced on: the scene does not call for it"};
         } else if (was_on && !is_on) {
-            const bool by_name = wishes.off(effect->name) || wishes.base() == EffectBase::nothing;
+            const bool by_name =
+                requests.off(reason.effect) || requests.base() == EffectBase::nothing;
             reason = {reason.effect, false,
-                      by_name ? "taken out" : why_hidden(*effect, draw.features, forced.features)};
+                      by_name ? "taken out" : why_hidden(*row, draw.features, forced.features)};
         }
     }
 }
 
-/// Whether tangents must be computed now, and why.
-void settle_tangents(const Scene& scene, DrawPlan& draw) {
+/// Decides again whether tangents must be computed, and why.
+void update_tangents(const Scene& scene, DrawPlan& draw) {
     const std::vector<std::string> attributes = planned_interface(draw.features).attributes;
     const bool uses = std::binary_search(attributes.begin(), attributes.end(), "tangent_object");
     const Mesh& mesh = scene.meshes[scene.instances[draw.instance].mesh];
@@ -185,41 +206,41 @@ void settle_tangents(const Scene& scene, DrawPlan& draw) {
     }
 }
 
-/// An effect that no draw can have: why, by the first draw.
+/// Refuses an effect that no draw can have, with the reason of the first draw.
 void refuse(const std::string& effect, const Material& material, const std::string& reason) {
     throw InvalidInput(fmt::format("effect '{}' cannot be forced on: material '{}': {}", effect,
                                    material.name, reason));
 }
 
-void force_draws(const Scene& scene, const Wishes& wishes, FramePlan& plan) {
+void force_draws(const Scene& scene, const Requests& requests, FramePlan& plan) {
     std::map<std::string, std::pair<const Material*, std::string>> refused;
     std::map<std::string, std::size_t> refusals;
     for (DrawPlan& draw : plan.draws) {
         const Material& material =
             draw.range.material ? scene.materials[*draw.range.material] : default_material();
-        const ForcedDraw forced = forced_draw({scene, material, draw.features}, wishes);
+        const ForcedDraw forced = forced_draw({scene, material, draw.features}, requests);
         for (const auto& [effect, reason] : forced.refused) {
             refused.try_emplace(effect, &material, reason);
             ++refusals[effect];
         }
-        rewrite_reasons(draw, forced, wishes);
+        rewrite_reasons(draw, forced, requests);
         draw.features = forced.features;
-        settle_tangents(scene, draw);
+        update_tangents(scene, draw);
     }
     for (const auto& [effect, first] : refused) {
         if (refusals[effect] == plan.draws.size()) refuse(effect, *first.first, first.second);
     }
 }
 
-/// Exposure and tone curve of a finishing pass are the scene's, whatever the draws have.
+/// A finishing pass has the scene's exposure and tone curve, whatever the draws have.
 void check_finishing(const Scene& scene, const FrameSettings& settings, const FramePlan& plan,
-                     const Wishes& wishes) {
+                     const Requests& requests) {
     if (!plan.finishing_pass || settings.output != OutputCoding::srgb) return;
     Features finish;
     finish.exposure = scene.exposure != 1.0F;
     finish.tone_mapping = scene.tone_mapping;
     for (const Effect& effect : effects()) {
-        const bool forced = wishes.on(effect.name) || wishes.off(effect.name);
+        const bool forced = requests.on(effect.name) || requests.off(effect.name);
         if (forced && effect.on(finish)) {
             throw InvalidInput(
                 fmt::format("effect '{}' is in the finishing pass, which follows the "
@@ -229,16 +250,16 @@ void check_finishing(const Scene& scene, const FrameSettings& settings, const Fr
     }
 }
 
-/// What of the frame was wished for and is not as the draws make it.
-void check_frame(const FramePlan& plan, const Wishes& wishes) {
+/// Refuses requests for frame-wide effects that the draws do not lead to.
+void check_frame(const FramePlan& plan, const Requests& requests) {
     for (const auto& [name, member] : frame_effects()) {
         const bool is_on = plan.*member;
-        if (name == "skybox" && wishes.on(name) && !is_on) {
+        if (name == "skybox" && requests.on(name) && !is_on) {
             throw InvalidInput(
-                "effect 'skybox' cannot be forced on: the scene does not show its surroundings");
+                "effect 'skybox' cannot be forced on: the scene does not show its environment");
         }
-        if (name == "skybox" || (!wishes.on(name) && !wishes.off(name))) continue;
-        if (wishes.on(name) != is_on) {
+        if (name == "skybox" || (!requests.on(name) && !requests.off(name))) continue;
+        if (requests.on(name) != is_on) {
             throw InvalidInput(
                 fmt::format("effect '{}' cannot be forced {}: it follows from the "
                             "surfaces' effects and the settings",
@@ -247,7 +268,7 @@ void check_frame(const FramePlan& plan, const Wishes& wishes) {
     }
 }
 
-void take_out_skybox(FramePlan& plan) {
+void remove_skybox(FramePlan& plan) {
     const bool mirrored = std::any_of(plan.draws.begin(), plan.draws.end(), [](const DrawPlan& d) {
         return d.features.reflection == ReflectionTerm::mirror || d.features.refraction;
     });
@@ -264,15 +285,15 @@ void take_out_skybox(FramePlan& plan) {
 }  // namespace
 
 FramePlan force_effects(const Scene& scene, const FrameSettings& settings, FramePlan plan,
-                        const EffectWishes& effect_wishes) {
-    const Wishes wishes(effect_wishes);
+                        const EffectWishes& request) {
+    const Requests requests(request);
     const bool had_skybox = plan.skybox;
-    check_finishing(scene, settings, plan, wishes);
-    force_draws(scene, wishes, plan);
+    check_finishing(scene, settings, plan, requests);
+    force_draws(scene, requests, plan);
     plan_frame(scene, settings, plan);
-    const bool all_off = wishes.base() == EffectBase::nothing && !wishes.on("skybox");
-    if (plan.skybox && (!had_skybox || all_off || wishes.off("skybox"))) take_out_skybox(plan);
-    check_frame(plan, wishes);
+    const bool all_off = requests.base() == EffectBase::nothing && !requests.on("skybox");
+    if (plan.skybox && (!had_skybox || all_off || requests.off("skybox"))) remove_skybox(plan);
+    check_frame(plan, requests);
     return plan;
 }
 

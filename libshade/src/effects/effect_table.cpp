@@ -1,17 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every effect by name: how it is seen in a set of features, how it is put in and taken out, and
-// why it is dropped where it cannot show. Pure. Tests: tests/shade/effects/effects_test.cpp.
-#include "relief/shade/effects.h"
+// One row per effect: its name, its place in Features, the condition under which a scene calls for
+// it, whether it is neutral when forced on, and why it may be hidden. An effect is left out only if
+// its contribution is exactly zero. Pure.
+// Tests: tests/shade/effects/effects_test.cpp, plan_test.cpp, effect_forcing_test.cpp.
+#include "effects/effect_table.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "effects/light_rows.h"
 
 namespace relief {
 
 namespace {
 
-const char* const no_light = "no light reaches the surface, or it does nothing with it";
-const char* const no_normal = "neither light nor reflection shows the normal";
-const char* const no_colour = "nothing is scattered that it could tint";
-const char* const not_reflecting = "nothing is reflected";
-const char* const not_srgb = "the picture is not coded in sRGB";
+using Subject = const DrawSubject&;
+using Forced = const ForcingSubject&;
+using F = Features;
 
 /// An effect that is one switch.
 template <bool Features::*Member>
@@ -20,7 +26,7 @@ Effect one_switch(const char* name, const char* hidden) {
             [](Features& f, bool on) { f.*Member = on; }, hidden};
 }
 
-/// An effect that is one value of a choice; taken out, the choice falls back to its first value.
+/// An effect that is one value of an enumeration; switched off, its first value takes its place.
 template <auto Member, auto Value>
 Effect one_value(const char* name, const char* hidden) {
     return {name, [](const Features& f) { return f.*Member == Value; },
@@ -34,9 +40,9 @@ Effect one_value(const char* name, const char* hidden) {
             hidden};
 }
 
-/// Lamps of one kind; put in where there are none, one.
+/// Lights of one kind; switched on without any, there is one.
 template <std::uint32_t Features::*Member>
-Effect lamps(const char* name) {
+Effect lights(const char* name) {
     return {name, [](const Features& f) { return f.*Member > 0; },
             [](Features& f, bool on) {
                 if (!on) {
@@ -48,83 +54,536 @@ Effect lamps(const char* name) {
             "the material does nothing with light"};
 }
 
-std::vector<Effect> surface_effects() {
-    using F = Features;
+// Reasons of canonical() that several rows share.
+const char* const no_light = "no light reaches the surface, or it does nothing with it";
+const char* const no_normal = "neither light nor reflection shows the normal";
+const char* const no_color = "nothing is scattered that it could tint";
+const char* const no_highlights = "there are no highlights";
+const char* const not_lit = "no light source reaches the surface";
+const char* const not_reflecting = "nothing is reflected";
+const char* const not_srgb = "the picture is not coded in sRGB";
+
+const char* map_hidden_by(const Features& requested, const Features& shown) {
+    if (requested.detail == shown.detail) return "";
+    switch (requested.interpolation) {
+        case Interpolation::gouraud:
+            return "Gouraud shading knows the normal at vertices only";
+        case Interpolation::flat:
+            return "flat shading knows the triangle's plane only";
+        default:
+            return "";
+    }
+}
+
+const char* sides_hidden_by(const Features& requested, const Features& /*shown*/) {
+    const bool flat = requested.interpolation == Interpolation::flat;
+    return flat ? "a triangle's plane turns to the eye by itself" : "";
+}
+
+const char* finishing_hidden_by(const Features& requested, const Features& /*shown*/) {
+    return requested.output == OutputCoding::half ? "the finishing pass does it" : "";
+}
+
+// Conditions under which a choice is neutral.
+bool never(Forced /*subject*/) {
+    return false;
+}
+bool has_no_map(Forced s) {
+    return s.planned.detail == NormalDetail::none;
+}
+bool has_no_positional_lights(Forced s) {
+    return s.planned.point_lights + s.planned.spot_lights == 0;
+}
+/// A black environment, or none, or a surface that is black to it.
+bool is_dark_around(Forced s) {
+    if (!s.scene.environment) return true;
+    return !s.material.metallic_roughness && s.material.diffuse == glm::vec3(0.0F);
+}
+bool is_phong(Forced s) {
+    return !s.planned.metallic_roughness;
+}
+bool mirrors_nothing(Forced s) {
+    return s.planned.reflection == ReflectionTerm::none;
+}
+
+/// A decision with a reason about the material: "material 'body' is unlit".
+Decision of_material(Subject s, bool on, const char* why, const char* why_not) {
+    return {on, fmt::format("{} {}", s.name, on ? why : why_not)};
+}
+
+bool is_physical(Subject s) {
+    return s.material.metallic_roughness.has_value();
+}
+
+/// A texture shows only on a mesh with texture coordinates.
+Decision of_texture(Subject s, bool has_texture) {
+    if (!has_texture) return {false, s.name + " has none"};
+    if (s.mesh.texcoords.empty()) {
+        return {false, fmt::format("{} has one, but mesh '{}' has no texture coordinates", s.name,
+                                   s.mesh.name)};
+    }
+    return {true, s.name + " has one and the mesh has texture coordinates"};
+}
+
+Decision of_vertex_colors(Subject s) {
+    return {s.tinted, fmt::format("mesh '{}' has {}", s.mesh.name,
+                                  s.mesh.colors.empty() ? "none"
+                                  : s.tinted            ? "them"
+                                                        : "only white ones")};
+}
+
+/// Alpha matters only if something makes it smaller than 1.
+AlphaMode shown_alpha_mode(Subject s) {
+    const Material& material = s.material;
+    if (material.alpha_mode == AlphaMode::opaque) return AlphaMode::opaque;
+    const bool textured =
+        (material.diffuse_texture || material.opacity_texture) && !s.mesh.texcoords.empty();
+    const bool varies = textured || s.tinted || material.opacity < 1.0F;
+    if (material.alpha_mode == AlphaMode::blend) {
+        return varies ? AlphaMode::blend : AlphaMode::opaque;
+    }
+    const bool covers = !varies && material.alpha_cutoff <= 1.0F;
+    return covers ? AlphaMode::opaque : AlphaMode::mask;
+}
+
+Decision of_alpha(Subject s, AlphaMode mode) {
+    const AlphaMode shown = shown_alpha_mode(s);
+    const char* const reason = s.material.alpha_mode == AlphaMode::opaque ? "is opaque"
+                               : shown == AlphaMode::opaque               ? "is covered everywhere"
+                               : shown == AlphaMode::mask
+                                   ? "has holes where alpha is below its cutoff"
+                                   : "lets through what is behind it";
+    return of_material(s, shown == mode, reason, reason);
+}
+
+bool has_object_map(Subject s) {
+    return s.material.normal_map && s.material.normal_map->space == NormalSpace::object;
+}
+
+template <typename Light>
+Decision of_lights(const std::vector<Light>& lights, std::uint32_t shining) {
+    if (lights.empty()) return {false, "the scene has none"};
+    const std::string black =
+        shining < lights.size() ? fmt::format(", {} of them black", lights.size() - shining) : "";
+    return {shining > 0, fmt::format("the scene has {}{}", lights.size(), black)};
+}
+
+Decision of_no_falloff(Subject s) {
+    switch (s.lights.falloff) {
+        case FalloffTerm::inverse_square:
+            return {false, "every light falls off with the squared distance"};
+        case FalloffTerm::none:
+            return {true, "no light falls off with distance"};
+        default:
+            return {false, "some lights fall off with distance"};
+    }
+}
+
+Decision of_mixed_falloff(Subject s) {
+    if (s.lights.falloff != FalloffTerm::mixed) return {false, "all lights follow one law"};
+    return {true, "some lights fall off with distance and some do not"};
+}
+
+Decision of_light_buffer(Subject s) {
+    const std::uint32_t rows = light_row_layout(s.lights).count;
     return {
-        one_switch<&F::unlit>("unlit", ""),
-        one_switch<&F::metallic_roughness>("metallic-roughness", no_light),
-        one_switch<&F::metallic_roughness_texture>("metallic-roughness texture",
-                                                   "the material is not metallic-roughness"),
-        one_value<&F::interpolation, Interpolation::gouraud>("Gouraud", "no lamp is interpolated"),
-        one_value<&F::interpolation, Interpolation::flat>("flat", no_normal),
-        one_switch<&F::diffuse_texture>("diffuse texture", no_colour),
-        one_switch<&F::vertex_colors>("vertex colours", no_colour),
-        one_value<&F::alpha, AlphaMode::mask>("alpha mask", ""),
-        one_value<&F::alpha, AlphaMode::blend>("alpha blending", ""),
-        one_switch<&F::opacity_texture>("opacity texture", "the material is opaque"),
-        one_value<&F::detail, NormalDetail::normal_map>("normal map", no_normal),
-        one_value<&F::detail, NormalDetail::object_normal_map>("object-space normal map",
-                                                               no_normal),
-        one_value<&F::detail, NormalDetail::bump_map>("bump map", no_normal),
-        one_value<&F::frame, TangentFrame::derivatives>("derivative frames",
-                                                        "no map asks for a tangent frame"),
-        one_switch<&F::specular_antialiasing>("specular antialiasing",
-                                              "no normal map bends sharp highlights"),
-        one_switch<&F::double_sided>("double-sided normals", no_normal),
+        rows > max_block_rows,
+        fmt::format("the lights take {} of the {} rows of a uniform block", rows, max_block_rows)};
+}
+
+Decision of_ambient(Subject s) {
+    if (!is_not_black(s.scene.ambient)) return {false, "the scene has no ambient light"};
+    const glm::vec3 scattered = s.scene.ambient * s.material.ambient;
+    const bool scatters = is_physical(s) || is_not_black(s.material.ambient);
+    return {is_physical(s) || is_not_black(scattered),
+            s.name + (scatters ? " scatters ambient light" : " scatters none")};
+}
+
+bool scatters_light(Subject s) {
+    return is_physical(s) || is_not_black(s.material.diffuse);
+}
+
+Decision of_environment_light(Subject s) {
+    if (!s.scene.environment) return {false, "the scene has no environment"};
+    if (!s.scene.environment->lights) return {false, "the environment is not to light surfaces"};
+    return of_material(s, scatters_light(s), "scatters the environment's light", "is black");
+}
+
+Decision of_highlights(Subject s, bool phong) {
+    const bool is_phong_model = s.material.specular_model == SpecularModel::phong;
+    const bool shiny = !is_physical(s) && is_not_black(s.material.specular);
+    const char* const reason = is_physical(s)   ? "has those of its own model"
+                               : !shiny         ? "has none"
+                               : is_phong_model ? "has Phong's"
+                                                : "has the half vector's";
+    return of_material(s, shiny && is_phong_model == phong, reason, reason);
+}
+
+bool reflects(Subject s) {
+    return is_physical(s) || is_not_black(s.material.reflectivity);
+}
+
+Decision of_reflection(Subject s, bool glossy) {
+    const bool rough = is_physical(s) || s.material.reflection_roughness > 0.0F;
+    if (!reflects(s)) return {false, s.name + " reflects nothing"};
+    if (!s.scene.environment) return {false, "the scene has no environment"};
+    const char* const reason =
+        rough ? "is rough and there is an environment" : "is a mirror and there is an environment";
+    return of_material(s, rough == glossy, reason, reason);
+}
+
+Decision of_fresnel(Subject s, FresnelTerm term, const char* otherwise) {
+    const Material& material = s.material;
+    const bool varies = material.grazing_reflectivity != material.reflectivity;
+    const FresnelTerm own = material.fresnel == FresnelModel::dielectric  ? FresnelTerm::dielectric
+                            : material.fresnel == FresnelModel::conductor ? FresnelTerm::conductor
+                            : varies                                      ? FresnelTerm::schlick
+                                                                          : FresnelTerm::constant;
+    if (!s.scene.environment || !reflects(s)) return {false, s.name + " reflects nothing"};
+    if (is_physical(s)) return {false, s.name + " has its own model's"};
+    return own == term ? Decision{true, s.name + " has it"} : Decision{false, otherwise};
+}
+
+Decision of_schlick(Subject s) {
+    const bool varies = s.material.grazing_reflectivity != s.material.reflectivity;
+    return of_fresnel(
+        s, FresnelTerm::schlick,
+        varies ? "an exact form is asked for" : "reflectivity is the same at every angle");
+}
+
+Decision of_refraction(Subject s) {
+    if (!(s.material.transmission > 0.0F) || is_physical(s))
+        return {false, s.name + " lets nothing through"};
+    if (!s.scene.environment) return {false, "the scene has no environment"};
+    return {true, s.name + " lets through what it does not mirror"};
+}
+
+Decision of_tone(Subject s, ToneMapping tone) {
+    if (s.scene.tone_mapping == tone) return {true, "the scene asks for it"};
+    return {false, s.scene.tone_mapping == ToneMapping::none ? "radiance above 1 is shown as 1"
+                                                             : "the scene asks for another curve"};
+}
+
+std::vector<EffectRow> model_rows() {
+    return {
+        {.effect = one_switch<&F::unlit>("unlit", ""),
+         .decide = [](Subject s) { return of_material(s, s.material.unlit, "is unlit", "is lit"); },
+         .choice = "whether light counts is the material's choice",
+         .neutral = never},
+        {.effect = one_switch<&F::metallic_roughness>("metallic-roughness", no_light),
+         .decide =
+             [](Subject s) {
+                 return of_material(s, is_physical(s), "is glTF's model", "is Phong's model");
+             },
+         .choice = "its model is the material's choice",
+         .neutral = never},
+        {.effect = one_switch<&F::metallic_roughness_texture>(
+             "metallic-roughness texture", "the material is not metallic-roughness"),
+         .decide =
+             [](Subject s) {
+                 return of_texture(
+                     s, is_physical(s) && s.material.metallic_roughness->texture.has_value());
+             }},
+        {.effect = one_value<&F::interpolation, Interpolation::gouraud>("Gouraud",
+                                                                        "no light is interpolated"),
+         .decide =
+             [](Subject s) {
+                 return of_material(s, s.material.interpolation == Interpolation::gouraud,
+                                    "is lit at its vertices", "is lit at every pixel");
+             },
+         .choice = "where light is computed is the material's choice",
+         .neutral = never},
+        {.effect = one_value<&F::interpolation, Interpolation::flat>("flat", no_normal),
+         .decide =
+             [](Subject s) {
+                 return of_material(s, s.material.interpolation == Interpolation::flat,
+                                    "shows its facets", "interpolates its normals");
+             },
+         .choice = "where light is computed is the material's choice",
+         .neutral = never},
     };
 }
 
-std::vector<Effect> light_effects() {
-    using F = Features;
+std::vector<EffectRow> color_rows() {
     return {
-        one_switch<&F::ambient>("ambient", ""),
-        lamps<&F::directional_lights>("directional lights"),
-        lamps<&F::point_lights>("point lights"),
-        lamps<&F::spot_lights>("spot lights"),
-        one_value<&F::falloff, FalloffTerm::none>("no falloff", no_light),
-        one_value<&F::falloff, FalloffTerm::mixed>("mixed falloff", no_light),
-        one_switch<&F::light_ranges>("light ranges", no_light),
-        one_switch<&F::highlight_colors>("highlight colours", "there are no highlights"),
-        one_switch<&F::lights_in_buffer>("light buffer", no_light),
-        one_switch<&F::environment_diffuse>("environment light", ""),
-        one_switch<&F::occlusion_texture>("occlusion texture", "no light comes from everywhere"),
-        one_switch<&F::diffuse>("diffuse", "no lamp reaches the surface"),
-        one_value<&F::specular, SpecularTerm::phong>("Phong highlights",
-                                                     "no lamp reaches the surface"),
-        one_value<&F::specular, SpecularTerm::blinn_phong>("Blinn-Phong highlights",
-                                                           "no lamp reaches the surface"),
-        one_switch<&F::specular_texture>("specular texture", "there are no highlights"),
-        one_switch<&F::emission>("emission", ""),
-        one_switch<&F::emission_texture>("emission texture",
-                                         "the material has no emission that it could tint"),
+        {.effect = one_switch<&F::diffuse_texture>("diffuse texture", no_color),
+         .decide = [](Subject s) { return of_texture(s, s.material.diffuse_texture.has_value()); }},
+        {.effect = one_switch<&F::vertex_colors>("vertex colours", no_color),
+         .decide = of_vertex_colors},
+        {.effect = one_value<&F::alpha, AlphaMode::mask>("alpha mask", ""),
+         .decide = [](Subject s) { return of_alpha(s, AlphaMode::mask); }},
+        {.effect = one_value<&F::alpha, AlphaMode::blend>("alpha blending", ""),
+         .decide = [](Subject s) { return of_alpha(s, AlphaMode::blend); },
+         .choice = "it hides nothing that is behind it, and is drawn after all else",
+         .neutral = never},
+        {.effect = one_switch<&F::opacity_texture>("opacity texture", "the material is opaque"),
+         .decide = [](Subject s) { return of_texture(s, s.material.opacity_texture.has_value()); }},
     };
 }
 
-std::vector<Effect> picture_effects() {
-    using F = Features;
+std::vector<EffectRow> normal_rows() {
     return {
-        one_value<&F::reflection, ReflectionTerm::mirror>("mirror reflection", ""),
-        one_value<&F::reflection, ReflectionTerm::glossy>("glossy reflection", ""),
-        one_value<&F::fresnel, FresnelTerm::schlick>("Schlick's Fresnel", not_reflecting),
-        one_value<&F::fresnel, FresnelTerm::dielectric>("dielectric Fresnel", not_reflecting),
-        one_value<&F::fresnel, FresnelTerm::conductor>("conductor Fresnel", not_reflecting),
-        one_switch<&F::refraction>("refraction", "glTF's model lets nothing through"),
-        one_switch<&F::exposure>("exposure", not_srgb),
-        one_value<&F::tone_mapping, ToneMapping::reinhard>("Reinhard tone mapping", not_srgb),
-        one_value<&F::tone_mapping, ToneMapping::aces>("ACES tone mapping", not_srgb),
+        {.effect = one_value<&F::detail, NormalDetail::normal_map>("normal map", no_normal),
+         .decide =
+             [](Subject s) { return of_texture(s, s.material.normal_map && !has_object_map(s)); },
+         .hidden_by = map_hidden_by},
+        {.effect = one_value<&F::detail, NormalDetail::object_normal_map>("object-space normal map",
+                                                                          no_normal),
+         .decide = [](Subject s) { return of_texture(s, has_object_map(s)); },
+         .choice = "without a map of its own it has no neutral value",
+         .neutral = never,
+         .hidden_by = map_hidden_by},
+        {.effect = one_value<&F::detail, NormalDetail::bump_map>("bump map", no_normal),
+         .decide = [](Subject s) { return of_texture(s, s.material.bump_map.has_value()); },
+         .hidden_by = map_hidden_by},
+        {.effect = one_value<&F::frame, TangentFrame::derivatives>(
+             "derivative frames", "no map asks for a tangent frame"),
+         .decide =
+             [](Subject s) {
+                 return of_material(s, s.material.tangent_frame == TangentFrame::derivatives,
+                                    "takes its frame from derivatives", "uses the mesh's tangents");
+             },
+         .choice = "its map's frame is the material's choice",
+         .neutral = never},
+        {.effect = one_switch<&F::specular_antialiasing>("specular antialiasing",
+                                                         "no normal map bends sharp highlights"),
+         .decide =
+             [](Subject s) {
+                 return of_material(s, s.material.specular_antialiasing, "asks for it",
+                                    "does not ask for it");
+             },
+         .choice = "it would widen the highlights of its map",
+         .neutral = has_no_map},
+        {.effect = one_switch<&F::double_sided>("double-sided normals", no_normal),
+         .decide =
+             [](Subject s) {
+                 return of_material(s, s.material.double_sided, "shows both sides",
+                                    "shows its front only");
+             },
+         .hidden_by = sides_hidden_by},
     };
+}
+
+std::vector<EffectRow> light_rows_of_table() {
+    return {
+        {.effect = lights<&F::directional_lights>("directional lights"),
+         .decide =
+             [](Subject s) {
+                 return of_lights(s.scene.directional_lights, s.lights.directional_lights);
+             }},
+        {.effect = lights<&F::point_lights>("point lights"),
+         .decide =
+             [](Subject s) { return of_lights(s.scene.point_lights, s.lights.point_lights); }},
+        {.effect = lights<&F::spot_lights>("spot lights"),
+         .decide = [](Subject s) { return of_lights(s.scene.spot_lights, s.lights.spot_lights); }},
+        {.effect = one_value<&F::falloff, FalloffTerm::none>("no falloff", no_light),
+         .decide = of_no_falloff,
+         .choice = "the lights fall off with distance",
+         .neutral = has_no_positional_lights},
+        {.effect = one_value<&F::falloff, FalloffTerm::mixed>("mixed falloff", no_light),
+         .decide = of_mixed_falloff},
+        {.effect = one_switch<&F::light_ranges>("light ranges", no_light),
+         .decide = [](Subject s) -> Decision {
+             if (!s.lights.light_ranges) return {false, "no light has one"};
+             return {true, "a point or spot light has one"};
+         }},
+        {.effect = one_switch<&F::highlight_colors>("highlight colours", no_highlights),
+         .decide = [](Subject s) -> Decision {
+             if (!s.lights.highlight_colors)
+                 return {false, "every light's highlights have the color of its light"};
+             return {true, "a light's highlights have a color of their own"};
+         },
+         .phong_only = true},
+        {.effect = one_switch<&F::lights_in_buffer>("light buffer", no_light),
+         .decide = of_light_buffer},
+        {.effect = one_switch<&F::ambient>("ambient", ""), .decide = of_ambient},
+        {.effect = one_switch<&F::diffuse>("diffuse", not_lit),
+         .decide =
+             [](Subject s) {
+                 return of_material(s, scatters_light(s), "scatters light", "is black");
+             }},
+        {.effect = one_switch<&F::environment_diffuse>("environment light", ""),
+         .decide = of_environment_light,
+         .choice = "the environment is not to light surfaces",
+         .neutral = is_dark_around},
+        {.effect = one_switch<&F::occlusion_texture>("occlusion texture",
+                                                     "no light comes from everywhere"),
+         .decide =
+             [](Subject s) {
+                 return of_texture(s, s.material.occlusion_texture.has_value() &&
+                                          s.material.occlusion_strength > 0.0F);
+             }},
+        {.effect = one_value<&F::specular, SpecularTerm::phong>("Phong highlights", not_lit),
+         .decide = [](Subject s) { return of_highlights(s, true); },
+         .phong_only = true},
+        {.effect =
+             one_value<&F::specular, SpecularTerm::blinn_phong>("Blinn-Phong highlights", not_lit),
+         .decide = [](Subject s) { return of_highlights(s, false); },
+         .phong_only = true},
+        {.effect = one_switch<&F::specular_texture>("specular texture", no_highlights),
+         .decide = [](Subject s) { return of_texture(s, s.material.specular_texture.has_value()); },
+         .phong_only = true},
+        {.effect = one_switch<&F::emission>("emission", ""),
+         .decide =
+             [](Subject s) {
+                 return of_material(s, is_not_black(s.material.emission), "shines", "has none");
+             }},
+        {.effect = one_switch<&F::emission_texture>(
+             "emission texture", "the material has no emission that it could tint"),
+         .decide =
+             [](Subject s) { return of_texture(s, s.material.emission_texture.has_value()); }},
+    };
+}
+
+std::vector<EffectRow> picture_rows() {
+    return {
+        {.effect = one_value<&F::reflection, ReflectionTerm::mirror>("mirror reflection", ""),
+         .decide = [](Subject s) { return of_reflection(s, false); },
+         .choice = "metallic-roughness has its own",
+         .neutral = is_phong,
+         .phong_only = true},
+        {.effect = one_value<&F::reflection, ReflectionTerm::glossy>("glossy reflection", ""),
+         .decide = [](Subject s) { return of_reflection(s, true); }},
+        {.effect =
+             one_value<&F::fresnel, FresnelTerm::schlick>("Schlick's Fresnel", not_reflecting),
+         .decide = of_schlick,
+         .phong_only = true},
+        {.effect =
+             one_value<&F::fresnel, FresnelTerm::dielectric>("dielectric Fresnel", not_reflecting),
+         .decide =
+             [](Subject s) {
+                 return of_fresnel(s, FresnelTerm::dielectric, "it is not asked for");
+             },
+         .choice = "how much it mirrors is the material's choice",
+         .neutral = mirrors_nothing,
+         .phong_only = true},
+        {.effect =
+             one_value<&F::fresnel, FresnelTerm::conductor>("conductor Fresnel", not_reflecting),
+         .decide =
+             [](Subject s) { return of_fresnel(s, FresnelTerm::conductor, "it is not asked for"); },
+         .choice = "how much it mirrors is the material's choice",
+         .neutral = mirrors_nothing,
+         .phong_only = true},
+        {.effect = one_switch<&F::refraction>("refraction", "glTF's model lets nothing through"),
+         .decide = of_refraction,
+         .phong_only = true},
+        {.effect = one_switch<&F::exposure>("exposure", not_srgb),
+         .decide = [](Subject s) -> Decision {
+             return {s.scene.exposure != 1.0F,
+                     fmt::format("the scene's exposure is {}", s.scene.exposure)};
+         },
+         .hidden_by = finishing_hidden_by},
+        {.effect =
+             one_value<&F::tone_mapping, ToneMapping::reinhard>("Reinhard tone mapping", not_srgb),
+         .decide = [](Subject s) { return of_tone(s, ToneMapping::reinhard); },
+         .choice = "the tone curve is the scene's choice",
+         .neutral = never,
+         .hidden_by = finishing_hidden_by},
+        {.effect = one_value<&F::tone_mapping, ToneMapping::aces>("ACES tone mapping", not_srgb),
+         .decide = [](Subject s) { return of_tone(s, ToneMapping::aces); },
+         .choice = "the tone curve is the scene's choice",
+         .neutral = never,
+         .hidden_by = finishing_hidden_by},
+    };
+}
+
+/// True if vertex colors change the picture, their alpha included if the material uses it.
+bool has_tint(const Material& material, const Mesh& mesh) {
+    const bool alpha_counts = material.alpha_mode != AlphaMode::opaque;
+    return std::any_of(mesh.colors.begin(), mesh.colors.end(), [&](const glm::vec4& color) {
+        return glm::vec3(color) != glm::vec3(1.0F) || (alpha_counts && color.a != 1.0F);
+    });
+}
+
+template <typename Light>
+std::uint32_t shining_count(const std::vector<Light>& lights) {
+    return static_cast<std::uint32_t>(std::count_if(
+        lights.begin(), lights.end(), [](const Light& light) { return shines(light); }));
+}
+
+/// The point and spot lights that shine.
+std::vector<const PointLight*> positional_lights(const Scene& scene) {
+    std::vector<const PointLight*> result;
+    for (const PointLight& light : scene.point_lights)
+        if (shines(light)) result.push_back(&light);
+    for (const SpotLight& light : scene.spot_lights)
+        if (shines(light)) result.push_back(&light.point);
+    return result;
+}
+
+/// The scene's lights as features.
+Features lights_of(const Scene& scene) {
+    const std::vector<const PointLight*> positional = positional_lights(scene);
+    const auto any = [&](const auto& condition) {
+        return std::any_of(positional.begin(), positional.end(), condition);
+    };
+    const auto falls = [](const PointLight* light) {
+        return light->falloff == Falloff::inverse_square;
+    };
+    const auto differs = [](const std::optional<glm::vec3>& highlights, const glm::vec3& light) {
+        return highlights && *highlights != light;
+    };
+    Features f;
+    f.directional_lights = shining_count(scene.directional_lights);
+    f.point_lights = shining_count(scene.point_lights);
+    f.spot_lights = shining_count(scene.spot_lights);
+    f.falloff = std::all_of(positional.begin(), positional.end(), falls)
+                    ? FalloffTerm::inverse_square
+                : any(falls) ? FalloffTerm::mixed
+                             : FalloffTerm::none;
+    f.light_ranges = any([](const PointLight* light) { return light->range.has_value(); });
+    f.highlight_colors =
+        any([&](const PointLight* light) {
+            return differs(light->highlight_intensity, light->intensity);
+        }) ||
+        std::any_of(scene.directional_lights.begin(), scene.directional_lights.end(),
+                    [&](const DirectionalLight& light) {
+                        return differs(light.highlight_irradiance, light.irradiance);
+                    });
+    return f;
 }
 
 }  // namespace
 
+DrawSubject draw_subject(const Scene& scene, const Material& material, const std::string& name,
+                         const Mesh& mesh) {
+    return {scene, material, mesh, name, has_tint(material, mesh), lights_of(scene)};
+}
+
+const std::vector<EffectRow>& effect_rows() {
+    static const std::vector<EffectRow> all = [] {
+        std::vector<EffectRow> rows = model_rows();
+        for (const auto& more :
+             {color_rows(), normal_rows(), light_rows_of_table(), picture_rows()})
+            rows.insert(rows.end(), more.begin(), more.end());
+        return rows;
+    }();
+    return all;
+}
+
 const std::vector<Effect>& effects() {
     static const std::vector<Effect> all = [] {
-        std::vector<Effect> result = surface_effects();
-        for (const auto& more : {light_effects(), picture_effects()})
-            result.insert(result.end(), more.begin(), more.end());
+        std::vector<Effect> result;
+        for (const EffectRow& row : effect_rows())
+            result.push_back(row.effect);
         return result;
     }();
     return all;
+}
+
+const EffectRow* find_effect(std::string_view name) {
+    const auto& all = effect_rows();
+    const auto row = std::find_if(all.begin(), all.end(),
+                                  [&](const EffectRow& r) { return r.effect.name == name; });
+    return row == all.end() ? nullptr : &*row;
+}
+
+std::string why_hidden(const EffectRow& row, const Features& requested, const Features& shown) {
+    if (shown.unlit) return "the material is unlit";
+    const std::string specific = row.hidden_by == nullptr ? "" : row.hidden_by(requested, shown);
+    if (!specific.empty()) return specific;
+    if (shown.metallic_roughness && row.phong_only) return "metallic-roughness has its own";
+    return row.effect.hidden;
 }
 
 }  // namespace relief

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lights as numbers for the shaders, in world space; see light_rows.h for the layout. Directions
-// are made unit in double precision, so that any length a float holds will do.
+// Lights as numbers for the shaders, in world space; light_rows.h describes the layout. Directions
+// are normalized in double precision, so that every length of a float works.
 // Tests: tests/shade/effects/light_rows_test.cpp.
 #include "effects/light_rows.h"
 
@@ -15,11 +15,11 @@ glm::vec3 unit(const glm::vec3& direction) {
     return glm::vec3(glm::normalize(glm::dvec3(direction)));
 }
 
-glm::vec4 place_of(const PointLight& light) {
+glm::vec4 position_row(const PointLight& light) {
     return {light.position_world, light.range ? 1.0F / *light.range : 0.0F};
 }
 
-glm::vec4 power_of(const PointLight& light) {
+glm::vec4 intensity_row(const PointLight& light) {
     return {light.intensity, light.falloff == Falloff::inverse_square ? 1.0F : 0.0F};
 }
 
@@ -29,19 +29,19 @@ void add(std::vector<glm::vec4>& rows, const DirectionalLight& light) {
 }
 
 void add(std::vector<glm::vec4>& rows, const PointLight& light) {
-    rows.push_back(place_of(light));
-    rows.push_back(power_of(light));
+    rows.push_back(position_row(light));
+    rows.push_back(intensity_row(light));
 }
 
 void add(std::vector<glm::vec4>& rows, const SpotLight& light) {
-    // Cones closer together than this are one sharp edge (KHR_lights_punctual).
-    constexpr double least_difference = 1e-3;
+    // A smaller difference between the cones is one sharp edge (KHR_lights_punctual).
+    constexpr double min_difference = 1e-3;
     const double outer = std::cos(static_cast<double>(light.outer_cone));
     const double inner = std::cos(static_cast<double>(light.inner_cone));
-    const double scale = 1.0 / std::max(inner - outer, least_difference);
+    const double scale = 1.0 / std::max(inner - outer, min_difference);
     const glm::dvec3 axis = glm::normalize(glm::dvec3(light.direction_world));
-    rows.push_back(place_of(light.point));
-    rows.push_back(power_of(light.point));
+    rows.push_back(position_row(light.point));
+    rows.push_back(intensity_row(light.point));
     rows.emplace_back(glm::vec3(axis * scale), static_cast<float>(-outer * scale));
 }
 
@@ -55,7 +55,7 @@ glm::vec3 highlights_of(const SpotLight& light) {
     return highlights_of(light.point);
 }
 
-/// Rows of the shining lights of one kind, and black rows up to the planned count.
+/// The rows of the shining lights of one kind, and black rows up to the planned count.
 template <typename Light>
 void add_all(std::vector<glm::vec4>& rows, const std::vector<Light>& lights, std::size_t end,
              bool highlight_colors) {
@@ -68,10 +68,6 @@ void add_all(std::vector<glm::vec4>& rows, const std::vector<Light>& lights, std
 }
 
 }  // namespace
-
-std::uint32_t lamp_count(const Features& f) {
-    return f.directional_lights + f.point_lights + f.spot_lights;
-}
 
 LightRowLayout light_row_layout(const Features& features) {
     const std::uint32_t more = features.highlight_colors ? 1 : 0;

@@ -1,47 +1,510 @@
 // SPDX-License-Identifier: Apache-2.0
-// Programs put together from the parts that a set of effects chooses (shader_parts.h), and what
-// they take from outside. Pure. Tests: tests/shade/effects/surface_program_test.cpp.
-#include "effects/surface_program.h"
-
+// The table of shader parts: one row per step, with the parts that implement it, and the programs
+// that are assembled from it. At most one part of a step is chosen for any Features value. Pure.
+// Tests: tests/shade/effects/surface_program_test.cpp, shader_listing_test.cpp.
 #include <algorithm>
 #include <cassert>
-#include <iterator>
 
+#include "effects/features.h"
 #include "effects/light_rows.h"
-#include "effects/shader_parts.h"
+#include "effects/surface_program.h"
+#include "relief/shade/shader_listing.h"
 
 namespace relief {
 
 namespace {
 
-/// The parts that these features choose: one for each step that they need.
-Parts chosen_of(const std::vector<Parts>& all) {
-    Parts chosen;
-    for (const Parts& parts : all) {
-        std::copy_if(parts.begin(), parts.end(), std::back_inserter(chosen),
-                     [](const Part& part) { return part.chosen; });
-    }
-    return chosen;
-}
-
-struct ChosenParts {
-    Parts vertex;
-    Parts fragment;
+/// What a part takes from outside the shader, by GLSL name: its own declarations and those of the
+/// parts that it includes by address.
+struct Takes {
+    std::vector<std::string_view> attributes = {};
+    std::vector<std::string_view> uniforms = {};
+    std::vector<std::string_view> samplers = {};
+    std::vector<std::string_view> blocks = {};
 };
 
-ChosenParts chosen_parts(const Features& f) {
-    return {chosen_of(vertex_parts(f)), chosen_of(is_data(f.view) ? data_parts(f)
-                                                  : f.unlit       ? unlit_parts(f)
-                                                                  : fragment_parts(f))};
+/// A part that implements a step, and whether these features choose it.
+struct Part {
+    std::string_view address;
+    bool chosen = false;
+    Takes takes = {};
+};
+
+/// A step of a stage. If no part is chosen, its code is the neutral line; a step without one is
+/// then not included by any chosen part.
+struct Step {
+    std::string_view name;
+    std::string_view neutral;
+    std::vector<Part> parts;
+};
+
+using Steps = std::vector<Step>;
+
+using By = const Features&;
+
+bool has_lights(By f) {
+    return light_count(f) > 0;
+}
+bool has_positional_lights(By f) {
+    return f.point_lights + f.spot_lights > 0;
+}
+bool is_gouraud(By f) {
+    return f.interpolation == Interpolation::gouraud;
+}
+bool is_flat(By f) {
+    return f.interpolation == Interpolation::flat;
 }
 
-ShaderSteps steps_of(const Parts& parts) {
-    ShaderSteps steps;
-    for (const Part& part : parts) {
-        [[maybe_unused]] const bool first = steps.emplace(part.step, part.file).second;
-        assert(first && "two files for one step");
+/// The values that a stage needs of the surface.
+struct Needs {
+    bool lights = false;
+    bool normal = false;
+    bool position = false;  ///< For point and spot lights.
+    bool view = false;      ///< For highlights and mirror images: position and eye.
+};
+
+/// \param lights  the stage computes them  \param rest  and everything else that shows the normal
+Needs needs_of(By f, bool lights, bool rest) {
+    const bool reflects = rest && (f.reflection != ReflectionTerm::none || f.refraction);
+    const bool lit_around = rest && f.environment_diffuse;
+    Needs needs;
+    needs.lights = lights && has_lights(f);
+    needs.normal = needs.lights || reflects || lit_around;
+    needs.position = needs.lights && has_positional_lights(f);
+    needs.view = (needs.lights && f.specular != SpecularTerm::none) || reflects ||
+                 (f.metallic_roughness && needs.normal);
+    return needs;
+}
+
+Needs vertex_needs(By f) {
+    return needs_of(f, is_gouraud(f), false);
+}
+Needs fragment_needs(By f) {
+    Needs needs = needs_of(f, !is_gouraud(f), true);
+    needs.normal |= shows_normal(f);
+    return needs;
+}
+
+/// True if a map in the tangent frame perturbs the normal.
+bool is_perturbed(By f) {
+    const bool tangent_space =
+        f.detail == NormalDetail::normal_map || f.detail == NormalDetail::bump_map;
+    return tangent_space && fragment_needs(f).normal;
+}
+bool has_frame(By f) {
+    return is_perturbed(f) || shows_frame(f);
+}
+bool has_stored_frame(By f) {
+    return has_frame(f) && f.frame == TangentFrame::stored;
+}
+bool has_derived_frame(By f) {
+    return has_frame(f) && f.frame == TangentFrame::derivatives;
+}
+/// True if the map's vector in tangent space is needed.
+bool has_detail(By f, NormalDetail detail) {
+    return f.detail == detail && (is_perturbed(f) || f.view == DebugView::normal_map);
+}
+
+bool passes_position(By f) {
+    const Needs here = fragment_needs(f);
+    const Needs at_vertex = vertex_needs(f);
+    return here.position || here.view || at_vertex.position || at_vertex.view ||
+           has_derived_frame(f) || (here.normal && is_flat(f));
+}
+bool passes_normal(By f) {
+    return has_frame(f) || vertex_needs(f).normal || (fragment_needs(f).normal && !is_flat(f));
+}
+bool passes_texcoord(By f) {
+    return f.diffuse_texture || f.specular_texture || f.metallic_roughness_texture ||
+           f.occlusion_texture || f.opacity_texture || f.emission_texture ||
+           f.detail != NormalDetail::none || has_derived_frame(f) || f.view == DebugView::texcoords;
+}
+
+constexpr std::string_view neutral_sharpness =
+    "float sharpened(float exponent) { return exponent; } "
+    "float dimmed(float exponent) { return 1.0; } "
+    "float widened(float roughness) { return roughness; }";
+
+/// Vertex attributes that pass to the fragment stage.
+Steps passing_steps(By f) {
+    const bool framed = has_stored_frame(f);
+    return {
+        {"pass_position",
+         "void pass_position() {}",
+         {{"vertex.glsl#position", passes_position(f), {.uniforms = {"world_from_object"}}}}},
+        {"pass_normal",
+         "void pass_normal() {}",
+         {{"vertex.glsl#normal",
+           passes_normal(f) && !framed,
+           {.attributes = {"normal_object"}, .uniforms = {"world_from_object_normal"}}},
+          {"vertex.glsl#normal_and_tangent",
+           framed,
+           {.attributes = {"normal_object", "tangent_object"},
+            .uniforms = {"world_from_object_normal", "world_from_object_tangent", "handedness"}}}}},
+        {"pass_texcoord",
+         "void pass_texcoord() {}",
+         {{"vertex.glsl#texcoord", passes_texcoord(f), {.attributes = {"texcoord"}}}}},
+        {"pass_color",
+         "void pass_color() {}",
+         {{"vertex.glsl#color", f.vertex_colors, {.attributes = {"color_linear"}}}}},
+    };
+}
+
+/// The values of the surface at a point.
+Step surface_step(By f, const Needs& needs) {
+    const bool physical = f.metallic_roughness;
+    return {"surface",
+            "",
+            {{"surface.glsl#none", !needs.normal && !physical},
+             {"surface.glsl#normal", needs.normal && !needs.position && !needs.view},
+             {"surface.glsl#position", needs.position && !needs.view},
+             {"surface.glsl#view", needs.view && !physical, {.uniforms = {"eye_world"}}},
+             {"metallic_roughness.glsl#surface_colors",
+              physical && !needs.normal,
+              {.uniforms = {"base_color", "metallic"}}},
+             {"metallic_roughness.glsl#surface",
+              physical && needs.normal,
+              {.uniforms = {"eye_world", "base_color", "metallic", "roughness"}}}}};
+}
+
+/// The normal at a fragment.
+Steps normal_steps(By f) {
+    const bool normal = fragment_needs(f).normal;
+    const bool object_map = normal && f.detail == NormalDetail::object_normal_map;
+    return {
+        {"position", "", {{"inputs.glsl#position", true}}},
+        {"normal",
+         "",
+         {{"normal.glsl#flat", normal && is_flat(f), {.uniforms = {"eye_world"}}},
+          {"normal.glsl#interpolated", normal && !is_flat(f) && f.detail == NormalDetail::none},
+          {"normal.glsl#perturbed", is_perturbed(f)},
+          {"normal_map.glsl#object_space",
+           object_map,
+           {.uniforms = {"normal_map_scale", "normal_map_bias", "world_from_object_normal"},
+            .samplers = {"normal_texture"}}}}},
+        {"detail",
+         "",
+         {{"normal_map.glsl#tangent_space",
+           has_detail(f, NormalDetail::normal_map),
+           {.uniforms = {"normal_map_scale", "normal_map_bias"}, .samplers = {"normal_texture"}}},
+          {"bump_map.glsl",
+           has_detail(f, NormalDetail::bump_map),
+           {.uniforms = {"bump_strength"}, .samplers = {"bump_texture"}}}}},
+        {"frame",
+         "",
+         {{"tangent_frame.glsl#stored", has_stored_frame(f)},
+          {"tangent_frame.glsl#derivatives", has_derived_frame(f)}}},
+        {"facing",
+         "float facing() { return 1.0; }",
+         {{"normal.glsl#both_sides", normal && f.double_sided}}},
+        {"sharpness",
+         neutral_sharpness,
+         {{"specular_antialiasing.glsl",
+           f.specular_antialiasing,
+           {.uniforms = {"normal_map_unscale", "normal_map_rounding"}}}}},
+    };
+}
+
+/// Lights of every kind, in the stage that computes them.
+Steps light_steps(By f, bool in_this_stage) {
+    const bool any = in_this_stage && has_lights(f);
+    const bool positional = in_this_stage && has_positional_lights(f);
+    return {
+        {"light_rows",
+         "",
+         {{"light.glsl#rows_block", any && !f.lights_in_buffer, {.blocks = {"Lights"}}},
+          {"light.glsl#rows_buffer", any && f.lights_in_buffer, {.samplers = {"light_buffer"}}}}},
+        {"directional_lights",
+         "void add_directional_lights(Surface surface, inout Lighting lighting) {}",
+         {{"light.glsl#directional", any && f.directional_lights > 0}}},
+        {"point_lights",
+         "void add_point_lights(Surface surface, inout Lighting lighting) {}",
+         {{"light.glsl#point", any && f.point_lights > 0}}},
+        {"spot_lights",
+         "void add_spot_lights(Surface surface, inout Lighting lighting) {}",
+         {{"light.glsl#spot", any && f.spot_lights > 0}}},
+        {"highlight_row",
+         "vec3 highlight_power(int row, vec3 power) { return power; }",
+         {{"light.glsl#highlight_row", any && f.highlight_colors}}},
+        {"distance_law",
+         "",
+         {{"falloff.glsl#inverse_square", positional && f.falloff == FalloffTerm::inverse_square},
+          {"falloff.glsl#none", positional && f.falloff == FalloffTerm::none},
+          {"falloff.glsl#mixed", positional && f.falloff == FalloffTerm::mixed}}},
+        {"range",
+         "float within_range(float distance_squared, float inverse_range) { return 1.0; }",
+         {{"falloff.glsl#range", positional && f.light_ranges}}},
+    };
+}
+
+/// The surface's response to a light.
+Steps scattering_steps(By f, bool in_this_stage) {
+    const bool lit = in_this_stage && has_lights(f);
+    const bool phong = lit && !f.metallic_roughness;
+    const Takes highlight{.uniforms = {"specular_color", "shininess"}};
+    return {
+        {"receive",
+         "",
+         {{"metallic_roughness.glsl#receive", lit && f.metallic_roughness},
+          {"phong.glsl#receive", phong}}},
+        {"diffuse",
+         "vec3 diffuse_scattering(float n_dot_l) { return vec3(0.0); }",
+         {{"phong.glsl#lambert", phong && f.diffuse, {.uniforms = {"diffuse_color"}}}}},
+        {"specular",
+         "vec3 specular_highlight(Surface surface, vec3 light_world) { return vec3(0.0); }",
+         {{"phong.glsl#phong", phong && f.specular == SpecularTerm::phong, highlight},
+          {"phong.glsl#blinn_phong", phong && f.specular == SpecularTerm::blinn_phong, highlight}}},
+    };
+}
+
+/// Ambient light and the environment's light.
+Steps ambient_steps(By f) {
+    const bool physical = f.metallic_roughness;
+    return {
+        {"ambient",
+         "void add_ambient(Surface surface, inout Lighting lighting) {}",
+         {{"ambient.glsl#phong", f.ambient && !physical, {.uniforms = {"ambient_scattered"}}},
+          {"ambient.glsl#metallic_roughness",
+           f.ambient && physical,
+           {.uniforms = {"ambient_scattered"}}}}},
+        {"environment_light",
+         "void add_environment_light(Surface surface, inout Lighting lighting) {}",
+         {{"environment.glsl#light_phong",
+           f.environment_diffuse && !physical,
+           {.uniforms = {"diffuse_color", "irradiance_sh"}}},
+          {"environment.glsl#light_metallic_roughness",
+           f.environment_diffuse && physical,
+           {.uniforms = {"irradiance_sh"}, .samplers = {"environment_brdf"}}}}},
+        {"occlusion",
+         "float occlusion() { return 1.0; }",
+         {{"ambient.glsl#occlusion",
+           f.occlusion_texture,
+           {.uniforms = {"occlusion_strength"}, .samplers = {"occlusion_texture"}}}}},
+    };
+}
+
+/// Textures and colors that multiply.
+Steps color_steps(By f) {
+    const bool physical = f.metallic_roughness;
+    // Lights of glTF's model scatter and mirror at once; a view of one of the two blackens the
+    // other.
+    const bool black_scattering = physical && f.view == DebugView::specular;
+    const bool black_highlights = physical && f.view == DebugView::diffuse;
+    return {
+        {"tint",
+         "",
+         {{"color.glsl#tint", !physical},
+          {"metallic_roughness.glsl#tint", physical && !black_scattering},
+          {"view.glsl#no_scattering", black_scattering}}},
+        {"diffuse_texture",
+         "vec4 diffuse_texel() { return vec4(1.0); }",
+         {{"color.glsl#diffuse_texture", f.diffuse_texture, {.samplers = {"diffuse_texture"}}}}},
+        {"vertex_color",
+         "vec4 vertex_tint() { return vec4(1.0); }",
+         {{"color.glsl#vertex", f.vertex_colors}}},
+        {"specular_texture",
+         "vec3 specular_texture_color() { return vec3(1.0); }",
+         {{"view.glsl#no_highlights", black_highlights},
+          {"color.glsl#specular_texture", f.specular_texture, {.samplers = {"specular_texture"}}}}},
+        {"metallic_roughness",
+         "",
+         {{"metallic_roughness.glsl#factors", !f.metallic_roughness_texture},
+          {"metallic_roughness.glsl#texture",
+           f.metallic_roughness_texture,
+           {.samplers = {"metallic_roughness_texture"}}}}},
+        {"emission",
+         "vec3 emitted_radiance() { return vec3(0.0); }",
+         {{"emission.glsl#color",
+           f.emission && !f.emission_texture,
+           {.uniforms = {"emission_color"}}},
+          {"emission.glsl#texture",
+           f.emission && f.emission_texture,
+           {.uniforms = {"emission_color"}, .samplers = {"emission_texture"}}}}},
+    };
+}
+
+Steps alpha_steps(By f) {
+    return {
+        {"alpha",
+         "float alpha_here() { return 1.0; }",
+         {{"alpha.glsl#mask",
+           f.alpha == AlphaMode::mask,
+           {.uniforms = {"opacity", "alpha_cutoff"}}},
+          {"alpha.glsl#blend", f.alpha == AlphaMode::blend, {.uniforms = {"opacity"}}}}},
+        {"opacity_texture",
+         "float opacity_texel() { return 1.0; }",
+         {{"alpha.glsl#opacity_texture", f.opacity_texture, {.samplers = {"opacity_texture"}}}}},
+    };
+}
+
+/// The environment in the surface.
+Steps reflection_steps(By f) {
+    const bool none = f.reflection == ReflectionTerm::none;
+    const bool phong = !none && !f.metallic_roughness;
+    const bool mirrors = phong && !has_black_mirror(f);
+    const bool dims = f.refraction && has_black_transmission(f);
+    const auto fresnel = [&](FresnelTerm term) { return phong && f.fresnel == term; };
+    return {
+        {"reflection",
+         "vec3 with_reflection(Surface surface, vec3 scattered) { return scattered; }",
+         {{"reflection.glsl#refraction_only", none && f.refraction},
+          {"reflection.glsl#metallic_roughness",
+           !none && f.metallic_roughness,
+           {.uniforms = {"environment_intensity", "blurred_levels"},
+            .samplers = {"blurred_environment", "environment_brdf"}}},
+          {"reflection.glsl#phong", phong}}},
+        {"mirror_image",
+         "",
+         {{"view.glsl#no_mirror_image", phong && has_black_mirror(f)},
+          {"reflection.glsl#mirror",
+           mirrors && f.reflection == ReflectionTerm::mirror,
+           {.uniforms = {"environment_intensity"}, .samplers = {"environment"}}},
+          {"reflection.glsl#glossy",
+           mirrors && f.reflection == ReflectionTerm::glossy,
+           {.uniforms = {"environment_intensity", "blurred_levels", "reflection_roughness"},
+            .samplers = {"blurred_environment"}}}}},
+        {"fresnel",
+         "",
+         {{"fresnel.glsl#constant", fresnel(FresnelTerm::constant), {.uniforms = {"reflectivity"}}},
+          {"fresnel.glsl#schlick",
+           fresnel(FresnelTerm::schlick),
+           {.uniforms = {"reflectivity", "grazing_reflectivity"}}},
+          {"fresnel.glsl#dielectric",
+           fresnel(FresnelTerm::dielectric),
+           {.uniforms = {"reflectivity", "refractive_index"}}},
+          {"fresnel.glsl#conductor",
+           fresnel(FresnelTerm::conductor),
+           {.uniforms = {"reflectivity", "conductor_index", "conductor_absorption"}}}}},
+        {"refraction",
+         "vec3 with_refraction(Surface surface, vec3 scattered) { return scattered; }",
+         {{"refraction.glsl#dimming", dims, {.uniforms = {"transmission"}}},
+          {"refraction.glsl#refracted",
+           f.refraction && !dims,
+           {.uniforms = {"environment_intensity", "transmission", "refraction_ratio"},
+            .samplers = {"environment"}}}}},
+    };
+}
+
+/// The color of a view of data.
+Step view_step(By f) {
+    const auto is = [&](DebugView view) { return f.view == view; };
+    const bool object_map =
+        is(DebugView::normal_map) && f.detail == NormalDetail::object_normal_map;
+    return {
+        "view",
+        "",
+        {{"view.glsl#normal", shows_normal(f)},
+         {"view.glsl#tangent", is(DebugView::tangent)},
+         {"view.glsl#bitangent", is(DebugView::bitangent)},
+         {"view.glsl#handedness", is(DebugView::handedness)},
+         {"view.glsl#texcoords", is(DebugView::texcoords)},
+         {"view.glsl#normal_map", is(DebugView::normal_map) && !object_map},
+         {"view.glsl#object_normal_map",
+          object_map,
+          {.uniforms = {"normal_map_scale", "normal_map_bias"}, .samplers = {"normal_texture"}}},
+         {"view.glsl#height", is(DebugView::height), {.samplers = {"bump_texture"}}},
+         {"view.glsl#overdraw", is(DebugView::overdraw)},
+         {"view.glsl#hatched", is(DebugView::nothing_to_show)}}};
+}
+
+/// The coding of the picture.
+Steps coding_steps(By f) {
+    return {
+        {"output",
+         "",
+         {{"output.glsl#linear", f.output == OutputCoding::linear},
+          {"output.glsl#half", f.output == OutputCoding::half},
+          {"output.glsl#clamped", f.output == OutputCoding::clamped},
+          {"output.glsl#srgb", f.output == OutputCoding::srgb}}},
+        {"exposure",
+         "vec3 exposed(vec3 radiance) { return radiance; }",
+         {{"tone.glsl#exposure", f.exposure, {.uniforms = {"exposure"}}}}},
+        {"tone",
+         "vec3 toned(vec3 radiance) { return radiance; }",
+         {{"tone.glsl#reinhard", f.tone_mapping == ToneMapping::reinhard},
+          {"tone.glsl#aces", f.tone_mapping == ToneMapping::aces}}},
+    };
+}
+
+Steps joined(std::initializer_list<Steps> lists) {
+    Steps all;
+    for (const Steps& steps : lists)
+        all.insert(all.end(), steps.begin(), steps.end());
+    return all;
+}
+
+/// The vertex stage: attributes, and with Gouraud shading the lights.
+Steps vertex_steps(By f) {
+    const Needs needs = vertex_needs(f);
+    const Steps always =
+        joined({{{"stage",
+                  "",
+                  {{"surface.vert.glsl",
+                    true,
+                    {.attributes = {"position_object"}, .uniforms = {"clip_from_object"}}}}},
+                 {"pass_lights",
+                  "void pass_lights() {}",
+                  {{"gouraud.glsl#lights", needs.lights && !f.double_sided},
+                   {"gouraud.glsl#lights_both_sides", needs.lights && f.double_sided}}}},
+                passing_steps(f)});
+    if (!needs.lights) return always;
+    return joined({always,
+                   {{"position", "// pass_position() has written position_world.", {}},
+                    {"normal", "", {{"gouraud.glsl#normal", true}}},
+                    {"sharpness", neutral_sharpness, {}},
+                    surface_step(f, needs)},
+                   light_steps(f, true),
+                   scattering_steps(f, true)});
+}
+
+/// The fragment stage of a lit surface.
+Steps lit_steps(By f) {
+    const bool lights_here = !is_gouraud(f) && has_lights(f);
+    const bool both_sides = is_gouraud(f) && f.double_sided;
+    return joined({{{"stage", "", {{"surface.frag.glsl", true}}},
+                    {"lights",
+                     "void add_lights(Surface surface, inout Lighting lighting) {}",
+                     {{"light.glsl#all", lights_here},
+                      {"gouraud.glsl#interpolated", is_gouraud(f) && !both_sides},
+                      {"gouraud.glsl#interpolated_both_sides", both_sides}}},
+                    surface_step(f, fragment_needs(f))},
+                   normal_steps(f),
+                   light_steps(f, lights_here),
+                   scattering_steps(f, lights_here),
+                   ambient_steps(f),
+                   color_steps(f),
+                   alpha_steps(f),
+                   reflection_steps(f),
+                   coding_steps(f)});
+}
+
+Steps fragment_steps(By f) {
+    if (is_data(f.view)) {
+        return joined({{{"stage", "", {{"data.frag.glsl", true}}}, view_step(f)},
+                       normal_steps(f),
+                       color_steps(f),
+                       alpha_steps(f)});
     }
-    return steps;
+    if (!f.unlit) return lit_steps(f);
+    return joined({{{"stage", "", {{"unlit.frag.glsl", true, {.uniforms = {"diffuse_color"}}}}}},
+                   color_steps(f),
+                   alpha_steps(f),
+                   coding_steps(f)});
+}
+
+/// The chosen code of each step; steps without any are left out.
+ShaderSteps chosen_of(const Steps& steps) {
+    ShaderSteps chosen;
+    for (const Step& step : steps) {
+        StepCode code{{}, step.neutral};
+        for (const Part& part : step.parts) {
+            if (!part.chosen) continue;
+            assert(code.part.empty() && "two parts for one step");
+            code = {part.address, {}};
+        }
+        if (code != StepCode{}) chosen.emplace(step.name, code);
+    }
+    return chosen;
 }
 
 ShaderConstants light_constants(const Features& f) {
@@ -67,11 +530,23 @@ void sort_and_unite(std::vector<std::string>& names) {
     names.erase(std::unique(names.begin(), names.end()), names.end());
 }
 
+ShaderListing listing_of(const Features& features) {
+    const SurfaceProgram program = surface_program(features);
+    ShaderListing listing;
+    listing.features = features;
+    listing.vertex = program.vertex.text;
+    listing.fragment = program.fragment.text;
+    listing.files = program.vertex.parts;
+    listing.files.insert(listing.files.end(), program.fragment.parts.begin(),
+                         program.fragment.parts.end());
+    sort_and_unite(listing.files);
+    return listing;
+}
+
 }  // namespace
 
 ChosenSteps chosen_steps(const Features& features) {
-    const ChosenParts parts = chosen_parts(features);
-    return {steps_of(parts.vertex), steps_of(parts.fragment)};
+    return {chosen_of(vertex_steps(features)), chosen_of(fragment_steps(features))};
 }
 
 ShaderSteps output_steps(OutputCoding coding, const Scene& scene) {
@@ -79,26 +554,26 @@ ShaderSteps output_steps(OutputCoding coding, const Scene& scene) {
     features.output = coding;
     features.exposure = scene.exposure != 1.0F;
     features.tone_mapping = scene.tone_mapping;
-    return steps_of(chosen_of({output_parts(canonical(features))}));
+    return chosen_of(coding_steps(canonical(features)));
 }
 
 SurfaceProgram surface_program(const Features& features) {
     const ChosenSteps steps = chosen_steps(features);
     const ShaderConstants constants =
-        lamp_count(features) > 0 ? light_constants(features) : ShaderConstants{};
-    // The stage that computes the lamps.
+        light_count(features) > 0 ? light_constants(features) : ShaderConstants{};
+    // The stage that computes the lights.
     const bool at_vertices = features.interpolation == Interpolation::gouraud;
-    return {assemble(steps.vertex.at("stage"), steps.vertex,
+    return {assemble(steps.vertex.at("stage").part, steps.vertex,
                      at_vertices ? constants : ShaderConstants{}),
-            assemble(steps.fragment.at("stage"), steps.fragment,
+            assemble(steps.fragment.at("stage").part, steps.fragment,
                      at_vertices ? ShaderConstants{} : constants)};
 }
 
 PlannedInterface planned_interface(const Features& features) {
     PlannedInterface planned;
-    const ChosenParts parts = chosen_parts(features);
-    for (const Parts& stage : {parts.vertex, parts.fragment}) {
-        for (const Part& part : stage) {
+    for (const Step& step : joined({vertex_steps(features), fragment_steps(features)})) {
+        for (const Part& part : step.parts) {
+            if (!part.chosen) continue;
             append(planned.attributes, part.takes.attributes);
             append(planned.uniforms, part.takes.uniforms);
             append(planned.samplers, part.takes.samplers);
@@ -110,6 +585,18 @@ PlannedInterface planned_interface(const Features& features) {
     sort_and_unite(planned.samplers);
     sort_and_unite(planned.uniform_blocks);
     return planned;
+}
+
+std::vector<ShaderListing> shader_listings(const FramePlan& plan) {
+    std::vector<ShaderListing> listings;
+    std::map<Features, std::size_t> known;
+    for (std::size_t i = 0; i < plan.draws.size(); ++i) {
+        const Features& features = plan.draws[i].features;
+        const auto [entry, is_new] = known.emplace(features, listings.size());
+        if (is_new) listings.push_back(listing_of(features));
+        listings[entry->second].draws.push_back(i);
+    }
+    return listings;
 }
 
 }  // namespace relief

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Which shader files a set of effects chooses, and the program's source put together from them.
+/// The shader parts that a set of effects chooses, and the source of its program.
 ///
-/// The one table of parts (shader_parts.h) says for every file when it is chosen, which step
-/// it stands for, and what it takes from outside; planned_interface() (effects.h) is read from it.
-/// Tests: tests/shade/effects/surface_program_test.cpp, tests/shade/render/programs_test.cpp.
+/// One table (surface_program.cpp) has a row for every step: the parts that implement it, the
+/// condition of each, what it takes from outside, and the neutral code for a step whose effect is
+/// absent. planned_interface() (effects.h) is read from the same table. Pure. Tests:
+/// tests/shade/effects/surface_program_test.cpp, tests/shade/render/programs_test.cpp.
 #pragma once
 
 #include "effects/shader_source.h"
@@ -18,18 +19,18 @@ struct SurfaceProgram {
 };
 
 /// \param features  canonical, or a canonical set with more effects on
-/// \throws GpuError if a file is missing (an override folder may hold broken ones)
+/// \throws GpuError if a part is missing (an override folder may hold broken files)
 SurfaceProgram surface_program(const Features& features);
 
-/// The files chosen for each step of a stage.
+/// The code of each step of a stage.
 struct ChosenSteps {
     ShaderSteps vertex;
     ShaderSteps fragment;
 };
 ChosenSteps chosen_steps(const Features& features);
 
-/// The files that code a picture's last line, with the scene's exposure and tone curve where this
-/// coding has them: for passes that are no surface.
+/// The steps that code a picture, with the scene's exposure and tone curve if this coding has them:
+/// for passes that draw no surface.
 ShaderSteps output_steps(OutputCoding coding, const Scene& scene);
 
 }  // namespace relief

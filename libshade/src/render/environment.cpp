@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "effects/environment_needs.h"
+#include "effects/features.h"
 #include "effects/surface_program.h"
 #include "environment/environment_images.h"
 #include "environment/ggx.h"

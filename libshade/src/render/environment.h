@@ -80,7 +80,7 @@ class EnvironmentMaps {
     [[nodiscard]] std::size_t texture_count() const;
     /// The last level of the blurred map, which stands for roughness 1.
     [[nodiscard]] float blurred_levels() const;
-    /// The nine numbers of shaders/light/environment_irradiance.glsl, times the intensity.
+    /// The nine numbers of shaders/environment.glsl (irradiance), times the intensity.
     [[nodiscard]] const std::array<glm::vec4, 9>& irradiance_sh() const { return irradiance_sh_; }
 
   private:

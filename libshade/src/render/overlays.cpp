@@ -16,13 +16,6 @@ namespace relief {
 
 namespace {
 
-ShaderSteps steps(const char* color, const char* shape) {
-    ShaderSteps result;
-    result["overlay_color"] = color;
-    result["shape"] = shape;
-    return result;
-}
-
 void check_markers(const Scene& scene, const std::vector<Marker>& markers) {
     for (std::size_t i = 0; i < markers.size(); ++i) {
         if (markers[i].instance < scene.instances.size()) continue;
@@ -46,10 +39,12 @@ OverlayDrawing::OverlayDrawing(const gl::Api& api, ProgramCache& programs, const
     if (overlays_.markers) check_markers(scene, *overlays_.markers);
     for (const DrawPlan& draw : plan.draws)
         instances_.insert(draw.instance);
-    lines_program_ = programs.get("overlay", steps("overlay/one_color.glsl", "overlay/whole.glsl"));
+    lines_program_ = programs.get("overlay", {{"overlay_color", {.part = "overlay.glsl#one_color"}},
+                                              {"shape", {.neutral = "void cut() {}"}}});
     if (overlays_.markers)
         discs_program_ =
-            programs.get("overlay", steps("overlay/own_color.glsl", "overlay/disc.glsl"));
+            programs.get("overlay", {{"overlay_color", {.part = "overlay.glsl#vertex_color"}},
+                                     {"shape", {.part = "overlay.glsl#disc"}}});
     if (overlays_.vertex_frames) {
         for (const std::size_t instance : instances_) {
             const std::size_t mesh = scene.instances[instance].mesh;

@@ -32,7 +32,7 @@ glm::vec4 shown_background(const glm::vec4& background, OutputCoding output) {
 
 ShaderSteps finishing_steps(const Scene& scene, OutputCoding output, int samples) {
     ShaderSteps steps = output_steps(output, scene);
-    steps["samples"] = samples > 1 ? "picture/four_samples.glsl" : "picture/one_sample.glsl";
+    steps["samples"].part = samples > 1 ? "picture.glsl#four_samples" : "picture.glsl#one_sample";
     return steps;
 }
 

@@ -31,7 +31,7 @@ const std::vector<AttributeRow>& attribute_rows() {
          "a map lies in the mesh's tangent frame"},
         {"texcoord", [](const Mesh& m) { return !m.texcoords.empty(); }, "textures are sampled"},
         {"color_linear", [](const Mesh& m) { return !m.colors.empty(); },
-         "vertex colours tint the surface"},
+         "vertex colors tint the surface"},
     };
     return all;
 }

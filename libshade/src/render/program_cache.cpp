@@ -93,8 +93,8 @@ std::shared_ptr<const gl::LinkedProgram> ProgramCache::get(const std::string& na
     const auto known = others_.find({name, steps});
     if (known != others_.end()) return known->second;
     auto program = std::make_shared<const gl::LinkedProgram>(
-        link(*api_, name, assemble(name + ".vert.glsl", steps, {}),
-             assemble(name + ".frag.glsl", steps, {})));
+        link(*api_, name, assemble(name + ".glsl#vertex", steps, {}),
+             assemble(name + ".glsl#fragment", steps, {})));
     others_.emplace(std::pair(name, steps), program);
     return program;
 }

@@ -70,7 +70,7 @@ class ProgramCache {
     /// The program for these (canonical) features, linked at first use. \throws GpuError
     std::shared_ptr<const DrawProgram> get(const Features& features);
 
-    /// A program that is no surface's: NAME.vert.glsl and NAME.frag.glsl, likewise.
+    /// A program that draws no surface: the parts "vertex" and "fragment" of NAME.glsl.
     std::shared_ptr<const gl::LinkedProgram> get(const std::string& name, const ShaderSteps& steps);
 
     /// Whoever holds a program keeps it.

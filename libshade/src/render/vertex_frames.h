@@ -19,7 +19,7 @@ struct VertexFrameLines {
 };
 
 /// Adds the lines of an instance: from each vertex along the directions that its frame has in world
-/// space, as shaders make it from the vertex (vertex/tangent_frame.glsl).
+/// space, as shaders make it from the vertex (vertex.glsl, normal_and_tangent).
 ///
 /// \param mesh    with normals; tangents are optional
 /// \param center  in world space, from which the points count: it keeps their precision where the

@@ -8,9 +8,8 @@
 #include <set>
 
 #include "all_features.h"
-#include "effects/environment_needs.h"
+#include "effects/features.h"
 #include "effects/surface_program.h"
-#include "effects/view_features.h"
 #include "relief/mesh/error.h"
 #include "support/message_of.h"
 #include "support/shapes.h"
@@ -46,16 +45,14 @@ TEST(DebugViews, OfAnySetOfEffectsAreCanonicalAndComeTogether) {
 }
 
 TEST(DebugViews, AreNoPartOfThePicturesPrograms) {
-    const std::set<std::string> foreign = {"data.frag.glsl", "absent/scattering.glsl",
-                                           "absent/highlights.glsl", "absent/mirror_image.glsl",
-                                           "reflection/dimmed_by_refraction.glsl"};
+    const std::set<std::string> foreign = {"data.frag.glsl", "refraction.glsl#dimming"};
     for (const Features& f : test::covering_features()) {
         ASSERT_EQ(f.view, DebugView::picture);
         const SurfaceProgram program = surface_program(f);
         for (const ShaderSource& source : {program.vertex, program.fragment}) {
-            for (const std::string& file : source.files) {
-                EXPECT_FALSE(file.starts_with("view/") || foreign.contains(file))
-                    << describe(f) << " holds " << file;
+            for (const std::string& part : source.parts) {
+                EXPECT_FALSE(part.starts_with("view.glsl") || foreign.contains(part))
+                    << describe(f) << " holds " << part;
             }
         }
     }

@@ -83,7 +83,7 @@ TEST(EffectForcing, PutsAnEffectInAndTakesItOutWhateverItsNamesCaseAndSeparators
     const FramePlan without = forced(scene, {{"directional_lights", false}});
     EXPECT_EQ(without.draws[0].features, Features{});
     EXPECT_EQ(reason(without.draws[0], "directional lights").reason, "taken out");
-    EXPECT_EQ(reason(without.draws[0], "diffuse").reason, "no lamp reaches the surface");
+    EXPECT_EQ(reason(without.draws[0], "diffuse").reason, "no light source reaches the surface");
 }
 
 TEST(EffectForcing, FromNothingKeepsWhatTheSceneHasOfThoseForcedOn) {
@@ -157,7 +157,7 @@ TEST(EffectForcing, OfAnUnknownNameSuggestsNearOnes) {
 TEST(EffectForcing, OfTheFrameTakesOutTheSkyboxAndItsMap) {
     Scene scene = scene_with({named("body")});
     EXPECT_EQ(refusal(scene, {{"skybox", true}}),
-              "effect 'skybox' cannot be forced on: the scene does not show its surroundings");
+              "effect 'skybox' cannot be forced on: the scene does not show its environment");
     scene.environment = Environment{};
     EXPECT_TRUE(plan_effects(scene, one_sample).environment_map);
     const FramePlan plan = forced(scene, {{"skybox", false}});

@@ -26,7 +26,7 @@ TEST(ShaderListings, HoldEachProgramOnceWithItsDraws) {
     EXPECT_THAT(listings[0].vertex, StartsWith("#version 330 core\n"));
     EXPECT_THAT(listings[0].fragment, Not(HasSubstr("emission_color")));
     EXPECT_THAT(listings[1].fragment, HasSubstr("uniform vec3 emission_color;"));
-    EXPECT_THAT(listings[1].files, Contains("emission/color.glsl"));
+    EXPECT_THAT(listings[1].files, Contains("emission.glsl#color"));
     EXPECT_THAT(listings[1].files, Contains("surface.vert.glsl"));
     EXPECT_TRUE(std::is_sorted(listings[1].files.begin(), listings[1].files.end()));
 }

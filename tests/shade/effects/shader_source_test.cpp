@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Includes: order, once only, cycles, missing files, overrides, and the way back from a line.
+// Includes and parts: order, once only, cycles, missing ones, overrides, and the origin of a line.
 #include "effects/shader_source.h"
 
 #include <gmock/gmock.h>
@@ -42,9 +42,10 @@ TEST_F(ShaderFolder, PutsFilesTogetherOnceEach) {
     write("main.glsl", "#include \"a.glsl\"\n#include <step>\nmain\n");
     write("a.glsl", "a\n");
     write("b.glsl", "#include \"a.glsl\"\nb\n");
-    const ShaderSource source = assemble("main.glsl", {{"step", "b.glsl"}}, {{"count", 3}});
+    const ShaderSource source =
+        assemble("main.glsl", {{"step", {.part = "b.glsl"}}}, {{"count", 3}});
     EXPECT_EQ(source.text, "#version 330 core\nconst int count = 3;\na\nb\nmain\n");
-    EXPECT_EQ(source.files, (std::vector<std::string>{"main.glsl", "a.glsl", "b.glsl"}));
+    EXPECT_EQ(source.parts, (std::vector<std::string>{"main.glsl", "a.glsl", "b.glsl"}));
 }
 
 TEST_F(ShaderFolder, KnowsWhereEachLineCameFrom) {
@@ -78,18 +79,46 @@ TEST_F(ShaderFolder, NamesWhatIsMissingAndWhere) {
     EXPECT_EQ(refusal("main.glsl", {}),
               "shader main.glsl:2: there is no shader file 'nowhere.glsl'");
     write("main.glsl", "#include <step>\n");
-    EXPECT_EQ(refusal("main.glsl", {}), "shader main.glsl:1: no file is chosen for <step>");
+    EXPECT_EQ(refusal("main.glsl", {}), "shader main.glsl:1: no part is chosen for <step>");
     write("main.glsl", "#include stray\n");
     EXPECT_THAT(refusal("main.glsl", {}), HasSubstr("shader main.glsl:1"));
     EXPECT_EQ(refusal("nowhere.glsl", {}), "there is no shader file 'nowhere.glsl'");
 }
 
-TEST_F(ShaderFolder, GoesToTheFolderFirstAndThenToTheEmbeddedFiles) {
-    const std::string embedded = shader_file("scatter/lambert.glsl");
-    EXPECT_THAT(embedded, HasSubstr("diffuse_color"));
-    write("scatter/lambert.glsl", "mine\n");
-    EXPECT_EQ(shader_file("scatter/lambert.glsl"), "mine\n");
-    EXPECT_THAT(shader_file("scatter/phong.glsl"), HasSubstr("reflect"));
+TEST_F(ShaderFolder, TakesPartsOutOfFiles) {
+    write("main.glsl",
+          "// Comments.\n\n#part one\n1\n\n#part two\n#include \"main.glsl#three\"\n2\n#part "
+          "three\n3\n");
+    const ShaderSource source = assemble("main.glsl#two", {}, {});
+    EXPECT_EQ(source.text, "#version 330 core\n3\n2\n");
+    EXPECT_EQ(source.parts, (std::vector<std::string>{"main.glsl#two", "main.glsl#three"}));
+    EXPECT_EQ(with_file_names("0:2(1): a\n0:3(1): b", source),
+              "main.glsl:10(1): a\nmain.glsl:8(1): b");
+    EXPECT_EQ(assemble("main.glsl#one", {}, {}).text, "#version 330 core\n1\n");
+    EXPECT_EQ(refusal("main.glsl#four", {}), "there is no part 'four' in shader file 'main.glsl'");
+}
+
+TEST_F(ShaderFolder, PutsNeutralCodeInOnce) {
+    write("main.glsl", "#include <step>\nfirst\n#include <step>\nlast\n");
+    const ShaderSource source = assemble("main.glsl", {{"step", {.neutral = "void f() {}"}}}, {});
+    EXPECT_EQ(source.text, "#version 330 core\nvoid f() {}\nfirst\nlast\n");
+    EXPECT_EQ(with_file_names("0:2(1): in no file; 0:4(1): here", source),
+              "0:2(1): in no file; main.glsl:4(1): here");
+}
+
+TEST_F(ShaderFolder, RefusesCodeThatIsInNoPart) {
+    write("main.glsl", "// A comment.\nuniform float x;\n#part one\n1\n");
+    EXPECT_EQ(refusal("main.glsl#one", {}), "shader main.glsl:2: code before the first #part");
+}
+
+TEST_F(ShaderFolder, OverridesEmbeddedPartsOneByOne) {
+    const ShaderSteps no_diffuse = {{"diffuse", {.neutral = "d"}}, {"specular", {.neutral = "s"}}};
+    const std::string embedded = assemble("phong.glsl#receive", no_diffuse, {}).text;
+    EXPECT_THAT(embedded, HasSubstr("void receive("));
+    EXPECT_THAT(assemble("phong.glsl#lambert", {}, {}).text, HasSubstr("diffuse_color"));
+    write("phong.glsl", "#part lambert\nmine\n");
+    EXPECT_EQ(assemble("phong.glsl#lambert", {}, {}).text, "#version 330 core\nmine\n");
+    EXPECT_EQ(assemble("phong.glsl#receive", no_diffuse, {}).text, embedded);
 }
 
 TEST(EmbeddedShaders, AreTheFilesOfTheProject) {

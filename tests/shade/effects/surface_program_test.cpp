@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The table of shader parts: for every canonical set of effects each step has one file, and the
-// sources come together.
+// The table of shader parts: for every canonical set of effects each step has code, and the sources
+// are assembled without errors.
 #include "effects/surface_program.h"
 
 #include <gtest/gtest.h>
@@ -18,29 +18,29 @@ TEST(SurfaceProgram, ComesTogetherForEveryCanonicalSet) {
     });
 }
 
-/// Files that a stage's steps name and its source does not hold, but for the neutral ones.
-std::vector<std::string> unused_files(const ShaderSteps& steps, const ShaderSource& source) {
-    const std::set<std::string> files(source.files.begin(), source.files.end());
+/// The parts that a stage's steps name and its source does not hold; neutral code is no part.
+std::vector<std::string> unused_parts(const ShaderSteps& steps, const ShaderSource& source) {
+    const std::set<std::string> parts(source.parts.begin(), source.parts.end());
     std::vector<std::string> unused;
-    for (const auto& [step, file] : steps) {
-        if (!file.starts_with("absent/") && !files.contains(std::string(file)))
-            unused.emplace_back(file);
+    for (const auto& [step, code] : steps) {
+        if (!code.part.empty() && !parts.contains(std::string(code.part)))
+            unused.emplace_back(code.part);
     }
     return unused;
 }
 
-TEST(SurfaceProgram, ChoosesNoFileThatItDoesNotUse) {
-    // What stands for a step in every program, used or not: it takes nothing from outside.
-    const std::set<std::string> idle = {"common/position.glsl", "color/tint.glsl",
-                                        "color/metallic_roughness.glsl", "normal/front.glsl",
-                                        "color/tint_physical.glsl"};
+TEST(SurfaceProgram, ChoosesNoPartThatItDoesNotUse) {
+    // These implement a step in every program, used or not: they take nothing from outside.
+    const std::set<std::string> idle = {"inputs.glsl#position", "color.glsl#tint",
+                                        "metallic_roughness.glsl#factors",
+                                        "metallic_roughness.glsl#tint"};
     for (const Features& f : test::covering_features()) {
         const SurfaceProgram program = surface_program(f);
         const ChosenSteps steps = chosen_steps(f);
         for (const auto& [chosen, source] : {std::pair(steps.vertex, program.vertex),
                                              std::pair(steps.fragment, program.fragment)}) {
-            for (const std::string& file : unused_files(chosen, source)) {
-                EXPECT_TRUE(idle.contains(file)) << describe(f) << " chooses " << file;
+            for (const std::string& part : unused_parts(chosen, source)) {
+                EXPECT_TRUE(idle.contains(part)) << describe(f) << " chooses " << part;
             }
         }
     }
@@ -56,6 +56,16 @@ TEST(SurfaceProgram, OfADiffuseSurfaceHasNoCodeForAnythingElse) {
         EXPECT_EQ(program.fragment.text.find(absent), std::string::npos) << absent;
         EXPECT_EQ(program.vertex.text.find(absent), std::string::npos) << absent;
     }
+}
+
+TEST(SurfaceProgram, HasNeutralCodeForAnAbsentEffect) {
+    Features f;
+    f.ambient = true;
+    EXPECT_EQ(chosen_steps(f).fragment.at("occlusion"),
+              (StepCode{.neutral = "float occlusion() { return 1.0; }"}));
+    f.occlusion_texture = true;
+    EXPECT_EQ(chosen_steps(f).fragment.at("occlusion"),
+              (StepCode{.part = "ambient.glsl#occlusion"}));
 }
 
 TEST(PlannedInterface, IsKnownByHandForANormalMappedSurface) {

@@ -56,9 +56,8 @@ TEST_P(RendererPrograms, AreSharedByEqualFeatures) {
 TEST_P(RendererPrograms, NameTheFileAndLineOfAnError) {
     const test::TemporaryDirectory folder;
     const test::ScopedVariable variable("RELIEF_SHADER_DIR", folder.path().c_str());
-    std::filesystem::create_directories(folder / "scatter");
-    std::ofstream(folder / "scatter/lambert.glsl")
-        << "uniform vec3 diffuse_color;\n\n"
+    std::ofstream(folder / "phong.glsl")
+        << "// One part replaces the embedded one.\n#part lambert\nuniform vec3 diffuse_color;\n"
            "vec3 diffuse_scattering(float n_dot_l) { return diffuse_colour * n_dot_l; }\n";
     Features f;
     f.directional_lights = 1;
@@ -68,7 +67,7 @@ TEST_P(RendererPrograms, NameTheFileAndLineOfAnError) {
         (void)cache.get(f);
         FAIL() << "a broken shader was accepted";
     } catch (const GpuError& error) {
-        EXPECT_THAT(error.what(), ::testing::HasSubstr("scatter/lambert.glsl:3"));
+        EXPECT_THAT(error.what(), ::testing::HasSubstr("phong.glsl:4"));
         EXPECT_THAT(error.what(), ::testing::HasSubstr("diffuse_colour"));
         EXPECT_THAT(error.what(), ::testing::HasSubstr("1 directional light, diffuse"));
     }

@@ -119,12 +119,12 @@ TEST(ReloadWindow, AShaderThatChangesIsLinkedAndABrokenOneIsSaid) {
     RELIEF_NEEDS_DISPLAY(display);
     const Workplace workplace;
     workplace.write_square("square.obj");
-    std::filesystem::create_directories(workplace / "shaders/scatter");
+    std::filesystem::create_directories(workplace / "shaders");
     ViewerWindow window(*display, workplace, "square.obj", "RELIEF_SHADER_DIR=shaders");
     const json before = window.wait_for_rest();
     const Image plain = display->resting_picture();
-    const std::string head = "#include \"common/diffuse_color.glsl\"\n";
-    const std::string shader = "shaders/scatter/lambert.glsl";
+    const std::string head = "#part lambert\n#include \"inputs.glsl#diffuse_color\"\n";
+    const std::string shader = "shaders/phong.glsl";
     workplace.write(shader, head +
                                 "vec3 diffuse_scattering(float n_dot_l) {\n"
                                 "    return diffuse_color * n_dot_l * vec3(1.0, 0.0, 0.0);\n}\n");
@@ -137,7 +137,7 @@ TEST(ReloadWindow, AShaderThatChangesIsLinkedAndABrokenOneIsSaid) {
     workplace.write(shader, head + "vec3 diffuse_scattering(float n) { return broken; }\n");
     const json broken =
         window.wait_for("an error", [](const json& now) { return now["error"] != ""; });
-    EXPECT_THAT(broken["error"].get<std::string>(), HasSubstr("scatter/lambert.glsl:2"));
+    EXPECT_THAT(broken["error"].get<std::string>(), HasSubstr("phong.glsl:3"));
     EXPECT_EQ(changed_picture(picture, display->resting_picture()), 0.0) << "the old one stays";
     window.key("7");  // And can still be looked at, from above.
     EXPECT_TRUE(eventually([&] { return changed_picture(picture, display->picture()) > 0.05; }));

@@ -1,0 +1,234 @@
+// SPDX-License-Identifier: Apache-2.0
+// canonical(): the rules that drop effects which cannot show, in pictures and in debug views. Also
+// describes a set of effects in words. Pure.
+// Tests: tests/shade/effects/effects_test.cpp, debug_views_test.cpp.
+#include <fmt/format.h>
+
+#include <array>
+#include <map>
+#include <string_view>
+
+#include "effects/features.h"
+#include "effects/light_rows.h"
+#include "relief/shade/effects.h"
+
+namespace relief {
+
+namespace {
+
+/// An opaque surface ignores the opacity texture.
+void drop_alpha(Features& f) {
+    if (f.alpha == AlphaMode::opaque) f.opacity_texture = false;
+}
+
+/// Exposure and tone mapping belong to sRGB pictures.
+void drop_tone(Features& f) {
+    if (f.output == OutputCoding::srgb) return;
+    f.tone_mapping = ToneMapping::none;
+    f.exposure = false;
+}
+
+/// An unlit surface shows its tinted diffuse color and nothing else.
+Features unlit_only(const Features& f) {
+    Features result;
+    result.unlit = true;
+    result.diffuse_texture = f.diffuse_texture;
+    result.vertex_colors = f.vertex_colors;
+    result.alpha = f.alpha;
+    result.opacity_texture = f.opacity_texture;
+    result.output = f.output;
+    result.tone_mapping = f.tone_mapping;
+    result.exposure = f.exposure;
+    drop_alpha(result);
+    drop_tone(result);
+    return result;
+}
+
+/// glTF's model has one term for all lights, and reflects by its own Fresnel factor.
+void settle_model(Features& f) {
+    if (f.metallic_roughness) {
+        f.specular = SpecularTerm::none;
+        f.specular_texture = f.highlight_colors = f.refraction = false;
+        f.fresnel = FresnelTerm::constant;
+        if (f.reflection != ReflectionTerm::none) f.reflection = ReflectionTerm::glossy;
+        if (f.interpolation == Interpolation::gouraud) f.interpolation = Interpolation::per_pixel;
+    } else {
+        f.metallic_roughness_texture = false;
+    }
+    if (f.reflection == ReflectionTerm::none) f.fresnel = FresnelTerm::constant;
+}
+
+void drop_lights(Features& f) {
+    if (light_count(f) == 0) {
+        f.diffuse = false;
+        f.specular = SpecularTerm::none;
+    }
+    if (!f.diffuse && f.specular == SpecularTerm::none) {
+        f.directional_lights = f.point_lights = f.spot_lights = 0;
+    }
+    if (f.point_lights + f.spot_lights == 0) {
+        f.light_ranges = false;
+        f.falloff = FalloffTerm::inverse_square;
+    }
+    if (f.specular == SpecularTerm::none) f.specular_texture = f.highlight_colors = false;
+    if (light_count(f) == 0) f.lights_in_buffer = false;
+    if (light_row_layout(f).count > max_block_rows) f.lights_in_buffer = true;
+    if (light_count(f) == 0 && f.interpolation == Interpolation::gouraud) {
+        f.interpolation = Interpolation::per_pixel;
+        f.detail = NormalDetail::none;  // As with lights.
+    }
+}
+
+void drop_normal(Features& f) {
+    const bool per_pixel_lights = light_count(f) > 0 && f.interpolation != Interpolation::gouraud;
+    const bool seen = per_pixel_lights || f.reflection != ReflectionTerm::none || f.refraction ||
+                      f.environment_diffuse;
+    if (!seen) {
+        f.detail = NormalDetail::none;
+        if (f.interpolation == Interpolation::flat) f.interpolation = Interpolation::per_pixel;
+    }
+    if (f.interpolation != Interpolation::per_pixel) f.detail = NormalDetail::none;
+    // Gouraud shading has two sides as well; a triangle's plane turns to the eye by itself.
+    if ((!seen && light_count(f) == 0) || f.interpolation == Interpolation::flat) {
+        f.double_sided = false;
+    }
+    if (f.detail == NormalDetail::none || f.detail == NormalDetail::object_normal_map) {
+        f.frame = TangentFrame::stored;
+    }
+    const bool mapped =
+        f.detail == NormalDetail::normal_map || f.detail == NormalDetail::object_normal_map;
+    const bool sharp =
+        f.specular != SpecularTerm::none ||
+        (f.metallic_roughness && (light_count(f) > 0 || f.reflection != ReflectionTerm::none));
+    if (!mapped || !sharp) f.specular_antialiasing = false;
+}
+
+void drop_colors(Features& f) {
+    const bool from_everywhere = f.ambient || f.environment_diffuse ||
+                                 (f.metallic_roughness && f.reflection != ReflectionTerm::none);
+    if (!from_everywhere) f.occlusion_texture = false;
+    if (!from_everywhere && !f.diffuse) {
+        f.metallic_roughness = f.metallic_roughness_texture = false;
+        if (f.alpha == AlphaMode::opaque) f.diffuse_texture = f.vertex_colors = false;
+    }
+    if (!f.emission) f.emission_texture = false;
+}
+
+std::string counted(std::uint32_t count, std::string_view kind) {
+    return fmt::format("{} {} light{}", count, kind, count == 1 ? "" : "s");
+}
+
+/// The holes of a mask are part of the surface's shape; so is everything that multiplies alpha.
+void keep_mask(const Features& f, Features& kept) {
+    if (f.alpha != AlphaMode::mask) return;
+    kept.alpha = f.alpha;
+    kept.opacity_texture = f.opacity_texture;
+    kept.diffuse_texture = f.diffuse_texture;
+    kept.vertex_colors = f.vertex_colors;
+}
+
+void keep_normal(const Features& f, Features& kept) {
+    const bool is_flat = f.interpolation == Interpolation::flat;
+    if (is_flat) kept.interpolation = f.interpolation;
+    kept.double_sided = f.double_sided && !is_flat;
+    if (f.interpolation != Interpolation::per_pixel) return;
+    kept.detail = f.detail;
+    if (f.detail == NormalDetail::normal_map || f.detail == NormalDetail::bump_map)
+        kept.frame = f.frame;
+}
+
+/// The effects that a view of data needs; nothing_to_show if the draw has no such data.
+Features data_features(const Features& f) {
+    Features kept;
+    kept.view = f.view;
+    kept.output = OutputCoding::linear;
+    keep_mask(f, kept);
+    switch (f.view) {
+        case DebugView::geometric_normal:
+            kept.interpolation = Interpolation::flat;
+            break;
+        case DebugView::shading_normal:
+            keep_normal(f, kept);
+            break;
+        case DebugView::tangent:
+        case DebugView::bitangent:
+        case DebugView::handedness:
+            kept.frame = f.frame;
+            break;
+        case DebugView::normal_map:
+            kept.detail = f.detail;
+            if (f.detail == NormalDetail::none) kept.view = DebugView::nothing_to_show;
+            break;
+        case DebugView::height:
+            kept.detail = NormalDetail::bump_map;
+            if (f.detail != NormalDetail::bump_map) {
+                kept.detail = NormalDetail::none;
+                kept.view = DebugView::nothing_to_show;
+            }
+            break;
+        default:
+            break;
+    }
+    return kept;
+}
+
+/// The effects that contribute to one term of the light; not canonical yet.
+Features term_features(Features f) {
+    const DebugView term = f.view;
+    const bool is_lights = term == DebugView::diffuse || term == DebugView::specular;
+    const bool is_scattered = term == DebugView::ambient || term == DebugView::diffuse ||
+                              term == DebugView::environment_light;
+    f.unlit = false;
+    f.ambient &= term == DebugView::ambient;
+    f.environment_diffuse &= term == DebugView::environment_light;
+    f.emission &= term == DebugView::emission;
+    if (!is_lights) f.directional_lights = f.point_lights = f.spot_lights = 0;
+    if (!f.metallic_roughness) {
+        f.diffuse &= term == DebugView::diffuse;
+        if (term != DebugView::specular) f.specular = SpecularTerm::none;
+    }
+    // Reflection and refraction dim the scattered light of Phong's surfaces, and each other.
+    const bool dims = is_scattered && !f.metallic_roughness;
+    if (term != DebugView::reflection && term != DebugView::refraction && !dims)
+        f.reflection = ReflectionTerm::none;
+    if (term != DebugView::refraction && !dims) f.refraction = false;
+    return f;
+}
+
+}  // namespace
+
+Features canonical(Features f) {
+    if (is_data(f.view)) return data_features(f);
+    if (is_term(f.view)) f = term_features(f);
+    if (f.unlit) return unlit_only(f);
+    settle_model(f);
+    drop_lights(f);
+    drop_normal(f);
+    drop_colors(f);
+    drop_alpha(f);
+    drop_tone(f);
+    return f;
+}
+
+std::string describe(const Features& f) {
+    const std::map<std::string_view, std::uint32_t> lights = {
+        {"directional", f.directional_lights}, {"point", f.point_lights}, {"spot", f.spot_lights}};
+    std::vector<std::string> parts;
+    for (const Effect& effect : effects()) {
+        if (!effect.on(f)) continue;
+        const std::string_view name = effect.name;
+        const auto light = lights.find(name.substr(0, name.find(" light")));
+        if (light == lights.end()) {
+            parts.emplace_back(name);
+        } else {
+            parts.push_back(counted(light->second, light->first));
+        }
+    }
+    if (f.view != DebugView::picture)
+        parts.push_back(fmt::format("view of {}", debug_view_info(f.view).name));
+    constexpr std::array<const char*, 4> codings = {"linear", "clamped", "sRGB", "half"};
+    parts.emplace_back(codings.at(static_cast<std::size_t>(f.output)));
+    return fmt::format("{}", fmt::join(parts, ", "));
+}
+
+}  // namespace relief

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+// Ambient light: the same from all directions.
+
+#part phong
+// The material's share of the scene's ambient light, scattered.
+
+#include <occlusion>
+
+uniform vec3 ambient_scattered;
+
+void add_ambient(Surface surface, inout Lighting lighting) {
+    lighting.scattered += ambient_scattered * occlusion();
+}
+
+#part metallic_roughness
+// Ambient light both scatters and mirrors.
+
+#include <occlusion>
+
+uniform vec3 ambient_scattered;
+
+void add_ambient(Surface surface, inout Lighting lighting) {
+    vec3 received = ambient_scattered * occlusion();
+    lighting.scattered += received;
+    lighting.highlights += received * surface.f0;
+}
+
+#part occlusion
+// The share of ambient and environment light that arrives: the texture's red, weighted by the
+// material's strength.
+
+#include "inputs.glsl#texcoord"
+
+uniform sampler2D occlusion_texture;
+uniform float occlusion_strength;
+
+float occlusion() {
+    return 1.0 + occlusion_strength * (texture(occlusion_texture, texcoord_surface).r - 1.0);
+}

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+// Textures and vertex colors that multiply the surface's colors. Lookups decode sRGB.
+
+#part tint
+// The color that multiplies scattered light in Phong's model: texture and vertex color.
+
+#include <diffuse_texture>
+#include <vertex_color>
+
+vec3 scattering_tint(Surface surface) { return diffuse_texel().rgb * vertex_tint().rgb; }
+
+#part diffuse_texture
+// The diffuse texture; its alpha is as stored.
+
+#include "inputs.glsl#texcoord"
+
+uniform sampler2D diffuse_texture;
+
+vec4 diffuse_texel() { return texture(diffuse_texture, texcoord_surface); }
+
+#part vertex
+// The interpolated vertex color and alpha: exactly white between white vertices, never negative.
+
+in vec4 color_from_white;
+
+vec4 vertex_tint() { return max(vec4(1.0) + color_from_white, vec4(0.0)); }
+
+#part specular_texture
+// The color of highlights.
+
+#include "inputs.glsl#texcoord"
+
+uniform sampler2D specular_texture;
+
+vec3 specular_texture_color() { return texture(specular_texture, texcoord_surface).rgb; }

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+// The light that the surface emits.
+
+#part color
+// One color.
+
+uniform vec3 emission_color;
+
+vec3 emitted_radiance() { return emission_color; }
+
+#part texture
+// A color times a texture; the lookup decodes sRGB.
+
+#include "inputs.glsl#texcoord"
+
+uniform vec3 emission_color;
+uniform sampler2D emission_texture;
+
+vec3 emitted_radiance() {
+    return emission_color * texture(emission_texture, texcoord_surface).rgb;
+}

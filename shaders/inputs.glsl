@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+// Declarations that several files share.
+
+#part position
+// The fragment's position.
+
+in vec3 position_world;
+
+#part texcoord
+// The fragment's texture coordinates.
+
+in vec2 texcoord_surface;
+
+#part eye
+// The position of the camera.
+
+uniform vec3 eye_world;
+
+#part diffuse_color
+// The share of light that the surface scatters.
+
+uniform vec3 diffuse_color;

@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: Apache-2.0
+// glTF's metallic-roughness model: the surface's parameters and its reflection of one light.
+// ambient.glsl, environment.glsl and reflection.glsl hold the rest of the model.
+// Source: glTF 2.0, appendix B.
+
+#part surface
+// Base color, metallic and roughness as the color that scatters, the reflectance at normal
+// incidence, and the width of the GGX lobe. Roughness is large enough for its fourth power to be a
+// normal float.
+
+#include "inputs.glsl#eye"
+#include "vector.glsl#normalized_or"
+#include <position>
+#include <normal>
+#include <sharpness>
+#include <diffuse_texture>
+#include <vertex_color>
+#include <metallic_roughness>
+
+uniform vec3 base_color;
+
+const float dielectric_f0 = 0.04;
+const float min_roughness = 0.045;
+
+struct Surface {
+    vec3 normal_world;
+    vec3 position_world;
+    vec3 view_world;
+    vec3 scattered_color;
+    vec3 f0;
+    float roughness;
+    float alpha_squared;  // The fourth power of roughness.
+};
+
+Surface surface_here() {
+    vec3 normal = shading_normal();
+    vec3 base = base_color * diffuse_texel().rgb * vertex_tint().rgb;
+    vec2 kind = clamp(metallic_and_roughness(), vec2(0.0), vec2(1.0));
+    float widened_roughness = widened(max(kind.y, min_roughness));
+    float alpha = widened_roughness * widened_roughness;
+    return Surface(normal, position_world, normalized_or(eye_world - position_world, normal),
+                   base * (1.0 - kind.x), mix(vec3(dielectric_f0), base, kind.x),
+                   widened_roughness, alpha * alpha);
+}
+
+#part surface_colors
+// The same without an orientation, for a surface that only ambient light reaches: the color that
+// scatters and the reflectance at normal incidence.
+
+#include <diffuse_texture>
+#include <vertex_color>
+#include <metallic_roughness>
+
+uniform vec3 base_color;
+
+const float dielectric_f0 = 0.04;
+
+struct Surface {
+    vec3 scattered_color;
+    vec3 f0;
+};
+
+Surface surface_here() {
+    vec3 base = base_color * diffuse_texel().rgb * vertex_tint().rgb;
+    float metal = clamp(metallic_and_roughness().x, 0.0, 1.0);
+    return Surface(base * (1.0 - metal), mix(vec3(dielectric_f0), base, metal));
+}
+
+#part factors
+// Constant metallic and roughness.
+
+uniform float metallic;
+uniform float roughness;
+
+vec2 metallic_and_roughness() { return vec2(metallic, roughness); }
+
+#part texture
+// Metallic and roughness from a texture: blue and green.
+
+#include "inputs.glsl#texcoord"
+
+uniform float metallic;
+uniform float roughness;
+uniform sampler2D metallic_roughness_texture;
+
+vec2 metallic_and_roughness() {
+    return texture(metallic_roughness_texture, texcoord_surface).bg * vec2(metallic, roughness);
+}
+
+#part tint
+// The color that multiplies scattered light: the non-metallic share of the base color.
+
+vec3 scattering_tint(Surface surface) { return surface.scattered_color; }
+
+#part receive
+// Adds the light of one source: GGX facets mirror by Schlick's Fresnel factor, and the rest is
+// scattered. pi is in the irradiance. 1 - (n.h)^2 is computed from the cross product, since a float
+// next to 1 is too coarse for smooth surfaces. If light and view are opposite, there is no half
+// vector, and nothing is mirrored. Source: [Walter et al. 2007].
+
+#include "vector.glsl#normalized_or"
+
+// GGX's D times pi. A normal map may turn the normal away from the half vector; n.h then counts as
+// 0. Its square alone would mirror the lobe to the other side of the surface.
+float facets(vec3 normal_world, vec3 half_world, float alpha_squared) {
+    float n_dot_h = dot(normal_world, half_world);
+    if (!(n_dot_h > 0.0)) return alpha_squared;
+    vec3 across = cross(normal_world, half_world);
+    float spread = dot(across, across) + alpha_squared * n_dot_h * n_dot_h;
+    return alpha_squared / (spread * spread);
+}
+
+// Smith's height-correlated masking and shadowing over 4 (n.l) (n.v).
+float visibility(float n_dot_l, float n_dot_v, float alpha_squared) {
+    float masked = n_dot_l * sqrt(n_dot_v * n_dot_v * (1.0 - alpha_squared) + alpha_squared);
+    float shadowed = n_dot_v * sqrt(n_dot_l * n_dot_l * (1.0 - alpha_squared) + alpha_squared);
+    return 0.5 / (masked + shadowed);
+}
+
+void receive(Surface surface, vec3 light_world, vec3 irradiance, vec3 highlight_irradiance,
+             inout Lighting lighting) {
+    float n_dot_l = dot(surface.normal_world, light_world);
+    if (!(n_dot_l > 0.0)) return;
+    vec3 received = irradiance * n_dot_l;
+    vec3 half_world = normalized_or(light_world + surface.view_world, vec3(0.0));
+    if (half_world == vec3(0.0)) {
+        lighting.scattered += received;
+        return;
+    }
+    float m = 1.0 - clamp(dot(surface.view_world, half_world), 0.0, 1.0);
+    vec3 fresnel = surface.f0 + (vec3(1.0) - surface.f0) * (m * m * m * m * m);
+    float n_dot_v = max(dot(surface.normal_world, surface.view_world), 0.0);
+    float mirrored = facets(surface.normal_world, half_world, surface.alpha_squared) *
+                     visibility(n_dot_l, n_dot_v, surface.alpha_squared);
+    lighting.scattered += received * (vec3(1.0) - fresnel);
+    lighting.highlights += received * fresnel * mirrored;
+}

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+// The environment mirrored by the surface. with_reflection() weighs the mirror image against the
+// scattered and the refracted light.
+
+#part phong
+// Phong's surfaces: the mirror image gets Fresnel's factor, and scattering and refraction get the
+// rest. n.v is clamped to [0,1], since a perturbed normal may leave it. The lookup is in world
+// space. Source: [Blinn and Newell 1976].
+
+#include <fresnel>
+#include <mirror_image>
+#include <refraction>
+
+vec3 with_reflection(Surface surface, vec3 scattered) {
+    float n_dot_v = clamp(dot(surface.normal_world, surface.view_world), 0.0, 1.0);
+    vec3 fresnel = fresnel_factor(n_dot_v);
+    vec3 mirrored_world = reflect(-surface.view_world, surface.normal_world);
+    return with_refraction(surface, scattered) * (vec3(1.0) - fresnel) +
+           mirror_image(mirrored_world) * fresnel;
+}
+
+#part metallic_roughness
+// glTF's surfaces: the blurred environment, weighted by the share that GGX facets mirror.
+// Source: [Karis, SIGGRAPH 2013].
+
+#include "environment.glsl#brdf"
+#include "environment.glsl#blurred"
+#include <occlusion>
+
+vec3 with_reflection(Surface surface, vec3 scattered) {
+    vec3 mirrored_world = reflect(-surface.view_world, surface.normal_world);
+    vec3 mirrored = blurred_radiance(mirrored_world, surface.roughness) * occlusion();
+    return scattered + mirrored * directional_albedo(surface);
+}
+
+#part refraction_only
+// The surface refracts the environment and mirrors nothing.
+
+#include <refraction>
+
+vec3 with_reflection(Surface surface, vec3 scattered) {
+    return with_refraction(surface, scattered);
+}
+
+#part mirror
+// A sharp mirror image.
+
+#include "environment.glsl#radiance"
+
+vec3 mirror_image(vec3 direction_world) { return environment_radiance(direction_world); }
+
+#part glossy
+// A mirror image blurred by a constant roughness.
+
+#include "environment.glsl#blurred"
+
+uniform float reflection_roughness;
+
+vec3 mirror_image(vec3 direction_world) {
+    return blurred_radiance(direction_world, reflection_roughness);
+}
