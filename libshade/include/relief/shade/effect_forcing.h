@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Effects forced on or off by name, against what the scene calls for. Pure: no OpenGL, no files.
+/// Forces effects on or off by name, whatever the scene calls for. Pure: no OpenGL, no files.
 ///
-/// An effect that is forced on where the scene gives it nothing to show is neutral: its numbers are
-/// zero, its texture white, its lamps black, and the picture stays the same, bit for bit. Effects
-/// for which that is not so are choices of the scene, and are refused: how a surface is lit at all
-/// (unlit, metallic-roughness, Gouraud, flat), what its maps mean (object-space normal maps,
-/// derivative frames, antialiasing of a real map), blending, the law of lamps that are there, exact
-/// Fresnel of what is mirrored, tone curves, and whether the surroundings are seen or shed light.
-/// Taking out whatever the scene calls for is always possible, and does change the picture.
-/// Tests: tests/shade/effects/effect_forcing_test.cpp, tests/shade/render/forced_effects_test.cpp.
+/// An effect that is forced on without anything to show is neutral: its numbers are zero, its
+/// texture white, its lights black, and the picture stays the same, bit for bit. Effects without a
+/// neutral form are choices of the scene, and are refused: the reflection model and interpolation
+/// (unlit, metallic-roughness, Gouraud, flat), the meaning of maps (object-space normal maps,
+/// derivative frames, antialiasing of a real map), blending, the falloff of existing lights, the
+/// exact Fresnel term of an existing reflection, tone curves, and whether the environment is
+/// visible or lights surfaces. Any effect can be forced off; that changes the picture. Tests:
+/// tests/shade/effects/effect_forcing_test.cpp, tests/shade/render/forced_effects_test.cpp.
 #pragma once
 
 #include <string>
@@ -19,15 +19,15 @@
 
 namespace relief {
 
-/// What effects are set out from.
+/// The effects before single ones are forced.
 enum class EffectBase {
-    planned,      ///< What the scene calls for.
-    all_neutral,  ///< That, and on every draw each effect that changes no pixel there.
-    nothing,      ///< No effect at all; those forced on are as the scene has them.
+    planned,      ///< Those that the scene calls for.
+    all_neutral,  ///< Those, and on every draw each effect that changes no pixel there.
+    nothing,      ///< None; effects forced on are as the scene has them.
 };
 
-/// One effect by name (effects(), or a frame-wide one of FramePlan::reasons), letters in either
-/// case, separators as one likes: "normal map", "Normal-Map".
+/// One effect by name (effects(), or a frame-wide one of FramePlan::reasons). Case and separators
+/// do not matter: "normal map", "Normal-Map".
 struct ForcedEffect {
     std::string name;
     bool on = true;
@@ -38,18 +38,18 @@ struct EffectWishes {
     std::vector<ForcedEffect> forced;
 };
 
-/// The plan with effects put in and taken out on every draw, and the reasons put right.
+/// The plan with effects forced on and off on every draw, and their reasons updated.
 ///
 /// \param plan  of this scene and these settings
-/// \return a plan that Renderer takes. An effect forced on shows wherever it can; where a draw
-///         cannot have it, that draw's reasons say why
+/// \return a plan for Renderer. An effect forced on shows on every draw that can have it; the
+///         reasons of the other draws explain why not
 /// \throws InvalidInput if there is no effect of a name (near names are suggested), one name is
 ///         forced both ways, two effects exclude each other, or no draw at all can have an effect:
 ///         the message names effect, material and reason
 FramePlan force_effects(const Scene& scene, const FrameSettings& settings, FramePlan plan,
                         const EffectWishes& wishes);
 
-/// The effects that are on in any draw of a plan, and "skybox": what can be taken out of it.
+/// The effects that are on in any draw of a plan, and "skybox": those that can be forced off.
 std::vector<std::string> effects_in(const FramePlan& plan);
 
 }  // namespace relief

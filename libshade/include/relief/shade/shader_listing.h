@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// The programs that a plan draws with, as the driver gets them, to read. Pure: no OpenGL.
+/// The source of the programs of a plan, as the driver gets it. Pure: no OpenGL.
 /// Tests: tests/shade/effects/shader_listing_test.cpp.
 #pragma once
 
@@ -12,17 +12,17 @@
 
 namespace relief {
 
-/// One program, put together from the files in shaders/.
+/// One program, assembled from the files in shaders/.
 struct ShaderListing {
     Features features;
-    std::vector<std::size_t> draws;  ///< Of the plan, by index: those that it draws.
+    std::vector<std::size_t> draws;  ///< Indices of the draws that use it.
     std::string vertex;              ///< GLSL.
     std::string fragment;
-    std::vector<std::string> files;  ///< That both stages hold, sorted.
+    std::vector<std::string> files;  ///< Parts of both stages, such as "light.glsl#point"; sorted.
 };
 
-/// One entry for each program, in the order of the draws that need them first.
-/// \throws GpuError if a file of $RELIEF_SHADER_DIR includes what does not exist
+/// One entry per program, in the order of the first draw that uses it.
+/// \throws GpuError if a file of $RELIEF_SHADER_DIR includes a missing part
 std::vector<ShaderListing> shader_listings(const FramePlan& plan);
 
 }  // namespace relief
