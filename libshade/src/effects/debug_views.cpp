@@ -117,7 +117,7 @@ std::string_view effect_of(DebugView term, bool physical) {
     }
 }
 
-std::string why_no_term(const DrawPlan& draw, const Drawn& drawn, DebugView term) {
+std::string missing_term_reason(const DrawPlan& draw, const Drawn& drawn, DebugView term) {
     if (draw.features.unlit) return drawn.material_name + " is unlit";
     const std::string_view name = effect_of(term, drawn.material.metallic_roughness.has_value());
     const auto reason =
@@ -127,8 +127,8 @@ std::string why_no_term(const DrawPlan& draw, const Drawn& drawn, DebugView term
                                         : reason->reason;
 }
 
-/// Why a draw has nothing to show in a view of data; empty if it has something.
-std::string why_no_data(const Drawn& drawn, DebugView view) {
+/// The reason why a draw has nothing to show in a view of data; empty if it has something.
+std::string missing_data_reason(const Drawn& drawn, DebugView view) {
     const bool has_texcoords = !drawn.mesh.texcoords.empty();
     const std::string no_texcoords = drawn.mesh_name + " has no texture coordinates";
     const bool derived = drawn.material.tangent_frame == TangentFrame::derivatives;
@@ -162,8 +162,8 @@ bool is_normal_seen(const Features& f) {
 std::string show_view(const Drawn& drawn, DebugView view, DrawPlan& draw) {
     Features& f = draw.features;
     const bool missing_term = is_term(view) && !has_term(f, view);
-    const std::string why =
-        missing_term ? why_no_term(draw, drawn, view) : why_no_data(drawn, view);
+    const std::string reason =
+        missing_term ? missing_term_reason(draw, drawn, view) : missing_data_reason(drawn, view);
     const bool maps = view == DebugView::normal_map || view == DebugView::height;
     if (maps || (view == DebugView::shading_normal && !is_normal_seen(f))) {
         f.detail = detail_of(drawn);
@@ -175,13 +175,13 @@ std::string show_view(const Drawn& drawn, DebugView view, DrawPlan& draw) {
                                   view == DebugView::handedness ||
                                   view == DebugView::shading_normal;
     if (shows_maps_frame) f.frame = drawn.material.tangent_frame;
-    f.view = why.empty() || is_term(view) ? view : DebugView::nothing_to_show;
+    f.view = reason.empty() || is_term(view) ? view : DebugView::nothing_to_show;
     f = canonical(f);
     const PlannedInterface planned = planned_interface(f);
     draw.needs_tangents = drawn.mesh.tangents.empty() &&
                           std::find(planned.attributes.begin(), planned.attributes.end(),
                                     "tangent_object") != planned.attributes.end();
-    return why;
+    return reason;
 }
 
 }  // namespace
@@ -208,12 +208,12 @@ FramePlan plan_view(const Scene& scene, const FrameSettings& settings, FramePlan
             ++showing;
             continue;
         }
-        const std::string why = show_view(drawn_by(scene, draw), view, draw);
-        if (why.empty()) {
+        const std::string reason = show_view(drawn_by(scene, draw), view, draw);
+        if (reason.empty()) {
             ++showing;
             continue;
         }
-        if (first_reason.empty()) first_reason = why;
+        if (first_reason.empty()) first_reason = reason;
         if (is_data(view))
             report.add("surface without what the view shows", "draw", i, "hatched in gray");
     }

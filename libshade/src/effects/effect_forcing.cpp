@@ -101,10 +101,11 @@ std::string displaced_effect(const Features& before, const Features& after) {
     return "";
 }
 
-/// Why an effect that is not planned would change the picture of this draw if it were forced on; ""
-/// if it is neutral.
-std::string why_not_neutral(const ForcingSubject& subject, const EffectRow& row) {
-    if (row.choice != nullptr && !row.neutral(subject)) return row.choice;
+/// The reason why an effect that is not planned would change the picture of this draw if it were
+/// forced on; "" if it is neutral.
+std::string refusal_reason(const ForcingSubject& subject, const EffectRow& row) {
+    const bool neutral = row.neutral != nullptr && row.neutral(subject);
+    if (row.choice != nullptr && !neutral) return row.choice;
     Features with = subject.planned;
     row.effect.set(with, true);
     const std::string displaced = displaced_effect(subject.planned, with);
@@ -129,9 +130,9 @@ void add_requested(const ForcingSubject& subject, const Requests& requests, Forc
     for (const EffectRow& row : effect_rows()) {
         const Effect& effect = row.effect;
         if (!requests.on(effect.name) || effect.on(subject.planned)) continue;
-        const std::string why_not = why_not_neutral(subject, row);
-        if (!why_not.empty()) {
-            draw.refused.emplace(effect.name, why_not);
+        const std::string refusal = refusal_reason(subject, row);
+        if (!refusal.empty()) {
+            draw.refused.emplace(effect.name, refusal);
             continue;
         }
         Features with = draw.features;
@@ -152,7 +153,7 @@ void add_neutral(const ForcingSubject& subject, const Requests& requests, Featur
     for (const EffectRow& row : effect_rows()) {
         const Effect& effect = row.effect;
         if (requests.off(effect.name) || effect.on(f)) continue;
-        if (!why_not_neutral(subject, row).empty()) continue;
+        if (!refusal_reason(subject, row).empty()) continue;
         Features with = f;
         effect.set(with, true);
         if (displaced_effect(f, with).empty()) f = with;
@@ -167,7 +168,7 @@ ForcedDraw forced_draw(const ForcingSubject& subject, const Requests& requests) 
     const Features shown = canonical(draw.features);
     for (const EffectRow& row : effect_rows()) {
         if (!requests.on(row.effect.name) || row.effect.on(shown)) continue;
-        draw.refused.emplace(row.effect.name, why_hidden(row, draw.features, shown));
+        draw.refused.emplace(row.effect.name, hidden_reason(row, draw.features, shown));
     }
     draw.features = shown;
     return draw;
@@ -188,7 +189,7 @@ void rewrite_reasons(DrawPlan& draw, const ForcedDraw& forced, const Requests& r
             const bool by_name =
                 requests.off(reason.effect) || requests.base() == EffectBase::nothing;
             reason = {reason.effect, false,
-                      by_name ? "taken out" : why_hidden(*row, draw.features, forced.features)};
+                      by_name ? "taken out" : hidden_reason(*row, draw.features, forced.features)};
         }
     }
 }

@@ -85,9 +85,6 @@ const char* finishing_hidden_by(const Features& requested, const Features& /*sho
 }
 
 // Conditions under which a choice is neutral.
-bool never(Forced /*subject*/) {
-    return false;
-}
 bool has_no_map(Forced s) {
     return s.planned.detail == NormalDetail::none;
 }
@@ -107,8 +104,8 @@ bool mirrors_nothing(Forced s) {
 }
 
 /// A decision with a reason about the material: "material 'body' is unlit".
-Decision of_material(Subject s, bool on, const char* why, const char* why_not) {
-    return {on, fmt::format("{} {}", s.name, on ? why : why_not)};
+Decision of_material(Subject s, bool on, const char* if_on, const char* if_off) {
+    return {on, fmt::format("{} {}", s.name, on ? if_on : if_off)};
 }
 
 bool is_physical(Subject s) {
@@ -268,15 +265,13 @@ std::vector<EffectRow> model_rows() {
     return {
         {.effect = one_switch<&F::unlit>("unlit", ""),
          .decide = [](Subject s) { return of_material(s, s.material.unlit, "is unlit", "is lit"); },
-         .choice = "whether light counts is the material's choice",
-         .neutral = never},
+         .choice = "whether light counts is the material's choice"},
         {.effect = one_switch<&F::metallic_roughness>("metallic-roughness", no_light),
          .decide =
              [](Subject s) {
                  return of_material(s, is_physical(s), "is glTF's model", "is Phong's model");
              },
-         .choice = "its model is the material's choice",
-         .neutral = never},
+         .choice = "its model is the material's choice"},
         {.effect = one_switch<&F::metallic_roughness_texture>(
              "metallic-roughness texture", "the material is not metallic-roughness"),
          .decide =
@@ -291,16 +286,14 @@ std::vector<EffectRow> model_rows() {
                  return of_material(s, s.material.interpolation == Interpolation::gouraud,
                                     "is lit at its vertices", "is lit at every pixel");
              },
-         .choice = "where light is computed is the material's choice",
-         .neutral = never},
+         .choice = "where light is computed is the material's choice"},
         {.effect = one_value<&F::interpolation, Interpolation::flat>("flat", no_normal),
          .decide =
              [](Subject s) {
                  return of_material(s, s.material.interpolation == Interpolation::flat,
                                     "shows its facets", "interpolates its normals");
              },
-         .choice = "where light is computed is the material's choice",
-         .neutral = never},
+         .choice = "where light is computed is the material's choice"},
     };
 }
 
@@ -314,8 +307,7 @@ std::vector<EffectRow> color_rows() {
          .decide = [](Subject s) { return of_alpha(s, AlphaMode::mask); }},
         {.effect = one_value<&F::alpha, AlphaMode::blend>("alpha blending", ""),
          .decide = [](Subject s) { return of_alpha(s, AlphaMode::blend); },
-         .choice = "it hides nothing that is behind it, and is drawn after all else",
-         .neutral = never},
+         .choice = "it hides nothing that is behind it, and is drawn after all else"},
         {.effect = one_switch<&F::opacity_texture>("opacity texture", "the material is opaque"),
          .decide = [](Subject s) { return of_texture(s, s.material.opacity_texture.has_value()); }},
     };
@@ -331,7 +323,6 @@ std::vector<EffectRow> normal_rows() {
                                                                           no_normal),
          .decide = [](Subject s) { return of_texture(s, has_object_map(s)); },
          .choice = "without a map of its own it has no neutral value",
-         .neutral = never,
          .hidden_by = map_hidden_by},
         {.effect = one_value<&F::detail, NormalDetail::bump_map>("bump map", no_normal),
          .decide = [](Subject s) { return of_texture(s, s.material.bump_map.has_value()); },
@@ -343,8 +334,7 @@ std::vector<EffectRow> normal_rows() {
                  return of_material(s, s.material.tangent_frame == TangentFrame::derivatives,
                                     "takes its frame from derivatives", "uses the mesh's tangents");
              },
-         .choice = "its map's frame is the material's choice",
-         .neutral = never},
+         .choice = "its map's frame is the material's choice"},
         {.effect = one_switch<&F::specular_antialiasing>("specular antialiasing",
                                                          "no normal map bends sharp highlights"),
          .decide =
@@ -364,7 +354,7 @@ std::vector<EffectRow> normal_rows() {
     };
 }
 
-std::vector<EffectRow> light_rows_of_table() {
+std::vector<EffectRow> lighting_rows() {
     return {
         {.effect = lights<&F::directional_lights>("directional lights"),
          .decide =
@@ -477,12 +467,10 @@ std::vector<EffectRow> picture_rows() {
              one_value<&F::tone_mapping, ToneMapping::reinhard>("Reinhard tone mapping", not_srgb),
          .decide = [](Subject s) { return of_tone(s, ToneMapping::reinhard); },
          .choice = "the tone curve is the scene's choice",
-         .neutral = never,
          .hidden_by = finishing_hidden_by},
         {.effect = one_value<&F::tone_mapping, ToneMapping::aces>("ACES tone mapping", not_srgb),
          .decide = [](Subject s) { return of_tone(s, ToneMapping::aces); },
          .choice = "the tone curve is the scene's choice",
-         .neutral = never,
          .hidden_by = finishing_hidden_by},
     };
 }
@@ -553,8 +541,7 @@ DrawSubject draw_subject(const Scene& scene, const Material& material, const std
 const std::vector<EffectRow>& effect_rows() {
     static const std::vector<EffectRow> all = [] {
         std::vector<EffectRow> rows = model_rows();
-        for (const auto& more :
-             {color_rows(), normal_rows(), light_rows_of_table(), picture_rows()})
+        for (const auto& more : {color_rows(), normal_rows(), lighting_rows(), picture_rows()})
             rows.insert(rows.end(), more.begin(), more.end());
         return rows;
     }();
@@ -578,7 +565,7 @@ const EffectRow* find_effect(std::string_view name) {
     return row == all.end() ? nullptr : &*row;
 }
 
-std::string why_hidden(const EffectRow& row, const Features& requested, const Features& shown) {
+std::string hidden_reason(const EffectRow& row, const Features& requested, const Features& shown) {
     if (shown.unlit) return "the material is unlit";
     const std::string specific = row.hidden_by == nullptr ? "" : row.hidden_by(requested, shown);
     if (!specific.empty()) return specific;

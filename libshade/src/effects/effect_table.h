@@ -26,7 +26,7 @@ struct DrawSubject {
 DrawSubject draw_subject(const Scene& scene, const Material& material, const std::string& name,
                          const Mesh& mesh);
 
-/// Whether the scene calls for an effect, and why.
+/// The decision whether the scene calls for an effect, with its reason.
 struct Decision {
     bool on = false;
     std::string reason;
@@ -44,7 +44,7 @@ struct EffectRow {
     Decision (*decide)(const DrawSubject& subject) = nullptr;
     /// If the effect changes the picture when it is forced on: whose choice it is.
     const char* choice = nullptr;
-    /// With a choice: true if the effect is neutral on this draw all the same.
+    /// With a choice: true if the effect is neutral on this draw all the same. Null: it never is.
     bool (*neutral)(const ForcingSubject& subject) = nullptr;
     /// A more specific reason than effect.hidden; "" if it does not apply.
     const char* (*hidden_by)(const Features& requested, const Features& shown) = nullptr;
@@ -57,9 +57,9 @@ const std::vector<EffectRow>& effect_rows();
 /// The row of this name; null if there is none.
 const EffectRow* find_effect(std::string_view name);
 
-/// Why canonical() dropped an effect.
+/// The reason why canonical() dropped an effect.
 ///
 /// \param requested  the effects that were asked for  \param shown  what canonical() left of them
-std::string why_hidden(const EffectRow& row, const Features& requested, const Features& shown);
+std::string hidden_reason(const EffectRow& row, const Features& requested, const Features& shown);
 
 }  // namespace relief

@@ -38,7 +38,7 @@ DrawDecisions decide(const Scene& scene, const Material& material, const std::st
         const EffectRow& row = *find_effect(reason.effect);
         if (!reason.on || row.effect.on(decisions.features)) continue;
         reason.on = false;
-        reason.reason = why_hidden(row, requested, decisions.features);
+        reason.reason = hidden_reason(row, requested, decisions.features);
     }
     return decisions;
 }
@@ -66,10 +66,10 @@ DrawPlan plan_draw(const Scene& scene, std::size_t instance, const MaterialRange
 }
 
 void plan_environment(const Scene& scene, const FrameSettings& settings, FramePlan& plan) {
-    const auto decide = [&](const char* effect, bool on, const char* why, const char* why_not) {
+    const auto decide = [&](const char* effect, bool on, const char* if_on, const char* if_off) {
         plan.reasons.push_back({effect, on,
-                                on                  ? why
-                                : scene.environment ? why_not
+                                on                  ? if_on
+                                : scene.environment ? if_off
                                                     : "the scene has no environment"});
         return on;
     };
