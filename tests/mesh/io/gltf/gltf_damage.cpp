@@ -19,6 +19,7 @@ void write_damaged_copy(const std::filesystem::path& file, const std::filesystem
     const std::size_t first = 28 + std::size_t{json_size};
     for (unsigned k = 0; k <= random() % 4; ++k)
         bytes[first + random() % (bytes.size() - first)] = static_cast<char>(random());
+    std::filesystem::remove(copy);  // ext4 waits for the disk when a file is truncated.
     std::ofstream(copy, std::ios::binary) << bytes;
 }
 
