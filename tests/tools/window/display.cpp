@@ -78,6 +78,12 @@ int ChildProcess::wait_for_end(double seconds) {
     return WIFEXITED(status_) ? WEXITSTATUS(status_) : 128 + WTERMSIG(status_);
 }
 
+const Display* Display::of_process() {
+    static const std::unique_ptr<Display> display = open();
+    if (display) display->act("mouseup 1 mouseup 2 mouseup 3 mousemove 5 795");
+    return display.get();
+}
+
 std::unique_ptr<Display> Display::open() {
     if (!is_installed("Xvfb") || !is_installed("xdotool")) return nullptr;
     std::unique_ptr<Display> display(new Display);
@@ -135,6 +141,10 @@ void Display::act(const std::string& words) const {
 
 void pause_a_little() {
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
+}
+
+void wait_seconds(double seconds) {
+    std::this_thread::sleep_for(std::chrono::duration<double>(seconds));
 }
 
 double seconds_now() {

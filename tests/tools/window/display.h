@@ -36,8 +36,9 @@ class ChildProcess {
 
 class Display {
   public:
-    /// One on a free number; nothing where Xvfb or xdotool is not installed.
-    static std::unique_ptr<Display> open();
+    /// The one of this process, with the pointer in its lower left corner. Null if Xvfb or xdotool
+    /// is not installed.
+    static const Display* of_process();
 
     [[nodiscard]] const std::string& name() const { return name_; }  ///< ":1234"
 
@@ -51,6 +52,7 @@ class Display {
 
   private:
     Display() = default;
+    static std::unique_ptr<Display> open();
 
     TemporaryDirectory folder_;
     std::unique_ptr<ChildProcess> server_;
@@ -63,6 +65,7 @@ bool eventually(const Condition& holds, double seconds = 100.0);
 
 /// Sleeps a little, between two looks.
 void pause_a_little();
+void wait_seconds(double seconds);
 double seconds_now();
 
 template <typename Condition>
@@ -79,7 +82,7 @@ std::string contents_of(const std::filesystem::path& file);
 
 }  // namespace relief::test
 
-/// Opens a display as `variable`, or skips the test with a word.
-#define RELIEF_NEEDS_DISPLAY(variable)                                                     \
-    const std::unique_ptr<relief::test::Display> variable = relief::test::Display::open(); \
-    if (!variable) GTEST_SKIP() << "needs Xvfb and xdotool"
+/// The display of the process as `variable`; the test is skipped if there is none.
+#define RELIEF_NEEDS_DISPLAY(variable)                                                 \
+    const relief::test::Display* const variable = relief::test::Display::of_process(); \
+    if (variable == nullptr) GTEST_SKIP() << "needs Xvfb and xdotool"

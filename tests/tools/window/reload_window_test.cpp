@@ -17,6 +17,7 @@ namespace {
 using nlohmann::json;
 using relief::Image;
 using test::changed_picture;
+using test::Display;
 using test::eventually;
 using test::processor_seconds;
 using test::ViewerWindow;
@@ -57,9 +58,16 @@ TEST(ReloadWindow, AModelThatChangesIsShownWithTheSameViewAndEdits) {
     window.wait_for_rest();
     window.drag(700, 300, 100, 40);
     window.click_on("Lights");
+    const json dark = window.wait_for_rest();
+    const Image dark_picture = display->resting_picture();
     window.click_on("Add directional");
     const json before = window.wait_for(
         "a light more", [](const json& now) { return now["directional_lights"].size() == 3; });
+    EXPECT_EQ(dark["directional_lights"].size(), 2U);
+    EXPECT_EQ(before["camera"], dark["camera"]) << "a click on a panel is none on the picture";
+    EXPECT_GT(before["revision"], dark["revision"]);
+    EXPECT_TRUE(
+        eventually([&] { return changed_picture(dark_picture, display->picture()) > 0.05; }));
     const Image picture = display->resting_picture();
 
     replace(workplace, "vase.obj", vase + "v 9 0 0\nv 9 1 0\nv 9 0 1\nf -3 -2 -1\n");
@@ -88,115 +96,73 @@ TEST(ReloadWindow, AModelThatChangesIsShownWithTheSameViewAndEdits) {
     EXPECT_EQ(mended["directional_lights"].size(), 3U);
     EXPECT_TRUE(eventually([&] { return changed_picture(picture, display->picture()) == 0.0; }))
         << "the same picture again";
+
+    // The edits stay when a map is dropped, too.
+    ASSERT_TRUE(
+        test::drop_files(display->name(), {workplace / "data/bricks-height.png"}, 700, 400));
+    const json mapped =
+        window.wait_for("the map", [](const json& now) { return now["scenes"] == 4; });
+    EXPECT_EQ(mapped["directional_lights"].size(), 3U);
+    EXPECT_THAT(mapped["edits"]["lost"], testing::IsEmpty());
 }
 
-TEST(ReloadWindow, ATextureThatChangesIsDrawnAndABrokenOneIsSaid) {
-    RELIEF_NEEDS_DISPLAY(display);
-    const Workplace workplace;
-    workplace.write_square("square.obj");
-    write_color(workplace / "paint.png", 200, 20);
-    ViewerWindow window(*display, workplace, "square.obj --diffuse-map paint.png");
+/// A texture that changes is drawn, and a broken one is reported.
+void change_texture(ViewerWindow& window, const Display& display, const Workplace& workplace) {
     window.wait_for_rest();
-    const Image red = display->resting_picture();
+    const Image red = display.resting_picture();
     write_color(workplace / "paint.png", 20, 200);
-    EXPECT_TRUE(eventually([&] { return changed_picture(red, display->picture()) > 0.5; }));
+    EXPECT_TRUE(eventually([&] { return changed_picture(red, display.picture()) > 0.5; }));
     const json green = window.wait_for_rest();
-    const Image picture = display->resting_picture();
+    const Image picture = display.resting_picture();
 
     workplace.write("paint.png", "no image");
     const json broken =
         window.wait_for("an error", [](const json& now) { return now["error"] != ""; });
     EXPECT_THAT(broken["error"].get<std::string>(), HasSubstr("paint.png"));
-    EXPECT_EQ(changed_picture(picture, display->resting_picture()), 0.0) << "the old one stays";
+    EXPECT_EQ(changed_picture(picture, display.resting_picture()), 0.0) << "the old one stays";
     EXPECT_EQ(broken["camera"], green["camera"]);
 
-    write_color(workplace / "paint.png", 200, 20);
+    write_color(workplace / "paint.png", 200, 150);
     window.wait_for("no error", [](const json& now) { return now["error"] == ""; });
-    EXPECT_TRUE(eventually([&] { return changed_picture(red, display->picture()) == 0.0; }));
+    EXPECT_TRUE(eventually([&] { return changed_picture(red, display.picture()) == 0.0; }));
 }
 
-TEST(ReloadWindow, AShaderThatChangesIsLinkedAndABrokenOneIsSaid) {
-    RELIEF_NEEDS_DISPLAY(display);
-    const Workplace workplace;
-    workplace.write_square("square.obj");
-    std::filesystem::create_directories(workplace / "shaders");
-    ViewerWindow window(*display, workplace, "square.obj", "RELIEF_SHADER_DIR=shaders");
+/// A shader that changes is linked, and a broken one is reported.
+void change_shader(ViewerWindow& window, const Display& display, const Workplace& workplace) {
     const json before = window.wait_for_rest();
-    const Image plain = display->resting_picture();
+    const Image plain = display.resting_picture();
     const std::string head = "#part lambert\n#include \"inputs.glsl#diffuse_color\"\n";
     const std::string shader = "shaders/phong.glsl";
     workplace.write(shader, head +
                                 "vec3 diffuse_scattering(float n_dot_l) {\n"
                                 "    return diffuse_color * n_dot_l * vec3(1.0, 0.0, 0.0);\n}\n");
-    EXPECT_TRUE(eventually([&] { return changed_picture(plain, display->picture()) > 0.5; }));
+    EXPECT_TRUE(eventually([&] { return changed_picture(plain, display.picture()) > 0.5; }));
     const json red = window.wait_for_rest();
     EXPECT_EQ(red["relinked"], 1);
     EXPECT_EQ(red["camera"], before["camera"]);
-    const Image picture = display->resting_picture();
+    const Image picture = display.resting_picture();
 
     workplace.write(shader, head + "vec3 diffuse_scattering(float n) { return broken; }\n");
     const json broken =
         window.wait_for("an error", [](const json& now) { return now["error"] != ""; });
     EXPECT_THAT(broken["error"].get<std::string>(), HasSubstr("phong.glsl:3"));
-    EXPECT_EQ(changed_picture(picture, display->resting_picture()), 0.0) << "the old one stays";
+    EXPECT_EQ(changed_picture(picture, display.resting_picture()), 0.0) << "the old one stays";
     window.key("7");  // And can still be looked at, from above.
-    EXPECT_TRUE(eventually([&] { return changed_picture(picture, display->picture()) > 0.05; }));
+    EXPECT_TRUE(eventually([&] { return changed_picture(picture, display.picture()) > 0.05; }));
     window.wait_for_rest();  // A picture still to be drawn would find the shader mended by itself.
 
     std::filesystem::remove(workplace / shader);
     const json mended =
         window.wait_for("no error", [](const json& now) { return now["error"] == ""; });
     EXPECT_EQ(mended["relinked"], 3);
-    EXPECT_EQ(mended["scenes"], 1) << "no file of the model has changed";
+    EXPECT_EQ(mended["scenes"], before["scenes"]) << "no file of the model has changed";
 }
 
-TEST(ReloadWindow, WhatCouldNotBeReadIsShownWhenItIsMended) {
-    RELIEF_NEEDS_DISPLAY(display);
-    const Workplace workplace;
-    workplace.write("model.obj", "f 1 2 3\n");
-    ViewerWindow window(*display, workplace, "model.obj");
-    window.wait_for("an error", [](const json& now) { return now["error"] != ""; });
-    workplace.write_square("model.obj");
-    window.wait_for("the model", [](const json& now) {
-        return now["error"] == "" && now.value("triangles", 0) == 2;
-    });
-    // Another one that is dropped broken does not keep the first from being followed.
-    workplace.write("broken.glb", "this is no model");
-    ASSERT_TRUE(test::drop_files(display->name(), {workplace / "broken.glb"}, 700, 400));
-    window.wait_for("an error", [](const json& now) { return now["error"] != ""; });
-    replace(workplace, "model.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
-    const json now = window.wait_for("the other model", [](const json& state) {
-        return state["error"] == "" && state["triangles"] == 1;
-    });
-    EXPECT_EQ(now["scenes"], 2);
-}
-
-TEST(ReloadWindow, AnEditStaysWhenAMapIsDropped) {
-    RELIEF_NEEDS_DISPLAY(display);
-    const Workplace workplace;
-    workplace.write_square("square.obj");
-    ViewerWindow window(*display, workplace, "square.obj");
-    window.wait_for_rest();
-    window.click_on("Lights");
-    window.click_on("Add directional");
-    window.wait_for("a light more",
-                    [](const json& now) { return now["directional_lights"].size() == 3; });
-    ASSERT_TRUE(
-        test::drop_files(display->name(), {workplace / "data/bricks-height.png"}, 700, 400));
-    const json mapped =
-        window.wait_for("the map", [](const json& now) { return now["scenes"] == 2; });
-    EXPECT_EQ(mapped["directional_lights"].size(), 3U);
-    EXPECT_THAT(mapped["edits"]["lost"], testing::IsEmpty());
-}
-
-TEST(ReloadWindow, ReadingABigModelAnswersAndIsCancelled) {
-    RELIEF_NEEDS_DISPLAY(display);
-    const Workplace workplace;
-    workplace.write_square("square.obj");
+/// The window answers while it reads a big model, and reading can be cancelled.
+void read_big_model(ViewerWindow& window, const Display& display, const Workplace& workplace) {
     write_grid(workplace / "big.obj", 1500);
-    ViewerWindow window(*display, workplace, "square.obj");
     window.wait_for_rest();
-    ASSERT_TRUE(test::drop_files(display->name(), {workplace / "big.obj"}, 700, 400));
+    ASSERT_TRUE(test::drop_files(display.name(), {workplace / "big.obj"}, 700, 400));
     json reading;
     ASSERT_TRUE(eventually([&] {
         reading = window.state();
@@ -220,10 +186,52 @@ TEST(ReloadWindow, ReadingABigModelAnswersAndIsCancelled) {
     }));
     EXPECT_EQ(window.state()["triangles"], 2);
 
-    ASSERT_TRUE(test::drop_files(display->name(), {workplace / "big.obj"}, 700, 400));
+    ASSERT_TRUE(test::drop_files(display.name(), {workplace / "big.obj"}, 700, 400));
     ASSERT_TRUE(eventually([&] { return window.state()["loading"] == true; }));
     window.key("ctrl+q");
     EXPECT_EQ(window.process().wait_for_end(100.0), 0) << window.said();
+}
+
+TEST(ReloadWindow, TexturesShadersAndBigModelsAreReadWhileItIsShown) {
+    RELIEF_NEEDS_DISPLAY(display);
+    const Workplace workplace;
+    workplace.write_square("square.obj");
+    write_color(workplace / "paint.png", 200, 150);
+    std::filesystem::create_directories(workplace / "shaders/scatter");
+    ViewerWindow window(*display, workplace, "square.obj --diffuse-map paint.png",
+                        "RELIEF_SHADER_DIR=shaders");
+    change_texture(window, *display, workplace);
+    change_shader(window, *display, workplace);
+    read_big_model(window, *display, workplace);
+}
+
+TEST(ReloadWindow, WhatCouldNotBeReadIsShownWhenItIsMended) {
+    RELIEF_NEEDS_DISPLAY(display);
+    const Workplace workplace;
+    workplace.write("model.obj", "f 1 2 3\n");
+    ViewerWindow window(*display, workplace, "model.obj --size 500x400");
+    const json broken =
+        window.wait_for("an error", [](const json& now) { return now["error"] != ""; });
+    EXPECT_THAT(broken["error"].get<std::string>(), HasSubstr("model.obj"));
+    EXPECT_EQ(broken["drawn"]["frames"], 0);
+    workplace.write_square("model.obj");
+    window.wait_for("the model", [](const json& now) {
+        return now["error"] == "" && now.value("triangles", 0) == 2;
+    });
+    window.wait_for("the view in the size that was asked for", [](const json& now) {
+        return now["view"] == json({500, 400}) && now["drawn"]["size"] == now["view"];
+    });
+    // Another one that is dropped broken does not keep the first from being followed.
+    workplace.write("broken.glb", "this is no model");
+    ASSERT_TRUE(test::drop_files(display->name(), {workplace / "broken.glb"}, 200, 150));
+    window.wait_for("an error", [](const json& now) { return now["error"] != ""; });
+    replace(workplace, "model.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    const json now = window.wait_for("the other model", [](const json& state) {
+        return state["error"] == "" && state["triangles"] == 1;
+    });
+    EXPECT_EQ(now["scenes"], 2);
+    window.key("ctrl+q");
+    EXPECT_EQ(window.process().wait_for_end(100.0), 0);
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Scenes and models saved, by options and from the real window, and what they then draw.
+// Scenes and models saved by options, and what they then draw.
 #include "window/saving.h"
 
 #include <gmock/gmock.h>
@@ -8,13 +8,11 @@
 #include "relief/mesh/gltf_document.h"
 #include "relief/mesh/image_file.h"
 #include "relief/shade/image_compare.h"
-#include "tools/window/viewer_window.h"
+#include "tools/workplace.h"
 
 namespace relief::tools {
 namespace {
 
-using nlohmann::json;
-using test::ViewerWindow;
 using test::Workplace;
 using testing::HasSubstr;
 
@@ -83,34 +81,6 @@ TEST(SavedModel, HasTheFramesThatItIsDrawnWithAndDrawsTheSame) {
     const GltfDocument vase = GltfDocument::read(workplace / "vase.glb", report);
     EXPECT_FALSE(vase.mesh(vase.triangle_primitives().front()).normals.empty());
     EXPECT_EQ(workplace.run("relief-view data/vase.obj --save-model data/vase.obj").exit_code, 2);
-}
-
-TEST(SavedFromTheWindow, SceneAndModelStandBesideTheModelAndReplaceNothing) {
-    RELIEF_NEEDS_DISPLAY(display);
-    const Workplace workplace;
-    workplace.write("vase.obj", workplace.read("data/vase.obj"));
-    workplace.write("vase-scene-1.json", "mine");
-    display->act("mousemove 5 795");
-    ViewerWindow window(*display, workplace, "vase.obj --height-map data/bricks-height.png");
-    window.wait_for_rest();
-    window.drag(700, 300, 60, 25);
-    display->act("mousemove 5 795");
-    window.key("ctrl+s");
-    const json saved = window.wait_for("a scene", [](const json& now) {
-        return now["saved_files"]["file"] == "vase-scene-2.json";
-    });
-    EXPECT_EQ(saved["saved_files"]["error"], "");
-    EXPECT_EQ(workplace.read("vase-scene-1.json"), "mine");
-    ASSERT_EQ(workplace.run("relief-view vase-scene-2.json --output again.png").exit_code, 0);
-    window.wait_for("the whole picture", [](const json& now) { return now["drawn"]["whole"]; });
-    const Image shown = test::view_on(display->resting_picture(), saved["view"]);
-    EXPECT_EQ(compare(read_image(workplace / "again.png", ImageUse::color), shown).differing_pixels,
-              0U);
-    window.key("ctrl+e");
-    window.wait_for("a model", [](const json& now) {
-        return now["saved_files"]["file"] == "vase-model-1.glb";
-    });
-    EXPECT_EQ(workplace.run("relief-view vase-model-1.glb --output model.png").exit_code, 0);
 }
 
 }  // namespace

@@ -3,10 +3,11 @@
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
+#include <algorithm>
 #include <cstdlib>
-#include <sstream>
+#include <ctime>
+#include <stdexcept>
 #include <utility>
 
 namespace relief::test {
@@ -61,20 +62,36 @@ void ViewerWindow::drag(int x, int y, int dx, int dy, int button) const {
     display_.act(words + fmt::format(" mouseup {}", button));
 }
 
+void ViewerWindow::point_at(int x, int y) const {
+    display_.act(fmt::format("mousemove {} {}", x, y));
+    nlohmann::json now;
+    const auto is_there = [&] {
+        now = state();
+        return now["pointer"] == nlohmann::json({x, y});
+    };
+    EXPECT_TRUE(eventually(is_there)) << "the pointer is at " << now["pointer"];
+}
+
 void ViewerWindow::click(int x, int y) const {
-    display_.act(fmt::format("mousemove {} {} sleep 0.1 click 1", x, y));
+    point_at(x, y);
+    display_.act("click 1");
 }
 
 void ViewerWindow::click_on(const std::string& name) const {
-    nlohmann::json place;
-    const auto stays = [&] {  // What is above it may still come.
-        const nlohmann::json before = std::exchange(place, state()["places"].value(name, place));
-        if (!place.is_null() && place == before) return true;
-        display_.act("sleep 0.1");
-        return false;
+    const auto place = [&] { return state()["places"].value(name, nlohmann::json()); };
+    const auto is_pointed_at = [&] {  // What is above it may still come and move it.
+        const nlohmann::json before = place();
+        if (before.is_null()) return false;
+        point_at(before[0].get<int>(), before[1].get<int>());
+        return place() == before;
     };
-    ASSERT_TRUE(eventually(stays)) << name << " is not there";
-    click(place[0].get<int>(), place[1].get<int>());
+    ASSERT_TRUE(eventually(is_pointed_at)) << name << " is not there";
+    display_.act("click 1");
+}
+
+bool has_effect(const nlohmann::json& state, const char* effect) {
+    const nlohmann::json effects = state.value("effects", nlohmann::json::array());
+    return std::find(effects.begin(), effects.end(), effect) != effects.end();
 }
 
 Image view_on(const Image& screen, const nlohmann::json& view) {
@@ -112,14 +129,11 @@ double changed_picture(const Image& before, const Image& after) {
 }
 
 double processor_seconds(pid_t pid) {
-    std::istringstream stat(contents_of("/proc/" + std::to_string(pid) + "/stat"));
-    std::string field;
-    std::getline(stat, field, ')');  // "pid (name"
-    for (int i = 3; i < 14; ++i)
-        stat >> field;
-    double user = 0.0, system = 0.0;
-    stat >> user >> system;
-    return (user + system) / static_cast<double>(::sysconf(_SC_CLK_TCK));
+    clockid_t clock{};
+    timespec time{};
+    if (::clock_getcpuclockid(pid, &clock) != 0 || ::clock_gettime(clock, &time) != 0)
+        throw std::runtime_error("no processor time of process " + std::to_string(pid));
+    return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
 }
 
 }  // namespace relief::test

@@ -33,6 +33,8 @@ class ViewerWindow {
     void key(const std::string& name) const { display_.act("key " + name); }
     /// Presses a button at a place, moves on by so much in small steps, lets go.
     void drag(int x, int y, int dx, int dy, int button = 1) const;
+    /// Moves the pointer there, and waits until the program has noticed.
+    void point_at(int x, int y) const;
     void click(int x, int y) const;
     /// Clicks on what the state's "places" names, once it is there and stays.
     void click_on(const std::string& name) const;
@@ -45,6 +47,9 @@ class ViewerWindow {
     TemporaryDirectory streams_;
     std::unique_ptr<ChildProcess> process_;
 };
+
+/// Whether a state lists this effect.
+bool has_effect(const nlohmann::json& state, const char* effect);
 
 /// The view on a screen, which ends at its right and begins at its top. \param view  "view" of the
 /// state

@@ -146,6 +146,12 @@ bool UserInterface::is_typing() {
     return ImGui::GetIO().WantTextInput;
 }
 
+std::optional<glm::ivec2> UserInterface::pointer() {
+    const ImVec2 position = ImGui::GetIO().MousePos;
+    if (!ImGui::IsMousePosValid(&position)) return std::nullopt;
+    return glm::ivec2(position.x, position.y);
+}
+
 void UserInterface::on_key(int key, int modifiers, bool is_held) {
     if (is_typing()) return;
     for (const Binding& binding : bindings()) {

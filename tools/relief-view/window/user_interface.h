@@ -6,6 +6,7 @@
 
 #include <filesystem>
 #include <glm/vec2.hpp>
+#include <optional>
 #include <vector>
 
 #include "window/compare_view.h"
@@ -38,6 +39,8 @@ class UserInterface {
 
     /// Keys go into a field, and do nothing else.
     [[nodiscard]] static bool is_typing();
+    /// Where the pointer is, in pixels of the window; none if it is outside or unknown.
+    [[nodiscard]] static std::optional<glm::ivec2> pointer();
 
     /// Letters and panels become so large before the next frame.
     void set_scale(const InterfaceScale& scale) { wanted_scale_ = scale; }

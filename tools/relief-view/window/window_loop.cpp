@@ -354,6 +354,8 @@ class WindowLoop {
                           {"open", layout_.open_panels},
                           {"note", remembered_.note()}};
         seen["typing"] = UserInterface::is_typing();
+        const std::optional<glm::ivec2> pointer = UserInterface::pointer();
+        seen["pointer"] = pointer ? nlohmann::ordered_json{pointer->x, pointer->y} : nullptr;
         seen["help"] = interface_.is_help_open();
         seen["places"] = places_json();
         const std::string text = seen.dump(2) + "\n";
