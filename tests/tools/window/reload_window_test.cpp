@@ -197,7 +197,7 @@ TEST(ReloadWindow, TexturesShadersAndBigModelsAreReadWhileItIsShown) {
     const Workplace workplace;
     workplace.write_square("square.obj");
     write_color(workplace / "paint.png", 200, 150);
-    std::filesystem::create_directories(workplace / "shaders/scatter");
+    std::filesystem::create_directories(workplace / "shaders");
     ViewerWindow window(*display, workplace, "square.obj --diffuse-map paint.png",
                         "RELIEF_SHADER_DIR=shaders");
     change_texture(window, *display, workplace);
