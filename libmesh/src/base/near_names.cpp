@@ -44,14 +44,15 @@ bool has_word(const std::string& text, const std::string& word) {
 
 std::vector<std::string> near_names(std::string_view wanted, std::span<const std::string> known) {
     constexpr std::size_t most = 3;
-    constexpr std::size_t most_slips = 3;
+    constexpr std::size_t max_mistypings = 3;
     const std::string name = plain(wanted);
     std::vector<std::pair<std::size_t, std::string>> found;
-    std::size_t nearest = most_slips;
+    std::size_t nearest = max_mistypings;
     for (const std::string& candidate : known) {
         const std::string other = plain(candidate);
         const std::size_t distance = edit_distance(name, other);
-        const std::size_t allowed = std::min(most_slips, std::max(name.size(), other.size()) / 3);
+        const std::size_t allowed =
+            std::min(max_mistypings, std::max(name.size(), other.size()) / 3);
         if (distance > allowed && !has_word(other, name)) continue;
         found.emplace_back(distance, candidate);
         nearest = std::min(nearest, distance);

@@ -45,9 +45,9 @@ std::optional<PlainJpeg> open_plain_jpeg(std::span<const std::byte> stripped) {
     }
     if (colors != TJCS_GRAY && colors != TJCS_RGB && colors != TJCS_YCbCr) return std::nullopt;
     jpeg.channels = colors == TJCS_GRAY ? 1 : 3;
-    const std::size_t most_rows = max_image_samples / static_cast<std::size_t>(jpeg.channels) /
-                                  static_cast<std::size_t>(jpeg.width);
-    if (static_cast<std::size_t>(jpeg.height) > most_rows) return std::nullopt;
+    const std::size_t max_rows = max_image_samples / static_cast<std::size_t>(jpeg.channels) /
+                                 static_cast<std::size_t>(jpeg.width);
+    if (static_cast<std::size_t>(jpeg.height) > max_rows) return std::nullopt;
     return jpeg;
 }
 

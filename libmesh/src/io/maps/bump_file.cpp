@@ -42,13 +42,13 @@ double value_at(const void* row, int bits, std::size_t x) {
 template <typename Sample>
 class UnitCoding {
   public:
-    UnitCoding(const char* kind, Report& found) : kind_(kind), found_(found) {}
+    UnitCoding(const char* kind, Report& report) : kind_(kind), report_(report) {}
 
     Sample operator()(double value, std::size_t texel) {
         if constexpr (std::is_same_v<Sample, float>) return static_cast<float>(value);
         // This form is also true for NaN.
         if (!(value >= 0.0 && value <= 1.0)) {
-            found_.add(kind_, "texel", texel, "is written as the nearest of 0 and 1");
+            report_.add(kind_, "texel", texel, "is written as the nearest of 0 and 1");
             value = value > 1.0 ? 1.0 : 0.0;
         }
         return static_cast<Sample>(value * largest_sample<Sample> + 0.5);
@@ -56,7 +56,7 @@ class UnitCoding {
 
   private:
     const char* kind_;
-    Report& found_;
+    Report& report_;
 };
 
 /// Computes parts of a band.
@@ -69,12 +69,12 @@ class BandMaker {
           format_(format),
           shape_(shape_of(format, source.heights.width, source.heights.height)) {}
 
-    bool make(int first, int last, std::byte* rows, Report& found) const {
+    bool make(int first, int last, std::byte* rows, Report& report) const {
         if (format_.content == BumpContent::slope_moments)
             return make_moments(first, last, reinterpret_cast<float*>(rows));
-        if (shape_.bits == 8) return make_normals<std::uint8_t>(first, last, rows, found);
-        if (shape_.bits == 16) return make_normals<std::uint16_t>(first, last, rows, found);
-        return make_normals<float>(first, last, rows, found);
+        if (shape_.bits == 8) return make_normals<std::uint8_t>(first, last, rows, report);
+        if (shape_.bits == 16) return make_normals<std::uint16_t>(first, last, rows, report);
+        return make_normals<float>(first, last, rows, report);
     }
 
   private:
@@ -83,7 +83,7 @@ class BandMaker {
     }
 
     template <typename Sample>
-    bool make_normals(int first, int last, std::byte* rows, Report& found) const {
+    bool make_normals(int first, int last, std::byte* rows, Report& report) const {
         auto* const samples = reinterpret_cast<Sample*>(rows);
         const bool is_plain = shape_.channels == 3 && !format_.xy_only && !source_.transparent;
         std::vector<Sample> scratch;
@@ -97,14 +97,14 @@ class BandMaker {
         const std::size_t row_size = width() * static_cast<std::size_t>(shape_.channels);
         for (int row = first; row < last; ++row) {
             const auto index = static_cast<std::size_t>(row - first);
-            convert_row(row, codes + index * 3 * width(), samples + index * row_size, found);
+            convert_row(row, codes + index * 3 * width(), samples + index * row_size, report);
         }
         return true;
     }
 
     /// Converts three codes per texel to the samples of the file.
     template <typename Sample>
-    void convert_row(int row, Sample* codes, Sample* samples, Report& found) const {
+    void convert_row(int row, Sample* codes, Sample* samples, Report& report) const {
         if (source_.transparent) flatten(source_.transparent(row), codes);
         const auto channels = static_cast<std::size_t>(shape_.channels);
         for (std::size_t x = 0; x < width(); ++x) {
@@ -113,8 +113,8 @@ class BandMaker {
             texel[1] = codes[3 * x + 1];
             texel[2] = format_.xy_only ? Sample{} : codes[3 * x + 2];
         }
-        if (format_.alpha == MapAlpha::height) add_height(row, samples, found);
-        if (format_.alpha == MapAlpha::keep) add_alpha(row, samples, found);
+        if (format_.alpha == MapAlpha::height) add_height(row, samples, report);
+        if (format_.alpha == MapAlpha::keep) add_alpha(row, samples, report);
     }
 
     template <typename Sample>
@@ -130,9 +130,9 @@ class BandMaker {
     }
 
     template <typename Sample>
-    void add_height(int row, Sample* samples, Report& found) const {
+    void add_height(int row, Sample* samples, Report& report) const {
         const void* const heights = source_.heights.row(row);
-        UnitCoding<Sample> coded("height outside 0 to 1", found);
+        UnitCoding<Sample> coded("height outside 0 to 1", report);
         for (std::size_t x = 0; x < width(); ++x) {
             const double height = value_at(heights, source_.heights.bits, x);
             const double kept = options_.strength < 0.0 ? 1.0 - height : height;
@@ -141,9 +141,9 @@ class BandMaker {
     }
 
     template <typename Sample>
-    void add_alpha(int row, Sample* samples, Report& found) const {
+    void add_alpha(int row, Sample* samples, Report& report) const {
         const void* const alpha = source_.alpha ? source_.alpha(row) : nullptr;
-        UnitCoding<Sample> coded("alpha outside 0 to 1", found);
+        UnitCoding<Sample> coded("alpha outside 0 to 1", report);
         for (std::size_t x = 0; x < width(); ++x) {
             const double value = alpha ? value_at(alpha, source_.alpha_bits, x) : 1.0;
             samples[4 * x + 3] = coded(value, static_cast<std::size_t>(row) * width() + x);
@@ -209,14 +209,14 @@ bool make_bump_band(const BumpBandSource& source, const BumpOptions& options,
     const std::size_t grain = std::max<std::size_t>(
         1, bump_texels_per_piece / static_cast<std::size_t>(source.heights.width));
     std::atomic<bool> finite = true;
-    Report found_here;
+    Report band_report;
     parallel_for_reporting(
-        count, grain, found_here, [&](std::size_t begin, std::size_t end, Report& found) {
+        count, grain, band_report, [&](std::size_t begin, std::size_t end, Report& piece_report) {
             if (!maker.make(first + static_cast<int>(begin), first + static_cast<int>(end),
-                            rows.data() + begin * row_bytes, found))
+                            rows.data() + begin * row_bytes, piece_report))
                 finite = false;
         });
-    if (finite) report.merge(found_here);
+    if (finite) report.merge(band_report);
     return finite;
 }
 

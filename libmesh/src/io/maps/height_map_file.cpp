@@ -106,10 +106,10 @@ void HeightWindow::read_ahead(int last) {
 }
 
 void HeightWindow::move_to(int first, int last) {
-    const int gone = std::max(first - radius_ - begin_, 0);
-    heights_.drop(gone);
-    if (has_alpha()) alpha_.drop(gone);
-    begin_ += gone;
+    const int dropped_rows = std::max(first - radius_ - begin_, 0);
+    heights_.drop(dropped_rows);
+    if (has_alpha()) alpha_.drop(dropped_rows);
+    begin_ += dropped_rows;
     if (!ahead_.heights.empty()) append(ahead_);
     ahead_ = {};
     read_ahead(last);
