@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "all_features.h"
+#include "support/shapes.h"
 
 namespace relief {
 namespace {
@@ -144,6 +145,21 @@ TEST(Effects, AreSetSeenAndTakenOutByName) {
         effect.set(f, false);
         EXPECT_EQ(f, Features{});
     }
+}
+
+TEST(Effects, AreInTheOrderOfThePlansReasons) {
+    Scene scene;
+    scene.meshes = {test::grid(1)};
+    scene.instances = {{0, glm::mat4(1.0F), "grid"}};
+    std::vector<std::string> planned;
+    const FramePlan plan = plan_effects(scene, {});
+    for (const EffectReason& reason : plan.draws.at(0).reasons)
+        planned.push_back(reason.effect);
+    std::vector<std::string> expected;
+    for (const Effect& effect : effects())
+        expected.emplace_back(effect.name);
+    expected.emplace_back("computed tangents");  // Follows from the effects.
+    EXPECT_EQ(planned, expected);
 }
 
 TEST(Effects, AndTheLampsTellSetsApart) {
