@@ -191,7 +191,7 @@ TEST(CheckCommand, RealModelsWithTroubleAreNamed) {
     EXPECT_THAT(workplace.run("relief-mesh check " + folder + "/obj/nonmanifold/fan3.obj").out,
                 HasSubstr("trouble   1 x non-manifold edge (edge of triangle 0)"));
     EXPECT_THAT(workplace.run("relief-mesh check " + folder + "/obj/nonmanifold/moebius.obj").out,
-                HasSubstr("trouble   4 x flipped neighbours"));
+                HasSubstr("trouble   4 x flipped neighbors"));
     EXPECT_THAT(
         workplace.run("relief-mesh check " + folder + "/obj/nonmanifold/hourglass_ico.obj").out,
         HasSubstr("sound\nremarks   1 x bow-tie vertex\n"));

@@ -4,8 +4,8 @@
 //
 // Holes are heights that are not finite, or transparent. The value of a hole is the mean over the
 // smallest square around it that contains a finite height. All squares inside that one contain
-// none, so the mean runs over its rim. A chessboard distance map gives the rim [Rosenfeld and
-// Pfaltz 1968]. Sums run in double precision in a fixed order around the rim.
+// none, so the mean runs over its rim. A chessboard distance map gives the rim
+// [Rosenfeld and Pfaltz 1968]. Sums run in double precision in a fixed order around the rim.
 #include "relief/mesh/height_map.h"
 
 #include <fmt/format.h>
