@@ -215,6 +215,13 @@ void strip_jpeg(Bytes bytes, const std::filesystem::path& name, ImageContainer& 
 void check_tga(Bytes bytes, const std::filesystem::path& name) {
     if (bytes.size() < 18) throw FileError(name, "is cut short: TGA starts with 18 bytes");
     const std::uint32_t type = byte_at(bytes, 2);
+    // OpenImageIO 2.4 reads the entries before the first one from memory that is not initialized.
+    const std::uint32_t first_entry = little16(bytes, 3);
+    if ((type == 1 || type == 9) && first_entry != 0) {
+        throw FileError(name, fmt::format("has a color map that starts at entry {}, but only those "
+                                          "that start at entry 0 can be read",
+                                          first_entry));
+    }
     const std::uint64_t width = little16(bytes, 12);
     const std::uint64_t height = little16(bytes, 14);
     const std::uint64_t texel_bytes = (byte_at(bytes, 16) + 7) / 8;

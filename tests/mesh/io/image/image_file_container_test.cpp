@@ -164,6 +164,12 @@ TEST(ImageContainer, TgaGoesByItsNameOrFooterAndIsChecked) {
     EXPECT_THAT(complaint_about(header + "bgrbgr", "a.tga"),
                 HasSubstr("announces 258 x 1 texels, which its 24 bytes cannot hold"));
     EXPECT_THAT(complaint_about("abc", "a.tga"), HasSubstr("is cut short"));
+    header[13] = 0;
+    header[3] = 126;  // Without a color map, its first entry has no meaning.
+    EXPECT_EQ(complaint_about(header + "bgrbgr", "a.tga"), "no error");
+    header[2] = 1;
+    EXPECT_THAT(complaint_about(header + "bgrbgr", "a.tga"),
+                HasSubstr("has a color map that starts at entry 126"));
 }
 
 std::string little32(std::uint32_t value) {
