@@ -72,7 +72,8 @@ void finish_colors(const JsonCursor& object, glm::vec3& diffuse, std::optional<g
     if (const auto color = object.find("diffuse")) diffuse = color_in(*color);
     diffuse *= intensity;
     if (specular) specular = intensity * *specular;
-    if (const auto ambient = object.find("ambient")) scene.ambient += intensity * color_in(*ambient);
+    if (const auto ambient = object.find("ambient"))
+        scene.ambient += intensity * color_in(*ambient);
 }
 
 /// A light without "direction" shines along its node's -z.

@@ -56,7 +56,8 @@ TEST(EffectPlan, WithoutLightIsNothing) {
     scene.materials[0].normal_map = NormalMap{};
     EXPECT_EQ(features(scene), Features{});
     const FramePlan plan = plan_effects(scene, {.samples = 1});
-    EXPECT_EQ(reason(plan.draws[0].reasons, "diffuse").reason, "no light source reaches the surface");
+    EXPECT_EQ(reason(plan.draws[0].reasons, "diffuse").reason,
+              "no light source reaches the surface");
     EXPECT_EQ(reason(plan.draws[0].reasons, "normal map").reason,
               "neither light nor reflection shows the normal");
     EXPECT_FALSE(plan.draws[0].needs_tangents);

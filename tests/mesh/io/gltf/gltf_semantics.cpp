@@ -7,8 +7,8 @@
 
 #include "file_bytes.h"
 #include "io/gltf/gltf_accessor.h"
-#include "io/gltf/gltf_reader.h"
 #include "io/gltf/gltf_check.h"
+#include "io/gltf/gltf_reader.h"
 #include "io/gltf/gltf_uri.h"
 
 namespace relief::test {
