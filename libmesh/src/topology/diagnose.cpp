@@ -139,8 +139,8 @@ TriangleShape shape_of(const glm::uvec3& classes, const glm::vec3 (&corners)[3],
 
 }  // namespace
 
-Subject::Subject(const Mesh& subject)
-    : mesh(subject),
+DiagnosedMesh::DiagnosedMesh(const Mesh& diagnosed)
+    : mesh(diagnosed),
       classes(weld_positions(mesh.positions)),
       triangles(welded_triangles(mesh.triangles, classes)),
       shapes(triangles.size()),
@@ -156,9 +156,9 @@ Subject::Subject(const Mesh& subject)
     });
 }
 
-void diagnose_triangles(const Subject& subject, Tally& tally) {
-    for (std::size_t t = 0; t < subject.shapes.size(); ++t) {
-        switch (subject.shapes[t]) {
+void diagnose_triangles(const DiagnosedMesh& diagnosed, Tally& tally) {
+    for (std::size_t t = 0; t < diagnosed.shapes.size(); ++t) {
+        switch (diagnosed.shapes[t]) {
             case TriangleShape::sound:
                 break;
             case TriangleShape::needle:
@@ -182,12 +182,12 @@ namespace {
 /// Best normal that any triangle gives a position class.
 enum class Use : std::uint8_t { none, without_area, with_area };
 
-std::vector<Use> uses_of(const Subject& subject) {
-    std::vector<Use> uses(subject.classes.size(), Use::none);
-    for (std::size_t t = 0; t < subject.triangles.size(); ++t) {
-        const Use use = has_area(subject.shapes[t]) ? Use::with_area : Use::without_area;
+std::vector<Use> uses_of(const DiagnosedMesh& diagnosed) {
+    std::vector<Use> uses(diagnosed.classes.size(), Use::none);
+    for (std::size_t t = 0; t < diagnosed.triangles.size(); ++t) {
+        const Use use = has_area(diagnosed.shapes[t]) ? Use::with_area : Use::without_area;
         for (int i = 0; i < 3; ++i) {
-            Use& most = uses[subject.triangles[t][i]];
+            Use& most = uses[diagnosed.triangles[t][i]];
             if (most < use) most = use;
         }
     }
@@ -196,11 +196,11 @@ std::vector<Use> uses_of(const Subject& subject) {
 
 }  // namespace
 
-void diagnose_vertices(const Subject& subject, Tally& tally) {
-    const std::vector<Use> uses = uses_of(subject);
-    for (std::size_t v = 0; v < subject.classes.size(); ++v) {
-        const Use use = uses[subject.classes[v]];
-        if (!is_finite(subject.mesh.positions[v]))
+void diagnose_vertices(const DiagnosedMesh& diagnosed, Tally& tally) {
+    const std::vector<Use> uses = uses_of(diagnosed);
+    for (std::size_t v = 0; v < diagnosed.classes.size(); ++v) {
+        const Use use = uses[diagnosed.classes[v]];
+        if (!is_finite(diagnosed.mesh.positions[v]))
             tally.add(MeshCondition::vertex_not_finite, v);
         else if (use == Use::none)
             tally.add(MeshCondition::vertex_isolated, v);
@@ -209,8 +209,8 @@ void diagnose_vertices(const Subject& subject, Tally& tally) {
     }
 }
 
-void diagnose_texture(const Subject& subject, Tally& tally) {
-    const Mesh& mesh = subject.mesh;
+void diagnose_texture(const DiagnosedMesh& diagnosed, Tally& tally) {
+    const Mesh& mesh = diagnosed.mesh;
     if (mesh.texcoords.empty()) return;
     for (std::size_t v = 0; v < mesh.texcoords.size(); ++v) {
         if (!is_finite(mesh.texcoords[v])) tally.add(MeshCondition::texture_not_finite, v);
@@ -218,7 +218,7 @@ void diagnose_texture(const Subject& subject, Tally& tally) {
     const std::vector<Gradient> gradients =
         gradient_kinds(mesh.positions, mesh.texcoords, mesh.triangles);
     for (std::size_t t = 0; t < gradients.size(); ++t) {
-        if (!has_area(subject.shapes[t])) continue;
+        if (!has_area(diagnosed.shapes[t])) continue;
         if (gradients[t] == Gradient::none) tally.add(MeshCondition::texture_degenerate, t);
         if (gradients[t] == Gradient::mirrored) tally.add(MeshCondition::texture_mirrored, t);
     }
@@ -245,13 +245,13 @@ struct Facing {
 };
 
 /// Skips triangles that are too narrow for a reliable normal.
-std::vector<Facing> facings_of(const Subject& subject) {
-    std::vector<Facing> facings(subject.mesh.positions.size());
-    for (std::size_t t = 0; t < subject.shapes.size(); ++t) {
-        if (subject.shapes[t] != TriangleShape::sound) continue;
+std::vector<Facing> facings_of(const DiagnosedMesh& diagnosed) {
+    std::vector<Facing> facings(diagnosed.mesh.positions.size());
+    for (std::size_t t = 0; t < diagnosed.shapes.size(); ++t) {
+        if (diagnosed.shapes[t] != TriangleShape::sound) continue;
         for (int i = 0; i < 3; ++i) {
-            const std::uint32_t vertex = subject.mesh.triangles[t][i];
-            const float cosine = glm::dot(subject.normals[t], subject.mesh.normals[vertex]);
+            const std::uint32_t vertex = diagnosed.mesh.triangles[t][i];
+            const float cosine = glm::dot(diagnosed.normals[t], diagnosed.mesh.normals[vertex]);
             Facing& facing = facings[vertex];
             if (cosine > sidewise)
                 facing.before = 1;
@@ -264,10 +264,10 @@ std::vector<Facing> facings_of(const Subject& subject) {
     return facings;
 }
 
-void diagnose_normals(const Subject& subject, Tally& tally) {
-    const std::vector<Facing> facings = facings_of(subject);
-    for (std::size_t v = 0; v < subject.mesh.normals.size(); ++v) {
-        const glm::vec3& normal = subject.mesh.normals[v];
+void diagnose_normals(const DiagnosedMesh& diagnosed, Tally& tally) {
+    const std::vector<Facing> facings = facings_of(diagnosed);
+    for (std::size_t v = 0; v < diagnosed.mesh.normals.size(); ++v) {
+        const glm::vec3& normal = diagnosed.mesh.normals[v];
         if (!is_finite(normal)) {
             tally.add(MeshCondition::normal_not_finite, v);
             continue;
@@ -313,9 +313,9 @@ void diagnose_tangents(const Mesh& mesh, Tally& tally) {
 
 }  // namespace
 
-void diagnose_frames(const Subject& subject, Tally& tally) {
-    if (!subject.mesh.normals.empty()) diagnose_normals(subject, tally);
-    diagnose_tangents(subject.mesh, tally);
+void diagnose_frames(const DiagnosedMesh& diagnosed, Tally& tally) {
+    if (!diagnosed.mesh.normals.empty()) diagnose_normals(diagnosed, tally);
+    diagnose_tangents(diagnosed.mesh, tally);
 }
 
 namespace {
@@ -365,17 +365,17 @@ void diagnose_places(const Mesh& mesh, Diagnosis& diagnosis, Tally& tally) {
 
 /// Triangles that have an area in space. The corners of other triangles become equal, so that they
 /// have no area in texture space either.
-std::vector<glm::uvec3> drawn_triangles(const Subject& subject) {
-    std::vector<glm::uvec3> triangles = subject.mesh.triangles;
+std::vector<glm::uvec3> drawn_triangles(const DiagnosedMesh& diagnosed) {
+    std::vector<glm::uvec3> triangles = diagnosed.mesh.triangles;
     for (std::size_t t = 0; t < triangles.size(); ++t) {
-        if (!has_area(subject.shapes[t])) triangles[t] = glm::uvec3(triangles[t].x);
+        if (!has_area(diagnosed.shapes[t])) triangles[t] = glm::uvec3(triangles[t].x);
     }
     return triangles;
 }
 
-void diagnose_overlap(const Subject& subject, Diagnosis& diagnosis, Tally& tally) {
+void diagnose_overlap(const DiagnosedMesh& diagnosed, Diagnosis& diagnosis, Tally& tally) {
     const TextureOverlap overlap =
-        texture_overlap(subject.mesh.texcoords, drawn_triangles(subject));
+        texture_overlap(diagnosed.mesh.texcoords, drawn_triangles(diagnosed));
     diagnosis.overlap_raster = overlap.raster;
     for (std::size_t t = 0; t < overlap.overlapping.size(); ++t) {
         if (overlap.overlapping[t] != 0) tally.add(MeshCondition::texture_overlapping, t);
@@ -424,22 +424,22 @@ bool Diagnosis::has_trouble() const {
 
 Diagnosis diagnose(const Mesh& mesh, const DiagnoseOptions& options) {
     validate(mesh);
-    const Subject subject(mesh);
+    const DiagnosedMesh diagnosed(mesh);
     Diagnosis diagnosis;
     const std::vector<std::function<void(Tally&)>> parts = {
-        [&](Tally& tally) { diagnose_triangles(subject, tally); },
+        [&](Tally& tally) { diagnose_triangles(diagnosed, tally); },
         [&](Tally& tally) {
-            if (options.edges) diagnose_edges(subject, tally);
+            if (options.edges) diagnose_edges(diagnosed, tally);
         },
-        [&](Tally& tally) { diagnose_vertices(subject, tally); },
+        [&](Tally& tally) { diagnose_vertices(diagnosed, tally); },
         [&](Tally& tally) {
-            if (options.near_duplicates) diagnose_near_duplicates(subject, tally);
+            if (options.near_duplicates) diagnose_near_duplicates(diagnosed, tally);
         },
-        [&](Tally& tally) { diagnose_frames(subject, tally); },
-        [&](Tally& tally) { diagnose_texture(subject, tally); },
+        [&](Tally& tally) { diagnose_frames(diagnosed, tally); },
+        [&](Tally& tally) { diagnose_texture(diagnosed, tally); },
         [&](Tally& tally) {
             if (options.texture_overlap && !mesh.texcoords.empty())
-                diagnose_overlap(subject, diagnosis, tally);
+                diagnose_overlap(diagnosed, diagnosis, tally);
         },
         [&](Tally& tally) { diagnose_places(mesh, diagnosis, tally); },
     };

@@ -155,7 +155,7 @@ void gather_spokes(std::span<const Corner> around, std::span<const glm::uvec3> t
 }
 
 /// Classifies edges and fans at one vertex.
-void judge_vertex(const Subject& subject, std::uint32_t vertex, Workspace& work,
+void judge_vertex(const DiagnosedMesh& diagnosed, std::uint32_t vertex, Workspace& work,
                   FoundEdges& found) {
     const std::span<const SideAtVertex> spokes(work.spokes);
     for (std::size_t begin = 0; begin < spokes.size();) {
@@ -164,32 +164,32 @@ void judge_vertex(const Subject& subject, std::uint32_t vertex, Workspace& work,
             work.fans.join(spokes[begin].member, spokes[end].member);
         if (vertex < spokes[begin].other) {
             found.edges[spokes[begin].corner] =
-                judge_edge(spokes.subspan(begin, end - begin), subject.normals);
+                judge_edge(spokes.subspan(begin, end - begin), diagnosed.normals);
         }
         begin = end;
     }
     found.bow_tie[vertex] = work.fans.count() > 1 ? 1 : 0;
 }
 
-FoundEdges find_edges(const Subject& subject) {
-    const std::size_t vertices = subject.classes.size();
-    const CornersByVertex corners(vertices, subject.triangles, [&](std::size_t t) {
-        return subject.shapes[t] <= TriangleShape::collinear;
+FoundEdges find_edges(const DiagnosedMesh& diagnosed) {
+    const std::size_t vertices = diagnosed.classes.size();
+    const CornersByVertex corners(vertices, diagnosed.triangles, [&](std::size_t t) {
+        return diagnosed.shapes[t] <= TriangleShape::collinear;
     });
-    FoundEdges found{std::vector<Copy>(subject.triangles.size(), Copy::none),
-                     std::vector<Edge>(3 * subject.triangles.size(), Edge::unremarkable),
+    FoundEdges found{std::vector<Copy>(diagnosed.triangles.size(), Copy::none),
+                     std::vector<Edge>(3 * diagnosed.triangles.size(), Edge::unremarkable),
                      std::vector<std::uint8_t>(vertices, 0)};
     parallel_for(vertices, edge_grain, [&](std::size_t begin, std::size_t end) {
         std::vector<TriangleKey> keys;
         for (std::size_t v = begin; v < end; ++v)
-            find_copies(corners.at(v), static_cast<std::uint32_t>(v), subject.triangles, keys,
+            find_copies(corners.at(v), static_cast<std::uint32_t>(v), diagnosed.triangles, keys,
                         found.copies);
     });
     parallel_for(vertices, edge_grain, [&](std::size_t begin, std::size_t end) {
         Workspace work;
         for (std::size_t v = begin; v < end; ++v) {
-            gather_spokes(corners.at(v), subject.triangles, found.copies, work);
-            judge_vertex(subject, static_cast<std::uint32_t>(v), work, found);
+            gather_spokes(corners.at(v), diagnosed.triangles, found.copies, work);
+            judge_vertex(diagnosed, static_cast<std::uint32_t>(v), work, found);
         }
     });
     return found;
@@ -216,8 +216,8 @@ void count_edge(Edge edge, std::size_t triangle, Tally& tally) {
 
 }  // namespace
 
-void diagnose_edges(const Subject& subject, Tally& tally) {
-    const FoundEdges found = find_edges(subject);
+void diagnose_edges(const DiagnosedMesh& diagnosed, Tally& tally) {
+    const FoundEdges found = find_edges(diagnosed);
     for (std::size_t t = 0; t < found.copies.size(); ++t) {
         if (found.copies[t] == Copy::repeated) tally.add(MeshCondition::triangle_repeated, t);
         if (found.copies[t] == Copy::backed) tally.add(MeshCondition::triangle_backed, t);

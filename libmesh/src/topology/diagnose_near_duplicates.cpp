@@ -169,11 +169,11 @@ bool is_near_another(const PositionGrid& grid, const glm::vec3& position, std::u
 
 }  // namespace
 
-void diagnose_near_duplicates(const Subject& subject, Tally& tally) {
-    const std::span<const glm::vec3> positions(subject.mesh.positions);
+void diagnose_near_duplicates(const DiagnosedMesh& diagnosed, Tally& tally) {
+    const std::span<const glm::vec3> positions(diagnosed.mesh.positions);
     std::vector<std::uint32_t> members;
     for (std::size_t v = 0; v < positions.size(); ++v) {
-        if (subject.classes[v] == v && is_finite(positions[v]))
+        if (diagnosed.classes[v] == v && is_finite(positions[v]))
             members.push_back(static_cast<std::uint32_t>(v));
     }
     const PositionGrid grid(positions, members);

@@ -44,8 +44,8 @@ inline bool has_area(TriangleShape shape) {
 }
 
 /// A mesh and the derived data that several checks use.
-struct Subject {
-    explicit Subject(const Mesh& subject);
+struct DiagnosedMesh {
+    explicit DiagnosedMesh(const Mesh& diagnosed);
 
     const Mesh& mesh;
     std::vector<std::uint32_t> classes;  ///< weld_positions()
@@ -55,21 +55,21 @@ struct Subject {
 };
 
 /// Checks single triangles.
-void diagnose_triangles(const Subject& subject, Tally& tally);
+void diagnose_triangles(const DiagnosedMesh& diagnosed, Tally& tally);
 
 /// Checks duplicate and back-to-back triangles, edges and fans.
-void diagnose_edges(const Subject& subject, Tally& tally);
+void diagnose_edges(const DiagnosedMesh& diagnosed, Tally& tally);
 
 /// Checks positions, and whether triangles use them.
-void diagnose_vertices(const Subject& subject, Tally& tally);
+void diagnose_vertices(const DiagnosedMesh& diagnosed, Tally& tally);
 
 /// Checks for nearly equal positions.
-void diagnose_near_duplicates(const Subject& subject, Tally& tally);
+void diagnose_near_duplicates(const DiagnosedMesh& diagnosed, Tally& tally);
 
 /// Checks stored normals and tangents.
-void diagnose_frames(const Subject& subject, Tally& tally);
+void diagnose_frames(const DiagnosedMesh& diagnosed, Tally& tally);
 
 /// Checks texture coordinates, except for overlaps.
-void diagnose_texture(const Subject& subject, Tally& tally);
+void diagnose_texture(const DiagnosedMesh& diagnosed, Tally& tally);
 
 }  // namespace relief
