@@ -9,6 +9,7 @@
 #include <array>
 #include <cmath>
 
+#include "geometry/portable_math.h"
 #include "image/texel_loops.h"
 #include "parallel.h"
 
@@ -263,7 +264,8 @@ double true_slope_response(double frequency) {
     static const auto weights = central_weights();
     double slope = 0.0;
     for (std::size_t k = 1; k <= widest_difference; ++k)
-        slope += 2.0 * weights[widest_difference][k] * std::sin(static_cast<double>(k) * frequency);
+        slope +=
+            2.0 * weights[widest_difference][k] * portable::sin(static_cast<double>(k) * frequency);
     return slope;
 }
 

@@ -17,6 +17,7 @@
 
 #include "accuracy/power_spectrum.h"
 #include "accuracy/random.h"
+#include "geometry/portable_math.h"
 #include "image/height_holes.h"
 #include "parallel.h"
 #include "relief/mesh/destaircase.h"
@@ -105,7 +106,7 @@ constexpr double least_excess = 0.01;
 bool has_exact_levels(const HeightDepth& depth, int bits_of_file) {
     constexpr int most_bits = 2;
     if (depth.bits == 0 || depth.bits > most_bits) return false;
-    return bits_of_file == 32 || depth.step > 1.5 / (std::exp2(bits_of_file) - 1.0);
+    return bits_of_file == 32 || depth.step > 1.5 / (std::ldexp(1.0, bits_of_file) - 1.0);
 }
 
 double beyond(double deviation, double rounding) {
@@ -135,9 +136,10 @@ std::optional<NoiseSpectrum> possible_noise(const QuietDeviations& quiet, double
         std::size_t i = 0;
         while (i + 2 < deviations.size() && quiet_frequencies[i + 1] > f)
             ++i;
-        const double w = std::log(f / quiet_frequencies[i]) /
-                         std::log(quiet_frequencies[i + 1] / quiet_frequencies[i]);
-        const double deviation = deviations[i] * std::pow(deviations[i + 1] / deviations[i], w);
+        const double w = portable::log(f / quiet_frequencies[i]) /
+                         portable::log(quiet_frequencies[i + 1] / quiet_frequencies[i]);
+        const double deviation =
+            deviations[i] * portable::pow(deviations[i + 1] / deviations[i], w);
         noise.rings.push_back(deviation * deviation);
     }
     return noise;
@@ -403,8 +405,8 @@ KernelPrediction KernelRehearsal::predict_upper(const KernelPrediction& shown) c
     upper.spoil();
     const KernelPrediction some = upper.predict(shown.kernel, shown.gaussian_radius);
     KernelPrediction result = shown;
-    result.rms_degrees =
-        std::hypot(result.rms_degrees, beyond(some.rms_degrees, lower.rms_degrees));
+    const double added = beyond(some.rms_degrees, lower.rms_degrees);
+    result.rms_degrees = std::sqrt(result.rms_degrees * result.rms_degrees + added * added);
     result.max_degrees = std::max(result.max_degrees, some.max_degrees);
     return result;
 }

@@ -10,6 +10,7 @@
 #include <numbers>
 
 #include "accuracy/random.h"
+#include "geometry/portable_math.h"
 #include "image/fft.h"
 #include "image/texel_loops.h"
 
@@ -84,7 +85,7 @@ double frequency(int index, int side) {
 }  // namespace
 
 double NoiseSpectrum::at(double x, double y) const {
-    const auto ring = static_cast<std::size_t>(std::hypot(x, y) * side / (2.0 * pi) + 0.5);
+    const auto ring = static_cast<std::size_t>(std::sqrt(x * x + y * y) * side / (2.0 * pi) + 0.5);
     return rings[std::min(ring, rings.size() - 1)];
 }
 
@@ -103,7 +104,7 @@ double NoiseSpectrum::high_deviation() const {
     double power = 0.0;
     double gain = 0.0;
     // The mask (1 -2 1), three times over both axes.
-    const auto response = [](double f) { return std::pow(2.0 - 2.0 * std::cos(f), 6.0); };
+    const auto response = [](double f) { return portable::pow(2.0 - 2.0 * portable::cos(f), 6.0); };
     for (int row = 0; row < side; ++row) {
         const double y = frequency(row, side);
         for (int column = 0; column < side; ++column) {
@@ -147,7 +148,7 @@ PowerSpectrum::PowerSpectrum(std::span<const HeightTile> tiles) : side_(tiles[0]
     std::vector<double> window(static_cast<std::size_t>(side_));
     double squares = 0.0;
     for (int i = 0; i < side_; ++i) {
-        const double hann = 0.5 - 0.5 * std::cos(2.0 * pi * (i + 0.5) / side_);
+        const double hann = 0.5 - 0.5 * portable::cos(2.0 * pi * (i + 0.5) / side_);
         const double w = hann * hann;
         window[static_cast<std::size_t>(i)] = w;
         squares += w * w;
@@ -174,10 +175,10 @@ PowerSpectrum::PowerSpectrum(std::span<const HeightTile> tiles) : side_(tiles[0]
 }
 
 std::size_t PowerSpectrum::bin_at(double x, double y) const {
-    const double length = std::hypot(x, y) * side_ / (2.0 * pi);
+    const double length = std::sqrt(x * x + y * y) * side_ / (2.0 * pi);
     const int ring = std::min(side_ - 1, static_cast<int>(length + 0.5));
     // A frequency and its opposite are the same wave.
-    double angle = std::atan2(y, x);
+    double angle = portable::atan2(y, x);
     if (angle < 0.0) angle += pi;
     // Sectors lie around the axes, on which much of what is made by hand has its waves.
     const int sector = static_cast<int>(std::floor(angle / pi * sectors + 0.5)) % sectors;
@@ -254,7 +255,7 @@ std::vector<PowerSpectrum::Band> PowerSpectrum::bands() const {
     constexpr double lowest = 4.0;
     std::vector<Band> result;
     for (int i = 0;; ++i) {
-        const double begin = lowest * std::pow(2.0, 0.5 * i);
+        const double begin = lowest * portable::pow(2.0, 0.5 * i);
         const double end = begin * std::numbers::sqrt2;
         if (begin > 0.6 * side_) break;
         std::vector<double> powers;
@@ -299,8 +300,8 @@ std::optional<NoiseSpectrum> PowerSpectrum::grain() const {
     const Band& low = bands[std::min(first + 1, bands.size() - 1)];
     const Band& next = bands[std::min(first + 3, bands.size() - 1)];
     const double fall = next.frequency > low.frequency
-                            ? std::clamp(std::log(low.power / next.power) /
-                                             std::log(next.frequency / low.frequency),
+                            ? std::clamp(portable::log(low.power / next.power) /
+                                             portable::log(next.frequency / low.frequency),
                                          -4.0, 1.0)
                             : 0.0;
     NoiseSpectrum noise;
@@ -310,7 +311,7 @@ std::optional<NoiseSpectrum> PowerSpectrum::grain() const {
     for (int ring = 0; ring < side_; ++ring) {
         const double f = std::max(1.0, static_cast<double>(ring));
         if (f <= low.frequency) {
-            noise.rings.push_back(low.power * std::pow(low.frequency / f, fall));
+            noise.rings.push_back(low.power * portable::pow(low.frequency / f, fall));
             continue;
         }
         std::size_t above = first + 2;
@@ -322,8 +323,8 @@ std::optional<NoiseSpectrum> PowerSpectrum::grain() const {
         }
         const Band& a = bands[above - 1];
         const Band& b = bands[above];
-        const double w = std::log(f / a.frequency) / std::log(b.frequency / a.frequency);
-        noise.rings.push_back(a.power * std::pow(b.power / a.power, w));
+        const double w = portable::log(f / a.frequency) / portable::log(b.frequency / a.frequency);
+        noise.rings.push_back(a.power * portable::pow(b.power / a.power, w));
     }
     return noise;
 }
@@ -372,14 +373,15 @@ NoiseSpectrum PowerSpectrum::hidden_detail(const NoiseSpectrum& noise) const {
     if (const double top = mean_seen(0.7 * edge, edge); top > 0.0) {
         if (last >= 3) {
             const double below = mean_seen(0.35 * edge, 0.5 * edge);
-            fall = std::clamp(std::log2(below / top), least_fall, greatest_fall);
+            fall = std::clamp(portable::log(below / top) / std::numbers::ln2, least_fall,
+                              greatest_fall);
         }
-        next = std::min(next, top * std::pow(edge / (edge + 1.0), fall));
-        const double drop = std::log(top / next) / std::log((edge + 1.0) / (0.85 * edge));
+        next = std::min(next, top * portable::pow(edge / (edge + 1.0), fall));
+        const double drop = portable::log(top / next) / portable::log((edge + 1.0) / (0.85 * edge));
         if (next < top) fall = std::clamp(drop, fall, greatest_fall);
     }
     for (std::size_t ring = last + 1; ring < rings; ++ring) {
-        const double limit = next * std::pow((edge + 1.0) / static_cast<double>(ring), fall);
+        const double limit = next * portable::pow((edge + 1.0) / static_cast<double>(ring), fall);
         hidden[ring] = std::min(hidden[ring], limit);
     }
     NoiseSpectrum result;
@@ -417,7 +419,7 @@ HeightTile without_noise(const HeightTile& tile, const PowerSpectrum& spectrum,
     // Beyond the border it goes on smoothly, and fades.
     std::vector<double> fade(static_cast<std::size_t>(side), 1.0);
     for (int i = 0; i < room; ++i) {
-        const double w = 0.5 - 0.5 * std::cos(pi * (i + 0.5) / room);
+        const double w = 0.5 - 0.5 * portable::cos(pi * (i + 0.5) / room);
         fade[static_cast<std::size_t>(i)] = fade[static_cast<std::size_t>(side - 1 - i)] = w;
     }
     std::vector<Complex> square(static_cast<std::size_t>(side) * static_cast<std::size_t>(side));

@@ -11,6 +11,8 @@
 #include <glm/glm.hpp>
 #include <vector>
 
+#include "geometry/portable_math.h"
+
 namespace relief {
 
 template <int N, typename T>
@@ -35,7 +37,7 @@ inline glm::dvec3 in_plane(const glm::dvec3& vector, const glm::dvec3& normal) {
 /// Angle between two vectors of any length, 0 to pi. Uses atan2, which is accurate where acos is
 /// not.
 inline double angle_between(const glm::dvec3& a, const glm::dvec3& b) {
-    return std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b));
+    return portable::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b));
 }
 
 /// Rounds to float. -0 becomes +0, so that equal directions have equal bits.

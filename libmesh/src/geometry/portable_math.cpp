@@ -3,6 +3,7 @@
 // compiled without contraction.
 #include "geometry/portable_math.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -111,6 +112,7 @@ double exp(double x) {
 }
 
 double log(double x) {
+    if (!(x > 0.0) || !std::isfinite(x)) return std::log(x);  // -infinity, infinity or NaN
     int power = 0;
     double share = std::frexp(x, &power);
     if (share < 0.70710678118654752) {
@@ -128,6 +130,20 @@ double log(double x) {
 
 double pow(double x, double y) {
     return x > 0.0 && std::isfinite(x) ? exp(y * log(x)) : x;
+}
+
+double erf(double x) {
+    const double size = std::abs(x);
+    if (!(size < 6.0)) return std::isnan(x) ? x : std::copysign(1.0, x);
+    // 2/sqrt(pi) exp(-x^2) (x + 2/3 x^3 + 4/15 x^5 + ...) has no cancellation.
+    double term = size;
+    double sum = size;
+    for (int n = 1; term > 1e-17 * sum; ++n) {
+        term *= 2.0 * size * size / (2 * n + 1);
+        sum += term;
+    }
+    const double result = 2.0 * std::numbers::inv_sqrtpi * exp(-size * size) * sum;
+    return std::copysign(std::min(result, 1.0), x);
 }
 
 }  // namespace relief::portable

@@ -18,8 +18,11 @@ double atan2(double y, double x);
 /// \param x  up to 700
 double exp(double x);
 
-/// \param x  finite and greater than 0
+/// \param x  0: -infinity; negative: NaN
 double log(double x);
+
+/// The error function: the probability that a normal variable is within x * sqrt(2) deviations.
+double erf(double x);
 
 /// \param x  0 or greater; 0, infinity and NaN are returned
 /// \param y  greater than 0, and small enough for the result to be finite

@@ -94,7 +94,7 @@ HeightDepth depth_of(const Heights<float>& heights) {
         return largest * levels <= most_steps && are_multiples(heights.samples(), 1.0 / levels);
     };
     for (int bits = 1; bits <= 16; ++bits) {
-        for (const double levels : {std::exp2(bits) - 1.0, std::exp2(bits)}) {
+        for (const double levels : {std::ldexp(1.0, bits) - 1.0, std::ldexp(1.0, bits)}) {
             if (are_on_levels(levels)) return {bits, 1.0 / levels};
         }
     }

@@ -19,6 +19,7 @@
 #include <numbers>
 #include <span>
 
+#include "geometry/portable_math.h"
 #include "image/map_statistics.h"
 #include "parallel.h"
 
@@ -349,7 +350,7 @@ GreenEvidence judged(const std::vector<SquareEvidence>& squares, std::size_t sca
     evidence.deviation = std::sqrt(squared) / size;
     if (size * size < fewest_squares * size_squares) return evidence;
     const double sureness = std::abs(evidence.correlation) / evidence.deviation;
-    evidence.confidence = std::erf(sureness / std::numbers::sqrt2);
+    evidence.confidence = portable::erf(sureness / std::numbers::sqrt2);
     if (std::abs(evidence.correlation) >= least_correlation && sureness >= least_sureness)
         evidence.green = evidence.correlation > 0.0 ? Green::up : Green::down;
     return evidence;

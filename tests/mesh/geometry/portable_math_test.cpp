@@ -36,6 +36,10 @@ TEST(PortableMath, IsWithinAFewUnitsOfTheLastPlace) {
     each_between(-700.0, 700.0, [](double x) {
         EXPECT_NEAR(portable::exp(x) / std::exp(x), 1.0, 4.0 * ulp) << x;
     });
+    each_between(-7.0, 7.0, [](double x) {
+        // exp(-x^2) multiplies the rounding error of x^2, which is at most 36, by x^2.
+        EXPECT_NEAR(portable::erf(x), std::erf(x), 36.0 * ulp * std::abs(std::erf(x))) << x;
+    });
     each_between(1e-9, 8.0, [](double x) {
         EXPECT_NEAR(portable::log(x), std::log(x), 4.0 * ulp * std::abs(std::log(x))) << x;
         EXPECT_NEAR(portable::pow(x, 2.4) / std::pow(x, 2.4), 1.0, 60.0 * ulp) << x;
@@ -52,6 +56,11 @@ TEST(PortableMath, KnowsItsSpecialValues) {
     EXPECT_EQ(portable::exp(0.0), 1.0);
     EXPECT_EQ(portable::exp(-1e9), 0.0);
     EXPECT_EQ(portable::log(1.0), 0.0);
+    EXPECT_EQ(portable::log(0.0), -std::numeric_limits<double>::infinity());
+    EXPECT_TRUE(std::isnan(portable::log(-1.0)));
+    EXPECT_EQ(portable::erf(0.0), 0.0);
+    EXPECT_EQ(portable::erf(-100.0), -1.0);
+    EXPECT_TRUE(std::isnan(portable::erf(std::nan(""))));
     EXPECT_EQ(portable::pow(1.0, 2.4), 1.0);
     EXPECT_EQ(portable::pow(0.0, 2.4), 0.0);
     EXPECT_EQ(portable::pow(std::numeric_limits<double>::infinity(), 2.4),

@@ -195,7 +195,7 @@ Image without_hidden(const HeightMap& map) {
 /// file's heights so that the number of used bits does not change. Heights beside alpha are floats.
 void fill_hidden(const Image& transparent, int file_bits, Image& part) {
     constexpr int reach = 128;  // The size of the parts from which a kernel is chosen.
-    const double largest = std::exp2(file_bits) - 1.0;
+    const double largest = std::ldexp(1.0, file_bits) - 1.0;
     const std::span<const std::uint8_t> hidden = transparent.as<std::uint8_t>();
     Report ignored;  // The conversion counts holes.
     const std::vector<float> filled = filled_holes(part, Wrap::clamp, ignored, {hidden, reach});
