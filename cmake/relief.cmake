@@ -13,11 +13,12 @@ target_compile_options(
 if(RELIEF_WERROR)
     target_compile_options(relief_flags INTERFACE $<$<COMPILE_LANGUAGE:CXX>:-Werror>)
 endif()
-# The libraries and tools are compiled as users run them; the tests' own code only has to be compiled
-# soon. (Where both hold an inline function that was not inlined, the linker takes either.)
+# The libraries, which do the work, have the full optimization of the build type. Tools call them and tests check
+# them: with -O1 they compile in 60 % of the time and run as fast. (If a library and a test both hold an inline
+# function that was not inlined, the linker takes either.)
 set(is_test $<PATH:IS_PREFIX,${PROJECT_SOURCE_DIR}/tests,$<TARGET_PROPERTY:SOURCE_DIR>>)
-target_compile_options(relief_flags INTERFACE $<$<AND:$<CONFIG:Release>,${is_test}>:-O1>)
 set(is_tool $<PATH:IS_PREFIX,${PROJECT_SOURCE_DIR}/tools,$<TARGET_PROPERTY:SOURCE_DIR>>)
+target_compile_options(relief_flags INTERFACE $<$<AND:$<CONFIG:Release>,$<OR:${is_test},${is_tool}>>:-O1>)
 if(RELIEF_SANITIZE)
     # Instrumented code is slow to compile, and two thirds of it was the tests' own. Tests are therefore
     # compiled with AddressSanitizer only, without optimization and line numbers, and the tools, which are thin,
