@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// How the angles between many directions and those they should be are distributed, in degrees.
+/// Computes statistics of many angles in degrees: mean, RMS, percentiles and a histogram.
 /// Tests: tests/mesh/accuracy/angle_distribution_test.cpp.
 #pragma once
 
@@ -10,36 +10,38 @@
 
 namespace relief {
 
-/// Degrees, 0 to 180; all zeros where nothing was measured.
+/// Statistics of angles in degrees, from 0 to 180; all are zero if there is no angle.
 struct AngleDistribution {
-    /// Upper ends of the bins below; each holds what is above the one before.
+    /// Upper limits of the histogram bins; each bin holds the angles above the previous limit.
     static constexpr std::array bounds = {0.01, 0.1, 1.0, 5.0, 45.0, 90.0, 180.0};
 
-    std::size_t count = 0;      ///< Angles that are numbers.
-    std::size_t undefined = 0;  ///< NaN: one of two directions was zero or not finite.
-    double rms = 0.0;           ///< Root of the mean square.
+    std::size_t count = 0;      ///< Number of angles that are not NaN.
+    std::size_t undefined = 0;  ///< Number of NaNs: one of two directions was zero or not finite.
+    double rms = 0.0;           ///< Root mean square.
     double mean = 0.0;
-    double median = 0.0;  ///< The smallest angle that half of all do not exceed.
-    double p90 = 0.0;     ///< The same for 90 of 100,
-    double p99 = 0.0;     ///< and 99 of 100.
+    double median = 0.0;  ///< The smallest angle that half of all angles do not exceed.
+    double p90 = 0.0;     ///< The same for 90% of all angles.
+    double p99 = 0.0;     ///< The same for 99% of all angles.
     double max = 0.0;
     std::array<std::size_t, bounds.size()> histogram{};
 
     friend bool operator==(const AngleDistribution&, const AngleDistribution&) = default;
 };
 
-/// The same in short, where there are too many angles to keep them (libmesh/src/accuracy/
-/// angle_sum.h); all zeros where there are none.
+/// Statistics of angles that are too many to store (libmesh/src/accuracy/angle_sum.h); all are zero
+/// if there is no angle.
 struct AngleSummary {
     std::size_t count = 0;
-    double rms = 0.0;  ///< Root of the mean square.
+    double rms = 0.0;  ///< Root mean square.
     double mean = 0.0;
-    double p99 = 0.0;  ///< 99 of 100 are no larger: to within 1 part in 64, upwards.
+    double p99 = 0.0;  ///< 99% of all angles do not exceed it; too large by at most 1/64.
     double max = 0.0;
 };
 
-/// \param degrees  in any order, which but for the last bits of rms and mean does not matter; NaN
-///                 where there is none, which is counted as undefined and left out
+/// Computes the statistics of angles.
+///
+/// \param degrees  in any order; the order affects only the last bits of rms and mean. NaNs are
+///         counted as undefined and otherwise ignored
 AngleDistribution angle_distribution(std::vector<float> degrees);
 
 }  // namespace relief

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// The numbers to compute in, where there is a choice.
+/// Defines the floating-point precision of computations that offer a choice.
 #pragma once
 
 namespace relief {
 
-/// What each means for accuracy and time, the option that takes it says.
+/// The floating-point type of a computation. Each option of this type documents its accuracy and
+/// time.
 enum class Arithmetic { float64, float32 };
 
 }  // namespace relief

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Maps of detailed meshes for a simple one: what rays from its surface meet, normals unless told
-/// otherwise. In the library relief::bake. Tests: tests/mesh/bake/bake_test.cpp, baker_test.cpp,
-/// bake_layers_test.cpp, bake_sphere_test.cpp.
+/// Bakes maps for a low-poly mesh from high-poly meshes: normals, and optionally heights,
+/// occlusion, curvature, positions and colors. Part of the library relief::bake.
+/// Tests: tests/mesh/bake/bake_test.cpp, baker_test.cpp, bake_layers_test.cpp,
+/// bake_sphere_test.cpp.
 #pragma once
 
 #include <cstddef>
@@ -26,195 +27,202 @@
 
 namespace relief {
 
-/// What the normals of a map are relative to.
+/// The space of the normals of a map.
 enum class BakeSpace {
     tangent,  ///< The low mesh's normals and tangents, as the shader interpolates them.
-    object,   ///< The space that all meshes are given in.
+    object,   ///< The common object space of the meshes.
 };
 
-/// Along what rays are cast, before any blending.
+/// The ray direction, before BakeOptions::hardness is applied.
 enum class RayDirections {
-    averaged,  ///< Normals averaged over everything that meets at a position: no gaps at hard
-               ///< edges.
-    shading,   ///< The low mesh's own normals: rays part at hard edges.
-    face,      ///< Of each triangle.
+    averaged,  ///< Smoothed normals: hard edges are ignored, so they leave no gaps.
+    shading,   ///< The vertex normals of the low mesh; rays diverge at hard edges.
+    face,      ///< The face normal of each triangle.
 };
 
-/// Which side of a high mesh's triangles counts.
+/// The sides of the high meshes' triangles that rays can hit.
 enum class BackFaces {
-    skip,  ///< The outer one (counter-clockwise) alone.
-    take,  ///< Either; normals are turned to where the ray comes from.
+    skip,  ///< Only front faces (counter-clockwise).
+    take,  ///< Both sides; normals are flipped to face the ray's origin.
 };
 
-/// Rows [first, last) of a map.
+/// The rows [first, last) of a map.
 struct BakeRowRange {
     int first = 0;  ///< A multiple of 64.
-    int last = 0;   ///< Likewise, or the map's height.
+    int last = 0;   ///< A multiple of 64, or the height of the map.
 };
 
-/// How far a map is.
+/// The progress of a map.
 struct BakeProgress {
-    int rows = 0;  ///< Done, of the map's height.
+    int rows = 0;  ///< Number of finished rows.
     std::size_t rays = 0;
 };
 
-/// One map of a bake. There may be many on the same meshes, each with options of its own.
+/// The options of one map. A Baker can bake many maps of the same meshes with different options.
 struct BakeMapOptions {
     int width = 0;  ///< In texels.
     int height = 0;
     MapPlacement placement{};
-    /// Those triangles of the low mesh that the map is for, ascending: a material's, a tile's.
-    /// Absent: all. The span must outlive the call.
+    /// The triangles of the low mesh that the map shows, ascending: those of a material or a tile.
+    /// If absent, all. The span must outlive the call.
     std::optional<std::span<const std::uint32_t>> triangles{};
-    /// Only these rows, for those who want several maps side by side; there is no padding then.
-    /// What is said of triangles is said with row 0.
+    /// Bakes only these rows, so that several maps can be computed in parallel. There is no padding
+    /// then. Findings about triangles are reported only with row 0.
     std::optional<BakeRowRange> rows;
-    /// A texel's mean of 1, 4, 16, 64 or 256 samples, the centres of as many equal squares of it;
-    /// 1024 serve as the reference that 256 are compared with, for maps of at most 2048 texels.
-    /// Each has an owner of its own (texel_coverage.h); those that no chart reaches have no say.
+    /// Samples per texel: 1, 4, 16, 64 or 256, at the centers of a regular grid within the texel; a
+    /// texel is their mean. 1024 samples are the reference for maps of 256 samples, and limited to
+    /// maps of at most 2048 texels. Each sample has its own triangle (texel_coverage.h); samples
+    /// outside of all charts are ignored.
     int samples = 1;
-    /// With several samples: a quarter of them is cast first (of 4: the upper left and the lower
-    /// right one), and the others only where two of those are further apart than this, radians.
+    /// Adaptive sampling, with several samples: first a quarter of the samples is cast (of 4 the
+    /// upper left and the lower right one), and the others only if two of these normals differ by
+    /// more than this angle in radians.
     std::optional<double> sample_angle{};
-    /// Fills all of the map instead, however far from any chart. Rows are handed on when all are
-    /// baked, and kept until then in a file without a name in this folder: 4 bytes a texel for each
-    /// channel of each layer, and 3.
+    /// If given, the whole map is filled, at any distance from charts. Rows are delivered when all
+    /// are baked; until then they are stored in a temporary file in this folder, with 4 bytes per
+    /// texel for each channel of each layer, plus 3.
     std::optional<std::filesystem::path> border_folder{};
-    /// Told how far a map is, one call at a time, from any thread.
+    /// If given, it is called with the progress of the map, from any thread, one call at a time.
     std::function<void(const BakeProgress& progress)> progress{};
-    /// How far around charts, in texels, what is not baked is filled from the nearest texels that
-    /// are: the mean of them, where several are equally near. 0 to 1024.
+    /// The width of the padding around charts, 0 to 1024 texels: texels without a result are filled
+    /// from the nearest baked texel, or from the mean of several at the same distance.
     int padding = 0;
-    /// Measures how long rays would have to be for the texels that are missed: the `clipped` fields
-    /// of BakeResult. Costs two more rays for each missed texel.
+    /// Measures the ray length that missed texels need: the `clipped` fields of BakeResult. This
+    /// casts two more rays for each missed texel.
     bool measures_missed = false;
-    /// A baker is made for those of its own options, of which each map may leave some out.
+    /// The layers of this map. They must be a subset of those that the Baker was created with.
     BakeLayers layers{};
 };
 
-/// What is alike for all maps, and one map's options.
+/// The options that all maps of a Baker share, and the options of one map.
 struct BakeOptions : BakeMapOptions {
     BakeSpace space = BakeSpace::tangent;
     RayDirections directions = RayDirections::averaged;
-    /// Of averaged directions: 0 to 1, how far they are drawn to the shading normals, vertex by
-    /// vertex; which makes a difference at hard edges only.
+    /// For RayDirections::averaged: the interpolation weight from the smoothed normals (0) to the
+    /// vertex normals (1). It matters only at hard edges.
     double hardness = 0.0;
-    /// The low mesh moved outwards: the same triangles, vertex by vertex. Rays run from it to the
-    /// low mesh, and `directions`, `hardness` and `offset` have no say.
+    /// A cage: the low mesh, moved outwards, with the same triangles. Rays then run from the cage
+    /// to the low mesh, and `directions`, `hardness` and `offset` are ignored.
     const Mesh* cage = nullptr;
-    /// How far outside of the low mesh rays begin, and how far inside of it they end, in the unit
-    /// of the meshes. Absent: what automatic_distances() says; inside, with a cage: as far again as
-    /// it is outside.
+    /// The distance from the low mesh at which rays begin outside, and end inside, in the unit of
+    /// the meshes. If absent, automatic_distances() decides; with a cage, the inner distance equals
+    /// that of the cage.
     std::optional<double> offset;
     std::optional<double> max_distance;
     BackFaces back_faces = BackFaces::skip;
-    /// Accepts boxes of the high and the low meshes that differ in size by more than max_size_ratio
-    /// times; see BakeMismatch.
+    /// Accepts high and low meshes whose bounding boxes differ in size by more than max_size_ratio;
+    /// see BakeMismatch.
     bool allow_size_mismatch = false;
-    /// How many maps like this one will be baked: many are worth more time to make ready. It
-    /// changes nothing else.
+    /// The expected number of maps. For many maps, the baker spends more time on preparation. The
+    /// results do not depend on it.
     std::size_t map_count = 1;
-    /// Turns normals of object space into the axes that they are wanted in, from those of the
-    /// meshes; made unit afterwards.
+    /// For BakeSpace::object: the transform from the space of the meshes to that of the map.
+    /// Results are normalized.
     glm::dmat3 output_from_mesh{1.0};
-    /// Of those high meshes that have some. The span must outlive the bake.
+    /// The materials of high meshes, for those that have them. The span must outlive the bake.
     std::span<const HighDetail> details;
 };
 
-/// What became of a texel.
+/// The origin of a texel's value.
 enum class TexelState : std::uint8_t {
-    empty,   ///< No chart has a part in it.
-    missed,  ///< No ray of it met anything, and nothing baked is near.
+    empty,   ///< No chart overlaps the texel.
+    missed,  ///< No ray hit a surface, and the texel was not padded.
     baked,
-    padded,  ///< Filled from the nearest texels that are baked; it may have been missed.
+    padded,  ///< Filled from the nearest baked texels. The texel may have been missed.
 };
 
-/// Rows of a map: the layers that were asked for (bake_layers.h), others are empty. Spans live as
-/// long as the call that they are given to.
+/// The rows of a map. Spans of layers that were not requested (bake_layers.h) are empty. Spans are
+/// valid during the call that receives them.
 struct BakedRows {
     int first_row = 0;
     int row_count = 0;
-    std::span<float> normals;  ///< Three a texel, unit; (0, 0, 1) where neither baked nor padded.
-    std::span<float> heights;  ///< 0 there, as are the others but for occlusion, which is 1.
+    /// Three per texel, unit; (0, 0, 1) in texels that are neither baked nor padded.
+    std::span<float> normals;
+    /// 0 in such texels, as in all other layers except occlusion, which is 1.
+    std::span<float> heights;
     std::span<TexelState> states;
     std::span<float> occlusion{};
     std::span<float> curvature{};
-    std::span<float> positions{};  ///< Three a texel.
-    std::span<float> colors{};     ///< Three a texel.
+    std::span<float> positions{};  ///< Three per texel.
+    std::span<float> colors{};     ///< Three per texel.
 };
 
 struct BakeDistances {
-    double offset = 0.0;        ///< Outside.
-    double max_distance = 0.0;  ///< Inside.
+    double offset = 0.0;        ///< Outside of the low mesh.
+    double max_distance = 0.0;  ///< Inside of the low mesh.
 };
 
 /// A texel whose rays hit nothing.
 struct MissedTexel {
     int x = 0;
     int y = 0;
-    glm::dvec3 position{0.0};  ///< On the low mesh, of its first sample.
+    glm::dvec3 position{0.0};  ///< The point of its first sample on the low mesh.
 };
 
 /// Missed texels that longer rays would hit, on one side of the low mesh.
 struct ClippedRays {
     std::size_t texels = 0;
-    double shortest = 0.0;  ///< The ray length, from the low mesh, that hits one of them;
-    double half = 0.0;      ///< at least half of them, rounded up by at most 1/8;
-    double longest = 0.0;   ///< all of them.
+    double shortest = 0.0;  ///< The ray length from the low mesh that hits at least one of them.
+    double half = 0.0;  ///< The length that hits at least half of them, rounded up by at most 1/8.
+    double longest = 0.0;  ///< The length that hits all of them.
 };
 
 struct BakeResult {
-    Coverage coverage;  ///< Of samples, where there are several to a texel.
+    Coverage coverage;  ///< Counts samples if there are several per texel.
     std::size_t texels_baked = 0;
     std::size_t texels_missed = 0;
-    std::size_t samples = 0;  ///< Places that rays were cast for.
+    std::size_t samples = 0;  ///< Number of points for which rays were cast.
     std::size_t rays = 0;
-    std::size_t occlusion_rays = 0;  ///< Not among those.
+    std::size_t occlusion_rays = 0;  ///< Not included in `rays`.
     BakeDistances distances;         ///< Baker::distances().
-    /// Of the surface outside of the low mesh, over all samples that hit; 0 where none did.
+    /// Minimum and maximum height of the high surface above the low mesh, over all samples that
+    /// hit; 0 if none did.
     double least_height = 0.0;
     double greatest_height = 0.0;
-    std::vector<MissedTexel> first_missed;  ///< By row and column, at most 8.
-    /// With BakeMapOptions::measures_missed, by the line through a missed texel's first sample.
-    /// Each texel is counted at most once: the triangle nearest to it decides.
-    std::size_t missed_from_behind = 0;  ///< The line meets only back faces within its length.
-    ClippedRays clipped_outside;         ///< A longer BakeOptions::offset hits.
-    ClippedRays clipped_inside;          ///< A longer BakeOptions::max_distance hits.
-    std::size_t measuring_rays = 0;      ///< Not among `rays`.
+    std::vector<MissedTexel> first_missed;  ///< In order of row and column, at most 8.
+    /// With BakeMapOptions::measures_missed: results for the line through the first sample of each
+    /// missed texel. Each texel is counted at most once; the triangle nearest to it decides.
+    std::size_t missed_from_behind = 0;  ///< The line hits only back faces within its length.
+    ClippedRays clipped_outside;         ///< A longer BakeOptions::offset would hit.
+    ClippedRays clipped_inside;          ///< A longer BakeOptions::max_distance would hit.
+    std::size_t measuring_rays = 0;      ///< Not included in `rays`.
 };
 
-/// How the boxes of high and low meshes compare. A box holds all triangles with finite corners.
+/// A comparison of the bounding boxes of the high and low meshes. A box contains all triangles with
+/// finite corners.
 struct BakeFit {
     Bounds high, low;
-    double gap = 0.0;         ///< The distance between the boxes; 0 where they meet.
-    double size_ratio = 1.0;  ///< The high box's diagonal over the low one's; 1 where one is 0.
-    /// The faces of the boxes lie within 3 % of the low box's diagonal of each other if the high
-    /// meshes are turned by 90 degrees about x, but more than 10 % apart as they are: one side is Y
-    /// up, the other Z up.
+    double gap = 0.0;  ///< The distance between the boxes; 0 if they touch or overlap.
+    /// The diagonal of the high box divided by that of the low box; 1 if one is 0.
+    double size_ratio = 1.0;
+    /// True if the up axes seem to differ (Y up and Z up): after a rotation of the high meshes by
+    /// 90 degrees about x, the faces of the boxes agree within 3% of the low box's diagonal;
+    /// without the rotation, they differ by more than 10%.
     bool fits_turned = false;
 
-    /// The diagonals differ by more than max_size_ratio times.
+    /// Returns true if the diagonals differ by more than a factor of max_size_ratio.
     [[nodiscard]] bool differs_in_size() const;
 };
 BakeFit compare_boxes(std::span<const Mesh> high, const Mesh& low);
 
-/// Boxes whose diagonals differ by more than this are taken for meshes of different units.
+/// The maximum ratio of the diagonals of two boxes; beyond it, the meshes probably have different
+/// units.
 inline constexpr double max_size_ratio = 10.0;
 
-/// Thrown for high and low meshes that do not belong together as they are.
+/// Thrown if the high and low meshes do not match.
 class BakeMismatch : public InvalidInput {
   public:
     enum class Kind {
         no_surface,  ///< No high triangle has finite corners.
-        size,        ///< The diagonals differ by more than max_size_ratio times.
-        apart,       ///< The gap between the boxes is larger than rays are long.
+        size,        ///< The diagonals differ by more than a factor of max_size_ratio.
+        apart,       ///< The gap between the boxes exceeds the length of the rays.
     };
     BakeMismatch(Kind kind, const BakeFit& fit, double reach, std::string part);
 
     [[nodiscard]] Kind kind() const { return kind_; }
     [[nodiscard]] const BakeFit& fit() const { return fit_; }
-    /// The longest ray from the low mesh; where it is measured (automatic_distances()), at most
-    /// half of the low box's diagonal.
+    /// The maximum ray length from the low mesh. For automatic distances it is at most half of the
+    /// low box's diagonal.
     [[nodiscard]] double reach() const { return reach_; }
     [[nodiscard]] const std::string& part() const { return part_; }  ///< BakePart::name.
 
@@ -225,55 +233,55 @@ class BakeMismatch : public InvalidInput {
     std::string part_;
 };
 
-/// How far rays must reach for two surfaces that lie close to each other.
+/// Computes ray distances for two surfaces that are close to each other.
 ///
-/// d is the largest distance of 16384 points all over the low mesh from the high ones, or of as
-/// many of their vertices from the low one, if that is more, but of this at most 4 times the
-/// former: the high ones may have parts that the low one lacks. Both distances are 1.5 d and 1% of
-/// half of the longest side of the low mesh's box.
+/// d is the maximum distance of 16384 points on the low mesh to the high meshes. If vertices of the
+/// high meshes (as many) are farther from the low mesh, d is their maximum distance, but at most 4
+/// times the former value, because the high meshes may have parts that the low mesh lacks. Both
+/// distances are 1.5 d plus 1% of half of the longest side of the low mesh's box.
 BakeDistances automatic_distances(std::span<const Mesh> high, const Mesh& low);
 
-/// High meshes that only some of the low mesh's triangles see: the rays of others pass through
-/// them. So neighbours do not catch each other's rays.
+/// High meshes that only some triangles of the low mesh see. The rays of all other triangles ignore
+/// them, so that adjacent objects do not occlude each other.
 struct BakePart {
     std::span<const Mesh> high;
     std::vector<std::uint32_t> triangles;  ///< Of the low mesh.
     std::string name{};                    ///< For messages.
 };
 
-/// The meshes of a bake made ready for any number of maps: the high ones for rays; directions over
-/// the whole low one, so that rays do not part where materials or tiles do; distances.
+/// Prepares the meshes of a bake for any number of maps: an acceleration structure for the high
+/// meshes, ray directions over the whole low mesh (so that they are continuous across materials and
+/// tiles), and ray distances.
 ///
-/// *Which surface.* Each ray runs from outside, through a texel's point on the low mesh, to inside,
-/// and what it meets first counts, if nothing lies between the two that faces the low mesh. So of
-/// two sheets one above the other the outer one is baked, as it is the one to be seen; but the
-/// inner side of a fold or the far side of a thin wall is not: walking outwards from the point, the
-/// line leaves the solid, and what lies behind the next solid that it enters belongs to somewhere
-/// else. Where the point lies inside of several solids that pass through each other, their
-/// outermost side counts. See projection.h.
+/// *Surface selection.* A ray runs from outside to inside through the point of a texel on the low
+/// mesh. Its first hit counts unless a surface between the hit and the point faces the low mesh. So
+/// the outer one of two stacked sheets is baked, because it is the visible one. The inner side of a
+/// fold and the far side of a thin wall are not baked: on the way outwards from the point, the line
+/// leaves the solid, and a surface behind the next solid belongs to another part. If the point lies
+/// inside of several intersecting solids, their outermost surface counts. See projection.h.
 ///
-/// Computed in double, from the triangles that Embree finds. The same bits for any number of
-/// threads. Memory: the high meshes' rays (some 100 bytes a triangle), and while a map is baked
-/// what cover_texels() takes, some 64 MB or 64 rows, and twice the padding; never the map.
+/// Hits of Embree are refined in double precision. The result is the same bits for any number of
+/// threads. Memory: about 100 bytes per triangle of the high meshes, and for each map the memory of
+/// cover_texels() and about 64 MB, or 64 rows and twice the padding; never the whole map.
 class Baker {
   public:
-    /// \param high    in the same space as `low`; those without normals get averaged ones
-    ///                (frames.h)
-    /// \param low     with texture coordinates; without normals it gets averaged ones, without
-    ///                tangents those of MikkTSpace, which is what a renderer would do
-    /// \param options  all but those of a map
-    /// \param report  counts what is wrong with the meshes
-    /// \throws InvalidInput if an option is out of range, a mesh is not valid, `low` has no
-    /// texture
-    ///         coordinates, or the cage has other triangles; BakeMismatch if the boxes of high and
-    ///         low meshes do not fit. That is checked before rays are prepared, and not for a low
-    ///         mesh without finite triangles
+    /// Prepares the meshes.
     ///
-    /// High meshes and the cage must outlive this.
+    /// \param high  in the same space as `low`; missing normals are averaged (frames.h)
+    /// \param low  with texture coordinates; missing normals are averaged and missing tangents are
+    ///         computed by MikkTSpace, as renderers do
+    /// \param options  all options except those of a map
+    /// \param report  counts problems of the meshes
+    /// \throws InvalidInput if an option is out of range, a mesh is not valid, `low` has no texture
+    ///         coordinates, or the triangles of the cage differ from those of `low`; BakeMismatch
+    ///         if the boxes of high and low meshes do not match. This is checked before the
+    ///         acceleration structure is built, unless the low mesh has no finite triangle
+    ///
+    /// The high meshes and the cage must outlive the Baker.
     Baker(std::span<const Mesh> high, const Mesh& low, const BakeOptions& options, Report& report);
 
-    /// The same for parts that do not see each other, each with distances of its own. A part may
-    /// have no high mesh: its texels are missed. BakeMismatch is about a single part.
+    /// Prepares parts that do not see each other, each with its own distances. A part may have no
+    /// high mesh; its texels are missed. BakeMismatch describes a single part.
     /// \throws InvalidInput also if a triangle of `low` is not in exactly one part
     Baker(std::span<const BakePart> parts, const Mesh& low, const BakeOptions& options,
           Report& report);
@@ -282,30 +290,30 @@ class Baker {
     Baker(Baker&&) noexcept;
     Baker& operator=(Baker&&) noexcept;
 
-    /// The low mesh with the frames that its maps will be seen with.
+    /// The low mesh with the frames for which its maps are baked.
     [[nodiscard]] const Mesh& low() const;
 
     [[nodiscard]] const BakeOptions& options() const;
 
-    /// As used; the largest of all parts. With a cage, the inner one, or 0 where that varies.
+    /// The distances that are used: the maximum of all parts. With a cage, the inner distance, or 0
+    /// if it varies.
     [[nodiscard]] BakeDistances distances() const;
 
-    /// How the boxes of the meshes compare; with parts, the boxes around all of them.
+    /// The comparison of the bounding boxes; with parts, of the boxes of all parts together.
     [[nodiscard]] BakeFit fit() const;
 
-    /// What the layers that are asked for cannot exceed; 0 for the others.
+    /// Upper bounds of the values of the requested layers; 0 for the others.
     [[nodiscard]] LayerBounds bounds(const BakeLayers& layers) const;
 
     /// Bakes a map.
     ///
-    /// \param take    gets the map from the top, some rows at a time, on the calling thread; it may
-    ///                change them. Row counts are multiples of 64, but for the last
-    /// \param report  counts texels that are missed, have no frame, face away from the surface
-    ///                baked, or have several owners; triangles that own no texel; rays without a
-    ///                direction, which run along the triangle's normal; normals without one, which
-    ///                are the triangle's
-    /// \throws InvalidInput if a size or an option is out of range, or a triangle is not
-    /// there
+    /// \param take  receives bands of rows from the top, on the calling thread, and may change
+    ///         them. Row counts are multiples of 64, except for the last band
+    /// \param report  counts texels that are missed, have no frame, face away from the baked
+    ///         surface, or are covered by several triangles; triangles that cover no texel; rays
+    ///         without a direction, which use the face normal; and high vertices without a normal,
+    ///         which use the face normal
+    /// \throws InvalidInput if a size or an option is out of range, or a triangle does not exist
     BakeResult bake(const BakeMapOptions& map,
                     const std::function<void(const BakedRows& rows)>& take, Report& report) const;
 
@@ -314,7 +322,7 @@ class Baker {
     std::unique_ptr<Implementation> implementation_;
 };
 
-/// Bakes the normals of the high meshes into one map for the low one: a Baker and its bake().
+/// Bakes one normal map: creates a Baker and calls its bake().
 BakeResult bake_normals(std::span<const Mesh> high, const Mesh& low, const BakeOptions& options,
                         const std::function<void(const BakedRows& rows)>& take, Report& report);
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// What a bake makes beside normals, from the same rays. What is not asked for takes no time and no
-/// memory, and asking for it changes nothing about the others.
+/// Options of the layers that a bake computes from the same rays: normals, heights, occlusion,
+/// curvature, positions and colors. A layer that is not requested costs no time and no memory, and
+/// layers do not affect each other.
 /// Tests: tests/mesh/bake/bake_layers_test.cpp.
 #pragma once
 
@@ -10,41 +11,42 @@
 
 namespace relief {
 
-/// How much of the surroundings a place sees: the share of rays from it, all about its normal and
-/// denser towards it (by the cosine, as light from a grey sky counts), that meet nothing.
+/// Options of ambient occlusion: the share of rays from a point that hit nothing. Rays are
+/// cosine-distributed about the normal, like light from a uniform sky.
 struct OcclusionOptions {
-    /// For each texel, shared evenly by its samples; 1 to 65536. The error falls by about 2^-0.75
-    /// for each doubling.
+    /// Rays per texel, 1 to 65536, divided evenly among its samples. The error decreases by a
+    /// factor of about 2^-0.75 for each doubling.
     int rays = 64;
-    /// How far they run, in the unit of the meshes. Absent: half of the longest side of the box
-    /// around the high meshes.
+    /// The length of the rays in the unit of the meshes. If absent, half of the longest side of the
+    /// high meshes' bounding box.
     std::optional<double> distance{};
 };
 
-/// Each is the mean over those samples of a texel that hit, and padded likewise.
+/// The layers to bake. Each value is the mean over those samples of a texel that hit; all layers
+/// are padded in the same way.
 struct BakeLayers {
     bool normals = true;
-    /// Where the surface is, outside of the low mesh along the ray; in the unit of the meshes.
+    /// The height of the high surface above the low mesh along the ray, in the unit of the meshes.
     bool heights = false;
-    /// 0 to 1, of the high meshes alone. The rays start about the interpolated normal; those that
-    /// run below their triangle's plane are left out. What is met from behind hides as well.
+    /// Ambient occlusion from 0 to 1, by the high meshes alone. Rays are distributed about the
+    /// interpolated normal; those below the plane of their triangle are ignored. Back faces occlude
+    /// too.
     std::optional<OcclusionOptions> occlusion{};
-    /// Mean curvature, over the unit of the meshes; what bulges is positive (curvature.h).
+    /// Mean curvature in one over the unit of the meshes; convex is positive (curvature.h).
     bool curvature = false;
-    /// Places, by `position_from_mesh`.
+    /// Positions, transformed by `position_from_mesh`.
     bool positions = false;
-    /// Linear RGB: vertex colours times the material's colour and texture (high_detail.h).
+    /// Linear RGB: vertex colors times the material's color and texture (high_detail.h).
     bool colors = false;
     glm::dmat4 position_from_mesh{1.0};  ///< For `positions`.
 };
 
-/// How large the numbers of layers can be, without their signs, for those who store them in
-/// integers.
+/// Upper bounds of the absolute values of layers, for integer storage.
 struct LayerBounds {
-    double height = 0.0;           ///< How far rays reach.
-    double curvature = 0.0;        ///< Of all vertices of the high meshes.
-    double usual_curvature = 0.0;  ///< On 99% of their area.
-    double position = 0.0;         ///< Of any coordinate, by `position_from_mesh`.
+    double height = 0.0;           ///< The length of the rays.
+    double curvature = 0.0;        ///< Over all vertices of the high meshes.
+    double usual_curvature = 0.0;  ///< Over 99% of their area.
+    double position = 0.0;         ///< Over all coordinates, transformed by `position_from_mesh`.
 };
 
 }  // namespace relief

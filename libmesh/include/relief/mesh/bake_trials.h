@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// What maps of several sample counts and codes would be off, and take, without writing them.
-/// In the library relief::bake. Tests: tests/mesh/bake/bake_trials_test.cpp,
-/// tests/accuracy/own_bake_test.cpp.
+/// Measures the errors and times of bakes with several sample counts and formats, without writing
+/// maps. Part of the library relief::bake.
+/// Tests: tests/mesh/bake/bake_trials_test.cpp, tests/accuracy/own_bake_test.cpp.
 #pragma once
 
 #include <cstddef>
@@ -16,47 +16,52 @@
 
 namespace relief {
 
-/// How many samples a texel gets.
+/// The number of samples per texel.
 struct BakeWay {
     int samples = 1;
-    std::optional<double> sample_degrees{};  ///< All of them only where the first differ by more.
+    /// Adaptive sampling: BakeMapOptions::sample_angle in degrees.
+    std::optional<double> sample_degrees{};
 };
 
-/// One bake, in several codes.
+/// The errors and times of one bake in several formats.
 struct BakeTrial {
-    std::vector<AngleSummary> errors;  ///< By format, from the mean over the texel.
-    /// By format, of the codes alone: what no number of samples makes less.
+    std::vector<AngleSummary> errors;  ///< By format, against the mean normal over the texel.
+    /// By format, the error of rounding to codes alone, which more samples do not reduce.
     std::vector<AngleSummary> quantisation;
-    AngleSummary sampling;             ///< Of the samples alone: what no format makes less.
-    std::vector<AngleSummary> centre;  ///< By format, from the normal at the texel's centre.
+    AngleSummary sampling;             ///< The error of sampling alone, which no format reduces.
+    std::vector<AngleSummary> centre;  ///< By format, against the normal at the texel's center.
     std::size_t rays = 0;
-    double cast_seconds = 0.0;         ///< Of the bake itself.
-    std::vector<double> code_seconds;  ///< By format, of its codes.
+    double cast_seconds = 0.0;         ///< The time of the bake without encoding.
+    std::vector<double> code_seconds;  ///< The time of encoding, by format.
 };
 
-/// The truth for a map, or some bands of it, kept for any number of bakes to be held against.
+/// The reference for a map or some of its bands, with which any number of bakes can be compared.
 ///
-/// Memory: 17 bytes a texel looked at, and four times that while one is measured.
+/// Memory: 17 bytes per measured texel, and four times that during a measurement.
 class BakeTrials {
   public:
-    /// \param reference_samples  of the truth; 0: 256, or as many as the map has room for. Bakes of
-    ///                           256 samples need 1024, else they are compared with themselves
-    /// \param texels  at least so many are looked at, or all: in bands of 64 rows, evenly spread
+    /// Computes the reference.
+    ///
+    /// \param texels  minimum number of texels to measure, in evenly spaced bands of 64 rows; all
+    ///         if the map has fewer
+    /// \param reference_samples  per texel of the reference; 0: 256, or the maximum for the size of
+    ///         the map. Bakes of 256 samples need a reference of 1024; otherwise they are compared
+    ///         with themselves
     BakeTrials(const Baker& baker, const BakeMapOptions& map, std::size_t texels,
                int reference_samples = 0);
     ~BakeTrials();
     BakeTrials(const BakeTrials&) = delete;
     BakeTrials& operator=(const BakeTrials&) = delete;
 
-    /// Bakes in memory, and codes, and compares as check_bake() does.
+    /// Bakes and encodes in memory, and compares the result as check_bake() does.
     [[nodiscard]] BakeTrial measure(const BakeWay& way,
                                     std::span<const NormalMapFormat> formats) const;
 
-    /// Where such a map is off: BakeTrial::errors texel by texel, in degrees, as one float channel;
-    /// NaN where there is no truth. Of parts of a map, one below the other.
+    /// Computes BakeTrial::errors for each texel: one float channel in degrees, NaN without a
+    /// reference. If only bands were measured, they are stacked.
     [[nodiscard]] Image error_map(const BakeWay& way, const NormalMapFormat& format) const;
 
-    [[nodiscard]] std::size_t texels() const;  ///< Looked at, covered or not.
+    [[nodiscard]] std::size_t texels() const;  ///< Number of measured texels, covered or not.
     [[nodiscard]] bool is_whole() const;
     [[nodiscard]] int reference_samples() const;
     [[nodiscard]] std::size_t reference_rays() const;
@@ -66,19 +71,20 @@ class BakeTrials {
     std::unique_ptr<Implementation> implementation_;
 };
 
-/// 1, 4, 16 and 64 samples; and up to 16, where the first differ by more than 8, 2 and 0.5 degrees.
+/// Returns 1, 4, 16 and 64 samples, and 16 adaptive samples with thresholds of 8, 2 and 0.5
+/// degrees.
 std::span<const BakeWay> usual_bake_ways();
 
-/// What maps are stored in: 8 bits, plain and dithered, 16 bits, and floats; else like `format`.
+/// Returns variants of `format`: 8 bits, 8 bits with blue-noise dithering, 16 bits, and float.
 std::vector<NormalMapFormat> usual_map_formats(const NormalMapFormat& format);
 
 struct TimedBakeTrial {
     BakeTrial trial;
-    /// By format, in each round: of the bake and of its codes.
+    /// By format and round: the time of the bake and its encoding.
     std::vector<std::vector<double>> seconds;
 };
 
-/// Bakes in every way, in turns. \throws Cancelled where that is wished, between bakes
+/// Measures all ways, interleaved. \throws Cancelled between bakes if cancellation was requested
 std::vector<TimedBakeTrial> measured_in_turns(const BakeTrials& trials,
                                               std::span<const BakeWay> ways,
                                               std::span<const NormalMapFormat> formats,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// From a bump map (a field of heights) to unit normals, by finite differences.
+/// Converts bump maps (height fields) to unit normals, normal maps or slopes by finite differences.
 /// Tests: tests/mesh/image/bump/bump_test.cpp.
 #pragma once
 
@@ -15,15 +15,16 @@
 
 namespace relief {
 
-/// What lies beyond the border of the image.
+/// The continuation of an image beyond its border.
 enum class Wrap {
-    repeat,  ///< The opposite edge: the map tiles.
-    clamp,   ///< Nothing. The surface goes on as its own point reflection at the border texel: a
-             ///< plane stays a plane, and a slope across the border is one-sided.
-    mirror,  ///< The map mirrored at the border, its outermost texels twice, as OpenGL does it.
+    repeat,  ///< The image repeats.
+    /// The surface continues as its point reflection at the border texel: a plane stays a plane,
+    /// and derivatives across the border are one-sided.
+    clamp,
+    mirror,  ///< The image is mirrored, and its outermost texels appear twice, as in OpenGL.
 };
 
-/// The same in both directions, unless told otherwise.
+/// The wrap modes of both axes.
 struct Wraps {
     Wrap x = Wrap::repeat;
     Wrap y = Wrap::repeat;
@@ -34,63 +35,63 @@ struct Wraps {
     bool operator==(const Wraps&) const = default;
 };
 
-/// Options for the conversion of heights to slopes. The map decides absent ones: see
+/// Options for the conversion of heights to slopes. Absent options are derived from the map: see
 /// settled_options().
 struct BumpOptions {
     std::optional<Kernel> kernel{};
     std::optional<Wraps> wrap{};
-    /// The height that the value 1.0 stands for, in the unit of `texel`: in texels, unless that is
-    /// changed. Within +-1e30; negative turns bumps into dents.
+    /// The height of the value 1.0 in the unit of `texel` (by default in texels), within +-1e30.
+    /// Negative values turn bumps into dents.
     double strength = 16.0;
-    /// Width and height of a texel, from 1e-30 to 1e30. Both 1: `strength` is in texels. Unequal:
-    /// texels are not square.
+    /// Width and height of a texel, from 1e-30 to 1e30; they may differ. With (1, 1), `strength` is
+    /// in texels.
     glm::dvec2 texel{1.0, 1.0};
-    int gaussian_radius = 2;  ///< Of Kernel::gaussian, in texels, where the kernel is given.
-    /// What slopes and normals are computed in. Unless given: float32 where the result has 8 or 16
-    /// bits, else float64.
+    int gaussian_radius = 2;  ///< The radius of Kernel::gaussian in texels, if `kernel` is given.
+    /// The precision of slopes and normals. If absent: float32 for results of 8 or 16 bits, else
+    /// float64.
     std::optional<Arithmetic> arithmetic{};
 };
 
-/// The options with all that was left to the map, as every conversion and every tool settles it.
+/// Fills in all absent options from the map, in the same way for every conversion and tool.
 ///
 /// \param height  as for normals_from_height()
-/// \return kernel (and its radius) by choose_kernel() (kernel_choice.h), wrap by detect_tiling()
-///         (height_statistics.h), where they are absent; the others as they are
+/// \return absent kernels (with radius) by choose_kernel() (kernel_choice.h), absent wraps by
+///         detect_tiling() (height_statistics.h); the other options unchanged
 /// \throws InvalidInput as normals_from_height() does
 BumpOptions settled_options(const Image& height, BumpOptions options);
 
-/// Unit normals of a height field, in tangent space: x to the right, y up in the image, z out.
+/// Computes the unit normals of a height field in tangent space: x points right, y up in the image,
+/// z out of it.
 ///
-/// \param height  one channel, as from height_field() (height_map.h) or of 8 or 16 bits as in a
-/// file (samples stand
-///                for value / 255 and value / 65535)
-/// \param report  counts texels whose height is not finite: each is read as the mean of the finite
-///                heights in the smallest square around it that holds any (beyond the border by
-///                `wrap`), or 0 where the image has none
-/// \return three float channels: normalize(-dh/dx, -dh/dy, 1), with y upwards; a constant field
-///         gives exactly (0,0,1), and so does a single texel. In float64, computed in double and
-///         rounded once. The same bits for any number of threads.
+/// \param height  one channel of float, as from height_field() (height_map.h), or of 8 or 16 bits,
+///         which stand for value / 255 and value / 65535
+/// \param report  counts texels whose height is not finite. Each is replaced by the mean of the
+///         finite heights in the smallest square around it that contains any (beyond the border by
+///         `wrap`), or by 0 if the image has none
+/// \return three float channels: normalize(-dh/dx, -dh/dy, 1), with y upwards. A constant field and
+///         a single texel give exactly (0,0,1). Arithmetic::float64 computes in double precision
+///         and rounds once. The result is the same bits for any number of threads
 /// \throws InvalidInput if the image is empty or has more than one channel, or if the strength, the
 ///         texel or the radius is out of range
 ///
 /// Source: [Blinn 1978]; for the kernels see gradient_kernel.h.
 Image normals_from_height(const Image& height, const BumpOptions& options, Report& report);
 
-/// The same as stored codes at once, without the normals in between: at the speed of memory.
+/// Computes a normal map in its stored format directly, at the speed of memory.
 ///
-/// \param result  its memory is used again if it has the shape and depth asked for already
+/// \param result  its memory is reused if it has the required size and format
 ///
-/// The codes are those of encode_normal_map: in float64, of the normal before it is rounded to
-/// float; in float32, within one code of 16 bits of that (mostly equal). Blocks with slopes above
-/// 1e15, which float32 cannot square, are done in float64 all the same.
+/// The codes are those of encode_normal_map(). For float64 they come from the normal before it is
+/// rounded to float; for float32 they differ by at most one code of 16 bits, and mostly not at all.
+/// Blocks with slopes above 1e15, whose squares overflow float32, use float64.
 void normal_map_from_height(const Image& height, const BumpOptions& options,
                             const NormalMapFormat& format, Image& result, Report& report);
 Image normal_map_from_height(const Image& height, const BumpOptions& options,
                              const NormalMapFormat& format, Report& report);
 
-/// Slopes instead of normals: two float channels, dh/dx to the right and dh/dy upwards.
+/// Computes slopes instead of normals: two float channels, dh/dx to the right and dh/dy upwards.
 ///
-/// Otherwise as normals_from_height; slopes beyond float's range become +-infinity.
+/// Otherwise like normals_from_height(). Slopes beyond the range of float become +-infinity.
 Image slopes_from_height(const Image& height, const BumpOptions& options, Report& report);
 
 }  // namespace relief

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Height maps as they come from files, whose true normals are known: what the choice of a kernel
-/// is judged by. Tests: tests/mesh/accuracy/bump_fields_test.cpp.
+/// Generates height maps like those in files, with exact normals, for tuning and evaluating the
+/// choice of a kernel.
+/// Tests: tests/mesh/accuracy/bump_fields_test.cpp.
 #pragma once
 
 #include <cstdint>
@@ -14,22 +15,22 @@
 
 namespace relief {
 
-/// What a field looks like before it is stored.
+/// The shape of a field before it is stored.
 enum class FieldShape {
-    waves,     ///< A sum of waves of all directions; tiles.
-    open,      ///< The same, not tiling: clamped.
-    domes,     ///< Round bumps on a plane, smooth at their rims; tiles.
-    creases,   ///< Roofs: straight slopes that meet in sharp ridges; tiles.
-    terraces,  ///< Level ground at several heights, walls between: real cliffs; tiles.
-    mixed,     ///< Waves that are long on the left and short on the right; tiles.
+    waves,     ///< A sum of waves in all directions; tiles.
+    open,      ///< The same without tiling, for Wrap::clamp.
+    domes,     ///< Round bumps on a plane with smooth rims; tiles.
+    creases,   ///< Plane slopes that meet in sharp ridges; tiles.
+    terraces,  ///< Flat ground at several heights with vertical walls between; tiles.
+    mixed,     ///< Long waves on the left and short ones on the right; tiles.
 };
 
-/// How a field is stored.
+/// The sample format of a field.
 enum class FieldCoding {
     float32,
     float16,      ///< Half floats.
-    bits16,       ///< Over the whole range of codes.
-    bits8,        ///< The same.
+    bits16,       ///< Codes over the whole range.
+    bits8,        ///< Codes over the whole range.
     bits8_in_16,  ///< Codes of 8 bits times 257.
     bits8_dim,    ///< Codes 100 to 124 only.
 };
@@ -37,31 +38,33 @@ enum class FieldCoding {
 struct FieldRecipe {
     const char* name = "";
     FieldShape shape = FieldShape::waves;
-    double shortest = 32.0;  ///< Wavelength, or size of what there is, in texels; half the
-                             ///< side at most.
-    double rms_slope = 0.3;  ///< Of the shape; of terraces, the height of a wall in texels / 4.
+    /// Minimum wavelength or feature size in texels, at most half of the side.
+    double shortest = 32.0;
+    /// RMS slope of the shape; for terraces, a quarter of the wall height in texels.
+    double rms_slope = 0.3;
     FieldCoding coding = FieldCoding::float32;
-    double noise = 0.0;  ///< Its deviation before storing, in texels.
+    /// Standard deviation of the noise that is added before storing, in texels.
+    double noise = 0.0;
     std::uint32_t seed = 1;
 };
 
-/// A height map and the truth about it.
+/// A height map and its exact normals.
 struct BumpField {
-    Image heights;                    ///< One channel as a file has it.
-    BumpOptions options;              ///< Strength and wrap that belong to it.
-    std::vector<glm::dvec3> normals;  ///< Unit, y up; of terraces, those of the level ground.
+    Image heights;                    ///< One channel, as stored in a file.
+    BumpOptions options;              ///< The matching strength and wrap.
+    std::vector<glm::dvec3> normals;  ///< Unit, y up; those of the flat ground for terraces.
 };
 
-/// \throws InvalidInput if a size is below 8
+/// Generates a field. \throws InvalidInput if a size is below 8
 BumpField make_bump_field(const FieldRecipe& recipe, int width, int height);
 
-/// Fields that methods may be tuned on: every shape, coding, several noises and slopes.
+/// Fields for tuning methods: all shapes and codings, with several noise levels and slopes.
 std::span<const FieldRecipe> tuning_fields();
 
-/// Fields that nothing has been tuned on, for judging.
+/// Fields for evaluation, which are never used for tuning.
 std::span<const FieldRecipe> judging_fields();
 
-/// How far normals of the field are from the truth, in degrees.
+/// Computes the angles between normals and the exact normals of the field, in degrees.
 DirectionError field_error(const Image& normals, const BumpField& field);
 
 }  // namespace relief
