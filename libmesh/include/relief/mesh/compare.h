@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Two meshes of the same surface, corner by corner: how far apart their normals and tangents are.
+/// Compares two meshes of the same surface: matches their corners and computes the angles between
+/// their normals and tangents.
 ///
-/// Corners are matched by position and texture coordinate, so that neither the order of vertices
-/// and triangles nor where vertices are split makes a difference.
+/// Corners are matched by position and texture coordinate, independent of the order of vertices and
+/// triangles and of vertex splits.
 /// Tests: tests/mesh/geometry/compare/compare_test.cpp.
 #pragma once
 
@@ -18,50 +19,51 @@
 namespace relief {
 
 struct MatchOptions {
-    /// Positions no further apart than this, in the meshes' unit, are the same.
+    /// Positions match if their distance is at most this, in the unit of the meshes.
     double position_tolerance = 0.0;
-    /// The same for each of u and v.
+    /// Texture coordinates match if u and v each differ by at most this.
     double texcoord_tolerance = 0.0;
-    /// Whether texture coordinates matter at all. They do only where both meshes have them.
+    /// Texture coordinates must match too. Ignored unless both meshes have them.
     bool by_texcoord = true;
 };
 
 constexpr std::uint32_t no_corner_matched = std::numeric_limits<std::uint32_t>::max();
 
-/// Which corner of one mesh is which of another. A corner is 3 * triangle + (0, 1 or 2).
+/// The corners of two meshes that correspond. A corner is 3 * triangle + (0, 1 or 2).
 struct CornerMatch {
-    /// For each corner of a, that of b, or no_corner_matched.
+    /// For each corner of a, the corner of b, or no_corner_matched.
     std::vector<std::uint32_t> corners;
-    std::vector<std::uint32_t> only_a;  ///< Triangles of a without a partner, ascending.
+    std::vector<std::uint32_t> only_a;  ///< Triangles of a without a match, ascending.
     std::vector<std::uint32_t> only_b;
-    std::size_t exact = 0;  ///< Pairs of triangles whose numbers are equal,
-    std::size_t near = 0;   ///< and those that are so within the tolerances.
-    /// Pairs that might have been formed otherwise: several triangles with the same corners.
+    std::size_t exact = 0;  ///< Pairs of triangles with equal values.
+    std::size_t near = 0;   ///< Pairs of triangles that match only within the tolerances.
+    /// Number of pairs that are ambiguous, because several triangles have the same corners.
     std::size_t ambiguous = 0;
     bool by_texcoord = false;
 };
 
-/// Pairs triangles whose three corners are the same, whichever of them comes first; not those that
-/// are the other way round.
+/// Matches triangles with the same three corners in the same cyclic order, whichever corner comes
+/// first. Triangles with opposite winding do not match.
 ///
 /// \param a, b  valid meshes (mesh.h)
-/// \return one partner at most for each triangle. Equal numbers go first; what they leave over is
-///         matched within the tolerances, nearest first. Of several triangles with the same corners
-///         those in material ranges of the same number go together, then those first by their
-///         normals and tangents; that is counted. Triangles with a non-finite corner match nothing
+/// \return at most one match for each triangle. Equal values are matched first; the remaining
+///         triangles are matched within the tolerances, nearest first. Among several triangles with
+///         the same corners, those in material ranges of the same index are matched first, then in
+///         the order of their normals and tangents; such pairs are counted as ambiguous. Triangles
+///         with a non-finite corner do not match
 ///
-/// Expected linear time; where more than 256 triangles crowd within a few tolerances of each other,
-/// those with a partner nearer by are paired first, as if the tolerance were so narrow; of the rest
-/// no more than that many are looked at for a near match.
+/// The expected time is linear. If more than 256 triangles lie within a few tolerances of each
+/// other, those with closer candidates are matched first, as if the tolerance were smaller; for
+/// each remaining triangle at most 256 candidates are examined.
 CornerMatch match_corners(const Mesh& a, const Mesh& b, const MatchOptions& options = {});
 
-/// What differs at each corner of mesh a.
+/// The differences at each corner of mesh a.
 struct CornerDifferences {
-    /// Degrees; NaN where a direction is zero or not finite, negative where there is no partner.
-    /// Empty where one of the meshes has no such attribute.
+    /// Angles in degrees; NaN if a direction is zero or not finite, negative without a match. Empty
+    /// if one of the meshes lacks the attribute.
     std::vector<float> normals;
     std::vector<float> tangents;
-    std::vector<unsigned char> sign_differs;  ///< The w of the tangents have different signs.
+    std::vector<unsigned char> sign_differs;  ///< 1 if the signs of the tangents' w differ.
 };
 
 CornerDifferences corner_differences(const Mesh& a, const Mesh& b, const CornerMatch& match);
@@ -69,25 +71,28 @@ CornerDifferences corner_differences(const Mesh& a, const Mesh& b, const CornerM
 struct WorstCorner {
     std::uint32_t corner_a = 0;
     std::uint32_t corner_b = 0;
-    float degrees = 0.0F;  ///< NaN: undefined, which is worse than any angle.
+    float degrees = 0.0F;  ///< NaN if undefined, which ranks above all angles.
 
     friend bool operator==(const WorstCorner&, const WorstCorner&) = default;
 };
 
-/// The differences of some triangles, summed up.
+/// Statistics of the differences of some triangles.
 struct FrameComparison {
-    std::size_t corners = 0;  ///< Matched.
+    std::size_t corners = 0;  ///< Number of matched corners.
     AngleDistribution normals;
     AngleDistribution tangents;
     std::size_t sign_differences = 0;
-    std::vector<WorstCorner> worst_normals;  ///< Worst first; none that do not differ.
+    /// Largest angle first; corners without a difference are omitted.
+    std::vector<WorstCorner> worst_normals;
     std::vector<WorstCorner> worst_tangents;
 
     friend bool operator==(const FrameComparison&, const FrameComparison&) = default;
 };
 
-/// \param first_triangle, triangle_count  of mesh a
-/// \param worst  how many of the worst corners to name
+/// Computes the statistics of the differences of some triangles.
+///
+/// \param first_triangle, triangle_count  a range of triangles of mesh a
+/// \param worst  maximum length of the lists of worst corners
 FrameComparison compared(const CornerDifferences& differences, const CornerMatch& match,
                          std::size_t first_triangle, std::size_t triangle_count,
                          std::size_t worst = 8);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Fewer triangles for nearly the same surface and the same texture.
+/// Decimates meshes: reduces the number of triangles and preserves the surface and its texture
+/// mapping.
 /// Tests: tests/mesh/geometry/topology/decimate_test.cpp.
 #pragma once
 
@@ -13,36 +14,38 @@
 
 namespace relief {
 
-/// When to stop, whichever comes first; at least one must be given.
+/// The limits of a decimation; at least one must be given, and the first one that is reached ends
+/// it.
 struct DecimateOptions {
-    std::optional<std::size_t> triangles;  ///< At this many, at least 1.
-    /// Where any vertex of the input would come to lie further from the result than this; object
-    /// space, at least 0. It says nothing of points between vertices.
+    std::optional<std::size_t> triangles;  ///< Target number of triangles, at least 1.
+    /// The maximum distance of the input's vertices from the result, in object space, at least 0.
+    /// Points between vertices are not measured.
     std::optional<double> max_error;
-    /// Frames of the result. With NormalMode::keep the input's normals stay at the vertices that
-    /// do, and hard edges are kept as seams are; with any other mode the input's normals are not
-    /// looked at. Tangents that the input had are computed anew unless the mode is none.
+    /// The frames of the result. With NormalMode::keep, the remaining vertices keep their normals,
+    /// and hard edges are preserved like seams. Other modes ignore the normals of the input. If the
+    /// input has tangents, they are recomputed unless the mode is none.
     FrameOptions frames;
 };
 
-/// Takes vertices out, cheapest first, until a limit is reached.
+/// Removes vertices by edge collapses in order of increasing error until a limit is reached.
 ///
-/// \param mesh    valid (mesh.h); vertices at equal positions are one
-/// \param report  counts what is left out (collapsed triangles, isolated vertices), what is not
-///                simplified (non-manifold edges and their ends, triangles with a non-finite
-///                corner), and a number of triangles that could not be reached
-/// \return a subset of the vertices with all they carry, in their order, and fewer triangles, in
-///         the order, material ranges and smoothing groups of those they were; `source_vertex`
-///         names the input's vertex for each. With `frames` other than keep, vertices may be split
-///         on top of that.
+/// \param mesh  valid (mesh.h); vertices at equal positions count as one
+/// \param report  counts omitted elements (collapsed triangles, isolated vertices), elements that
+///         are not simplified (non-manifold edges and their ends, triangles with a non-finite
+///         corner), and a target number of triangles that could not be reached
+/// \return a subset of the vertices with all attributes, in their order, and the remaining
+///         triangles in the original order, with their material ranges and smoothing groups.
+///         `source_vertex` holds the input's index of each vertex. If `frames` does not keep
+///         normals, vertices may be split in addition
 /// \throws InvalidInput if the mesh is not valid, no limit is given or one is out of range, or as
-///         with_frames does
+///         with_frames() does
 ///
-/// Boundaries, texture seams, borders between colours and materials are lines: they are thinned out
-/// along themselves, never torn or crossed, and points where they meet stay. A closed mesh stays
-/// closed, no triangle turns over in space or in the texture, and separate pieces neither join nor
-/// vanish. Whole numbers of triangles are met to within one, unless that would break any of this.
-/// The same input gives the same bits; the order of triangles does matter, as ties go by it.
+/// Boundaries, texture seams, and borders between colors and materials are feature lines: they are
+/// simplified along themselves and never torn or crossed, and their junctions are kept. Closed
+/// meshes stay closed, no triangle is inverted in space or in the texture, and separate components
+/// neither merge nor vanish. The target number of triangles is met to within one unless that would
+/// violate these rules. The same input gives the same bits; the order of triangles affects the
+/// result, because it breaks ties.
 ///
 /// Source: [Garland and Heckbert 1997], [Hoppe 1999]; OpenMesh's decimater.
 FramedMesh decimated(const Mesh& mesh, const DecimateOptions& options, Report& report);

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// The health of a mesh: what is wrong with it, or worth knowing, before anything is computed.
+/// Diagnoses a mesh: finds degenerate, non-manifold, non-finite and otherwise unusual elements
+/// before anything is computed.
 ///
-/// The words are those of docs/hard-cases.md, which says what each comes to in every step.
+/// docs/hard-cases.md uses the same terms and documents the effect of each condition on every step.
 /// Tests: tests/mesh/geometry/health/diagnose_test.cpp, tests/hard_cases/hard_cases_test.cpp.
 #pragma once
 
@@ -17,72 +18,81 @@
 
 namespace relief {
 
-/// Trouble makes a step fall back, or its result depend on more than the surface; a remark is what
-/// sound models have too.
+/// The severity of a condition. A problem causes a fallback, or makes a result depend on more than
+/// the surface. A note also applies to valid models.
 enum class Severity { trouble, remark };
 
-/// What can be found in a mesh. Vertices at equal positions count as one for all that is about
-/// triangles, edges and fans, so that texture seams are no borders.
+/// The conditions of a mesh. For triangles, edges and fans, vertices at equal positions count as
+/// one, so that texture seams are not boundaries.
 enum class MeshCondition {
-    // Triangles. A triangle has one of the first four at most.
-    triangle_not_finite,  ///< Has a corner whose position is not finite.
-    triangle_collapsed,   ///< Two corners at the same place.
-    triangle_collinear,   ///< Narrower than 1e-12 of its longest edge.
-    triangle_needle,      ///< Narrower than 1e-4 of its longest edge.
-    triangle_repeated,    ///< Same corners, same way round as an earlier one; all but the first.
-    triangle_backed,      ///< Same corners as another, the other way round: a two-sided sheet.
-    // Edges between finite triangles that are not collapsed, repeated or backed. Counted by edge,
-    // named by the first triangle on it.
-    edge_non_manifold,  ///< Of three triangles or more.
-    edge_flipped,       ///< Its two triangles run along it in the same direction.
-    edge_folded,        ///< Its two triangles lie on each other, within a degree.
-    edge_boundary,      ///< Of one triangle.
+    // Triangles. A triangle has at most one of the first four conditions.
+    triangle_not_finite,  ///< A corner has a non-finite position.
+    triangle_collapsed,   ///< Two corners have the same position.
+    triangle_collinear,   ///< Its height is less than 1e-12 of its longest edge.
+    triangle_needle,      ///< Its height is less than 1e-4 of its longest edge.
+    /// It has the corners and winding of an earlier triangle; all but the first are counted.
+    triangle_repeated,
+    /// It has the corners of another triangle with opposite winding: a two-sided sheet.
+    triangle_backed,
+    // Edges between finite triangles that are not collapsed, repeated or backed. Each edge is
+    // counted once and listed by its first triangle.
+    edge_non_manifold,  ///< It has three or more triangles.
+    /// Its two triangles have opposite winding: both contain it in the same direction.
+    edge_flipped,
+    edge_folded,    ///< Its two triangles lie on each other, within one degree.
+    edge_boundary,  ///< It has one triangle.
     // Vertices.
     vertex_not_finite,
-    vertex_isolated,   ///< No triangle has a corner at its place.
-    vertex_voiceless,  ///< Only degenerate triangles have (the first three of the list).
-    vertex_bow_tie,    ///< Several fans of triangles touch there. Counted by position.
-    /// Another position differs by 4 units in the last place of its largest coordinate, or less.
-    /// Counted by position.
+    vertex_isolated,   ///< No triangle has a corner at its position.
+    vertex_voiceless,  ///< All its triangles have one of the first three conditions.
+    vertex_bow_tie,  ///< Several fans of triangles meet only at this position. Counted by position.
+    /// Another position differs from it by at most 4 units in the last place of its largest
+    /// coordinate. Counted by position.
     vertex_near_duplicate,
-    // Normals, where there are any.
+    // Normals, if the mesh has them.
     normal_not_finite,
     normal_zero,
-    normal_not_unit,  ///< Length off by more than 8-bit storage leaves (0.007).
-    normal_opposed,   ///< Points to the back of every triangle of its vertex.
-    normal_divided,   ///< Points to the back of some, or lies in one.
-    // Tangents, where there are any.
+    /// Its length differs from 1 by more than the error of 8-bit storage (0.007).
+    normal_not_unit,
+    normal_opposed,  ///< It points to the back of every triangle of its vertex.
+    /// It points to the back of some triangle of its vertex, or lies in its plane.
+    normal_divided,
+    // Tangents, if the mesh has them.
     tangent_not_finite,
-    tangent_not_unit,      ///< Zero, or off as for normals.
-    tangent_unhanded,      ///< w is neither 1 nor -1.
-    tangent_along_normal,  ///< Within 2.5 degrees of the normal or its opposite: no frame.
-    tangent_leaning,       ///< Not perpendicular to the normal: more than 1.2 degrees off.
-    // Texture coordinates, where there are any; only triangles that have an area in space.
-    texture_not_finite,   ///< A vertex.
+    tangent_not_unit,  ///< It is zero, or its length differs from 1 as for normals.
+    tangent_unhanded,  ///< Its w is neither 1 nor -1.
+    /// It is within 2.5 degrees of the normal or its opposite, so there is no tangent frame.
+    tangent_along_normal,
+    /// It deviates by more than 1.2 degrees from the perpendicular to the normal.
+    tangent_leaning,
+    // Texture coordinates, if the mesh has them. Only triangles with an area in space are
+    // considered.
+    texture_not_finite,   ///< Counted by vertex.
     texture_degenerate,   ///< The triangle has no area in the image.
-    texture_mirrored,     ///< The image is on the triangle the wrong way round.
-    texture_overlapping,  ///< Shares texels with another triangle.
-    // The whole.
-    mesh_far_away,     ///< Floats so far out are coarser than 1/65536 of the mesh's size.
-    texture_far_away,  ///< The same of texture coordinates, and of the box around them.
+    texture_mirrored,     ///< The image is mirrored on the triangle.
+    texture_overlapping,  ///< The triangle shares texels with another one.
+    // The whole mesh.
+    /// The spacing of floats at its largest coordinate exceeds 1/65536 of the mesh's size.
+    mesh_far_away,
+    texture_far_away,  ///< The same for texture coordinates and the size of their bounding box.
 };
 
-/// A condition in words.
+/// The texts for a condition.
 struct MeshConditionInfo {
     MeshCondition condition;
     std::string_view word;     ///< Finding::kind: "needle triangle".
     std::string_view element;  ///< Finding::element.
     Severity severity;
-    std::string_view meaning;  ///< Finding::outcome: "has an area, but ...".
+    std::string_view meaning;  ///< Finding::outcome: "is so narrow that ...".
 };
 
 /// All conditions, in the order of the enumeration.
 std::span<const MeshConditionInfo> mesh_conditions();
 
-/// The words for one of them.
+/// The texts for one condition.
 const MeshConditionInfo& condition_info(MeshCondition condition);
 
-/// A condition that a mesh has.
+/// A condition that occurs in a mesh.
 struct FoundCondition {
     MeshCondition condition;
     std::size_t count = 0;
@@ -94,9 +104,9 @@ struct FoundCondition {
 
 struct Diagnosis {
     std::vector<FoundCondition> found;  ///< In the order of the enumeration.
-    float size = 0.0F;     ///< The longest side of the box around all finite positions.
-    float spacing = 0.0F;  ///< Between neighbouring floats at the largest coordinate.
-    /// Texels along each side of the raster on which overlaps were looked for; 0: not looked.
+    float size = 0.0F;     ///< The longest side of the bounding box of all finite positions.
+    float spacing = 0.0F;  ///< The spacing of floats at the largest coordinate.
+    /// Texels along each side of the raster for the overlap test; 0 if it was not done.
     int overlap_raster = 0;
 
     [[nodiscard]] std::size_t count(MeshCondition condition) const;
@@ -105,37 +115,37 @@ struct Diagnosis {
     friend bool operator==(const Diagnosis&, const Diagnosis&) = default;
 };
 
-/// What to look for; what is left out costs nothing.
+/// The conditions to test; omitted ones cost no time.
 struct DiagnoseOptions {
-    bool edges = true;            ///< Repeated and backed triangles, edges, bow-ties.
+    bool edges = true;            ///< Repeated and backed triangles, edges, and bow-tie vertices.
     bool near_duplicates = true;  ///< vertex_near_duplicate
     bool texture_overlap = true;  ///< texture_overlapping
-    std::size_t listed = 8;       ///< How many elements of a condition are named.
+    std::size_t listed = 8;       ///< Maximum number of listed elements per condition.
 };
 
-/// Everything that MeshCondition lists, counted. Changes nothing, judges every value.
+/// Tests a mesh for all conditions. The mesh may have any values and is not changed.
 ///
 /// \throws InvalidInput if the mesh is not valid (mesh.h)
 ///
-/// Time is linear but for sorting around each vertex, whatever the shape: a million triangles take
-/// a third of a second on one core, and one to two where all stand around one vertex or edge, or
-/// cover the whole image each (bench/README.md). Counts are the same for any order of triangles and
-/// any number of threads.
+/// The time is linear for any shape, except for sorting around each vertex. A million triangles
+/// take a third of a second on one core, and one to two seconds if all share one vertex or edge, or
+/// if each covers the whole image (bench/README.md). Counts do not depend on the order of triangles
+/// and the number of threads.
 ///
-/// Texture coordinates are compared as they are: what tiling or UDIM tiles set apart, is apart.
-/// Overlap is what a texel would notice: two triangles overlap when the centre of a texel lies
-/// inside both, by a thousandth of a texel or more, on a raster laid over the box of all texture
-/// coordinates, of two texels by two for each triangle (1024 to 4096 along each side; fewer where
-/// long triangles would make it slow). Overlaps that hold no such centre are not seen.
+/// Texture coordinates are compared without wrapping, so charts in different tiles do not overlap.
+/// Two triangles overlap if the center of a texel lies inside both, at least a thousandth of a
+/// texel from their edges. The raster covers the bounding box of all texture coordinates with about
+/// 2 x 2 texels per triangle (1024 to 4096 along each side; fewer if long triangles would make it
+/// slow). Smaller overlaps are not found.
 ///
-/// Near duplicates are looked for among the first 64 positions of a cell of 256 units in the last
-/// place; more in one cell are found only if they are near to one of these.
+/// Near duplicates are searched for among the first 64 positions of a cell of 256 units in the last
+/// place; other positions in the cell are found only if they are close to one of these.
 Diagnosis diagnose(const Mesh& mesh, const DiagnoseOptions& options = {});
 
-/// A condition as a finding of a report, in the words of the table.
+/// Converts a condition to a finding of a report.
 Finding to_finding(const FoundCondition& found);
 
-/// All conditions as findings, or those of one severity.
+/// Converts all conditions, or those of one severity, to findings.
 Report to_report(const Diagnosis& diagnosis, std::optional<Severity> severity = std::nullopt);
 
 }  // namespace relief

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// How far directions are from the truth, in degrees. The one home of that measure.
+/// Computes angles between directions in degrees, and their RMS, mean and maximum.
 /// Tests: tests/mesh/accuracy/direction_error_test.cpp.
 #pragma once
 
@@ -10,22 +10,26 @@
 
 namespace relief {
 
-/// The angle between two directions of any length, in degrees, 0 to 180; by atan2 in double, which
-/// resolves what arc cosines cannot. NaN if one is zero or not finite.
+/// Returns the angle between two directions of any length, in degrees, 0 to 180. It is computed by
+/// atan2 in double precision, which is accurate for small angles, unlike the arc cosine. NaN if one
+/// direction is zero or not finite.
 double degrees_between(const glm::dvec3& a, const glm::dvec3& b);
 
-/// Of many directions, in degrees.
+/// Statistics of angles in degrees.
 struct DirectionError {
-    double rms = 0.0;  ///< Root of the mean square.
+    double rms = 0.0;  ///< Root mean square.
     double mean = 0.0;
     double max = 0.0;
     std::size_t count = 0;
 };
 
-/// \param counts  1 for each direction to look at, 0 for others; or empty for all
-/// \return all zeros where there is none; NaN in all three where some direction is zero or not
-///         finite: an error of no known size must not vanish in a mean
-/// \throws InvalidInput if the spans are not equally long
+/// Computes the statistics of the angles between corresponding directions.
+///
+/// \param truth  the exact directions, of any length
+/// \param counts  1 for each direction to include, 0 for the others; or empty to include all
+/// \return all zeros without directions; NaN for rms, mean and max if a direction is zero or not
+///         finite, so that the error is not hidden in a mean
+/// \throws InvalidInput if the spans differ in length
 DirectionError direction_error(std::span<const glm::vec3> directions,
                                std::span<const glm::dvec3> truth,
                                std::span<const unsigned char> counts = {});

@@ -1,30 +1,33 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Dithering: rounding up or down by a pattern, so that the mean over a few texels is what no
-/// single code can say. Deterministic: a texel's place alone decides its threshold, whatever part
-/// of an image is made when, by how many threads. Tests: tests/mesh/image/normals/dither_test.cpp.
+/// Dithering: rounds values up or down by a fixed pattern, so that the mean over a few texels is
+/// more accurate than single codes. The threshold of a texel depends only on its coordinates, so
+/// results do not depend on the order of computation or the number of threads.
+/// Tests: tests/mesh/image/normals/dither_test.cpp.
 #pragma once
 
 namespace relief {
 
-/// How numbers between two codes are rounded.
+/// The rounding of values between two codes.
 enum class Dither {
-    none,        ///< To the nearest: at most half a code off, the same way all over a flat patch.
-    ordered,     ///< By a Bayer matrix, 16 x 16: the shortest pattern, but a visible weave.
-    blue_noise,  ///< By a tile of 64 x 64 without low frequencies, which the eye sees least.
+    none,  ///< To the nearest code: the error is at most half a code, but constant over flat areas.
+    ordered,     ///< By a Bayer matrix of 16 x 16: the shortest period, but a visible pattern.
+    blue_noise,  ///< By a tile of 64 x 64 without low frequencies: least visible.
 };
 
-/// What the fraction of a number between two codes must exceed for the upper one to be taken.
+/// Returns the threshold of a texel: a value between two codes is rounded up if its fraction
+/// exceeds the threshold.
 ///
-/// \param dither   not `none`
-/// \param x, y     of the texel, in the whole image; not negative
-/// \param channel  0 to 2: each has the same tile, moved; with blue noise their errors have
-///                 next to no correlation
-/// \return (k + 0.5) / n with k from 0 to n - 1, n being 256 or 4096: each once a tile. Never 0, so
-///         that what a code says exactly gets that code: a flat texel stays flat, without noise.
+/// \param dither  not `none`
+/// \param x, y  coordinates in the whole image, not negative
+/// \param channel  0 to 2; each channel uses the same tile with another offset. With blue noise,
+///         the errors of the channels are almost uncorrelated
+/// \return (k + 0.5) / n, where n is 256 or 4096 and each k from 0 to n - 1 occurs once in a tile.
+///         It is never 0, so a value that equals a code gets that code: flat texels stay flat,
+///         without noise
 ///
-/// The tiles are made on first use, of whole numbers: the same on every machine.
-/// Source: [Bayer 1973], [Ulichney 1993].
+/// The tiles are computed on first use in integer arithmetic, with the same result on every
+/// machine. Source: [Bayer 1973], [Ulichney 1993].
 float dither_threshold(Dither dither, int x, int y, int channel);
 
 }  // namespace relief

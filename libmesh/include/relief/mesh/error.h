@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// What relief throws. Bad data throws, always; relief's own bugs assert.
+/// The exceptions of relief. Bad data always throws; programming errors assert.
 ///
-/// A message names the thing, its value and the limit: "triangle 7 names vertex 12, but there are
+/// A message names the object, its value and the limit: "triangle 7 names vertex 12, but there are
 /// only 8". Nothing is repaired silently: a repair is a Finding in a Report (report.h).
 #pragma once
 
@@ -12,13 +12,13 @@
 
 namespace relief {
 
-/// Base of everything relief throws on purpose.
+/// The base class of all exceptions that relief throws.
 class Error : public std::runtime_error {
   public:
     using std::runtime_error::runtime_error;
 };
 
-/// Data or options that contradict themselves or cannot be used.
+/// Data or options that are contradictory or out of range.
 class InvalidInput : public Error {
   public:
     using Error::Error;

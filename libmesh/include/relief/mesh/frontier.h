@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Which of several methods are worth their time: the efficient frontier of error against time.
-/// The one home of that rule. Tests: tests/mesh/accuracy/frontier_test.cpp.
+/// Finds the Pareto-optimal methods by error and time.
+/// Tests: tests/mesh/accuracy/frontier_test.cpp.
 #pragma once
 
 #include <span>
@@ -9,15 +9,17 @@
 
 namespace relief {
 
-/// What a method errs and takes; less is better in both, in whatever units. NaN: not known.
+/// The error and time of a method, in any unit; smaller is better. NaN means unknown.
 struct Price {
     double error = 0.0;
     double time = 0.0;
 };
 
-/// \return for each, whether no other is better in one and at least as good in the other. Equal
-/// ones
-///         stand or fall together; one with a NaN is never efficient, and makes no other less so
+/// Finds the Pareto-optimal methods.
+///
+/// \return for each method, true if no other is better in one value and at least as good in the
+///         other. Equal methods have equal results. A method with NaN is never Pareto-optimal and
+///         does not affect the others
 std::vector<bool> efficient(std::span<const Price> prices);
 
 }  // namespace relief

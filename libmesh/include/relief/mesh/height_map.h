@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Heights out of images: which number of a colour is the height, and which texels have none.
+/// Extracts heights from images, and finds the texels that have none.
 /// Tests: tests/mesh/image/heights/height_map_test.cpp.
 #pragma once
 
@@ -12,42 +12,46 @@
 
 namespace relief {
 
-/// Which number of a colour is the height. Grey has only one, which all but the last three of these
-/// take; no colour space is decoded but by `luminance`.
+/// The channel that holds the heights. Gray images have only one, to which mean, luminance and red
+/// are equivalent. Only `luminance` decodes sRGB.
 enum class HeightChannel {
-    mean,       ///< Of red, green and blue: data has no luminance.
-    luminance,  ///< Rec. 709's, in linear light: integer samples are taken for sRGB-coded.
+    mean,  ///< The mean of red, green and blue.
+    /// The luminance of Rec. 709 in linear light; integer samples are decoded from sRGB.
+    luminance,
     red,
     green,
     blue,
     alpha,
 };
 
-/// The heights in an image: one float channel.
+/// Extracts the heights of an image as one float channel.
 ///
-/// Integer samples are divided by their maximum. Alpha is left out, unless it is the channel.
-/// \throws InvalidInput if the image is empty, or has no such channel
+/// Integer samples are divided by their maximum. Alpha is ignored, unless it is the channel.
+/// \throws InvalidInput if the image is empty or has no such channel
 Image height_field(const Image& image, HeightChannel channel = HeightChannel::mean);
 
-/// Heights, and which of them are no part of the surface.
+/// Heights, and the texels that do not belong to the surface.
 struct HeightMap {
-    /// One channel: grey images as they are stored, of any depth; others as height_field() says.
+    /// One channel: gray images keep their samples and bits, others are as from height_field().
     Image heights;
-    /// The alpha of the image, in its depth; empty where it has none or it is the height.
+    /// The alpha of the image with its bits; empty if it has none or alpha holds the heights.
     Image alpha;
-    /// 1 where alpha is 0: what colour stands there is no height. Empty where no texel is so.
+    /// 1 for texels with alpha 0, whose colors are not heights. Empty if there are none.
     std::vector<std::uint8_t> transparent;
-    /// Share of texels whose red, green and blue clearly differ: of a height map none. Of some
-    /// 10000 texels in even distances.
+    /// Share of texels whose red, green and blue clearly differ; near 0 for height maps. It is
+    /// estimated from about 10000 regularly spaced texels.
     double colored_share = 0.0;
-    /// Share of texels whose alpha is neither 0 nor the largest: alpha may be heights. Of the same.
+    /// Share of texels whose alpha is neither 0 nor the maximum, estimated in the same way: alpha
+    /// may be the heights.
     double partial_alpha_share = 0.0;
 
     [[nodiscard]] std::size_t transparent_count() const;
 };
 
-/// \param image  taken apart: where it is grey, its samples become the heights without a copy
-/// \throws as height_field()
+/// Extracts the heights of an image.
+///
+/// \param image  is consumed; the samples of gray images are moved, not copied
+/// \throws InvalidInput as height_field()
 HeightMap height_map(Image&& image, HeightChannel channel = HeightChannel::mean);
 
 }  // namespace relief

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Single channels of images, and alpha put beside colours and taken away again.
+/// Extracts single channels of images, and adds or removes alpha.
 /// Tests: tests/mesh/image/image_channels_test.cpp.
 #pragma once
 
@@ -8,19 +8,18 @@
 
 namespace relief {
 
-/// One channel by itself, as float: integer samples divided by their maximum.
+/// Extracts one channel as float; integer samples are divided by their maximum.
 /// \throws InvalidInput if there is no such channel
 Image channel_of(const Image& image, int channel);
 
-/// An image of three channels with a fourth.
+/// Adds a fourth channel to an image of three channels.
 ///
-/// \param alpha  one float channel of the same size; in 8 and 16 bits the nearest of its codes,
-/// what
-///               lies outside [0,1] (or is NaN) being the nearest of these (or 0)
-/// \throws InvalidInput if the images are not of these kinds, or not of one size
+/// \param alpha  one float channel of the same size. For images of 8 and 16 bits it is clamped to
+///         [0,1] (NaN becomes 0) and rounded to the nearest code
+/// \throws InvalidInput if the images have other formats or differ in size
 Image with_alpha(const Image& image, const Image& alpha);
 
-/// Takes the fourth channel away. \throws InvalidInput if the image has not four
+/// Removes the fourth channel. \throws InvalidInput if the image does not have four channels
 void drop_alpha(Image& image);
 
 }  // namespace relief

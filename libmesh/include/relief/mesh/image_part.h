@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Rectangles of an image. Tests: tests/mesh/image/image_part_test.cpp.
+/// Extracts rectangles of images.
+/// Tests: tests/mesh/image/image_part_test.cpp.
 #pragma once
 
 #include "relief/mesh/image.h"
 
 namespace relief {
 
-/// A rectangle of texels; x to the right, y down.
+/// A rectangle of texels; x points right, y down.
 struct ImagePart {
     int x = 0;
     int y = 0;
@@ -17,8 +18,8 @@ struct ImagePart {
     friend bool operator==(const ImagePart&, const ImagePart&) = default;
 };
 
-/// The texels of a rectangle, as an image of the same kind.
-/// \throws InvalidInput if it is empty or does not lie within
+/// Extracts a rectangle as an image of the same format.
+/// \throws InvalidInput if the rectangle is empty or not inside of the image
 Image part_of(const Image& image, const ImagePart& part);
 
 }  // namespace relief
