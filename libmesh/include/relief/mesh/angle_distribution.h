@@ -28,8 +28,7 @@ struct AngleDistribution {
     friend bool operator==(const AngleDistribution&, const AngleDistribution&) = default;
 };
 
-/// Statistics of angles that are too many to store (libmesh/src/accuracy/angle_sum.h); all are zero
-/// if there is no angle.
+/// Statistics of angles that are too many to store; all are zero if there is no angle.
 struct AngleSummary {
     std::size_t count = 0;
     double rms = 0.0;  ///< Root mean square.

@@ -27,8 +27,8 @@ enum class Kernel {
     central5,  ///< Differences 8 -1, over 12: for smooth maps.   4  0.950    0.17
     central7,  ///< Differences 45 -9 1, over 60.                 6  1.082    0.02
     /// The slope of the plane with the best least-squares fit, weighted by a Gaussian whose
-    /// standard
-    /// deviation is half the radius: the derivative of a Gaussian, with unit gain. Order 2.
+    /// standard deviation is half the radius: the derivative of a Gaussian, with unit gain. Order
+    /// 2.
     gaussian,
 };
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// What the numbers of a normal map may mean on a mesh, and which of that explains a given map.
-/// In the library relief::bake. Tests: tests/mesh/bake/map_convention_test.cpp.
+/// Finds the convention (axes, tangent basis, orientation, coding) with which a normal map matches
+/// known normals of a mesh. Part of the library relief::bake.
+/// Tests: tests/mesh/bake/map_convention_test.cpp.
 #pragma once
 
 #include <cstddef>
@@ -18,94 +19,101 @@
 
 namespace relief {
 
-/// In which axes the vectors of a map are.
+/// The space of the vectors of a map.
 enum class MapAxes {
     tangent,
-    object,  ///< Of the low mesh.
-    world,   ///< In which the meshes are given.
+    object,  ///< The object space of the low mesh.
+    world,   ///< The common space of the meshes.
 };
 
-/// Whose tangents.
+/// The tangents of a map.
 enum class MapBasis {
-    used,  ///< Those that the map is seen with: the low mesh's own, else MikkTSpace's.
+    used,  ///< The tangents of the renderer: those of the low mesh, or MikkTSpace's without any.
     mikktspace,
     area_weighted,
     lengyel,
 };
 
-/// How a fragment gets its axes from those of the vertices.
+/// The interpolation of tangent frames from vertices to fragments.
 enum class MapFrame {
-    interpolated,  ///< As they come, and the bitangent from them: MikkTSpace's contract, relief's.
-    unit,          ///< Normal and tangent made unit first.
-    orthonormal,   ///< And the tangent turned into the plane of the normal.
-    vertex_bitangent,  ///< The bitangent interpolated too, all three made unit.
+    /// Interpolated without normalization, with the bitangent computed from them, as in MikkTSpace
+    /// and relief.
+    interpolated,
+    unit,              ///< Normal and tangent are normalized first.
+    orthonormal,       ///< In addition, the tangent is made perpendicular to the normal.
+    vertex_bitangent,  ///< The bitangent is interpolated too, and all three are normalized.
 };
 
-/// How the image lies.
+/// The orientation of the image.
 enum class MapTurn { upright, upside_down, mirrored, half_turn };
 
-/// A reading of a map.
+/// An interpretation of a map.
 struct MapConvention {
     StoredCurve curve = StoredCurve::none;
     FlatCode flat = FlatCode::middle;
     MapTurn turn = MapTurn::upright;
-    /// What x, y and z are, in terms of the vectors as stored with y up.
+    /// The source of x, y and z among the components of the stored vectors, with y up.
     AxisMapping axes = same_axes;
     MapAxes space = MapAxes::tangent;
     MapBasis basis = MapBasis::used;
     MapFrame frame = MapFrame::interpolated;
-    bool ignores_mirroring = false;  ///< w is taken for +1 everywhere.
+    bool ignores_mirroring = false;  ///< The handedness w counts as +1 everywhere.
 
     bool operator==(const MapConvention&) const = default;
 };
 
-/// A texel whose true normal is known.
+/// A texel whose exact normal is known.
 struct KnownTexel {
     int x = 0;
     int y = 0;
     std::uint32_t triangle = 0;
-    glm::dvec3 weights{0.0};  ///< Of its corners.
-    glm::dvec3 truth{0.0};    ///< In the axes of the meshes, unit.
-    double expected = 0.0;    ///< Degrees that a faithful map would be off.
+    glm::dvec3 weights{0.0};  ///< Barycentric weights of the triangle's corners.
+    glm::dvec3 truth{0.0};    ///< The exact normal in the space of the meshes, unit.
+    double expected = 0.0;    ///< The expected error of a correct map in degrees.
 };
 
-/// One thing about a reading that is other than it was told.
+/// A part of a convention that can differ from the given one.
 enum class ConventionPart { curve, flat, turn, axes, space, basis, frame, mirroring };
 
 struct ConventionFit {
-    /// Whether the map was so far off that others were tried.
+    /// True if the error of the map was so large that other conventions were tried.
     bool was_searched = false;
-    /// Whether one explains it: less than half as far off, by more than 0.02 degrees.
+    /// True if a convention explains the error: it reduces it to less than half, and by more than
+    /// 0.02 degrees.
     bool is_explained = false;
-    MapConvention convention;       ///< The one that fits best.
-    double told_degrees = 0.0;      ///< Root of the mean square, the worst 2% left out: as told,
-    double found_degrees = 0.0;     ///< by `convention`,
-    double expected_degrees = 0.0;  ///< and of a faithful map.
-    std::size_t tried = 0;          ///< How many readings were tried.
-    /// In which parts `convention` is another than told.
+    MapConvention convention;  ///< The convention with the smallest error.
+    /// RMS error with the given convention; this and the next two without the largest 2% of the
+    /// errors.
+    double told_degrees = 0.0;
+    double found_degrees = 0.0;     ///< RMS error with `convention`.
+    double expected_degrees = 0.0;  ///< Expected RMS error of a correct map.
+    std::size_t tried = 0;          ///< Number of conventions that were tried.
+    /// The parts in which `convention` differs from the given one.
     std::vector<ConventionPart> changes;
 };
 
 struct ConventionSearch {
-    const Mesh* low = nullptr;    ///< With the frames that the map is seen with.
-    const Mesh* given = nullptr;  ///< As it was given, which may have tangents of its own.
+    const Mesh* low = nullptr;    ///< With the tangent frames of the renderer.
+    const Mesh* given = nullptr;  ///< The low mesh as it was read, with its own tangents, if any.
     MapConvention told;
-    Green green = Green::up;           ///< Of the map, as told.
-    glm::dmat3 object_from_mesh{1.0};  ///< The low mesh's own axes.
+    Green green = Green::up;  ///< Of the map, as given.
+    /// The transform from the meshes' space to the low mesh's object space.
+    glm::dmat3 object_from_mesh{1.0};
 };
 
-/// Which reading explains a map.
+/// Finds the convention that explains a map.
 ///
-/// \param map     three or four channels, whole
-/// \param texels  some hundreds to thousands of them, all over the map
-/// \return `told` itself where the map is as good as can be expected (within 0.02 degrees of it, or
-///         twice); else the reading with the least error, found part by part: all readings that
-///         differ in one part (or in two that hide each other: how the image lies and its axes, the
-///         space and its axes), the best of these taken, and again, up to three times. Of readings
-///         that fit alike, the first in the order of the enumerations
+/// \param map  three or four channels, the whole image
+/// \param texels  some hundreds to thousands, spread over the map
+/// \return the given convention (`told`) if the error of the map is at most twice the expected one,
+///         or exceeds it by at most 0.02 degrees. Otherwise the convention with the smallest error
+///         from a greedy search: all conventions are tried that differ in one part, or in two parts
+///         that can hide each other (orientation and axes, space and axes); the best one becomes
+///         the start of the next round, for up to three rounds. Ties: the first one in the order of
+///         the enumerations
 ///
-/// Reading a map as another may also shrink errors that have other reasons; so an explanation must
-/// more than halve them.
+/// A wrong convention can also reduce errors that have other causes. Therefore an explanation must
+/// reduce the error to less than half.
 ConventionFit find_convention(const Image& map, std::span<const KnownTexel> texels,
                               const ConventionSearch& search);
 

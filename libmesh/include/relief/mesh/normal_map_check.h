@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// The health of a normal map: whether an image is one, what its numbers mean, and what is wrong
-/// with it. Tests: tests/mesh/image/check/normal_map_check_test.cpp,
-/// normal_map_check_real_test.cpp.
+/// Checks an image that should be a normal map: its content, its conventions and its defects.
+/// Tests: tests/mesh/image/check/normal_map_check_test.cpp, normal_map_check_real_test.cpp.
 #pragma once
 
 #include <array>
@@ -21,88 +20,91 @@
 
 namespace relief {
 
-/// What the numbers of an image are most likely to be.
+/// The most likely content of an image.
 enum class MapContent {
-    tangent_normals,  ///< Directions that lean towards z.
-    object_normals,   ///< Directions of unit length that face all ways.
+    tangent_normals,  ///< Directions near +z.
+    object_normals,   ///< Directions of unit length that face all sides.
     xy_normals,  ///< x and y of tangent-space normals; the third channel is absent or constant.
-    grey,        ///< One channel, or all the same: heights, roughness, a mask.
-    other,       ///< Colours, several masks in one image, ...
+    grey,        ///< One channel, or several equal channels: heights, roughness, a mask.
+    other,       ///< Colors, several masks in one image, or other data.
 };
 
-/// Whether the numbers went through the sRGB curve, which no normal may.
+/// An sRGB conversion that was applied to the samples by mistake.
 enum class StoredCurve {
     none,
-    srgb_encoded,  ///< Too bright: linear_from_srgb() of the samples are normals.
-    srgb_decoded,  ///< Too dark: srgb_from_linear() of the samples are.
+    srgb_encoded,  ///< Too bright: apply linear_from_srgb() to get normals.
+    srgb_decoded,  ///< Too dark: apply srgb_from_linear() to get normals.
 };
 
-/// How long the vectors (2 sample - 1) are that the texels hold; non-finite ones left out.
+/// Statistics of the lengths of the vectors (2 sample - 1) of all finite texels.
 struct VectorLengths {
     static constexpr std::array bounds = {0.01, 0.02, 0.05, 0.1, 0.25};
 
     double mean = 0.0;
-    double rms_deviation = 0.0;  ///< From 1.
-    /// Share of texels no further from 1 than each of the bounds.
+    double rms_deviation = 0.0;  ///< RMS deviation from 1.
+    /// Share of texels whose length deviates from 1 by at most each of the bounds.
     std::array<double, bounds.size()> within{};
 };
 
-/// Which way green grows, and how sure that is.
+/// The detected direction of green, with its confidence.
 struct GreenEvidence {
-    /// Absent where the map cannot tell: flat, ripples along one axis, too small, no surface.
+    /// Absent if it cannot be determined: the map is flat, has waves along one axis only, is too
+    /// small, or shows no surface.
     std::optional<Green> green;
-    /// +1: a surface if green is up; -1: one if green is down; 0: neither. The correlation of the
-    /// change of the slope along x, in y, with that of the slope along y, in x.
+    /// The correlation between the derivative in y of the slope along x and the derivative in x of
+    /// the slope along y. +1: a surface with green up; -1: a surface with green down; 0: neither.
     double correlation = 0.0;
-    double deviation = 0.0;   ///< Standard deviation of the correlation, from parts of the map.
-    double confidence = 0.0;  ///< 0 to 1: that the sign of the correlation is no accident.
-    int scale = 1;            ///< Texels that were averaged to find it: 1, 2, 4 or 8.
+    double deviation = 0.0;  ///< Standard deviation of the correlation over parts of the map.
+    /// The probability, 0 to 1, that the sign of the correlation is not random.
+    double confidence = 0.0;
+    int scale = 1;  ///< The size of the averaging filter in texels: 1, 2, 4 or 8.
 };
 
-/// What can be found in a map.
+/// The conditions of a map.
 enum class MapCondition {
-    // What it is.
+    // Content.
     not_normals,   ///< MapContent::grey or other.
     object_space,  ///< MapContent::object_normals.
     z_missing,     ///< MapContent::xy_normals.
-    z_constant,    ///< The third channel says nothing, but is near what it should be.
+    z_constant,    ///< The third channel is constant, but close to the correct z.
     stored_through_srgb,
     decoded_from_srgb,
-    tagged_as_color,  ///< The file says that its samples are sRGB colours, or the like.
-    signed_samples,   ///< Float samples hold n itself, not (n + 1) / 2.
+    tagged_as_color,  ///< The file is tagged as sRGB colors or similar.
+    signed_samples,   ///< Float samples contain n instead of (n + 1) / 2.
     // Texels.
     texel_not_finite,
-    texel_without_direction,  ///< Its vector is no longer than 1 / 16.
-    texel_facing_back,        ///< z below zero, by more than rounding to codes can do.
-    texel_grey,               ///< Black, white or grey, and not of unit length: a background.
-    // Its lengths.
-    not_unit,        ///< rms_deviation above 0.05.
-    not_quite_unit,  ///< Above 0.02: filtered, compressed or averaged without renormalising.
+    texel_without_direction,  ///< Its vector has a length of at most 1 / 16.
+    texel_facing_back,        ///< z is negative by more than a rounding error of codes.
+    texel_grey,               ///< Black, white or gray, and not of unit length: a background.
+    // Lengths.
+    not_unit,  ///< rms_deviation is above 0.05.
+    /// rms_deviation is above 0.02: filtered, compressed or averaged without normalization.
+    not_quite_unit,
     // Conventions.
-    green_contradicted,  ///< The metadata says one direction, the surface shows the other.
+    green_contradicted,  ///< The metadata and the surface contradict each other.
     green_down,
     green_unknown,
-    /// The file says 128 is flat, but 64 texels or more have 127 in x and y, and more so than any
-    /// other code near to flat; a smooth surface has all of them alike.
+    /// The file declares 128 as flat, but at least 64 texels have 127 in x and y, more than any
+    /// other code near flat; a smooth surface would have all of them equally often.
     flat_contradicted,
     // Channels.
     all_flat,    ///< Every texel is the same.
-    x_constant,  ///< No slope left and right, though there is one up and down.
+    x_constant,  ///< There are slopes up and down, but none left and right.
     y_constant,
-    bits_unused,    ///< 16 bits or float hold 8 bits or fewer.
-    alpha_opaque,   ///< A fourth channel that says nothing.
-    alpha_heights,  ///< A fourth channel whose slopes are those of the normals.
+    bits_unused,    ///< 16 bits or float hold at most 8 significant bits.
+    alpha_opaque,   ///< The fourth channel is constant.
+    alpha_heights,  ///< The fourth channel holds heights whose slopes match the normals.
     alpha_other,
     // Borders.
-    seam_x,  ///< Does not go on across the left and right border.
+    seam_x,  ///< The map is not continuous across its left and right borders.
     seam_y,
 };
 
-/// A condition in words.
+/// The texts for a condition.
 struct MapConditionInfo {
     MapCondition condition;
     std::string_view word;     ///< "stored through the sRGB curve"
-    std::string_view element;  ///< What is counted: "texel", or "map" for the whole.
+    std::string_view element;  ///< The counted elements: "texel", or "map" for the whole.
     Severity severity;
     std::string_view meaning;
 };
@@ -110,49 +112,51 @@ struct MapConditionInfo {
 /// All conditions, in the order of the enumeration.
 std::span<const MapConditionInfo> map_conditions();
 
-/// The words for one of them.
+/// The texts for one condition.
 const MapConditionInfo& condition_info(MapCondition condition);
 
-/// A condition that a map has.
+/// A condition that occurs in a map.
 struct FoundMapCondition {
     MapCondition condition;
-    std::size_t count = 1;           ///< Texels, or 1 where the whole map is meant.
+    std::size_t count = 1;           ///< Number of texels, or 1 for conditions of the whole map.
     std::vector<std::size_t> first;  ///< The smallest texel indices, ascending, at most 8.
 };
 
 struct NormalMapCheck {
     MapContent content = MapContent::other;
     StoredCurve curve = StoredCurve::none;
-    VectorLengths lengths;           ///< Of the samples as they are stored.
-    VectorLengths lengths_uncurved;  ///< With `curve` undone; equal to `lengths` where it is none.
-    GreenEvidence green;             ///< Of tangent-space normals.
-    /// What detect_flat_code() says, or FlatCode::half where the texels contradict the metadata.
+    VectorLengths lengths;  ///< For the stored samples.
+    /// After `curve` is undone; equal to `lengths` for StoredCurve::none.
+    VectorLengths lengths_uncurved;
+    GreenEvidence green;  ///< For tangent-space normals.
+    /// The result of detect_flat_code(), or FlatCode::half if the texels contradict the metadata.
     FlatCode flat = FlatCode::half;
-    Tiling tiling;                            ///< Of x and y, the worse of the two.
-    std::vector<int> bits;                    ///< Really used, by channel; 0: more than 16.
-    std::optional<double> alpha_correlation;  ///< Of the slopes of alpha with those of the normals.
-    std::vector<FoundMapCondition> found;     ///< In the order of the enumeration.
+    Tiling tiling;          ///< The worse result of x and y.
+    std::vector<int> bits;  ///< Significant bits of each channel; 0: more than 16.
+    /// The correlation between the slopes of alpha and those of the normals.
+    std::optional<double> alpha_correlation;
+    std::vector<FoundMapCondition> found;  ///< In the order of the enumeration.
 
     [[nodiscard]] bool has(MapCondition condition) const;
     [[nodiscard]] bool has_trouble() const;
 };
 
-/// Everything that MapCondition lists. Changes nothing.
+/// Checks a map for all conditions. The map is not changed.
 ///
-/// \param map       any number of channels and bits
+/// \param map  any number of channels and bits
 /// \param metadata  text entries of its file; "relief:green" and "relief:flat" are compared with
-///                  what the texels show
-/// \param color_tag  what color_tag() says of its file (image_tags.h)
+///         the texels
+/// \param color_tag  the result of color_tag() for its file (image_tags.h)
 /// \throws InvalidInput if the image is empty
 ///
-/// What needs a surface (green, alpha) is looked for in tangent-space normals only. The same
-/// for any number of threads. Source of the criterion for green: [Frankot and Chellappa 1988], who
-/// make slopes integrable; here it is only asked how far they are.
+/// Conditions that require a surface (green, alpha) are checked only for tangent-space normals. The
+/// result is the same for any number of threads. The criterion for green is integrability, after
+/// [Frankot and Chellappa 1988]; here it is only measured.
 NormalMapCheck check_normal_map(const Image& map,
                                 const std::map<std::string, std::string>& metadata = {},
                                 std::string_view color_tag = {});
 
-/// The conditions as findings, or those of one severity.
+/// Converts all conditions, or those of one severity, to findings.
 Report to_report(const NormalMapCheck& check, std::optional<Severity> severity = std::nullopt);
 
 }  // namespace relief

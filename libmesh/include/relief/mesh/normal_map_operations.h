@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// What is done to the normals of a map one by one: axes turned round, a missing z found, lengths
-/// looked at, slopes made steeper or gentler.
+/// Applies per-texel operations to normals: axis permutations, reconstruction of z, length
+/// statistics, and scaling of slopes.
 /// Tests: tests/mesh/image/normals/normal_map_operations_test.cpp.
 #pragma once
 
@@ -20,78 +20,78 @@ struct SignedAxis {
     bool operator==(const SignedAxis&) const = default;
 };
 
-/// What becomes x, y and z, in terms of what was: a signed permutation.
+/// A signed permutation of axes: the sources of x, y and z.
 using AxisMapping = std::array<SignedAxis, 3>;
 inline constexpr AxisMapping same_axes = {{{0, false}, {1, false}, {2, false}}};
 
-/// Turns the stored vectors of a map round, code by code, without decoding them.
+/// Permutes and negates the stored components of a map, without decoding them.
 ///
-/// \param map   three or four channels; a fourth is left alone
+/// \param map  three or four channels; the fourth does not change
 /// \param flat  for 8 and 16 bits
-/// \param report  counts samples of code 0 under FlatCode::middle that are negated: they stand for
-///                -1, as 1 does, and become the largest code; 1 is what they come back as
-/// \throws InvalidInput if the image has fewer than three channels, or if an axis comes twice
+/// \param report  counts samples of code 0 under FlatCode::middle that are negated. They stand for
+///         -1, as code 1 does, and become the maximum code; the inverse mapping returns 1
+/// \throws InvalidInput if the image has fewer than three channels, or if an axis occurs twice
 ///
-/// Else a mapping and its inverse give back every code; float samples come back within 2^-24.
+/// Except for these, a mapping followed by its inverse restores every code; float samples are
+/// restored within 2^-24.
 void map_axes(Image& map, const AxisMapping& mapping, FlatCode flat, Report& report);
 
-/// The same for unit normals that are decoded, exactly: three float channels.
+/// The same for decoded normals, without rounding: three float channels.
 void turn_normals(Image& normals, const AxisMapping& mapping);
 
-/// Which channels of an image hold x and y.
+/// The channels of an image that hold x and y.
 struct XyChannels {
     int x = 0;
     int y = 1;
 };
 
-/// Unit normals from x and y alone: z is what makes them unit, and faces outwards.
+/// Reconstructs unit normals from x and y; z is the positive value that makes them unit.
 ///
-/// \param map  two to four channels; the whole map for FlatTexels::exact
-/// \return three float channels, unit, y up. Where x and y alone are longer than 1, as compression
-///         leaves them, z is 0 and they are shortened.
-/// \param report  counts those, and texels that are not finite: read as flat
+/// \param map  two to four channels; FlatTexels::exact needs the whole map
+/// \param report  counts texels whose x and y are longer than 1, as lossy compression causes (z
+///         becomes 0, and they are normalized), and texels that are not finite (read as flat)
+/// \return three float channels, unit, y up
 /// \throws InvalidInput if the image is empty or lacks one of the channels
 Image decode_xy_map(const Image& map, const XyChannels& channels, Green green, FlatCode flat,
                     Report& report, FlatTexels texels = FlatTexels::as_coded);
 
-/// How long the vectors of a map are.
+/// The lengths of the vectors of a map.
 struct LengthSpread {
     double least = 0.0;
     double mean = 0.0;
     double greatest = 0.0;
 };
 
-/// Looks at the lengths of a map's vectors and changes nothing: decode_normal_map takes them for
-/// the directions that they have.
+/// Measures the lengths of a map's vectors without changing it; decode_normal_map() normalizes
+/// them.
 ///
-/// \param report  counts those not of length 1 by more than rounding, or dithering, to the map's
-/// own
-///                codes can do (sqrt(3) codes; 0.001 for float, as half needs it)
-/// \return of the vectors whose length is a number
+/// \param report  counts vectors whose length deviates from 1 by more than rounding or dithering to
+///         the map's codes causes (sqrt(3) codes; 0.001 for float, because of half floats)
+/// \return statistics of finite lengths
 /// \throws InvalidInput if the image is empty or has fewer than three channels
 LengthSpread count_lengths(const Image& map, FlatCode flat, Report& report);
 
-/// Multiplies the slopes of unit normals, in place: as if heights had been multiplied.
+/// Multiplies the slopes of unit normals, in place, as if the heights had been multiplied.
 ///
-/// \param normals   three float channels, unit
-/// \param strength  within +-1e6; negative turns bumps into dents, 0 makes all flat
-/// \param report    counts normals that do not face outwards (z not above 0), which have no slope:
-///                  x and y are multiplied all the same; and those left without direction: flat
-/// \throws InvalidInput if the image is not of three float channels, or the strength out of range
+/// \param normals  three float channels, unit
+/// \param strength  within +-1e6; negative values turn bumps into dents, 0 makes all flat
+/// \param report  counts normals whose z is not positive, which have no slope: their x and y are
+///         multiplied anyway; and results without direction, which become flat
+/// \throws InvalidInput if the image is not three float channels, or the strength is out of range
 void scale_slopes(Image& normals, double strength, Report& report);
 
-/// Steeper slopes than this, 89.94 degrees, are none that a height map of any use has.
+/// The maximum slope, 89.94 degrees; useful height maps have no steeper ones.
 inline constexpr double largest_slope = 1024.0;
 
-/// Slopes of the surface with these unit normals: two float channels, dh/dx to the right and dh/dy
-/// upwards, as slopes_from_height gives them.
+/// Converts unit normals to slopes: two float channels, dh/dx to the right and dh/dy upwards, as
+/// from slopes_from_height().
 ///
 /// \param report  counts normals that are steeper than largest_slope or do not face outwards: their
-///                slope is that long, in their own direction (or 0 for (0,0,-1))
-/// \throws InvalidInput if the image is not of three float channels
+///         slope keeps its direction and gets the maximum length (or 0 for (0,0,-1))
+/// \throws InvalidInput if the image is not three float channels
 Image slopes_from_normals(const Image& normals, Report& report);
 
-/// The unit normals of a surface with these slopes. \throws InvalidInput if it has no two floats
+/// Converts slopes to unit normals. \throws InvalidInput if the image is not two float channels
 Image normals_from_slopes(const Image& slopes, Report& report);
 
 }  // namespace relief

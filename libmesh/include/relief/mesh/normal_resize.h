@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Normal maps at other sizes. Tests: tests/mesh/image/normals/normal_resize_test.cpp; errors of
-/// the filters: docs/normal-maps.md.
+/// Resizes normal maps. docs/normal-maps.md has the errors of the filters.
+/// Tests: tests/mesh/image/normals/normal_resize_test.cpp
 #pragma once
 
 #include <glm/vec2.hpp>
@@ -12,54 +12,55 @@
 
 namespace relief {
 
-/// What weighs the texels around a place. When an image shrinks, each is as much wider.
+/// The filter kernel. When an image is reduced, the kernel is widened by the same factor.
 enum class ResizeFilter {
-    box,       ///< The texels that the new one covers, by their share; enlarged: the nearest.
+    /// The texels that the new one covers, weighted by area; for enlargement the nearest texel.
+    box,
     triangle,  ///< Linear interpolation.
-    cubic,     ///< Catmull and Rom's spline: goes through the texels.
+    cubic,     ///< The Catmull-Rom spline, which interpolates the texels.
     lanczos,   ///< Three lobes: the sharpest.
-    best,      ///< Along each axis what errs least: lanczos to shrink, cubic to enlarge.
+    /// The filter with the smallest error along each axis: lanczos to reduce, cubic to enlarge.
+    best,
 };
 
-/// What is averaged.
+/// The quantity that is averaged.
 enum class ResizeDomain {
-    slopes,   ///< Those of the surface: the result has the normals of the surface filtered so.
-    vectors,  ///< The normals themselves, made unit again: steep texels count for less.
+    slopes,   ///< Slopes: the result has the normals of the filtered surface.
+    vectors,  ///< The normals themselves, with normalization; steep texels have less weight.
 };
 
-/// Normals steeper than this, 86.4 degrees, would drown all slopes around them; where they count,
-/// vectors are averaged instead.
+/// The maximum slope for averaging slopes, 86.4 degrees. Steeper normals would dominate their
+/// neighborhood; where they contribute, vectors are averaged instead.
 inline constexpr float steepest_averaged_slope = 16.0F;
 
 struct ResizeOptions {
     ResizeFilter filter = ResizeFilter::best;
     ResizeDomain domain = ResizeDomain::slopes;
     Wraps wrap;
-    /// How often the map is to be seen in the result, side by side, along each axis; above 0.
+    /// Number of repetitions of the map in the result along each axis, above 0.
     glm::dvec2 repeat{1.0, 1.0};
 };
 
-/// Unit normals at another size. What was a slope of 1 stays one: it is the texels that grow or
-/// shrink, not the surface.
+/// Resizes normals. Slopes do not change: the size of texels changes, not the surface.
 ///
 /// \param normals  three float channels, unit
 /// \param width, height  positive
-/// \param report  counts texels where the mean of the vectors has no direction: made flat; with
-///                slopes, normals too steep for that
-/// \throws InvalidInput if the image is not of three float channels, or a size or repeat is not
+/// \param report  counts texels whose mean vector has no direction, which become flat; with
+///         ResizeDomain::slopes also normals that are too steep for averaging slopes
+/// \throws InvalidInput if the image is not three float channels, or a size or repeat is not
 ///         positive
 ///
-/// At its own size, seen once, an image stays as it is to the bit.
+/// At the same size and with one repetition, the result is bitwise equal to the input.
 Image resize_normals(const Image& normals, int width, int height, const ResizeOptions& options,
                      Report& report);
 
-/// Any float samples at another size, channel by channel: an alpha that goes with normals.
-/// \throws InvalidInput as resize_normals does; options.domain has no say
+/// Resizes any float samples, channel by channel, such as the alpha that belongs to normals.
+/// \throws InvalidInput as resize_normals() does. options.domain is ignored
 Image resize_samples(const Image& image, int width, int height, const ResizeOptions& options);
 
-/// A detail map at the size that blend_normals needs for a base of this size, so that it is seen
-/// `options.repeat` times across it: one period where the base's size is a multiple of that, the
-/// whole area else. It wraps around by itself, whatever options.wrap says.
+/// Resizes a detail map as blend_normals() needs it for a base of this size, so that it repeats
+/// `options.repeat` times across the base. The result is one period if the base's size is a
+/// multiple of it, else the whole area. It always wraps around; options.wrap is ignored.
 Image fitted_detail(const Image& detail, int base_width, int base_height,
                     const ResizeOptions& options, Report& report);
 

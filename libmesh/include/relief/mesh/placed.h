@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// A mesh moved into another space. Tests: tests/mesh/geometry/placed_test.cpp.
+/// Transforms meshes.
+/// Tests: tests/mesh/geometry/placed_test.cpp.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -9,14 +10,14 @@
 
 namespace relief {
 
-/// The mesh with positions, normals and tangents as a transform makes them.
+/// Transforms the positions, normals and tangents of a mesh.
 ///
-/// \param world_from_object  affine; computed in double
-/// \return normals turned by the inverse transpose, and unit again; tangents by the transform
-///         itself, unit, without being made perpendicular anew (shears leave them leaning). Where
-///         the transform mirrors, triangles are turned round, so that they stay counter-clockwise,
-///         and the w of tangents changes its sign, so that bitangents still point upwards in the
-///         image. A direction that the transform makes zero stays as it was, so that none is lost
+/// \param world_from_object  affine; computed in double precision
+/// \return a mesh whose normals are transformed by the inverse transpose and normalized, and whose
+///         tangents are transformed and normalized, but not made perpendicular again (after a shear
+///         they lean). If the transform mirrors, the winding of triangles is reversed, so that they
+///         stay counter-clockwise, and the w of tangents is negated, so that bitangents still point
+///         up in the image. A direction that would become zero does not change
 Mesh placed(Mesh mesh, const glm::mat4& world_from_object);
 
 }  // namespace relief

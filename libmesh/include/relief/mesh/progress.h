@@ -1,18 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Work that somebody waits for: how far it is, the wish that it ends, and which files it read.
+/// Progress reporting and cancellation for long operations, and a record of the files that they
+/// read.
 ///
 ///     Progress progress;
-///     // One thread:
+///     // Worker thread:
 ///     const ProgressScope scope(progress);
 ///     MeshFile mesh = read_mesh(file, report);  // May throw Cancelled.
-///     // Another one, meanwhile:
+///     // Another thread, meanwhile:
 ///     show(progress.state());
 ///     progress.cancel();
 ///
-/// No function takes a Progress: what a thread calls while it has a ProgressScope reports to it,
-/// and so do the loops that it shares out. Without one, nothing is counted and nothing is slower.
-/// Readers of meshes, glTF and images, normals, tangents and what a Renderer prepares report to it.
+/// Functions have no parameter of type Progress: everything that a thread calls during the lifetime
+/// of a ProgressScope reports to it, including parallel loops. Without a scope nothing is counted,
+/// and nothing is slower. Readers of meshes, glTF and images, normals, tangents, and the
+/// preparation of a Renderer report progress.
 /// Tests: tests/mesh/base/progress_test.cpp, tests/mesh/io/mesh/mesh_file_test.cpp.
 #pragma once
 
@@ -31,42 +33,43 @@
 
 namespace relief {
 
-/// Somebody called Progress::cancel(). What was begun is as if it had not been: nothing is written,
-/// what was there before is untouched.
+/// Thrown after Progress::cancel(). The operation has no effect: nothing is written, and existing
+/// data is unchanged.
 class Cancelled : public Error {
   public:
     Cancelled() : Error("cancelled") {}
 };
 
-/// How a file looked when it was opened, or that it was not there.
+/// The state of a file when it was opened.
 struct FileStamp {
-    std::int64_t changed = 0;  ///< Nanoseconds; of no meaning but to be compared.
+    std::int64_t changed = 0;  ///< Time of change in nanoseconds; only for comparison.
     std::uint64_t size = 0;
-    std::uint64_t node = 0;  ///< 0: there is no such file.
+    std::uint64_t node = 0;  ///< 0 if the file does not exist.
 
     bool operator==(const FileStamp&) const = default;
 };
 
-/// How it looks now; links are followed.
+/// Returns the current state of a file; symbolic links are followed.
 FileStamp stamp_of(const std::filesystem::path& file);
 
-/// All its functions may be called from any thread.
+/// The progress of an operation. All functions may be called from any thread.
 class Progress {
   public:
     struct State {
-        std::string stage;           ///< "reading", "parsing", ...; empty before and after any.
-        std::optional<double> part;  ///< Of that stage, 0 to 1; absent where nobody can know.
+        std::string stage;  ///< "reading", "parsing", ...; empty before and after the operation.
+        /// The finished fraction of the stage, 0 to 1; absent if it is unknown.
+        std::optional<double> part;
     };
 
     Progress() = default;
-    /// \param tell  called when the stage changes and at each percent of it, from a thread at work,
-    ///              one call at a time
+    /// \param tell  called when the stage changes and at each percent of it, from a worker thread,
+    ///         one call at a time
     explicit Progress(std::function<void(const State&)> tell) : tell_(std::move(tell)) {}
     Progress(const Progress&) = delete;
     Progress& operator=(const Progress&) = delete;
 
-    /// The work throws Cancelled as soon as it looks up: usually within a few milliseconds, and no
-    /// later than after one image, one upload or one file's step that cannot be parted.
+    /// Requests cancellation: the operation throws Cancelled, usually within a few milliseconds,
+    /// and at the latest after one image, one upload or one indivisible step of a file.
     void cancel() noexcept { is_cancelled_.store(true, std::memory_order_relaxed); }
     [[nodiscard]] bool is_cancelled() const noexcept {
         return is_cancelled_.load(std::memory_order_relaxed);
@@ -74,7 +77,7 @@ class Progress {
 
     [[nodiscard]] State state() const;
 
-    /// Every file that was opened, or looked for and not found, with its stamp from before.
+    /// Every file that was opened, or searched and not found, with its state before it was read.
     [[nodiscard]] std::map<std::filesystem::path, FileStamp> files() const;
 
   private:
@@ -99,8 +102,8 @@ class Progress {
     std::mutex telling_;
 };
 
-/// While it lives, what this thread calls reports to `progress`, which must live longer. The
-/// innermost one counts.
+/// Directs the progress of everything that this thread calls to `progress`, which must outlive the
+/// scope. In nested scopes, the innermost one receives it.
 class ProgressScope {
   public:
     explicit ProgressScope(Progress& progress);

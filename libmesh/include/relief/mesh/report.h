@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// What a library call found wrong in its input and what it did about it.
+/// Reports the problems that library functions find in their input, and the fallbacks that they
+/// use.
 ///
-/// Functions that may have to fall back take a Report& and add to it; a caller that ignores the
-/// report still gets usable results, and one that prints it hides nothing.
+/// Functions with fallbacks have a parameter of type Report& and add to it. Results are usable even
+/// if the caller ignores the report.
 #pragma once
 
 #include <cstddef>
@@ -14,13 +15,13 @@
 
 namespace relief {
 
-/// One kind of trouble, over all elements that show it.
+/// A problem of one kind, over all affected elements.
 struct Finding {
-    std::string kind;       ///< What is wrong, in fixed words: "degenerate triangle".
-    std::string element;    ///< What `first` counts: "triangle", "vertex", "corner", "texel".
-    std::string outcome;    ///< What was done about it: "has no say in its vertices' normals".
-    std::size_t count = 0;  ///< How many elements show it.
-    std::vector<std::size_t> first;  ///< The smallest element indices, ascending, at most 8.
+    std::string kind;       ///< The problem, a fixed text: "degenerate triangle".
+    std::string element;    ///< The type of element: "triangle", "vertex", "corner", "texel".
+    std::string outcome;    ///< The outcome: "has no say in its vertices' normals".
+    std::size_t count = 0;  ///< Number of affected elements.
+    std::vector<std::size_t> first;  ///< The smallest indices, ascending, at most 8.
 
     friend bool operator==(const Finding&, const Finding&) = default;
 };
@@ -30,12 +31,11 @@ struct Finding {
 /// The contents do not depend on the order in which the elements of one kind are added.
 class Report {
   public:
-    /// Counts one more element of a kind. The outcome belongs to the kind: the first one given
-    /// stays.
+    /// Counts an element of a kind. The outcome belongs to the kind: the first one is kept.
     void add(std::string_view kind, std::string_view element, std::size_t index,
              std::string_view outcome);
 
-    /// Adds what was counted elsewhere.
+    /// Adds a finding of another report.
     void add(const Finding& theirs);
 
     /// Adds all findings of another report.
@@ -44,7 +44,7 @@ class Report {
     [[nodiscard]] std::span<const Finding> findings() const { return findings_; }
     [[nodiscard]] bool empty() const { return findings_.empty(); }
 
-    /// How many elements were counted for a kind; 0 where there were none.
+    /// Returns the number of elements that were counted for a kind.
     [[nodiscard]] std::size_t count(std::string_view kind) const;
 
   private:
@@ -53,7 +53,7 @@ class Report {
     std::vector<Finding> findings_;
 };
 
-/// One line for people: "2 degenerate triangles (triangle 3, 17): have no say ...".
+/// Formats a finding as one line: "2 degenerate triangles (triangle 3, 17): have no say ...".
 std::string to_string(const Finding& finding);
 
 }  // namespace relief

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// From values at triangle corners to values at vertices, with as few new vertices as the corners
-/// allow. Tests: tests/mesh/geometry/split_test.cpp.
+/// Converts values at triangle corners to values at vertices, with the minimum number of additional
+/// vertices.
+/// Tests: tests/mesh/geometry/split_test.cpp.
 #pragma once
 
 #include <cassert>
@@ -14,23 +15,23 @@
 
 namespace relief {
 
-/// Which old vertex every new vertex copies, and the triangles over the new vertices.
+/// The source of every new vertex, and the triangles over the new vertices.
 ///
-/// The first old-vertex-count entries are the old vertices themselves, in their order (isolated
-/// ones too); the extra copies follow. So whatever else is stored by vertex can be carried along.
+/// The first entries are the old vertices in their order, including isolated ones; the copies
+/// follow. Any data by vertex can be carried along with `source_vertex`.
 struct VertexSplit {
     std::vector<std::uint32_t> source_vertex;
     std::vector<glm::uvec3> triangles;
 };
 
-/// Splits vertices until all corners that share one also share a value, as few times as that takes.
+/// Splits vertices until all corners that share a vertex also share a value, with as few copies as
+/// possible.
 ///
-/// \param corner_values  three per triangle, in corner order. Values are equal if they are as
-///                       numbers: -0 equals +0. NaNs are equal if their bits are.
+/// \param corner_values  three per triangle, in corner order. They are compared as numbers: -0
+///         equals +0; NaNs are equal if their bits are
 /// \return the smallest value of a vertex stays with it, the others go to copies in ascending
-/// order;
-///         so the vertices do not depend on the order of triangles
-/// \throws InvalidInput if a triangle names a vertex that does not exist, or the lengths disagree
+///         order, so that the vertices do not depend on the order of triangles
+/// \throws InvalidInput if a triangle names a vertex that does not exist, or the lengths differ
 VertexSplit split_where_corners_differ(std::size_t vertex_count,
                                        std::span<const glm::uvec3> triangles,
                                        std::span<const glm::vec4> corner_values);
@@ -38,7 +39,7 @@ VertexSplit split_where_corners_differ(std::size_t vertex_count,
                                        std::span<const glm::uvec3> triangles,
                                        std::span<const glm::vec3> corner_values);
 
-/// One vertex attribute after a split; an absent (empty) one stays absent.
+/// Returns a vertex attribute after a split; an absent (empty) one stays absent.
 template <typename T>
 std::vector<T> carried(std::span<const T> values, const VertexSplit& split) {
     std::vector<T> result;
@@ -51,8 +52,8 @@ std::vector<T> carried(std::span<const T> values, const VertexSplit& split) {
     return result;
 }
 
-/// A mesh after a split: every vertex attribute carried, triangles replaced, ranges kept. Any
-/// choice of vertices can be carried like that, with triangles over those.
+/// Returns a mesh after a split, with all vertex attributes, new triangles and the same ranges.
+/// `split` may select any vertices.
 Mesh carried(const Mesh& mesh, const VertexSplit& split);
 
 }  // namespace relief

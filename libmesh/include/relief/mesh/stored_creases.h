@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Which edges of a mesh are hard by the normals that it has, and the angle that says so best.
+/// Infers the hard edges of a mesh from its normals, and the crease angle that best separates them
+/// from smooth edges.
 /// Tests: tests/mesh/geometry/normals/stored_creases_test.cpp.
 #pragma once
 
@@ -12,16 +13,19 @@
 namespace relief {
 
 struct StoredCreases {
-    std::size_t edges = 0;  ///< Between two triangles that both have an area.
-    std::size_t hard = 0;   ///< Of them: the two have different normals at one of its ends.
-    /// Radians: by it, as HardEdges::crease_angle, the fewest edges are misjudged; pi where none is
-    /// hard. Halfway between the edges around it.
+    std::size_t edges = 0;  ///< Number of edges between two triangles with area.
+    /// Number of these edges with different normals of the two triangles at one of its ends.
+    std::size_t hard = 0;
+    /// The crease angle in radians, as HardEdges::crease_angle, with the fewest misclassified
+    /// edges, halfway between the angles of the two closest edges; pi if no edge is hard.
     double crease_angle = std::numbers::pi;
-    std::size_t misjudged = 0;  ///< By that angle.
+    std::size_t misjudged = 0;  ///< Number of edges that this angle misclassifies.
 };
 
-/// \param mesh  with normals; vertices at equal positions are one, and normals less than half a
-///              degree apart
+/// Infers the hard edges of a mesh.
+///
+/// \param mesh  with normals; vertices at equal positions count as one, and normals that differ by
+///         less than half a degree as equal
 /// \throws InvalidInput if the mesh is not valid or has no normals
 StoredCreases stored_creases(const Mesh& mesh);
 

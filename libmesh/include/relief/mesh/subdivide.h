@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// A finer, smoother surface from a coarse one.
+/// Subdivides meshes into finer, smoother surfaces.
 /// Tests: tests/mesh/geometry/topology/subdivide_test.cpp.
 #pragma once
 
@@ -10,26 +10,25 @@
 
 namespace relief {
 
-/// Loop's subdivision: each level cuts every triangle into four and smooths all positions.
+/// Applies Loop subdivision: each level splits every triangle into four and smooths all positions.
 ///
-/// \param mesh    valid (mesh.h); vertices at equal positions are one
-/// \param levels  at least 1; triangles grow fourfold with each, and must stay below 2^32 / 3
-/// \param frames  of the result. Normals of the input are not looked at, as the surface is smooth
-///                everywhere: NormalMode::keep means angle where the input has normals, none where
-///                it has not. Tangents that the input had are computed anew unless the mode is none
-/// \param report  counts collapsed triangles, which are left out; triangles with a non-finite
-///                corner, which stay as they are; non-manifold edges
-/// \return the input's vertices first, in their order, then those at the middles of edges.
-///         Triangles follow each other as those they were cut from do, material ranges and
-///         smoothing groups with them
+/// \param mesh  valid (mesh.h); vertices at equal positions count as one
+/// \param levels  at least 1; each multiplies the number of triangles by four, which must stay
+///         below 2^32 / 3
+/// \param frames  of the result. The normals of the input are ignored, because the surface is
+///         smooth everywhere: NormalMode::keep means angle if the input has normals, and none
+///         otherwise. If the input has tangents, they are recomputed unless the mode is none
+/// \param report  counts collapsed triangles, which are omitted; triangles with a non-finite
+///         corner, which do not change; and non-manifold edges
+/// \return the input's vertices in their order, then the new vertices at edge midpoints. Triangles
+///         keep the order of their source triangles, with material ranges and smoothing groups
 /// \throws InvalidInput if the mesh is not valid, or `levels` is out of range
 ///
-/// Texture coordinates and colours at a new vertex are the mean of the edge's ends, on each side of
-/// a seam by itself: the texture map stays, triangle by triangle, the very map that it was, and
-/// seams are neither torn nor smeared, while positions cross them smoothly. Boundaries become cubic
-/// splines of their own vertices. Surfaces that meet at a non-manifold edge or vertex are smoothed
-/// each by itself and joined at the mean of what they ask for.
-/// The same input gives the same bits.
+/// Texture coordinates and colors of a new vertex are the mean of those at the ends of its edge,
+/// separately for each side of a seam. So each triangle keeps its texture mapping, and seams
+/// neither tear nor blur, while positions are smooth across them. Boundaries become cubic splines
+/// of their own vertices. Surfaces that meet at a non-manifold edge or vertex are smoothed
+/// separately and joined at the mean of their results. The same input gives the same bits.
 ///
 /// Source: [Loop 1987]; OpenMesh's subdivider.
 Mesh subdivided(const Mesh& mesh, int levels, const FrameOptions& frames, Report& report);

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// By which method the tangents of a mesh were made, found out from the mesh itself.
+/// Identifies the method with which the stored tangents of a mesh were computed.
 ///
-/// A normal map is right only in the frame that its baker assumed, and files do not say which that
-/// was. Here the methods in use are computed anew and held against what is stored.
+/// A normal map is correct only with the tangents that its baker assumed, but files do not name the
+/// method. Therefore the tangents are computed by all known methods and compared with the stored
+/// ones.
 /// Tests: tests/mesh/geometry/tangents/tangent_basis_test.cpp.
 #pragma once
 
@@ -19,81 +20,85 @@
 
 namespace relief {
 
-/// The methods that can be told.
+/// The methods that can be identified.
 enum class TangentBasis {
-    mikktspace,  ///< tangents.h, as the next two.
+    mikktspace,  ///< See tangents.h, also for the next two.
     area_weighted,
     lengyel,
-    triangle,  ///< Each triangle's own gradient, not averaged: facets.
+    triangle,  ///< The gradient of each triangle, without averaging: faceted.
 };
 
-/// All of them, in the order of the enumeration.
+/// All methods, in the order of the enumeration.
 std::span<const TangentBasis> tangent_bases();
 
-/// "mikktspace", "area-weighted", "lengyel", "triangle": the words of the tools.
+/// Returns the name as in the tools: "mikktspace", "area-weighted", "lengyel", "triangle".
 std::string_view word_of(TangentBasis basis);
 
-/// How stored tangents agree with one method, over the corners that can be judged.
+/// The agreement of stored tangents with one method, over all corners that can be compared.
 ///
-/// Compared is the direction within the plane of the normal: whether a tangent leans out of it is
-/// for diagnose() to say. The frames of a method may be stored turned by a quarter or more, where a
-/// program means another axis by the tangent, or goes by flipped texture coordinates.
+/// The directions within the plane of the normal are compared; diagnose() reports tangents outside
+/// of this plane. Stored frames may be rotated by multiples of 90 degrees, if a program uses
+/// another axis as the tangent or flipped texture coordinates.
 struct BasisAgreement {
     TangentBasis basis = TangentBasis::mikktspace;
-    /// Corners within the tolerance of the method's tangent; of its bitangent (a quarter turn); of
-    /// the opposites of the two.
+    /// Number of corners within the tolerance of the method's tangent, its bitangent (rotated by 90
+    /// degrees), and the opposites of both.
     std::array<std::size_t, 4> within{};
-    int quarter_turns = 0;     ///< The one with the most.
-    AngleDistribution angles;  ///< From that direction.
-    /// Of the corners within the tolerance of that direction: those whose w is the opposite of the
+    int quarter_turns = 0;     ///< The rotation with the most corners, in units of 90 degrees.
+    AngleDistribution angles;  ///< The angles to that direction.
+    /// Number of the corners within the tolerance of that direction whose w is opposite to the
     /// method's.
     std::size_t negated = 0;
-    double mean_clamped = 0.0;  ///< Degrees, larger ones counted as the tolerance.
+    /// The mean angle in degrees; angles above the tolerance count as the tolerance.
+    double mean_clamped = 0.0;
 
     [[nodiscard]] std::size_t agreeing() const {
         return within[static_cast<std::size_t>(quarter_turns)];
     }
-    /// The same as a share of all, 0 to 1.
+    /// The agreeing corners as a share of all, 0 to 1.
     [[nodiscard]] double share() const;
 };
 
 struct SniffedTangents {
-    /// Absent: none of those that are known.
+    /// The identified method; absent if no known method agrees.
     std::optional<TangentBasis> basis;
-    /// Other methods that come to the same on this mesh, as all do on a plane.
+    /// Other methods with the same result on this mesh, such as all methods on a plane.
     std::vector<TangentBasis> same_here;
-    /// What each method comes to, in the order of the enumeration; empty where nothing can be
-    /// judged: no tangents, no normals, no texture coordinates.
+    /// The agreement with each method, in the order of the enumeration; empty if nothing can be
+    /// compared, because there are no tangents, normals or texture coordinates.
     std::vector<BasisAgreement> agreements;
-    std::size_t corners = 0;    ///< That were judged.
-    std::size_t left_out = 0;   ///< On triangles too degenerate to have a certain direction.
-    std::size_t undefined = 0;  ///< Whose stored tangent is no direction.
-    double tolerance = 0.0;     ///< Degrees.
-    int stored_bits = 0;  ///< 8 or 16: all values are multiples of what that holds; 0: floats.
+    std::size_t corners = 0;  ///< Number of compared corners.
+    /// Number of corners of triangles that are too degenerate for a reliable direction.
+    std::size_t left_out = 0;
+    std::size_t undefined = 0;  ///< Number of corners whose stored tangent has no direction.
+    double tolerance = 0.0;     ///< In degrees.
+    /// 8 or 16 if all values are multiples of what this number of bits can store; 0 for floats.
+    int stored_bits = 0;
 
-    /// That of `basis`, or, if it is absent, the one with the smallest mean; null where there are
-    /// none.
+    /// The agreement with `basis`, or with the method of the smallest mean if no method was
+    /// identified; null if there is none.
     [[nodiscard]] const BasisAgreement* best() const;
-    /// All others have a mean at least half as large again: where no basis agrees, tangents that
-    /// were made by this one from other numbers (positions before rounding, other normals), or
-    /// stored coarsely.
+    /// Returns true if the means of all other methods are at least 1.5 times as large. If no method
+    /// was identified, the tangents then probably come from this method and different input
+    /// (unrounded positions, other normals) or were stored with low precision.
     [[nodiscard]] bool is_best_by_far() const;
 };
 
-/// Holds the tangents of a mesh against every method that is known.
+/// Compares the tangents of a mesh with every known method.
 ///
-/// \param mesh  with the texture coordinates that its tangents are thought to belong to
-/// \return a basis where 95 of 100 corners agree with it within the tolerance: a tenth of a degree,
-///         which is what float arithmetic in another order leaves, and half a degree where 8-bit
-///         storage rounds. Of several the one with the smallest mean; those as good are named too
+/// \param mesh  with the texture coordinates that belong to the tangents
+/// \return a method is identified if 95% of the corners agree with it within the tolerance: 0.1
+///         degrees, which covers float arithmetic in another order, or half a degree for 8-bit
+///         storage. Of several methods it is the one with the smallest mean; methods that are
+///         equally good are listed too
 /// \throws InvalidInput if the mesh is not valid
 ///
-/// Left out are corners of triangles whose area, in space or in the image, is so small that
-/// rounding of their corners turns the gradient: their height is less than 1000 times the spacing
-/// of floats there, or a millionth of their longest side.
+/// Corners are omitted if their triangle is so small, in space or in the image, that rounding of
+/// its corners changes the gradient: its height is less than 1000 times the spacing of floats at
+/// its position, or less than 1e-6 of its longest side.
 SniffedTangents sniff_tangents(const Mesh& mesh);
 
-/// What a quarter turn and a sign come to, in words: "", "w negated", ...
+/// Describes a rotation by multiples of 90 degrees and a sign: "", "w negated", ...
 std::string_view variant_in_words(int quarter_turns, bool is_negated);
 
 }  // namespace relief

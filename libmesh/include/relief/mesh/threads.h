@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
+/// \file
+/// Limits the number of threads of parallel loops.
 #pragma once
 
 namespace relief {
 
-/// Caps the threads that relief's parallel loops use in this process, the caller's among them.
+/// Sets the maximum number of threads of relief's parallel loops in this process, including the
+/// calling thread. Results do not depend on it.
 ///
-/// \param count  at least 1; 0 means as many as the machine has
-///
-/// No result depends on it, only the time that it takes.
+/// \param count  at least 1; 0 means the number of hardware threads
 void set_thread_limit(unsigned count);
 
 }  // namespace relief

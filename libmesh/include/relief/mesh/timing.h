@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Repeated measurements: run in turns so that a machine's drift hits all alike, the first ones
-/// dropped, told by median and spread. The one home of measured time, repeats and medians: clocks
-/// are asked elsewhere only for when to wait, to stop or to draw the next frame.
+/// Measures wall-clock time: interleaved repetitions with warm-up, so that all methods share the
+/// drift of the machine, summarized by median and percentiles.
 /// Tests: tests/mesh/accuracy/timing_test.cpp.
 #pragma once
 
@@ -14,13 +13,14 @@
 
 namespace relief {
 
-/// How often something is measured.
+/// The number of repetitions of a measurement.
 struct Repeats {
     std::size_t counted = 9;
-    std::size_t warm_up = 2;  ///< Before those, and forgotten: caches fill, drivers compile.
+    /// Repetitions before the counted ones, which are ignored: caches fill, and drivers compile.
+    std::size_t warm_up = 2;
 };
 
-/// Where measurements lie: half of them below the median, a tenth below p10 and above p90.
+/// The distribution of measurements: median, 10th and 90th percentile.
 struct Spread {
     double median = 0;
     double p10 = 0;
@@ -28,18 +28,20 @@ struct Spread {
     std::size_t count = 0;
 };
 
+/// Computes the distribution of values.
+///
 /// \param values  finite, in any order and unit
-/// \return between two measurements, linearly interpolated; of none, all zeros
+/// \return percentiles, interpolated linearly; all zeros without values
 Spread spread_of(std::vector<double> values);
 
-/// Seconds by the wall clock.
+/// Measures elapsed wall-clock time.
 class Stopwatch {
   public:
-    /// Since it was made, or since the last lap.
+    /// Returns the seconds since construction or the last lap().
     [[nodiscard]] double seconds() const {
         return std::chrono::duration<double>(Clock::now() - begin_).count();
     }
-    /// The same, and begins another lap: nothing between two laps is lost.
+    /// Returns the same and starts a new lap, without a gap between laps.
     double lap() {
         const Clock::time_point now = Clock::now();
         const std::chrono::duration<double> taken = now - std::exchange(begin_, now);
@@ -52,17 +54,19 @@ class Stopwatch {
     Clock::time_point begin_ = Clock::now();
 };
 
-/// The wall-clock time that something takes, in seconds.
+/// Returns the wall-clock time of `work` in seconds.
 double seconds_of(const std::function<void()>& work);
 
-/// Does several things in turn, A B C A B C ..., and then counts rounds.
+/// Runs several things interleaved (A B C A B C ...): first the warm-up rounds, then the counted
+/// ones.
 ///
-/// \param work  does thing `thing` once; `counted` is false while warming up. Exceptions pass.
+/// \param work  runs thing number `thing` once; `counted` is false during warm-up. Its exceptions
+///         are passed on
 void interleave(std::size_t things, const Repeats& repeats,
                 const std::function<void(std::size_t thing, bool counted)>& work);
 
-/// The middle of what one thing takes longer than another, round by round: drift, which both share,
-/// goes out. \throws InvalidInput if the two are not equally many
+/// Returns the median over all rounds of the difference of two series. Drift, which both series
+/// share, cancels. \throws InvalidInput if the series differ in length
 double median_difference(const std::vector<double>& longer, const std::vector<double>& shorter);
 
 }  // namespace relief
