@@ -31,8 +31,8 @@ struct ImageInfo {
     int height = 0;
     int channels = 0;
     int bits = 0;  ///< 8, 16 or 32, as from read_image().
-    std::map<std::string, std::string>
-        metadata;  ///< Text entries; those of relief begin with "relief:".
+    /// Text entries; those of relief begin with "relief:".
+    std::map<std::string, std::string> metadata;
 };
 
 /// Largest image that is read, in samples. Larger ones are refused before memory is allocated.

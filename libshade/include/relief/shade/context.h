@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// OpenGL contexts: without a window, or of a window library.
+/// Creates OpenGL contexts without a window, or wraps those of a window library.
 #pragma once
 
 #include <memory>
@@ -8,36 +8,39 @@
 
 namespace relief {
 
-/// The library that provides the context. Each is loaded at run time and independent of the others.
+/// The library that provides the context. Libraries are loaded at run time, independently of each
+/// other.
 ///
 /// OSMesa is libOSMesa.so.8, .6 or .so, EGL is libEGL.so.1, in the library path of the system;
-/// $RELIEF_OSMESA_LIBRARY and $RELIEF_EGL_LIBRARY name another file in their place. A device that
-/// claims to be hardware but uses Mesa's rasterizer counts as software.
+/// $RELIEF_OSMESA_LIBRARY and $RELIEF_EGL_LIBRARY name other files. A device that claims to be
+/// hardware but uses Mesa's rasterizer counts as software.
 enum class Backend {
     automatic,  ///< A hardware EGL device if one exists, else OSMesa, else software EGL.
     osmesa,
     egl,
 };
 
-/// The function of a window library that finds OpenGL functions of the current context.
+/// A function of a window library that returns OpenGL functions of the current context.
 using GlLoader = void (*(*)(const char* name))();
 
 namespace gl {
 class Api;  // The table of entry points (libshade/src/gl/api.h).
 }
 
-/// One OpenGL 3.3 core context, current on the thread that made it until destroyed.
+/// An OpenGL 3.3 core context, current on the thread that created it until it is destroyed.
 ///
-/// At most one exists at a time in a thread, since OSMesa and EGL do not notice each other; any
-/// number of threads may have one each. It is destroyed on the thread that made it, after all
-/// objects in it. The libraries and EGL's displays stay loaded until the process ends.
+/// A thread can have at most one, because OSMesa and EGL do not detect each other; any number of
+/// threads may have one each. Destroy it on the thread that created it, after all objects in it.
+/// The libraries and EGL's displays stay loaded until the process ends.
 class Context {
   public:
+    /// Creates a context.
     /// \throws GpuError with the reason of every backend that was tried
     /// \throws InvalidInput if this thread has a context already
     explicit Context(Backend backend = Backend::automatic);
 
-    /// Wraps a context that the caller has made current on this thread and keeps current longer.
+    /// Wraps a context that the caller has made current on this thread and keeps current for
+    /// longer.
     ///
     /// \param name  for backend_name()
     /// \throws GpuError if it offers less than OpenGL 3.3
@@ -51,7 +54,7 @@ class Context {
     [[nodiscard]] const std::string& backend_name() const;
     /// "llvmpipe (LLVM 15.0.6, 256 bits), 4.5 (Core Profile) Mesa 22.3.6".
     [[nodiscard]] const std::string& renderer_name() const;
-    /// Tells whether a rasterizer of Mesa draws on the processor.
+    /// Returns true if a rasterizer of Mesa draws on the CPU.
     [[nodiscard]] bool is_software() const;
 
     [[nodiscard]] const gl::Api& api() const;

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Debug views, which show one input or term of shading instead of the picture, and overlays.
+/// Defines debug views, which show one input or term of shading instead of the picture, and
+/// overlays.
 ///
 /// FrameSettings selects the view. Views do not change the programs and pixels of the normal
-/// picture: a view chooses other shader parts. World space, linear light.
+/// picture: a view selects other shader parts. World space, linear light.
 /// Tests: tests/shade/effects/debug_views_test.cpp, tests/shade/render/debug_views_test.cpp,
 /// overlays_test.cpp.
 #pragma once
@@ -21,42 +22,43 @@ namespace relief {
 
 /// The content of a picture.
 ///
-/// *Data* is stored as it is: code = 0.5 v + 0.5 by component for a unit vector v in world space,
-/// so that an 8-bit picture holds round(255 (0.5 v + 0.5)); no exposure, no tone curve, no sRGB
-/// coding, one sample per pixel (at its center), no skybox, and a blended surface counts as opaque.
-/// An alpha mask still cuts its holes. An undefined direction is 0, mid-gray.
+/// *Data* views store values without conversion: code = 0.5 v + 0.5 by component for a unit vector
+/// v in world space, so that an 8-bit picture holds round(255 (0.5 v + 0.5)). There is no exposure,
+/// tone mapping, sRGB coding or skybox; each pixel has one sample at its center; blended surfaces
+/// count as opaque, and alpha masks still cut holes. An undefined direction is 0, mid-gray.
 ///
-/// *Terms* are light: one summand of the radiance in material.h, coded as the picture is. In linear
-/// float the terms of a scene without unlit surfaces add up to its picture without the skybox. A
-/// surface without the term is black there, since that is its share.
+/// *Term* views show one summand of the radiance in material.h, coded as the picture is. In linear
+/// float, the terms of a scene without unlit surfaces add up to its picture without the skybox. A
+/// surface without the term is black.
 ///
-/// A surface that has nothing to show in a view of data is hatched (nothing_to_show) and counted in
-/// the report. If no surface has anything to show, Renderer throws InvalidInput with the reason.
+/// A surface without data for a data view is hatched (nothing_to_show) and counted in the report.
+/// If no surface has any, Renderer throws InvalidInput with the reason.
 enum class DebugView : std::uint8_t {
     picture,  ///< The normal picture.
     // Data.
     geometric_normal,  ///< The normal of the triangle's plane, on the visible side.
     shading_normal,    ///< The normal for lighting: interpolated, perturbed by maps, two-sided.
-    tangent,           ///< Unit tangent of the normal maps' frame: the mesh's, MikkTSpace's if it
-                       ///< has none, or from derivatives if the material says so.
-    bitangent,         ///< Its unit bitangent: the direction of decreasing v.
-    handedness,        ///< right_handed_color or left_handed_color; an instance may mirror.
-    texcoords,         ///< (u - floor u, v - floor v, 0 or 1 in squares of 1/checker_squares).
-    normal_map,        ///< In tangent space (of an object-space map: object space), green up, made
-                       ///< unit: from a normal map or a bump map.
-    height,            ///< A bump map's height, gray: 0 black, 1 white.
+    /// Unit tangent of the frame of normal maps: stored, by MikkTSpace if the mesh has none, or
+    /// from derivatives if the material says so.
+    tangent,
+    bitangent,   ///< Its unit bitangent: the direction of decreasing v.
+    handedness,  ///< right_handed_color or left_handed_color; an instance may mirror.
+    texcoords,   ///< (u - floor u, v - floor v, 0 or 1 in squares of 1/checker_squares).
+    normal_map,  ///< In tangent space (of an object-space map: object space), green up, made
+                 ///< unit: from a normal map or a bump map.
+    height,      ///< A bump map's height, gray: 0 black, 1 white.
     // Terms.
     ambient,
     diffuse,            ///< The scattered light of light sources.
-    specular,           ///< Their highlights.
-    environment_light,  ///< The environment's scattered light.
-    reflection,         ///< The mirrored environment.
+    specular,           ///< The highlights of light sources.
+    environment_light,  ///< The scattered light of the environment.
+    reflection,         ///< The reflected environment.
     refraction,         ///< The environment seen through the surface.
     emission,
     /// The number of fragments at a pixel, at any depth: the sum of overdraw_step. Blue /
     /// overdraw_step.b is their number, up to 63 in 8 bits.
     overdraw,
-    /// For surfaces that have nothing to show; cannot be requested.
+    /// The pattern of surfaces that have nothing to show; it cannot be requested.
     nothing_to_show,
 };
 
@@ -72,7 +74,7 @@ struct DebugViewInfo {
 /// All views that can be requested, in the order of the enumeration.
 std::span<const DebugViewInfo> debug_views();
 
-/// Name and description of a view, nothing_to_show included.
+/// Returns name and description of a view, nothing_to_show included.
 const DebugViewInfo& debug_view_info(DebugView view);
 
 [[nodiscard]] inline bool is_data(DebugView view) {
@@ -110,7 +112,7 @@ struct Overlays {
     /// share of the scene's size (the diagonal of its box). Tangents need texture coordinates or
     /// stored tangents; missing ones are computed.
     std::optional<float> vertex_frames;
-    /// E.g. health_markers.h.
+    /// Such as those of health_markers.h.
     std::shared_ptr<const std::vector<Marker>> markers;
 
     [[nodiscard]] bool any() const { return wireframe || vertex_frames || markers; }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// The default camera and lights of a model without its own. World space; angles in radians.
+/// Defines the default camera and lights of a model without its own. World space; angles in
+/// radians.
 #pragma once
 
 #include "relief/shade/scene.h"

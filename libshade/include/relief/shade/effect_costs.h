@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// What each effect costs, what the picture would lose without it, and which to drop so that a
-/// frame keeps within a time. Measured, so it differs from machine to machine; what is decided from
-/// given measurements is always the same.
+/// Measures the time of each effect and its visible contribution, and selects the effects to drop
+/// so that a frame fits a time budget. Measurements differ between machines; the selection depends
+/// only on the measurements.
 /// Tests: tests/shade/render/effect_costs_test.cpp.
 #pragma once
 
@@ -18,43 +18,43 @@
 
 namespace relief {
 
-/// A scene to be drawn in one way, over and over.
+/// A scene and the settings with which it is drawn repeatedly.
 struct MeasuredFrame {
     const Context& context;
     const Scene& scene;
     const FrameSettings& settings;
     const Camera& camera;
     Repeats repeats = {};
-    RenderCache* cache = nullptr;  ///< Where given, what renderers made is shared.
+    RenderCache* cache = nullptr;  ///< If given, renderers share its resources.
 };
 
-/// How far the picture without something is from the picture with it.
+/// The difference between the pictures with and without an effect.
 struct PictureChange {
     double max = 0;  ///< In units of the picture's samples (8 bit: 0 to 255).
     double mean = 0;
-    double flip_mean = 0;  ///< As an eye sees it, 0 to 1 (image_compare.h).
+    double flip_mean = 0;  ///< Perceived difference, 0 to 1 (image_compare.h).
     double flip_max = 0;
 };
 PictureChange picture_change(const Image& with, const Image& without);
 
-/// One effect of a plan.
+/// The cost of one effect of a plan.
 struct EffectCost {
     std::string effect;
-    /// Frame time with it less that without it; below 0 where the noise is larger than its cost.
+    /// Frame time with it minus that without it; negative if noise exceeds the cost.
     double milliseconds = 0;
     PictureChange change;
 };
 
 struct EffectCosts {
-    Spread frame;  ///< Milliseconds of a frame with all of the plan's effects, read back included.
-    std::vector<EffectCost> effects;  ///< Of effects_in(plan), in its order.
+    Spread frame;  ///< Milliseconds of a frame with all effects of the plan, including read-back.
+    std::vector<EffectCost> effects;  ///< The effects of effects_in(plan), in its order.
 };
 
-/// Takes each effect out of the plan by itself, and what cannot show without it with it; draws with
-/// and without it in turns. \throws what Renderer does
+/// Measures every effect: removes it, and effects that are invisible without it, from the plan, and
+/// draws frames with and without it, interleaved. \throws as Renderer does
 EffectCosts measure_effects(const MeasuredFrame& frame, const FramePlan& plan);
 
-/// The same in small steps, between which other things may be drawn in the same context.
+/// The same in small steps, between which the caller may draw in the same context.
 class EffectPricing {
   public:
     EffectPricing(const MeasuredFrame& frame, FramePlan plan);
@@ -62,14 +62,15 @@ class EffectPricing {
     EffectPricing(const EffectPricing&) = delete;
     EffectPricing& operator=(const EffectPricing&) = delete;
 
-    /// Prepares to draw without the next effect, or draws one frame with and one without it.
-    /// \return whether there is more to do \throws what Renderer does
+    /// Prepares the measurement of the next effect, or draws one frame with and one without it.
+    /// \return true if there is more to do
+    /// \throws as Renderer does
     bool step();
 
-    /// How many effects there are to price.
+    /// Number of effects to measure.
     [[nodiscard]] std::size_t count() const;
 
-    /// Of those that are done.
+    /// The costs of the effects that have been measured.
     [[nodiscard]] EffectCosts costs() const;
 
   private:
@@ -77,36 +78,35 @@ class EffectPricing {
     std::unique_ptr<Implementation> implementation_;
 };
 
-/// Effects in the order in which they are worth dropping: those whose absence an eye sees least for
-/// the time that it saves, first. Those that save less than `least_saving` are left out; ties go by
-/// the order given.
+/// Sorts effects in the order in which to drop them: by increasing perceived difference per saved
+/// time. Effects that save less than `least_saving` are omitted; ties keep the given order.
 std::vector<std::string> drop_order(std::span<const EffectCost> costs, double least_saving);
 
-/// What is dropped, and where that leads.
+/// The dropped effects and the resulting frame time.
 struct BudgetChoice {
     std::vector<std::string> dropped;  ///< In order.
-    double milliseconds = 0;           ///< Of a frame, in the end.
+    double milliseconds = 0;           ///< The resulting frame time.
     bool fits = false;
 };
 
-/// Drops effects in that order until a frame fits.
+/// Drops effects in the given order until a frame fits.
 ///
-/// \param frame_time  the time without these effects: measured, or from a table
+/// \param frame_time  returns the frame time without these effects, measured or from a table
 BudgetChoice fit_to_budget(
     double budget, const std::vector<std::string>& order,
     const std::function<double(const std::vector<std::string>& dropped)>& frame_time);
 
-/// A plan that was made to fit.
+/// A plan that was reduced to fit a budget.
 struct BudgetedPlan {
     FramePlan plan;
     double milliseconds_before = 0;
     BudgetChoice choice;
-    PictureChange change;  ///< From the whole plan's picture.
+    PictureChange change;  ///< The difference from the picture of the complete plan.
 };
 
-/// Measures all effects of a plan, drops by drop_order() until the median frame takes no longer
-/// than `budget` milliseconds, measuring again after each, and says how the picture differs. Does
-/// not fit where nothing more can be dropped. \throws what Renderer does
+/// Measures all effects of a plan and drops them in drop_order() until the median frame takes at
+/// most `budget` milliseconds; measures again after each one. Also returns the difference of the
+/// pictures. The result does not fit if no further effect can be dropped. \throws as Renderer does
 BudgetedPlan plan_within_budget(const MeasuredFrame& frame, const FramePlan& plan, double budget);
 
 }  // namespace relief

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// The effect plan: the effects that a scene calls for, and the reasons. Pure: no OpenGL, no files.
+/// Plans effects: decides which effects a scene requires, and why. Pure: no OpenGL, no files.
 ///
 /// Every draw (one material range of one instance) gets a Features value. It names everything that
-/// its program, vertex streams and textures hold; an effect that is not in it has no code, no
-/// uniform, no memory and no time. Leaving an effect out never changes a pixel, because it is left
-/// out only if its contribution is exactly zero (effect_forcing.h adds it all the same). Tests:
-/// tests/shade/effects/, tests/shade/render/forced_effects_test.cpp.
+/// its program, vertex streams and textures contain; an omitted effect has no code, no uniform, no
+/// memory and no time. Omitting an effect never changes a pixel, because an effect is omitted only
+/// if its contribution is exactly zero (effect_forcing.h can add it anyway).
+/// Tests: tests/shade/effects/, tests/shade/render/forced_effects_test.cpp.
 #pragma once
 
 #include <compare>
@@ -25,27 +25,27 @@ enum class NormalDetail : std::uint8_t { none, normal_map, object_normal_map, bu
 
 enum class SpecularTerm : std::uint8_t { none, phong, blinn_phong };
 
-/// The mirror image of the environment.
+/// The reflection of the environment.
 enum class ReflectionTerm : std::uint8_t {
     none,
     mirror,
     glossy,  ///< Blurred, from a prefiltered chain of mip levels.
 };
 
-/// The share of mirrored light, by angle.
+/// The reflectance as a function of the angle.
 enum class FresnelTerm : std::uint8_t { constant, schlick, dielectric, conductor };
 
 /// The falloff of point and spot lights with distance.
 enum class FalloffTerm : std::uint8_t {
     inverse_square,
     none,
-    mixed,  ///< Some lights fall off and some do not.
+    mixed,  ///< Some lights have a falloff and some do not.
 };
 
 /// The effects of one draw. Two draws with equal Features share one program.
 struct Features {
     // The reflection model and its interpolation.
-    bool unlit = false;  ///< No light: the picture shows the diffuse color.
+    bool unlit = false;  ///< The picture shows the diffuse color without lighting.
     bool metallic_roughness = false;
     Interpolation interpolation = Interpolation::per_pixel;
     // Factors of the colors.
@@ -59,7 +59,7 @@ struct Features {
     bool opacity_texture = false;
     // The normal.
     NormalDetail detail = NormalDetail::none;
-    TangentFrame frame = TangentFrame::stored;  ///< Of a tangent-space map.
+    TangentFrame frame = TangentFrame::stored;  ///< For tangent-space maps.
     bool specular_antialiasing = false;
     bool double_sided = false;  ///< Back faces have the opposite normal.
     // Light.
@@ -89,10 +89,10 @@ struct Features {
     friend auto operator<=>(const Features&, const Features&) = default;
 };
 
-/// "normal map, 2 directional lights, diffuse, Blinn-Phong, sRGB", for messages.
+/// Describes features for messages: "normal map, 2 directional lights, diffuse, Blinn-Phong, sRGB".
 std::string describe(const Features& features);
 
-/// One effect, on or off, and the reason, which names the deciding object.
+/// One effect, on or off, and the reason, which names the object that decides.
 struct EffectReason {
     std::string effect;  ///< "normal map"
     bool on = false;
@@ -121,32 +121,33 @@ struct FramePlan {
     std::vector<EffectReason> reasons;  ///< Those of the frame-wide effects.
 };
 
-/// The effects of a draw of this material and mesh in this scene; canonical.
+/// Returns the canonical effects of a draw of this material and mesh in this scene.
 Features features_of(const Scene& scene, const Material& material, const Mesh& mesh,
                      OutputCoding output = OutputCoding::srgb);
 
-/// The plan of the whole scene, which must be valid.
+/// Plans the whole scene, which must be valid.
 FramePlan plan_effects(const Scene& scene, const FrameSettings& settings);
 
 /// Updates the frame-wide effects after the features of draws were changed.
 void plan_frame(const Scene& scene, const FrameSettings& settings, FramePlan& plan);
 
-/// The plan of the settings' debug view: every draw shows the view, without effects that the view
-/// does not need. The plan is unchanged if the view is the picture. Renderer calls this itself.
+/// Returns the plan of the settings' debug view: every draw shows the view, without effects that
+/// the view does not need. The plan does not change if the view is the picture. Renderer calls this
+/// itself.
 ///
 /// \param report  counts draws that have nothing to show in this view
 /// \throws InvalidInput if no draw has anything to show, with the reason
 FramePlan plan_view(const Scene& scene, const FrameSettings& settings, FramePlan plan,
                     Report& report);
 
-/// Drops effects that cannot show: without light no normal, without a normal no normal map, and so
+/// Removes effects that are invisible: normals without light, normal maps without normals, and so
 /// on. features_of() already returns canonical values; canonical(canonical(f)) == canonical(f).
 Features canonical(Features features);
 
 /// An effect as users name it.
 struct Effect {
     const char* name;
-    /// True if these features have it.
+    /// Returns true if these features have it.
     bool (*on)(const Features& features);
     /// Switches it on, with the fewest other effects, or off; the result is not canonical.
     void (*set)(Features& features, bool on);
@@ -167,10 +168,11 @@ struct PlannedInterface {
     friend bool operator==(const PlannedInterface&, const PlannedInterface&) = default;
 };
 
-/// The inputs of the program for these features: exactly those that are active once it is linked.
+/// Returns the inputs of the program for these features: exactly those that are active after
+/// linking.
 PlannedInterface planned_interface(const Features& features);
 
-/// The material of meshes that name none.
+/// The material of meshes that name no material.
 const Material& default_material();
 
 }  // namespace relief

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Environments from folders.
+/// Finds the images of environment maps in folders.
 #pragma once
 
 #include <filesystem>
@@ -9,7 +9,7 @@
 
 namespace relief {
 
-/// Six images in a folder, by the ends of their names: posx, negx, posy, negy, posz, negz.
+/// Finds six images in a folder by the ends of their names: posx, negx, posy, negy, posz, negz.
 /// \throws FileError naming the first missing face, or two files for one face
 CubeFaces cube_faces_in(const std::filesystem::path& folder);
 

@@ -5,8 +5,8 @@
 
 namespace relief {
 
-/// OpenGL is missing, too old, out of memory, or refuses a shader. The message contains that of the
-/// driver.
+/// OpenGL is missing, too old or out of memory, or refuses a shader. The message contains that of
+/// the driver.
 class GpuError : public Error {
   public:
     using Error::Error;

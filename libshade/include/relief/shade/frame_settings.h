@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// The size, samples and coding of a picture.
+/// Defines the size, sample count and output coding of a picture.
 #pragma once
 
 #include <cstdint>

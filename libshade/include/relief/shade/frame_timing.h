@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Measured times of frames: renderers draw interleaved, the first frames are dropped, and the wall
-/// clock is read around finished work, since the timer queries of software drivers are wrong.
+/// Measures frame times: renderers draw interleaved, the first frames are dropped, and the wall
+/// clock is read around finished work, because the timer queries of software drivers are wrong.
 #pragma once
 
 #include <span>
@@ -19,8 +19,8 @@ struct FrameSeries {
     std::vector<double> frame;  ///< Their sum.
 };
 
-/// One series for each renderer, drawn interleaved, without warm-up frames.
-/// \throws what Renderer::draw does
+/// Measures one series for each renderer, interleaved and without warm-up frames.
+/// \throws as Renderer::draw() does
 std::vector<FrameSeries> time_frames(std::span<Renderer* const> renderers, const Camera& camera,
                                      const Repeats& repeats);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Hands pictures from the thread that draws to the thread that shows them.
+/// Passes pictures from the drawing thread to the thread that shows them.
 #pragma once
 
 #include <memory>
@@ -9,11 +9,11 @@
 
 namespace relief {
 
-/// Three textures: one is shown, one is the next, one is free for the next copy.
+/// A triple buffer of textures: one is shown, one is the next, one is free for the next copy.
 ///
-/// The two threads have contexts that share textures (a window library creates them). The drawing
-/// thread owns this object and calls put(), the other thread calls get(): it never waits for a
-/// frame and never sees an incomplete one.
+/// The contexts of both threads share textures (a window library creates them). The drawing thread
+/// owns this object and calls put(); the other thread calls get(), which never waits for a frame
+/// and never returns an incomplete one.
 class Handover {
   public:
     explicit Handover(const Context& context);
@@ -22,19 +22,19 @@ class Handover {
     Handover& operator=(const Handover&) = delete;
 
     /// Copies the last picture of the renderer, which must have 8 bits, and waits for the copy.
-    /// \param beside  another picture that is handed over at the same moment
+    /// \param beside  a second picture that is passed on together with the first
     void put(const Renderer& renderer, const Renderer* beside = nullptr);
 
-    /// Hands over a picture from elsewhere: 8-bit RGB or RGBA, sRGB.
+    /// Passes on another picture: 8-bit RGB or RGBA, sRGB.
     void put(const Image& picture);
 
     struct Shown {
         unsigned texture = 0;  ///< 0 before the first. Row 0 at the bottom, sRGB codes.
         int width = 0;
         int height = 0;
-        unsigned beside = 0;  ///< The other picture, of the same size; 0 if there is none.
+        unsigned beside = 0;  ///< The second picture, of the same size; 0 if there is none.
     };
-    /// The newest picture; its texture stays unchanged until the next call.
+    /// Returns the newest picture; its texture does not change until the next call.
     Shown get();
 
   private:

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Markers for the findings of the mesh health check (diagnose.h, `relief-mesh check`), drawn over
-/// a picture and colored by kind. No OpenGL.
+/// Creates markers for the findings of the mesh health check (diagnose.h, `relief-mesh check`).
+/// They are drawn over a picture and colored by kind. No OpenGL.
 #pragma once
 
 #include <memory>
@@ -14,31 +14,32 @@
 
 namespace relief {
 
-/// A condition over all instances.
+/// A condition, counted over all instances.
 struct MarkedCondition {
     MeshCondition condition;
-    std::size_t count = 0;   ///< Affected elements; those of a mesh once for each instance.
-    std::size_t marked = 0;  ///< With a marker; others are not finite, or beyond most_markers.
+    std::size_t count = 0;  ///< Affected elements; those of a mesh once for each instance.
+    /// Number of elements with a marker; the others are not finite, or exceed most_markers.
+    std::size_t marked = 0;
     glm::vec3 color_srgb{1.0F};
 };
 
 struct HealthMarkers {
     std::shared_ptr<const std::vector<Marker>> markers;  ///< In the order of the conditions.
-    std::vector<MarkedCondition> conditions;             ///< The legend, in that order too.
+    std::vector<MarkedCondition> conditions;             ///< The legend, in the same order.
 };
 
 /// The maximum number of markers for one condition in one mesh.
 inline constexpr std::size_t most_markers = 10000;
 
-/// The sRGB color of a condition; every condition has a different one.
+/// Returns the sRGB color of a condition; every condition has a different one.
 glm::vec3 marker_color(MeshCondition condition);
 
 /// Diagnoses every mesh that an instance shows. The marker of a vertex is at its position; that of
 /// a triangle, or of an edge by its first triangle, at the center of its corners. Elements that are
 /// not finite, and conditions of the whole mesh, are counted without a marker.
 ///
-/// \param severity  problems alone (for which `relief-mesh check` calls a mesh unsound), which is
-///                  faster; if absent, notes too
+/// \param severity  only conditions of this severity: problems (for which `relief-mesh check`
+///         reports an unsound mesh) or notes; if absent, both. Problems alone are faster
 HealthMarkers health_markers(const Scene& scene,
                              std::optional<Severity> severity = Severity::trouble);
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Differences between two images: of their samples, as the eye perceives them (FLIP), and in
-/// degrees for images of normals.
+/// Compares two images: by their samples, by perceived difference (FLIP), and in degrees for images
+/// of normals.
 #pragma once
 
 #include <limits>
@@ -22,8 +22,9 @@ struct ImageDifference {
     std::size_t differing_pixels = 0;  ///< Pixels in which any sample differs.
 };
 
-/// \throws InvalidInput if sizes, channels or sample types differ. A NaN on one side only counts as
-///         an infinite difference; on both sides as none.
+/// Compares corresponding samples. A NaN on one side only counts as an infinite difference; on both
+/// sides as none.
+/// \throws InvalidInput if sizes, channels or sample types differ
 ImageDifference compare(const Image& a, const Image& b);
 
 /// The pixels per degree of a screen of 3840 pixels, seen from a distance of its width.
@@ -36,15 +37,14 @@ struct FlipDifference {
     Image map;  ///< The error of each pixel: one float channel, data.
 };
 
-/// LDR-FLIP [Andersson et al. 2020].
+/// Computes LDR-FLIP [Andersson et al. 2020].
 ///
 /// \param reference,test  colors, sRGB or linear, of any bits and channels, which may differ;
-///                        compared as a screen shows them, clamped to [0,1]. Transparent pixels are
-///                        compared over black and over white, and the larger error counts.
+///         compared as a screen shows them, clamped to [0,1]. Transparent pixels are compared over
+///         black and over white, and the larger error counts
 /// \param pixels_per_degree  10 to 1000; more make details smaller and their errors weaker
-/// \return a NaN counts as 0, and its pixel's error is 1 unless the other picture's pixel has NaN
-///         in the same channels. The result is the same bits if the pictures are
-///         exchanged.
+/// \return NaNs count as 0, and the error of their pixel is 1 unless the other picture's pixel has
+///         NaNs in the same channels. The result is the same bits if the pictures are exchanged
 /// \throws InvalidInput if one is empty or holds data instead of colors, sizes differ, or
 ///         pixels_per_degree is out of range
 FlipDifference flip_difference(const Image& reference, const Image& test,
@@ -55,15 +55,16 @@ struct AngleDifference {
     double mean = 0;
     double p99 = 0;  ///< 99 of 100 texels have at most this angle.
     double max = 0;
-    /// Texels with no direction (no length, or not finite) in one image or in both.
+    /// Texels without a direction (zero or not finite) in one image or in both.
     std::size_t undefined = 0;
     Image map;  ///< Degrees for each texel: one float channel, data.
 };
 
-/// \param a,b  three float channels of directions of any length, as decode_normal_map() returns
-///             them for a normal map
-/// \return angles by atan2, which is exact near 0 and 180. A texel without direction on one side
-///         only counts as 180 degrees; on both sides as 0.
+/// Computes the angles between corresponding directions.
+///
+/// \param a,b  three float channels of directions of any length, as from decode_normal_map()
+/// \return angles by atan2, which is accurate near 0 and 180. A texel without direction on one side
+///         only counts as 180 degrees; on both sides as 0
 /// \throws InvalidInput if one is empty or is not three float channels, or sizes differ
 AngleDifference angle_difference(const Image& a, const Image& b);
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Directional, point and spot lights as plain data in world space.
+/// Defines directional, point and spot lights as plain data in world space.
 ///
 /// Intensities are irradiances over pi: a white surface that faces a directional light of
-/// irradiance 1 shows radiance 1.
+/// irradiance 1 has radiance 1.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -13,11 +13,11 @@ namespace relief {
 
 /// Light from infinitely far away.
 struct DirectionalLight {
-    glm::vec3 direction_world{0.0F, -1.0F,
-                              0.0F};  ///< The direction in which light travels; any length but 0.
-    /// On a surface facing the light, over pi: a white surface shows this radiance.
+    /// The direction in which light travels; any length but 0.
+    glm::vec3 direction_world{0.0F, -1.0F, 0.0F};
+    /// Irradiance over pi of a surface that faces the light: the radiance of a white surface.
     glm::vec3 irradiance{1.0F};
-    /// For highlights, if different; metallic-roughness ignores it.
+    /// The irradiance for highlights, if different; metallic-roughness ignores it.
     std::optional<glm::vec3> highlight_irradiance = std::nullopt;
 };
 
@@ -31,10 +31,10 @@ enum class Falloff {
 struct PointLight {
     glm::vec3 position_world{0.0F};
     glm::vec3 intensity{1.0F};  ///< Irradiance over pi at distance 1.
-    std::optional<float> range =
-        std::nullopt;  ///< The light fades to 0 at this distance (KHR_lights_punctual).
+    /// The light fades to 0 at this distance (KHR_lights_punctual).
+    std::optional<float> range = std::nullopt;
     Falloff falloff = Falloff::inverse_square;
-    /// For highlights, if different; metallic-roughness ignores it.
+    /// The intensity for highlights, if different; metallic-roughness ignores it.
     std::optional<glm::vec3> highlight_intensity = std::nullopt;
 };
 

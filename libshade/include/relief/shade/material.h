@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Materials: Phong's model and glTF's metallic-roughness, as plain data.
+/// Defines materials as plain data: Phong's model and glTF's metallic-roughness model.
 ///
 /// World space, linear colors. Images are named by their index in Scene::images and decoded only if
 /// the effect plan (effects.h) needs them. scene_fields.h has the range of every field.
@@ -73,8 +73,8 @@ struct NormalMap {
     NormalSpace space = NormalSpace::tangent;
 };
 
-/// Heights that bend the normal in the shader, by central differences over one texel, or over one
-/// pixel if it is larger.
+/// Heights that perturb the normal in the shader, by central differences over one texel, or over
+/// one pixel if it is larger.
 struct BumpMap {
     Texture texture;         ///< Red is the height.
     float strength = 16.0F;  ///< The height in texels of the value 1.0.
@@ -89,8 +89,9 @@ struct MetallicRoughness {
     std::optional<Texture> texture;  ///< Green multiplies roughness, blue metallic.
 };
 
-/// A material. All vectors are in world space and of unit length: n (the normal, bent by a normal
-/// or bump map), v (to the eye), and for every light i: l (to the light), h = (l + v) / |l + v| and
+/// A material. All vectors are in world space and of unit length: n (the normal, perturbed by a
+/// normal or bump map), v (to the eye), and for every light i: l (to the light), h = (l + v) / |l +
+/// v| and
 /// r = 2 (n.l) n - l. L is the light's irradiance at normal incidence over pi, and H that for
 /// highlights (lights.h). Products of colors are by channel.
 ///
@@ -174,15 +175,15 @@ struct Material {
     bool unlit = false;         ///< Shows the diffuse color without light.
 };
 
-/// The factor of specular_model, for uniforms and references: 1, or (shininess + 2) / 8.
+/// Returns the factor of specular_model: 1, or (shininess + 2) / 8.
 float specular_normalization(const Material& material);
 
-/// A material of the classic table by name ("gold", "emerald", "red plastic"), as Phong's model
-/// with Phong's highlights. Its colors were chosen on screens, so they are decoded from sRGB.
+/// Returns a material of the classic table by name ("gold", "emerald", "red plastic"), with Phong's
+/// model and highlights. Its colors were chosen on screens, so they are decoded from sRGB.
 /// \return none if the table has no such name
 std::optional<Material> material_by_name(std::string_view name);
 
-/// The names of the classic table, sorted.
+/// Returns the names of the classic table, sorted.
 const std::vector<std::string>& material_names();
 
 }  // namespace relief

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// The default material as an entry of the list of materials.
+/// Adds the default material to the list of materials.
 #pragma once
 
 #include "relief/shade/scene.h"
@@ -8,10 +8,10 @@
 namespace relief {
 
 /// Adds the default material to the list and assigns it to every triangle without a material, so
-/// that it can be edited. Copies the meshes that it changes.
+/// that it can be edited. Meshes that change are copied.
 void name_default_material(Scene& scene);
 
-/// Tells whether a triangle has no material.
+/// Returns true if a triangle has no material.
 bool uses_default_material(const Scene& scene);
 
 }  // namespace relief

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// The inputs of a plan with their reasons: vertex attributes, textures with their mip chains, and
-/// the passes of a frame. No OpenGL is needed, and no image is decoded.
+/// Lists the inputs of a plan with reasons: vertex attributes, textures with their mip chains, and
+/// the passes of a frame. It needs no OpenGL and decodes no image.
 #pragma once
 
 #include <string>
@@ -31,7 +31,7 @@ struct DrawInputs {
     std::vector<PlannedTexture> textures;
 };
 
-/// The inputs of a draw's program: the attributes and samplers of planned_interface().
+/// Returns the inputs of a draw's program: the attributes and samplers of planned_interface().
 DrawInputs planned_inputs(const Scene& scene, const DrawPlan& draw);
 
 /// A pass of a frame, with its reason.

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// The reference picture of a scene: Material's formula (material.h) in double precision on the
-/// CPU, implemented from that comment and not from the shaders. It is the ground truth for the
-/// renderer and for reports on accuracy.
+/// Computes the reference picture of a scene: the formula of Material (material.h) in double
+/// precision on the CPU, implemented from that comment and not from the shaders. It is the ground
+/// truth for the renderer and for reports on accuracy.
 ///
 /// World space, linear light. It is a library of its own, relief::reference, because it needs
 /// Embree.
@@ -42,31 +42,31 @@ struct Reference {
     /// Four float channels, linear, before exposure and tone mapping. Alpha is the coverage of the
     /// background (by surfaces, or fully by a skybox) and not multiplied in.
     Image radiance;
-    /// One channel of 8 bits: 255 where something discrete changes within edge_margin of the
-    /// pixel's center (the surface, the texel of a nearest-filtered texture, the side of a light),
-    /// so that rounding may decide the color, and where a texture is so fine that OpenGL averages
-    /// it; otherwise 0.
+    /// One channel of 8 bits: 255 if a discrete property changes within edge_margin of the pixel's
+    /// center (the surface, the texel of a nearest-filtered texture, the side of a light), so that
+    /// rounding may decide the color, or if a texture is so fine that OpenGL averages it; otherwise
+    /// 0.
     Image edges;
-    std::vector<ReferenceHit> hits;  ///< By pixel, row 0 on top.
+    std::vector<ReferenceHit> hits;  ///< By pixel, row 0 at the top.
 };
 
-/// The scene as its camera sees it, at the center of each pixel.
+/// Renders the scene as its camera sees it, at the center of each pixel.
 ///
 /// \param report  counts fallbacks of normal and tangent computation, and triangles with a vertex
-///                that is not finite, which are not drawn; names textures that cannot be read,
-///                which are omitted as in renderer.h
-/// \return always finite; hard cases are as shaders/README.md defines them. Textures are looked up
-///         at full resolution, bilinearly or nearest, without minification, and without
-///         Material::specular_antialiasing. The same bits for any number of threads.
+///         that is not finite, which are not drawn; names textures that cannot be read, which are
+///         omitted as in renderer.h
+/// \return always finite; shaders/README.md defines degenerate cases. Textures are sampled at full
+///         resolution, bilinearly or nearest, without minification, and without
+///         Material::specular_antialiasing. The same bits for any number of threads
 /// \throws InvalidInput if the scene or the settings are not valid or there is no camera; FileError
 ///         if an image of the environment, or one that is required (scene.h), cannot be read
 Reference render_reference(const Scene& scene, const ReferenceSettings& settings, Report& report);
 
-/// The picture of a radiance, composed over the scene's background.
+/// Converts radiance to a picture over the scene's background.
 ///
 /// \param radiance  as in Reference
-/// \return four float channels, alpha not multiplied in; as frame_settings.h says, except that srgb
-///         is not rounded to 8 bits
+/// \return four float channels, not premultiplied by alpha; as in frame_settings.h, except that
+///         srgb is not rounded to 8 bits
 /// \throws InvalidInput for OutputCoding::half
 ///
 /// Source of ToneMapping::aces: [Narkowicz 2016].

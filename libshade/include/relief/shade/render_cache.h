@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Resources that renderers share, so that an edited scene is redrawn at once.
+/// Caches the resources that renderers share, so that an edited scene is redrawn quickly.
 #pragma once
 
 #include <cstddef>
@@ -23,7 +23,8 @@ class RenderCache {
     RenderCache(const RenderCache&) = delete;
     RenderCache& operator=(const RenderCache&) = delete;
 
-    /// Frees resources without a renderer. Programs stay, since they are small and slow to create.
+    /// Frees resources that no renderer uses. Programs are kept, because they are small and slow to
+    /// create.
     void drop_unused();
 
     /// Removes all programs because their sources changed. Existing renderers keep theirs.

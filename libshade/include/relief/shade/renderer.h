@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// The renderer: draws a scene with OpenGL.
+/// Draws scenes with OpenGL.
 #pragma once
 
 #include <memory>
@@ -50,25 +50,25 @@ struct DrawnFrame {
 /// Holds one scene on the GPU and draws it.
 ///
 /// Only the inputs of the effect plan are decoded, computed and uploaded. The scene is not needed
-/// afterwards. The context must outlive the renderer, and be current in every call.
+/// afterwards. The context must outlive the renderer and be current in every call.
 class Renderer {
   public:
-    /// Draws by the plan of plan_effects().
+    /// Prepares the scene with the plan of plan_effects().
     ///
     /// \param report  counts fallbacks of tangent and normal computation and of image decoding,
-    ///                textures that are invisible because a mesh has no texture coordinates, and
-    ///                textures whose images are missing or damaged: the picture is drawn without
-    ///                them, and materials with a missing emission texture emit nothing. plan() is
-    ///                then the plan without them
+    ///         textures that are invisible because a mesh has no texture coordinates, and textures
+    ///         whose images are missing or damaged: the picture is drawn without them, and
+    ///         materials with a missing emission texture emit nothing. plan() is then the plan
+    ///         without them
     /// \throws InvalidInput if the scene or the settings are not valid, FileError if an image of
     ///         the environment, or one that is required (scene.h), cannot be read, GpuError if
-    ///         OpenGL refuses something; a shader's errors are named by file and line
+    ///         OpenGL refuses something; errors of shaders name the file and line
     Renderer(const Context& context, const Scene& scene, const FrameSettings& settings,
              Report& report);
 
-    /// Draws by another plan of the same scene: a plan_effects() plan with effects added, which
-    /// changes no pixel, or taken away. Contradictory sets are made canonical, and a finishing pass
-    /// that samples or blending need is added.
+    /// Prepares the scene with another plan: that of plan_effects() with effects added, which
+    /// changes no pixel, or removed. Contradictory sets are made canonical, and a finishing pass is
+    /// added if samples or blending need it.
     Renderer(const Context& context, const Scene& scene, FramePlan plan,
              const FrameSettings& settings, Report& report);
     /// The same with a cache, which provides resources and keeps new ones.

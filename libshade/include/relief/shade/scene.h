@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Scenes as plain data: meshes, materials (material.h), lights (lights.h), a camera, an
+/// Defines scenes as plain data: meshes, materials (material.h), lights (lights.h), a camera, an
 /// environment. No OpenGL.
 ///
 /// World space is right-handed, y up. Colors are linear. Angles are radians. Images are named here
@@ -37,7 +37,7 @@ struct ImageSource {
     bool is_required = false;
 };
 
-/// The maximum of a material's color.
+/// The maximum of a material's color components.
 inline constexpr float max_reflectance = 1e9F;
 
 /// A perspective camera that looks along its own -z.
@@ -110,14 +110,14 @@ struct Scene {
     ToneMapping tone_mapping = ToneMapping::none;  ///< For pictures with sRGB codes only.
 };
 
-/// The box of all instances in world space.
+/// Returns the bounding box of all instances in world space.
 Bounds world_bounds(const Scene& scene);
 
-/// A camera that sees a whole box, for any aspect ratio.
+/// Computes a camera that sees a whole box, for any aspect ratio.
 ///
-/// \param azimuth    radians from +z towards +x, to the position of the camera
+/// \param azimuth  radians from +z towards +x, to the position of the camera
 /// \param elevation  radians above the horizon
-/// \param aspect     width / height of the picture
+/// \param aspect  width / height of the picture
 /// \return near and far enclose the box closely; for an empty box or one without extent, a camera
 ///         at distance 1 from its center (the origin for an empty box)
 /// \throws InvalidInput if an angle or the aspect is not finite, the aspect is not positive, or the

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// The one description of every field of a scene that a file, a panel or an option can set: name,
-/// range, unit and label. Scene files are read, written and validated by these descriptions, and
-/// the window finds edits by them. The default of a field is that of its struct: default_value().
+/// Describes every field of a scene that a file, a panel or an option can set: name, range, unit
+/// and label. Scene files are read, written and validated by these descriptions, and the window
+/// finds edits by them. The default of a field is that of its struct: default_value().
 #pragma once
 
 #include <array>
@@ -75,7 +75,7 @@ template <>
 inline constexpr auto enum_names<Falloff> = std::to_array<EnumName<Falloff>>(
     {{"inverse_square", Falloff::inverse_square}, {"none", Falloff::none}});
 
-/// The name of an enumeration's value.
+/// Returns the name of an enumeration's value.
 template <typename Enum>
 constexpr const char* enum_name(Enum value) {
     for (const EnumName<Enum>& entry : enum_names<Enum>) {
@@ -96,7 +96,7 @@ struct FieldRange {
 /// name; in memory every positive value is valid.
 inline constexpr FieldRange positive_range{1e-30F};
 
-/// What a number or vector measures.
+/// The unit of a number or vector.
 enum class FieldUnit {
     none,   ///< A factor, an exponent, a flag, a name.
     color,  ///< Linear red, green and blue; with a fourth component: alpha, from 0 to 1.
@@ -111,14 +111,15 @@ enum class FieldUnit {
 /// The description of one member of a struct.
 template <typename Owner, typename Value>
 struct SceneField {
-    /// The key in scene files. Empty: the fields of the member stand in the owner's own object.
+    /// The key in scene files. If empty, the fields of the member are in the owner's own object.
     const char* name;
     Value Owner::*member;
     FieldRange range{};
     FieldUnit unit = FieldUnit::none;
     const char* label_text = nullptr;
 
-    /// What messages call the field: label_text, or the name with spaces for underscores.
+    /// The name of the field in messages: label_text, or the name with spaces instead of
+    /// underscores.
     [[nodiscard]] std::string label() const {
         std::string text = label_text != nullptr ? label_text : name;
         for (char& c : text) {
@@ -296,7 +297,7 @@ inline constexpr auto fields_of<Turntable> =
                SceneField{"speed", &Turntable::speed, {}, FieldUnit::radians_per_second},
                SceneField{"angle", &Turntable::angle, {}, FieldUnit::radians}};
 
-/// The range of the field that sets a member.
+/// Returns the range of the field that sets a member.
 template <typename Owner, typename Value>
 constexpr FieldRange field_range(Value Owner::*member) {
     FieldRange range;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Scenes from model files.
+/// Reads scenes from model files and scene files.
 #pragma once
 
 #include <filesystem>
@@ -18,7 +18,7 @@ struct SceneOptions {
     /// The model of glTF's materials.
     enum class MaterialModel {
         as_authored,  ///< Metallic-roughness.
-        phong,        ///< Phong's, by phong_from_metallic_roughness with the means of textures.
+        phong,  ///< Phong's model, by phong_from_metallic_roughness() with the means of textures.
     };
     MaterialModel model = MaterialModel::as_authored;
 };
@@ -49,10 +49,10 @@ struct SceneOptions {
 SceneGraph load_scene_graph(const std::filesystem::path& file, const SceneOptions& options,
                             Report& report);
 
-/// The scene of that graph.
+/// Reads only the scene of that graph.
 Scene load_scene(const std::filesystem::path& file, const SceneOptions& options, Report& report);
 
-/// The scene with the default options.
+/// Reads only the scene, with the default options.
 Scene load_scene(const std::filesystem::path& file, Report& report);
 
 /// The means of textures that Phong's model has no place for, colors linear; 1 without a texture.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// A scene whose objects hang on nodes, and the animations of nodes: key frames, orbits,
-/// turntables.
+/// Defines scenes whose objects are attached to nodes, and the animations of nodes: key frames,
+/// orbits, turntables.
 ///
 /// World space, right-handed, y up; radians and seconds. A pose depends on the time alone, not on
 /// earlier poses.
@@ -103,7 +103,8 @@ struct SceneGraph {
     Carried camera;
     /// The width and height of the picture that a scene file requests.
     std::optional<glm::ivec2> picture_size;
-    /// True if the far plane stays behind all meshes as they move, because the file names none.
+    /// True if the far plane must stay behind all moving meshes, because the file does not name
+    /// one.
     bool camera_sees_all = false;
     /// All play at the same time. If two move the same node, the later one wins.
     std::vector<Animation> animations;
@@ -111,24 +112,25 @@ struct SceneGraph {
     std::vector<Bounds> mesh_bounds;
 };
 
-/// Moves everything that hangs on a node to its transform at this time. Meshes do not change.
+/// Moves all objects that are attached to nodes to their transforms at this time. Meshes do not
+/// change.
 ///
 /// A light whose node is scaled to 0 shines along the world's -z; such a camera has the world's
-/// axes. \throws InvalidInput if an index of a node does not exist, nodes form a cycle, the time is
-/// not
+/// axes.
+/// \throws InvalidInput if an index of a node does not exist, nodes form a cycle, the time is not
 ///         finite, or keys are not as KeyChannel requires
 void pose(SceneGraph& graph, double seconds);
 
-/// The duration of the longest animation: the time of its last key, or of a full rotation. 0
-/// without animations; those of speed 0 are ignored.
+/// Returns the duration of the longest animation: the time of its last key, or of a full rotation.
+/// 0 without animations; those of speed 0 are ignored.
 double duration(const SceneGraph& graph);
 
 /// Checks everything that pose() relies on, and the scene. \throws InvalidInput naming the first
 /// error
 void validate(const SceneGraph& graph);
 
-/// The transform of an object that looks along a direction, as lights and cameras do: its -z is
-/// along `direction` (any length but 0), its +y as close as possible to the world's +y.
+/// Returns the transform of an object that looks along a direction, as lights and cameras do: its
+/// -z is along `direction` (any length but 0), its +y as close as possible to the world's +y.
 glm::mat4 looking_along(const glm::vec3& position, const glm::vec3& direction);
 
 /// Adds a small unlit sphere for every point and spot light, in the color of the light scaled to a

@@ -23,8 +23,8 @@ struct SceneToSave {
 /// fields of materials, all lights if any changed, the environment and the camera.
 ///
 /// Changed lights do not move any more. Images in memory (a converted height map) are written
-/// beside the file as PNG: NAME-image-1.png, and so on. \throws FileError if the source cannot be
-/// read again, or a file cannot be written or exists
+/// beside the file as PNG: NAME-image-1.png, and so on.
+/// \throws FileError if the source cannot be read again, or a file cannot be written or exists
 ///         already; InvalidInput if a scene file cannot express the change: meshes were moved or
 ///         added, a scene file is written to another folder, or an environment is no file
 void save_scene(const std::filesystem::path& file, const SceneToSave& saved);

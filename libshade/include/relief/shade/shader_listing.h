@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// The source of the programs of a plan, as the driver gets it. Pure: no OpenGL.
+/// Lists the shader source of the programs of a plan, as the driver gets it. Pure: no OpenGL.
 /// Tests: tests/shade/effects/shader_listing_test.cpp.
 #pragma once
 
@@ -21,7 +21,7 @@ struct ShaderListing {
     std::vector<std::string> files;  ///< Parts of both stages, such as "light.glsl#point"; sorted.
 };
 
-/// One entry per program, in the order of the first draw that uses it.
+/// Returns one entry per program, in the order of the first draw that uses it.
 /// \throws GpuError if a file of $RELIEF_SHADER_DIR includes a missing part
 std::vector<ShaderListing> shader_listings(const FramePlan& plan);
 

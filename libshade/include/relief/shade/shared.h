@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Large values that copies share, so that copying a scene with millions of triangles is cheap.
+/// Implements copy-on-write values, so that copying a scene with millions of triangles is cheap.
 #pragma once
 
 #include <cstdint>
@@ -41,7 +41,8 @@ class Shared {
         explicit Identity(const Shared& shared)
             : held_(shared.held_), edits_(shared.held_->edits) {}
 
-        /// Tells whether this is the same object, not only an equal one, and not edited since.
+        /// Returns true if this is the same object, not only an equal one, and has not been edited
+        /// since.
         [[nodiscard]] bool is(const Shared& shared) const {
             const bool is_other =
                 held_.owner_before(shared.held_) || shared.held_.owner_before(held_);
