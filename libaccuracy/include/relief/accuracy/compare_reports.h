@@ -66,58 +66,60 @@ struct CommonChange {
     TimeVerdict verdict = TimeVerdict::unchanged;
 };
 
-/// One figure of an error. NaN: no usable result.
+/// One statistic of an error. NaN means that there is no usable result.
 struct FigureChange {
-    std::string figure;  ///< "rms", "mean", "p99", "max", "undefined"; of a curve "at X".
+    std::string figure;  ///< "rms", "mean", "p99", "max", "undefined"; for curves "at X".
     double before = 0.0;
     double after = 0.0;
 
-    /// After by before, less 1: 0.1 for a tenth more. Infinite where a usable result became none,
-    /// or zero something; -1 the other way.
+    /// after / before - 1: 0.1 for an increase by a tenth. Infinite if a usable result became
+    /// undefined or zero became positive; -1 in the opposite cases.
     [[nodiscard]] double growth() const;
 };
 
-/// What changed about the error of one method, or about one of its curves.
+/// The change of the error of one method, or of one of its curves.
 struct ErrorChange {
     std::string experiment;
-    std::string chart;  ///< Empty: the measurement.
+    std::string chart;  ///< Empty for the measurement itself.
     std::string method;
     std::vector<FigureChange> figures;  ///< Not empty.
 
-    /// The one that grew most, or fell least.
+    /// The figure with the largest growth.
     [[nodiscard]] const FigureChange& worst() const;
 };
 
-/// What a method holds at the most, where that is more or less by at least a tenth and a megabyte:
-/// pages, and what threads happen to hold at one time, make less than that.
+/// The change of the peak memory of a method, if it is at least a tenth and a megabyte. Smaller
+/// changes result from page granularity and the timing of threads.
 struct MemoryChange {
     std::string experiment;
     std::string method;
-    std::uint64_t before = 0;  ///< Bytes.
+    std::uint64_t before = 0;  ///< In bytes.
     std::uint64_t after = 0;
 
-    /// After by before, less 1.
+    /// after / before - 1.
     [[nodiscard]] double growth() const;
 };
 
 struct ReportComparison {
-    std::size_t methods = 0;      ///< In both.
-    std::size_t with_memory = 0;  ///< Of those, whose memory both know.
+    std::size_t methods = 0;      ///< Number of methods that occur in both reports.
+    std::size_t with_memory = 0;  ///< Number of these methods with known memory in both.
     std::vector<MemoryChange> memory;
     std::vector<TimeChange> times;
     CommonChange one_thread;
     CommonChange all_threads;
     std::vector<ErrorChange> errors;
-    /// Only in the old one: "EXPERIMENT: METHOD", "EXPERIMENT, chart ID: METHOD", " at X" for a
+    /// Only in the old report: "EXPERIMENT: METHOD", "EXPERIMENT, chart ID: METHOD", " at X" for a
     /// point of a curve.
     std::vector<std::string> gone;
-    std::vector<std::string> added;        ///< Only in the new one.
-    std::vector<std::string> other_input;  ///< Experiments on something else than before.
+    std::vector<std::string> added;        ///< Only in the new report.
+    std::vector<std::string> other_input;  ///< Experiments whose input differs.
 };
 
-/// \param same_machine  whether times may be compared as measured
-/// \param max_ratio     a bound of how many times as long methods may take; if the resolution is
-///                      coarser, verdicts are cannot_tell. Absent: there is none
+/// Compares two reports.
+///
+/// \param same_machine  true if measured times may be compared directly
+/// \param max_ratio  the maximum acceptable time ratio of a method; if the resolution is coarser,
+///         verdicts are cannot_tell. Absent: there is none
 ReportComparison compare_reports(const std::vector<Experiment>& before,
                                  const std::vector<Experiment>& after, bool same_machine,
                                  const std::optional<double>& max_ratio = {});

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// What an experiment on accuracy found: methods on one input, each with its error from a ground
-/// truth and what it cost. Plain data, from which every report is made (tables, JSON, CSV, HTML).
+/// Defines the results of accuracy experiments: methods on one input, each with its error against a
+/// ground truth and its cost. All reports are written from this data (tables, JSON, CSV, HTML).
 /// Tests: tests/accuracy/experiment_test.cpp.
 #pragma once
 
@@ -23,33 +23,34 @@ namespace relief {
 
 class EarlierPasses;  // passes.h
 
-/// What experiments are about; the words of `relief-accuracy run`.
+/// The subjects of experiments, with the names of `relief-accuracy run`.
 enum class Subject { normals, tangents, bump, storage, bake, shading, stability };
 
-/// Errors of many directions, pixels or other things, all in the unit of their experiment.
+/// Statistics of errors of directions, pixels or other items, in the unit of the experiment.
 struct ErrorFigures {
-    std::size_t count = 0;      ///< That have a number.
-    std::size_t undefined = 0;  ///< That have none: NaN, or a direction of no length.
-    double rms = 0.0;           ///< Root of the mean square; NaN, as all others, where count is 0.
+    std::size_t count = 0;  ///< Number of items with a defined error.
+    /// Number of items without one: NaN, or a direction of length zero.
+    std::size_t undefined = 0;
+    double rms = 0.0;  ///< Root mean square; NaN, like the others, if count is 0.
     double mean = 0.0;
-    double p99 = 0.0;  ///< 99 of 100 are no larger.
+    double p99 = 0.0;  ///< 99% of all errors do not exceed it.
     double max = 0.0;
-    std::optional<double> psnr{};  ///< Of pictures, in decibels: 20 log10(peak / rms).
+    std::optional<double> psnr{};  ///< For pictures, in decibels: 20 log10(peak / rms).
 
     friend bool operator==(const ErrorFigures&, const ErrorFigures&) = default;
 };
 
-/// The one way from any summary of angles to figures; of none, NaN.
+/// Converts statistics of angles; NaN without angles.
 ErrorFigures figures_of(const AngleDistribution& angles);
 ErrorFigures figures_of(const AngleSummary& angles);
 
-/// What a curve shows (CurvePoint::error): the RMS; NaN where there is none, or where a single
-/// result is undefined, which must not vanish in a mean.
+/// Returns the value of a curve (CurvePoint::error): the RMS; NaN without errors, or if any error
+/// is undefined, so that it is not hidden in a mean.
 double curve_error(const ErrorFigures& error);
 double curve_error(const AngleDistribution& angles);
 
-/// Seconds of each counted repeat, in the order in which they were taken; in turns with the other
-/// methods of the experiment, so that round i of all was taken at one time.
+/// The time of each counted repetition in seconds, in order. Methods of an experiment are
+/// interleaved, so round i of all methods was measured at about the same time.
 struct Timing {
     std::vector<double> rounds{};
 
@@ -57,13 +58,13 @@ struct Timing {
     friend bool operator==(const Timing&, const Timing&) = default;
 };
 
-/// What a method takes; absent: not measured, or the method has no such thing.
+/// The cost of a method. A value is absent if it was not measured or does not apply.
 struct Cost {
     std::optional<Timing> one_thread{};
     std::optional<Timing> all_threads{};
-    /// The most memory that it held at a time, beyond what there was before.
+    /// Peak memory in addition to the memory before the call.
     std::optional<std::uint64_t> peak_bytes{};
-    /// Of what it makes: a vertex's frame, a texel. 0: of no interest.
+    /// Stored bytes per result (a vertex's frame, a texel); 0 if irrelevant.
     double stored_bytes = 0.0;
 
     friend bool operator==(const Cost&, const Cost&) = default;
@@ -71,28 +72,28 @@ struct Cost {
 
 /// One method on the experiment's input.
 struct Measurement {
-    std::string method{};  ///< Unique in its experiment, the same in every run: "max, float64".
-    /// What can be chosen, and what is: {"weighting", "max"}, {"arithmetic", "float64"}.
+    std::string method{};  ///< Unique in its experiment, and the same in every run: "max, float64".
+    /// The options of the method and their values: {"weighting", "max"}, {"arithmetic", "float64"}.
     std::vector<std::pair<std::string, std::string>> choices{};
     ErrorFigures error{};
     Cost cost{};
     /// Both parts of the error, if the reference has an error (Experiment::reference_error).
     std::optional<ExpectedError> expected{};
-    bool is_efficient = false;  ///< On the frontier of RMS error against time (mark_efficient()).
-    std::string note{};         ///< What a reader ought to know of it; mostly empty.
+    bool is_efficient = false;  ///< Pareto-optimal by RMS error and time (mark_efficient()).
+    std::string note{};         ///< A note for readers; mostly empty.
 };
 
-/// Error along something that varies: cells of a mesh, texels of a wave, the scale of a mesh.
+/// The error as a function of a parameter: cells of a mesh, texels of a wave, the scale of a mesh.
 struct CurvePoint {
     double x = 0.0;
     double error = 0.0;  ///< RMS, in the unit of the experiment; NaN: no usable result.
 };
 struct Curve {
     std::string method{};
-    std::vector<CurvePoint> points{};        ///< By growing x.
-    std::optional<double> order{};           ///< The slope fitted on log axes (fitted_order()).
-    std::optional<double> expected_order{};  ///< By theory.
-    std::optional<double> breaks_at{};  ///< The first x with an error beyond the chart's bound.
+    std::vector<CurvePoint> points{};  ///< In increasing order of x.
+    std::optional<double> order{};     ///< The fitted slope on logarithmic axes (fitted_order()).
+    std::optional<double> expected_order{};  ///< The theoretical order.
+    std::optional<double> breaks_at{};       ///< The first x whose error exceeds the chart's bound.
 };
 struct Chart {
     std::string id{};  ///< Unique in its experiment.
@@ -100,11 +101,11 @@ struct Chart {
     std::string x_label{};  ///< With its unit.
     std::string y_label{};
     bool is_x_log = true;
-    std::optional<double> bound{};  ///< An error beyond it is a failure.
+    std::optional<double> bound{};  ///< A larger error counts as a failure.
     std::vector<Curve> curves{};
 };
 
-/// Errors over a map or picture: one float channel, in the unit of the experiment.
+/// The errors over a map or picture: one float channel, in the unit of the experiment.
 struct HeatMap {
     std::string title{};
     std::string method{};
@@ -112,7 +113,7 @@ struct HeatMap {
     double brightest = 1.0;
 };
 
-/// Two pictures to lay a line between.
+/// Two pictures to compare with a slider.
 struct PicturePair {
     std::string title{};
     std::string before_label{};
@@ -126,50 +127,54 @@ struct Experiment {
     Subject subject = Subject::normals;
     std::string title{};
     std::string question{};  ///< One sentence that ends with a question mark.
-    std::string truth{};     ///< What errors are counted from, and how that is known.
-    /// The error that this reference itself is expected to have, RMS; absent: none, or unknown.
+    std::string truth{};     ///< The ground truth, and how it is known.
+    /// The expected RMS error of this ground truth; absent if there is none or it is unknown.
     std::optional<double> reference_error{};
     std::string input{};       ///< "torus, jittered, 64 x 64 cells: 8192 triangles"
     std::string error_unit{};  ///< "degrees", "FLIP"
-    std::string item{};        ///< What work is counted in: "triangle", "texel", "pixel"
+    std::string item{};        ///< The unit of work: "triangle", "texel", "pixel".
     double items = 0.0;
-    /// What repeats it: "relief-accuracy run normals"; filled in by the tool.
+    /// The command that repeats the experiment: "relief-accuracy run normals"; the tool fills it
+    /// in.
     std::string command{};
     std::vector<Measurement> measurements{};
     std::vector<Chart> charts{};
     std::vector<HeatMap> heat_maps{};
     std::vector<PicturePair> pictures{};
-    /// What follows, in a sentence or two that name numbers; made from the measurements.
+    /// The conclusion in one or two sentences with figures, generated from the measurements.
     std::string finding{};
-    /// Problems and doubts about the input and how they were handled, one sentence each.
+    /// Problems of the input and how they were handled, one sentence each.
     std::vector<std::string> input_findings{};
 };
 
-/// How thoroughly experiments are run.
+/// Options for running experiments.
 struct RunOptions {
-    /// Small inputs: all subjects in about a minute for each pass, on two cores.
+    /// Uses small inputs: all subjects take about a minute per pass on two cores.
     bool is_quick = false;
     Repeats repeats{10, 1};
-    /// False: errors alone, which are the same on every machine but for what OpenGL draws.
+    /// If false, only errors are computed. They are the same on every machine, except for those of
+    /// pictures drawn by OpenGL.
     bool is_timed = true;
-    /// How many threads "all threads" are; 0: as many as the machine has.
+    /// The number of threads for "all threads"; 0: the number of hardware threads.
     unsigned threads = 0;
-    /// The rounds of earlier passes, filled in by run_in_passes(); null: there is one pass.
+    /// The rounds of earlier passes, filled in by run_in_passes(); null if there is one pass.
     std::shared_ptr<EarlierPasses> earlier{};
-    /// Before each experiment: its title, and how many are done of how many. May throw Cancelled.
+    /// Called before each experiment with its title, the number of finished experiments and the
+    /// total. May throw Cancelled.
     std::function<void(const std::string& title, std::size_t done, std::size_t total)> tell{};
 };
 
-/// Marks the measurements that are efficient by RMS error and time on one thread; on all threads
-/// where that is all there is. Where nothing was timed, none is. Measurements with undefined
-/// results are never efficient.
+/// Marks the measurements that are Pareto-optimal by RMS error and time on one thread, or on all
+/// threads if only that was measured. Without times none is marked. Measurements with undefined
+/// results are never marked.
 void mark_efficient(Experiment& experiment);
 
-/// The slope of log(error) over log(x) by least squares, over points with both positive and finite.
+/// Computes the slope of log(error) over log(x) by least squares, from the points whose coordinates
+/// are positive and finite.
 /// \return nothing for fewer than two different x
 std::optional<double> fitted_order(const std::vector<CurvePoint>& points);
 
-/// The experiments of one subject.
+/// Runs the experiments of one subject.
 std::vector<Experiment> run_experiments(Subject subject, const RunOptions& options);
 
 }  // namespace relief

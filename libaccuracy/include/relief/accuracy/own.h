@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// What methods err and cost on somebody's own mesh, height map, normal map or pair of meshes, and
-/// which of them to take. Nothing here knows the truth by a formula: what errors are counted from,
-/// and what that cannot say, each experiment tells. Large inputs are measured on a part, which it
-/// tells too. A ProgressScope hears how far it is, and can end it (relief/mesh/progress.h).
+/// Measures the error and cost of methods on a user's mesh, height map, normal map or pair of
+/// meshes (the asset report), and recommends a method. No exact result is known: each experiment
+/// states its reference and the limits of that reference. Large inputs are measured in part, and
+/// the experiment says so. A ProgressScope receives progress and can cancel
+/// (relief/mesh/progress.h).
 /// Tests: tests/accuracy/own_mesh_test.cpp, own_maps_test.cpp, own_bake_test.cpp.
 #pragma once
 
@@ -27,83 +28,92 @@ namespace relief {
 
 class Baker;
 
-/// What is alike for all inputs.
+/// The options for all kinds of input.
 struct OwnOptions {
     RunOptions run;
-    CostChoice costs;  ///< Windows that draw meanwhile leave one_thread out: it is process-wide.
-    std::string file;  ///< As titles name it.
-    std::string arguments;  ///< As commands name it, or both of a pair: "'old vase.obj'".
-    /// Further arguments for commands on height maps, such as " --channel alpha".
+    /// Programs that draw at the same time must disable one_thread, because it applies to the whole
+    /// process.
+    CostChoice costs;
+    std::string file;  ///< The name of the input in titles.
+    /// The input as an argument of commands, or both files of a pair: "'old vase.obj'".
+    std::string arguments;
+    /// Further arguments of commands on height maps, such as " --channel alpha".
     std::string height_arguments;
-    std::string command;  ///< What repeats it all: "relief-accuracy own vase.obj".
+    std::string command;  ///< The command that repeats the report: "relief-accuracy own vase.obj".
     Wish wish;
-    /// Of the normal maps that heights are converted to: bits, and whether steps of coarse heights
-    /// are smoothed away as well (in 16 bits).
+    /// For normal maps from heights: their bits, and whether the steps of quantized heights are
+    /// also smoothed (in 16 bits).
     std::vector<int> map_bits = {8, 16, 32};
     bool smooths_steps = true;
 };
 
-/// An experiment, and what to take.
+/// An experiment and its recommendation.
 struct OwnExperiment {
     Experiment experiment;
-    /// For each measurement, the command or the call that does it; empty where nothing that is
-    /// offered does: such are measured, but not recommended.
+    /// For each measurement, the command or call that performs it; empty if no tool does: such
+    /// methods are measured, but not recommended.
     std::vector<std::string> commands;
     Recommendation recommendation;
-    /// Those of the recommended method; empty where there is none.
+    /// Returns the command of the recommended method; empty if there is none.
     [[nodiscard]] std::string command() const {
         return recommendation.method ? commands[*recommendation.method] : std::string();
     }
 };
 
-/// What a mesh's averaged normals are compared with.
+/// The reference for averaged normals.
 enum class NormalTruth {
-    surface,  ///< A smooth surface fitted through the vertices: fitted_normals.h.
-    file,     ///< The mesh's own normals, whatever they are: who is nearest to them?
+    surface,  ///< A smooth surface that is fitted to the vertices: fitted_normals.h.
+    file,     ///< The stored normals of the mesh.
 };
 
 struct OwnMeshOptions {
     NormalTruth truth = NormalTruth::surface;
-    /// Radians: edges sharper than this are hard. Absent: by the mesh's smoothing groups, else by
-    /// the angle that its own normals tell (stored_creases.h), else none is.
+    /// The crease angle in radians: sharper edges are hard. If absent, the smoothing groups of the
+    /// mesh apply, else the crease angle that is inferred from its normals (stored_creases.h), else
+    /// no edge is hard.
     std::optional<double> crease_angle;
-    std::size_t most_triangles = std::size_t{1} << 20;  ///< Of more, eight runs are taken.
+    /// Of larger meshes, eight ranges of triangles are measured.
+    std::size_t most_triangles = std::size_t{1} << 20;
 };
 
-/// Normals: every weighting, in double as relief-mesh computes them. With texture coordinates also
-/// tangents, from the image's own direction on each triangle and from MikkTSpace's; and both in few
-/// bytes.
-/// \throws InvalidInput if the mesh is not valid or has no triangle, or if its own normals are
-///         asked for and it has none
+/// Measures all weightings of normals, in double precision as in relief-mesh. With texture
+/// coordinates also tangents, against the gradient of the texture on each triangle and against
+/// MikkTSpace; and the compact encodings of both.
+/// \throws InvalidInput if the mesh is not valid or has no triangle, or if its stored normals are
+///         the reference and it has none
 std::vector<OwnExperiment> measure_own_mesh(const Mesh& mesh, const OwnMeshOptions& mesh_options,
                                             const OwnOptions& options);
 
-/// Kernels, arithmetics and depths, from the truest normals known for this map (measure_bump()).
-/// \param size  of the map that the sample is of
+/// Measures kernels, precisions and bit depths against the most accurate normals that are known for
+/// this map (measure_bump()).
+/// \param size  of the whole map
 /// \param bump  strength, texel and wrap
 OwnExperiment measure_own_heights(const BumpSample& sample, glm::ivec2 size,
                                   const BumpOptions& bump, const OwnOptions& options);
-/// The same of a map in memory: one channel, as for normals_from_height().
+/// The same for a map in memory: one channel, as for normals_from_height().
 OwnExperiment measure_own_heights(const Image& height, const BumpOptions& bump,
                                   const OwnOptions& options,
                                   std::int64_t most_texels = texels_to_measure);
 
-/// How a file stores a normal map.
+/// The storage format of a normal map.
 struct NormalMapOnFile {
-    int bits = 8;  ///< Of each channel.
+    int bits = 8;  ///< Bits per channel.
     int channels = 3;
-    std::string extension = ".png";  ///< Of a format that can hold the same codes.
+    /// The extension of a file format that can store the same codes.
+    std::string extension = ".png";
 };
 
-/// Ways to store a normal map, from the normals that its file holds; to keep the file is one.
-/// \param normals  three float channels, as decode_normal_map() gives them
+/// Measures storage formats for a normal map against the normals in its file; keeping the file is
+/// one of them.
+/// \param normals  three float channels, as from decode_normal_map()
 OwnExperiment measure_own_normals(const Image& normals, const NormalMapOnFile& file,
                                   const OwnOptions& options,
                                   std::int64_t most_texels = texels_to_measure);
 
-/// Samples and codes of a map baked from one mesh for another, from the mean of many samples.
-/// \param baker  of the meshes; all its options are those of the maps
-/// \param size   texels along each side of the map
+/// Measures sample counts and formats of a map that is baked from one mesh for another, against the
+/// mean of many samples.
+/// \param baker  of the meshes; all its options apply to the maps
+/// \param size  texels along each side of the map
 OwnExperiment measure_own_bake(const Baker& baker, int size, const OwnOptions& options);
 
 }  // namespace relief

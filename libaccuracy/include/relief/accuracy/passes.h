@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Experiments gone through several times, each time for a share of their rounds.
+/// Runs experiments in several passes, each with a share of their rounds.
 ///
-/// The methods of an experiment take turns, so that none is favoured; but all of its rounds may lie
-/// within a second, and a busy second of the machine then looks like slower methods. Passes spread
-/// the rounds of each method over the whole run: such a second is in one pass, and the median does
-/// not see it. Memory is laid out anew in each, which is chance too.
+/// The methods of an experiment are interleaved, so that none has an advantage. But all its rounds
+/// may lie within a second, and if the machine is busy in that second, the methods look slower.
+/// Passes spread the rounds of each method over the whole run, so that the median ignores such a
+/// second. Memory is also allocated anew in each pass, which averages effects of its layout.
 /// Tests: tests/accuracy/passes_test.cpp.
 #pragma once
 
@@ -18,25 +18,27 @@
 
 namespace relief {
 
-/// The rounds that earlier passes took of each group of methods. A group is what is timed in
-/// turns; groups are known by the order in which they are, the same in every pass.
+/// The rounds of each group of methods in earlier passes. A group is a set of methods that are
+/// timed together; groups are identified by their order, which is the same in every pass.
 class EarlierPasses {
   public:
     /// \param passes  at least 1
     explicit EarlierPasses(std::size_t passes) : passes_(passes) {}
 
-    /// The next pass: groups count from the first again.
+    /// Starts the next pass: groups are counted from the first one again.
     void begin_pass();
 
-    /// Of `rounds`, how many this pass takes; the first ones one more where they do not come out
-    /// even.
+    /// Returns the number of `rounds` in this pass; if they cannot be divided evenly, the first
+    /// passes have one more.
     [[nodiscard]] std::size_t share_of(std::size_t rounds) const;
 
-    /// What is known of the next group, to be added to. \param methods  how many are in it
-    /// \throws std::runtime_error if there were more or fewer in the pass before
+    /// Returns the rounds of the next group, to which new ones are added. \param methods  number of
+    /// methods in the group
+    /// \throws std::runtime_error if the previous pass had another number of methods
     std::vector<Timing>& next_group(std::size_t methods);
 
-    /// What the first pass made in this place, in the order of places; made by `make` there.
+    /// Returns the result that the first pass computed at this point, in the order of calls; the
+    /// first pass computes it with `make`.
     const std::any& next_result(const std::function<std::any()>& make);
 
   private:
@@ -48,8 +50,8 @@ class EarlierPasses {
     std::vector<std::any> results_;
 };
 
-/// What `make` gives, made in the first pass alone: for truths and curves that take their time, and
-/// are the same in every pass.
+/// Returns the result of `make`, which is called only in the first pass: for ground truths and
+/// curves that are slow to compute and equal in every pass.
 template <typename Make>
 auto made_once(const RunOptions& options, const Make& make) {
     using Result = decltype(make());
@@ -57,14 +59,14 @@ auto made_once(const RunOptions& options, const Make& make) {
     return std::any_cast<Result>(options.earlier->next_result([&] { return std::any(make()); }));
 }
 
-/// Runs experiments so many times; each sees the rounds of the passes before it, so that what the
-/// last one gives has all of them, and its findings speak of all.
+/// Runs experiments several times. Each pass sees the rounds of the previous ones, so the results
+/// of the last pass and their findings contain all of them.
 ///
-/// \param passes   at least 1; no more are made than there are rounds to take: without times, one
-/// \param options  whose repeats are those of all passes together; each pass warms up
-/// \param run      runs all experiments with these options; the same ones each time. What it throws
-///                 passes
-/// \return what the last pass gave
+/// \param passes  at least 1; at most the number of rounds; without timing there is one
+/// \param options  its repeats are those of all passes together; each pass has its own warm-up
+/// \param run  runs all experiments with these options, the same ones each time. Its exceptions are
+///         passed on
+/// \return the result of the last pass
 std::vector<Experiment> run_in_passes(
     std::size_t passes, const RunOptions& options,
     const std::function<std::vector<Experiment>(const RunOptions& options, std::size_t pass)>& run);

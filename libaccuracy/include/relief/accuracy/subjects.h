@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// The subjects of experiments and the words for them, as command lines and reports say them.
+/// Lists the subjects of experiments and their names on command lines and in reports.
 /// Tests: tests/accuracy/experiment_test.cpp.
 #pragma once
 
@@ -11,16 +11,17 @@
 
 namespace relief {
 
-/// Those that there are experiments on, in the order of reports.
+/// Returns the subjects that have experiments, in the order of reports.
 std::vector<Subject> subjects_with_experiments();
 
-/// Whether some of its experiments draw, by OpenGL: those errors are the renderer's.
+/// Returns true if some of its experiments draw with OpenGL, so that their errors depend on the
+/// renderer.
 bool is_drawn(Subject subject);
 
-/// "normals", "tangents", ...
+/// Returns the name: "normals", "tangents", ...
 std::string_view word_of(Subject subject);
 
-/// \throws InvalidInput naming the words that there are
+/// Returns the subject of this name. \throws InvalidInput listing the valid names
 Subject subject_from(std::string_view word);
 
 }  // namespace relief

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// How reports say numbers. Tests: tests/tools/accuracy_report_test.cpp.
+/// Formats numbers for reports.
+/// Tests: tests/tools/accuracy_report_test.cpp.
 #pragma once
 
 #include <string>
 
 namespace relief {
 
-/// "840 ns", "4.13 µs", "12.3 ms", "1.50 s"
+/// Formats a time: "840 ns", "4.13 µs", "12.3 ms", "1.50 s".
 std::string seconds_in_words(double seconds);
 
 }  // namespace relief

@@ -44,8 +44,7 @@ struct SceneOptions {
 ///                that cannot be played; and, for MaterialModel::phong, unreadable textures, whose
 ///                mean counts as 1
 /// \throws FileError as the readers do. A missing image file is reported when it is decoded, and
-/// only
-///         visible images are decoded
+///         only visible images are decoded
 SceneGraph load_scene_graph(const std::filesystem::path& file, const SceneOptions& options,
                             Report& report);
 
@@ -62,8 +61,9 @@ struct TextureMeans {
     float roughness = 1.0F;
 };
 
-/// Metallic-roughness as Phong, textures left out. With the base color b, metallic m, roughness r
-/// and alpha = r^2 as glTF defines them (r at least 0.045, so that alpha^2 is accurate in float):
+/// Converts metallic-roughness to Phong's model, without textures. With the base color b, metallic
+/// m, roughness r and alpha = r^2 as glTF defines them (r at least 0.045, so that alpha^2 is
+/// accurate in float):
 ///
 ///     F0           = mix(0.04, b, m)
 ///     shininess s  = 2 / alpha^2 - 2
@@ -79,20 +79,19 @@ struct TextureMeans {
 ///   [Walter et al. 2007] (GGX), [Karis 2013] (s from alpha), [Hoffman 2013] (normalization).
 /// - `mirror` is the share of GGX's facets within 3 degrees of the normal (the integral of
 ///   D (n.h) over that cone). Only these facets reflect a sharp environment; the others blur it,
-///   which Phong's model does not show. So a rough metal is no mirror.
+///   which Phong's model does not show. So a rough metal is not a mirror.
 /// - In ambient light, which is the same from all directions, a surface shows the sum of scattered
-/// and
-///   reflected light.
+///   and reflected light.
 ///
 /// F0 includes the mean of the base color's texture; diffuse and ambient do not, since the texture
 /// itself multiplies them.
 Material phong_from_metallic_roughness(const GltfMaterial& material, const TextureMeans& means);
 
-/// MTL as Phong's model, textures left out: illum 0 is unlit, 1 has no highlight, 3 to 9 reflect by
-/// Ks, with Fresnel's effect for 5 and 7 only. If d is below 1, illum 6 and 7 refract (transmission
-/// 1 - d, by Ni); every other model, and map_d, blend, as OBJ viewers do. Ns above 1e6 counts as
-/// 1e6, Ni is clamped to [1, 1000]; colors below 0 count as 0. Source: the MTL format's
-/// illumination models (Blinn's half vector for all highlights).
+/// Converts MTL to Phong's model, without textures: illum 0 is unlit, 1 has no highlight, 3 to 9
+/// reflect by Ks, with Fresnel's effect for 5 and 7 only. If d is below 1, illum 6 and 7 refract
+/// (transmission 1 - d, by Ni); every other model, and map_d, blend, as OBJ viewers do. Ns above
+/// 1e6 counts as 1e6, Ni is clamped to [1, 1000]; colors below 0 count as 0. Source: the MTL
+/// format's illumination models (Blinn's half vector for all highlights).
 Material phong_from_mtl(const MtlMaterial& material);
 
 }  // namespace relief
