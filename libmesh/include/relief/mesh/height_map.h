@@ -12,8 +12,8 @@
 
 namespace relief {
 
-/// The channel that holds the heights. Gray images have only one, to which mean, luminance and red
-/// are equivalent. Only `luminance` decodes sRGB.
+/// The channel that holds the heights. For mean, luminance and red of a gray image it is the only
+/// one, without decoding. For colors, only `luminance` decodes sRGB.
 enum class HeightChannel {
     mean,  ///< The mean of red, green and blue.
     /// The luminance of Rec. 709 in linear light; integer samples are decoded from sRGB.
