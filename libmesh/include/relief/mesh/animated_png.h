@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Animated PNG files (APNG), written frame by frame. Browsers play them; other readers show the
-/// first frame. Source: the APNG chunks of [PNG 3], section 11.3.6.
+/// Writes animated PNG files (APNG) frame by frame. Browsers play them; other readers show the
+/// first
+/// frame. Source: the APNG chunks of [PNG 3], section 11.3.6.
 #pragma once
 
 #include <cstdint>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Conversion of height map files to files of normals or slopes. It works by bands of rows, so that
-/// images may be larger than memory.
+/// Converts height map files to files of normals or slopes, in bands of rows, so that images may be
+/// larger than memory.
 #pragma once
 
 #include <cstddef>
@@ -22,7 +22,7 @@
 
 namespace relief {
 
-/// Which heights of a file are used, and how much memory reading may take.
+/// The channel of a file that holds the heights, and the memory limit for reading it.
 struct HeightMapChoice {
     HeightChannel channel = HeightChannel::mean;
     /// Treats transparent texels as part of the surface.

@@ -23,11 +23,12 @@ namespace relief {
 /// little-endian machines, the words have the memory layout of vertex formats of the same
 /// structure.
 ///
-/// *Components* are signed, in two's complement: code c stands for c / M, where M = 2^(bits - 1) -
-/// 1, and the lowest code, -M - 1, also stands for -1. *Octahedral*: a unit vector is the position
-/// (x, y) on an octahedron that is unfolded into a square: z = M - |x| - |y|; if z is negative, x
-/// and y become (M - |y|) sign(x) and (M - |x|) sign(y), with sign(0) = 1 [Cigolle et al. 2014].
-/// *w* is the handedness.
+/// *Components* are signed, in two's complement: code c stands for c / M, where
+/// M = 2^(bits - 1) - 1, and the lowest code, -M - 1, also stands for -1. *Octahedral*: a unit
+/// vector is the position (x, y) on an octahedron that is unfolded into a square:
+/// z = M - |x| - |y|; if z is negative, x and y become (M - |y|) sign(x) and (M - |x|) sign(y),
+/// with
+/// sign(0) = 1 [Cigolle et al. 2014]. *w* is the handedness.
 enum class FrameEncoding {
     /// 7 words: normal x y z, tangent x y z w, all IEEE floats.
     float32,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// glTF and GLB files as documents: everything that is read is kept, and only processed parts
+/// Reads and writes glTF and GLB files as documents: all contents are kept, and only processed
+/// parts
 /// change.
 ///
 /// write() preserves materials, animations, skins, morph targets, extensions, extras, names and
@@ -44,16 +45,18 @@ struct GltfTextureTransform {
     friend bool operator==(const GltfTextureTransform&, const GltfTextureTransform&) = default;
 };
 
-/// The coordinates at which the image is sampled. Both have v downwards.
+/// Returns the coordinates at which the image is sampled. Both have v downwards.
 glm::vec2 transformed(const GltfTextureTransform& transform, const glm::vec2& texcoord);
 
-/// The tangent for transformed texture coordinates, from that for the original ones: both belong to
-/// the frames in which a renderer reads a normal map with transformed coordinates.
+/// Returns the tangent for transformed texture coordinates, computed from that for the original
+/// ones. Both belong to the frames in which a renderer reads a normal map with transformed
+/// coordinates.
 ///
 /// \param tangent  unit, w = +1 or -1, with its unit normal, as in mesh.h
 /// \return the tangent rotated in the plane of the normal, with w negated if the transform mirrors.
-/// It is exact if the image lies on the surface without distortion, or if axes are only scaled and
-/// mirrored. A transform that reduces the image to a line or a point does not change the tangent
+///         It is exact if the image lies on the surface without distortion, or if axes are only
+///         scaled and mirrored. A transform that reduces the image to a line or a point does not
+///         change the tangent
 glm::vec4 transformed(const GltfTextureTransform& transform, const glm::vec4& tangent,
                       const glm::vec3& normal);
 
@@ -70,7 +73,7 @@ struct GltfTexture {
 /// An image in its encoded form: bytes from the document, or a file beside it.
 struct GltfImage {
     std::string name;
-    /// Without bytes if `fault` tells the reason.
+    /// It has no bytes if `fault` states a reason.
     std::variant<std::vector<std::byte>, std::filesystem::path> source;
     /// The reason why the image cannot be read: "images[0].uri '../x.png' leads out of the
     /// document's folder, so it is not read". Empty if no problem is known before the image is
@@ -246,26 +249,26 @@ class GltfDocument {
     ///         another folder
     void write(const std::filesystem::path& file) const;
 
-    /// All primitives of triangles (lists, strips, fans) with positions, each once, in document
-    /// order.
+    /// Returns all primitives of triangles (lists, strips, fans) with positions, each once, in
+    /// document order.
     [[nodiscard]] std::vector<GltfPrimitiveId> triangle_primitives() const;
 
-    /// "mesh 'Body' primitive 0", for messages.
+    /// Returns "mesh 'Body' primitive 0", for messages.
     [[nodiscard]] std::string describe(GltfPrimitiveId id) const;
 
-    /// A primitive as plain arrays: with explicit indices, strips and fans as triangles, sparse and
-    /// normalized-integer accessors as floats, one texture coordinate set, and color set 0. Its
-    /// only material range names the document's material. If primitives share vertices and this one
-    /// does not use all of them, the mesh has only the used ones, in the same order.
+    /// Returns a primitive as plain arrays: with explicit indices, strips and fans as triangles,
+    /// sparse and normalized-integer accessors as floats, one texture coordinate set, and color set
+    /// 0. Its only material range names the document's material. If primitives share vertices and
+    /// this one does not use all of them, the mesh has only the used ones, in the same order.
     /// \param texcoord_set  TEXCOORD_n; the mesh has no texture coordinates if it is absent
     /// \throws InvalidInput if indices are out of range or their count is not a multiple of 3, if
     ///         attributes differ in length or have the wrong type, or if there is no such primitive
     [[nodiscard]] Mesh mesh(GltfPrimitiveId id, int texcoord_set = 0) const;
 
-    /// The texture coordinate sets of a primitive, ascending.
+    /// Returns the texture coordinate sets of a primitive, ascending.
     [[nodiscard]] std::vector<int> texcoord_sets(GltfPrimitiveId id) const;
 
-    /// The texture coordinate set to which the tangents of a primitive belong: that of its
+    /// Returns the texture coordinate set to which the tangents of a primitive belong: that of its
     /// material's normal texture; KHR_texture_transform takes precedence.
     ///
     /// Without a normal texture it is the set of the clearcoat's normal texture or of the
@@ -307,21 +310,22 @@ class GltfDocument {
     ///         no triangle
     void set_geometry(GltfPrimitiveId id, const Mesh& mesh);
 
-    /// The document as a scene. \throws InvalidInput if instance attributes have a wrong type or
-    /// differ in length
+    /// Returns the document as a scene.
+    /// \throws InvalidInput if instance attributes have a wrong type or differ in length
     [[nodiscard]] GltfView view() const;
 
-    /// The animations of nodes, in the document's order.
+    /// Returns the animations of nodes, in the document's order.
     ///
     /// \param report  counts channels that are left out: those of morph weights or of extensions,
     ///         and those of nodes with a matrix, which glTF does not animate; also those with times
     ///         or values that are not finite, of the wrong number, or of the wrong type
     [[nodiscard]] std::vector<GltfAnimation> animations(Report& report) const;
 
-    /// The compression of the file, one entry for each extension; empty if there is none.
+    /// Returns the compression of the file, one entry for each extension; empty if there is none.
     [[nodiscard]] std::vector<GltfCompression> compression() const;
 
-    /// Contents that other formats cannot hold: "2 animations", "1 skin", "3 morph targets", ...
+    /// Returns the contents that other formats cannot hold: "2 animations", "1 skin", "3 morph
+    /// targets", ...
     [[nodiscard]] std::vector<std::string> beyond_a_mesh() const;
 
   private:

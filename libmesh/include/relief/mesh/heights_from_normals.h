@@ -52,8 +52,8 @@ struct IntegratedHeights {
 ///         or back, or is steeper than `steepest` (clamped)
 /// \return heights from which normals_from_height() with the same kernel, wrap and texel reproduces
 ///         the normals as closely as possible. Waves shorter than 3 texels, to which kernels hardly
-///         respond, keep small amplitudes, with slope errors of up to 1e-3. A map without slopes
-///         gives 0 everywhere. The same bits for any number of threads
+///         respond, keep small amplitudes, with relative slope errors of up to 1e-3. A map without
+///         slopes gives 0 everywhere. The same bits for any number of threads
 /// \throws InvalidInput if the image is empty or not three float channels, or if the texel, the
 ///         radius or `steepest` (1e-3 to 1e6) is out of range
 ///

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Image files: PNG, JPEG, TIFF, EXR, HDR and other formats of OpenImageIO.
+/// Reads and writes image files: PNG, JPEG, TIFF, EXR, HDR and other formats of OpenImageIO.
 ///
 /// Common PNG and JPEG files are decoded directly. OpenImageIO is in a module that is loaded by the
 /// first image that needs it, because loading it takes 0.2 s and 120 MB. The module is searched in

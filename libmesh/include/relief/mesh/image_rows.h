@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Reading and writing image files by rows, so that images may be larger than memory.
+/// Reads and writes image files by rows, so that images may be larger than memory.
 ///
 /// Samples and errors are those of whole images (image_file.h). Memory holds a band of rows of
 /// about 16 MiB, or one row of tiles if that is larger, and the rows of the caller.

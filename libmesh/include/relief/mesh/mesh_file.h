@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Mesh files without a scene: OBJ with MTL, PLY, STL, OFF. For glTF see gltf_document.h.
+/// Reads and writes mesh files without a scene: OBJ with MTL, PLY, STL, OFF. For glTF see
+/// gltf_document.h.
 #pragma once
 
 #include <cstdint>
