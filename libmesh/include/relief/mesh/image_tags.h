@@ -9,9 +9,8 @@
 namespace relief {
 
 /// Returns the tag by which a program would interpret the samples of a PNG file as colors: "sRGB",
-/// "gamma
-/// 0.45455", "ICC profile" or "coding-independent code points"; the first one in the file. Empty
-/// for a gamma of 1, for files without tags, and for other formats.
+/// "gamma 0.45455", "ICC profile" or "coding-independent code points"; the first one in the file.
+/// Empty for a gamma of 1, for files without tags, and for other formats.
 /// \throws FileError if the file cannot be read
 std::string color_tag(const std::filesystem::path& file);
 
