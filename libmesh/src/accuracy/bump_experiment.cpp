@@ -107,6 +107,8 @@ BumpReference reference_for(const BumpSample& sample, const BumpExperimentOption
         BumpMethod{best.kernel, best.gaussian_radius, Arithmetic::float64, 32, destaircased};
     reference.own_degrees = best.rms_degrees;
     reference.own_max_degrees = best.max_degrees;
+    reference.upper_degrees = best.upper_rms_degrees;
+    reference.upper_max_degrees = best.upper_max_degrees;
     reference.words = fmt::format(
         "the kernel chosen for this map in float64{}; itself expected to be about {:.2g} degrees "
         "off what the map was made of, which nothing can know exactly",
@@ -322,6 +324,12 @@ BumpExperiment measure_bump(const BumpField& field, std::span<const BumpMethod> 
 ExpectedError expected_error(const BumpReference& reference, const BumpMeasurement& measurement,
                              ErrorKind kind) {
     return {kind == ErrorKind::rms ? reference.own_degrees : reference.own_max_degrees,
+            error_of(measurement, kind)};
+}
+
+ExpectedError expected_error_upper(const BumpReference& reference,
+                                   const BumpMeasurement& measurement, ErrorKind kind) {
+    return {kind == ErrorKind::rms ? reference.upper_degrees : reference.upper_max_degrees,
             error_of(measurement, kind)};
 }
 

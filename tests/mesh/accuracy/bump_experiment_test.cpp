@@ -134,6 +134,9 @@ TEST(BumpExperiment, TheExpectedErrorIsThatOfTheMapAndWhatIsAdded) {
         EXPECT_EQ(error.map, guess.reference.own_degrees);
         EXPECT_EQ(error.added, guess.measurements[i].error.rms);
         EXPECT_EQ(error.total(), std::hypot(error.map, error.added));
+        const ExpectedError upper = expected_error_upper(guess.reference, guess.measurements[i]);
+        EXPECT_GE(upper.map, error.map);
+        EXPECT_EQ(upper.added, error.added);
         EXPECT_NEAR(error.total() / known.measurements[i].error.rms, 1.0, 0.3) << i;
     }
     // The added part of many is far below a limit that no total is within.

@@ -58,6 +58,10 @@ struct BumpReference {
     double own_degrees = 0.0;
     /// The expected maximum of that error.
     double own_max_degrees = 0.0;
+    /// The upper ends of both, if the map does not show whether detail is real (KernelChoice::
+    /// upper_rms_degrees). Not less than the values above.
+    double upper_degrees = 0.0;
+    double upper_max_degrees = 0.0;
     std::string words;  ///< A description for people.
 };
 
@@ -137,6 +141,11 @@ enum class ErrorKind { rms, max };
 ///         because the maxima of both parts seldom occur in the same texel
 ExpectedError expected_error(const BumpReference& reference, const BumpMeasurement& measurement,
                              ErrorKind kind = ErrorKind::rms);
+
+/// Returns the upper end of the same error.
+ExpectedError expected_error_upper(const BumpReference& reference,
+                                   const BumpMeasurement& measurement,
+                                   ErrorKind kind = ErrorKind::rms);
 
 /// Limits for expected_error() in degrees. An absent limit is not checked.
 struct ErrorLimits {
