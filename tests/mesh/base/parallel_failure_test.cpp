@@ -27,6 +27,7 @@
 #include "relief/mesh/gltf_document.h"
 #include "relief/mesh/heights_from_normals.h"
 #include "relief/mesh/image_file.h"
+#include "relief/mesh/image_part.h"
 #include "relief/mesh/kernel_choice.h"
 #include "relief/mesh/mesh_file.h"
 #include "relief/mesh/normal_map_check.h"
@@ -179,6 +180,13 @@ std::string run_frames(NormalMode normals, TangentMode tangents) {
     return bytes_of(with_frames(inputs().sphere, options, report).mesh, report);
 }
 
+/// Options with a given kernel: choosing one is an operation of its own.
+BumpOptions sobel3() {
+    BumpOptions options;
+    options.kernel = Kernel::sobel3;
+    return options;
+}
+
 /// As a renderer decodes the textures of a scene: loops within loops.
 std::string run_decode_images() {
     std::vector<Image> decoded(inputs().images.size());
@@ -228,14 +236,14 @@ std::vector<Operation> operations() {
         {"NormalsFromHeight",
          [] {
              Report report;
-             return bytes_of(normals_from_height(inputs().heights, BumpOptions{}, report));
+             return bytes_of(normals_from_height(inputs().heights, sobel3(), report));
          }},
         {"WriteBumpFile",
          [] {
              const HeightMapFile source(inputs().folder / "heights.png");
              const std::filesystem::path file = inputs().folder / "bump.png";
              Report report;
-             write_bump_file(source, BumpOptions{}, file, BumpFileFormat{}, report);
+             write_bump_file(source, sobel3(), file, BumpFileFormat{}, report);
              return contents_of(file);
          }},
         {"HeightsFromNormals",
@@ -248,7 +256,8 @@ std::vector<Operation> operations() {
          }},
         {"ChooseKernel",
          [] {
-             const KernelChoice choice = choose_kernel(inputs().heights, BumpOptions{});
+             const Image part = part_of(inputs().heights, {0, 0, 200, 128});
+             const KernelChoice choice = choose_kernel(part, BumpOptions{});
              return fmt::format("{} {}", static_cast<int>(choice.kernel), choice.rms_degrees);
          }},
         {"CheckNormalMap",
