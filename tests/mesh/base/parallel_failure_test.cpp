@@ -116,12 +116,19 @@ Image noisy_codes(int width, int height, int channels, unsigned seed) {
     return image;
 }
 
-/// What the operations read, made once.
+/// Options with a given kernel: choosing one is an operation of its own.
+BumpOptions sobel3() {
+    BumpOptions options;
+    options.kernel = Kernel::sobel3;
+    return options;
+}
+
+/// The inputs of the operations, computed once.
 struct Inputs {
     Inputs() {
         heights = test::rough(300, 280);
         Report report;
-        BumpOptions bump;
+        BumpOptions bump = sobel3();
         bump.strength = 4.0;
         normals = normals_from_height(heights, bump, report);
         normal_map = normal_map_from_height(heights, bump, {.bits = 8}, report);
@@ -178,13 +185,6 @@ std::string run_frames(NormalMode normals, TangentMode tangents) {
     options.crease_angle = 0.5;
     Report report;
     return bytes_of(with_frames(inputs().sphere, options, report).mesh, report);
-}
-
-/// Options with a given kernel: choosing one is an operation of its own.
-BumpOptions sobel3() {
-    BumpOptions options;
-    options.kernel = Kernel::sobel3;
-    return options;
 }
 
 /// As a renderer decodes the textures of a scene: loops within loops.
