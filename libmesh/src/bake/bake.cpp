@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Strips of the map from the top: who owns each sample, what its ray meets, what its texel becomes.
-// Tests: tests/mesh/bake/bake_test.cpp, baker_test.cpp, bake_sphere_test.cpp.
+// Bakes maps of high-poly meshes for a low-poly mesh: checks of options, parts, and strips of the
+// map. Tests: tests/mesh/bake/bake_test.cpp, baker_test.cpp, bake_sphere_test.cpp.
 #include "relief/mesh/bake.h"
 
 #include <fmt/format.h>
@@ -12,24 +12,88 @@
 #include <mutex>
 #include <numbers>
 
-#include "bake/baked_layers.h"
-#include "bake/band_bake.h"
-#include "bake/border_fill.h"
-#include "bake/dilation.h"
+#include "bake/bake_work.h"
+#include "bake/edge_padding.h"
+#include "bake/layers.h"
 #include "parallel.h"
 #include "relief/mesh/error.h"
+#include "relief/mesh/mesh_part.h"
 
 namespace relief {
 namespace {
 
-/// Rows of a strip: its texels take 64 MB at most, or it is as narrow as can be.
+/// The largest gap between the boxes that measured ray lengths bridge, relative to the diagonal of
+/// the low box. A larger gap indicates a misplaced mesh.
+constexpr double max_automatic_share = 0.5;
+
+BakeDistances ray_distances(std::span<const Mesh> high, const HighSurface& surface, const Mesh& low,
+                            const BakeOptions& options) {
+    const bool all_given = options.cage != nullptr || (options.offset && options.max_distance);
+    BakeDistances distances;
+    if (!all_given) distances = distances_between(high, surface.scene(), low);
+    distances.offset = options.offset.value_or(distances.offset);
+    distances.max_distance = options.max_distance.value_or(distances.max_distance);
+    return distances;
+}
+
+/// Returns the maximum distance of rays from the low mesh.
+double ray_reach(const BakeOptions& options, double cage_reach, double low_diagonal) {
+    if (options.cage != nullptr)
+        return std::max(cage_reach, options.max_distance.value_or(cage_reach));
+    const double automatic = max_automatic_share * low_diagonal;
+    return std::max(options.offset.value_or(automatic), options.max_distance.value_or(automatic));
+}
+
+/// Checks the boxes before the ray scene is built. \return the diagonal of the box around both
+double checked_extent(const BakeFit& fit, std::span<const Mesh> high, const BakeOptions& options,
+                      double cage_reach, const std::string& name, Report& report) {
+    if (fit.low.empty()) return 0.0;
+    if (fit.high.empty()) {
+        // A part may have no high mesh.
+        if (high.empty()) return 0.0;
+        throw BakeMismatch(BakeMismatch::Kind::no_surface, fit, 0.0, name);
+    }
+    const double reach = ray_reach(options, cage_reach, diagonal(fit.low));
+    if (fit.differs_in_size() && !options.allow_size_mismatch)
+        throw BakeMismatch(BakeMismatch::Kind::size, fit, reach, name);
+    if (fit.gap > reach) throw BakeMismatch(BakeMismatch::Kind::apart, fit, reach, name);
+    if (fit.fits_turned) {
+        report.add("high box that fits only with y and z swapped", "part", 0,
+                   "baked as it is: one side may be Y up, the other Z up");
+    }
+    return glm::distance(glm::max(glm::dvec3(fit.high.max), glm::dvec3(fit.low.max)),
+                         glm::min(glm::dvec3(fit.high.min), glm::dvec3(fit.low.min)));
+}
+
+std::vector<std::uint32_t> parts_of_triangles(std::span<const BakePart> parts, const Mesh& low) {
+    constexpr std::uint32_t none = 0xffffffff;
+    std::vector<std::uint32_t> result(low.triangles.size(), none);
+    for (std::size_t part = 0; part < parts.size(); ++part) {
+        for (const std::uint32_t triangle : parts[part].triangles) {
+            if (triangle >= result.size() || result[triangle] != none) {
+                throw InvalidInput(
+                    fmt::format("triangle {} of the low mesh is {}", triangle,
+                                triangle < result.size() ? "in two parts" : "not there"));
+            }
+            result[triangle] = static_cast<std::uint32_t>(part);
+        }
+    }
+    const auto unassigned = std::find(result.begin(), result.end(), none);
+    if (unassigned != result.end()) {
+        throw InvalidInput(
+            fmt::format("triangle {} of the low mesh is in no part", unassigned - result.begin()));
+    }
+    return result;
+}
+
+/// The memory of a strip, unless the minimum number of rows needs more.
 constexpr std::size_t strip_bytes = 60'000'000;
-constexpr int least_rows = 64;  // A tile of dither, and of coverage.
+constexpr int strip_row_step = 64;  // The rows of a dither tile and of a coverage band.
 
-constexpr int most_padding = 1024;
-constexpr int most_occlusion_rays = 65536;
+constexpr int max_padding = 1024;
+constexpr int max_occlusion_rays = 65536;
 
-int side_of(int samples) {
+int samples_across(int samples) {
     for (const int side : {1, 2, 4, 8, 16, 32}) {
         if (side * side == samples) return side;
     }
@@ -44,9 +108,9 @@ void check_distance(const std::optional<double>& distance, const char* what) {
 void check_occlusion(const BakeLayers& layers) {
     if (!layers.occlusion) return;
     check_distance(layers.occlusion->distance, "a distance of occlusion");
-    if (const int rays = layers.occlusion->rays; rays < 1 || rays > most_occlusion_rays) {
+    if (const int rays = layers.occlusion->rays; rays < 1 || rays > max_occlusion_rays) {
         throw InvalidInput(
-            fmt::format("{} rays of occlusion are not within 1 to {}", rays, most_occlusion_rays));
+            fmt::format("{} rays of occlusion are not within 1 to {}", rays, max_occlusion_rays));
     }
 }
 
@@ -80,15 +144,15 @@ void check_border(const BakeMapOptions& map) {
     if (!map.border_folder) return;
     if (map.padding > 0 || map.rows)
         throw InvalidInput("a map that is filled to its border has no padding, and all rows");
-    if (std::max(map.width, map.height) > BorderFill::largest_side) {
+    if (std::max(map.width, map.height) > BorderFill::max_side) {
         throw InvalidInput(fmt::format("a map of {} x {} texels is too large to be filled: {}",
-                                       map.width, map.height, BorderFill::largest_side));
+                                       map.width, map.height, BorderFill::max_side));
     }
 }
 
 void check_map(const BakeMapOptions& map, const Mesh& low) {
-    const int side = side_of(map.samples);
-    // Coverage has a limit of its own, which is of samples.
+    const int side = samples_across(map.samples);
+    // The limit of texel coverage applies to samples.
     for (const int texels : {map.width, map.height}) {
         if (texels < 1 || texels > TexelCover::largest_side / side) {
             throw InvalidInput(
@@ -96,9 +160,9 @@ void check_map(const BakeMapOptions& map, const Mesh& low) {
                             map.width, map.height, map.samples, TexelCover::largest_side / side));
         }
     }
-    if (map.padding < 0 || map.padding > most_padding) {
+    if (map.padding < 0 || map.padding > max_padding) {
         throw InvalidInput(
-            fmt::format("a padding of {} texels is not within 0 to {}", map.padding, most_padding));
+            fmt::format("a padding of {} texels is not within 0 to {}", map.padding, max_padding));
     }
     check_border(map);
     if (map.sample_angle && !(*map.sample_angle >= 0.0 && *map.sample_angle <= std::numbers::pi))
@@ -107,11 +171,11 @@ void check_map(const BakeMapOptions& map, const Mesh& low) {
     if (map.triangles) check_triangle_numbers(*map.triangles, low.triangles.size());
 }
 
-void check_layers(const BakeLayers& wanted, const BakeLayers& ready) {
-    if ((wanted.normals && !ready.normals) || (wanted.curvature && !ready.curvature) ||
-        (wanted.colors && !ready.colors))
+void check_layers(const BakeLayers& requested, const BakeLayers& prepared) {
+    if ((requested.normals && !prepared.normals) || (requested.curvature && !prepared.curvature) ||
+        (requested.colors && !prepared.colors))
         throw InvalidInput("a map wants a layer that its baker was not made for");
-    check_occlusion(wanted);
+    check_occlusion(requested);
 }
 
 CoverageOptions coverage_options(const BakeMapOptions& map, int side) {
@@ -125,19 +189,19 @@ CoverageOptions coverage_options(const BakeMapOptions& map, int side) {
     return coverage;
 }
 
-/// A strip of the map in memory: the layers that are wanted.
+/// The requested layers of a strip of the map.
 struct Strip {
     std::array<std::vector<float>, baked_layers.size()> layers;
     std::vector<TexelState> states;
 
-    Strip(const BakeLayers& wanted, std::size_t width, std::size_t rows) : states(width * rows) {
+    Strip(const BakeLayers& requested, std::size_t width, std::size_t rows) : states(width * rows) {
         for (std::size_t i = 0; i < layers.size(); ++i) {
-            if (baked_layers[i].is_wanted(wanted))
+            if (baked_layers[i].is_requested(requested))
                 layers[i].resize(baked_layers[i].channels * width * rows);
         }
     }
 
-    /// Some of its rows, counted within it.
+    /// Returns a view of `count` rows from row `begin` of the strip.
     BakedRows rows(int width, int first_row, int begin, int count) {
         const auto first = static_cast<std::size_t>(begin) * static_cast<std::size_t>(width);
         const auto texels = static_cast<std::size_t>(count) * static_cast<std::size_t>(width);
@@ -155,42 +219,105 @@ struct Strip {
     }
 };
 
-int rows_of_strip(const BakeLayers& wanted, int width, int height) {
+int rows_per_strip(const BakeLayers& requested, int width, int height) {
     std::size_t texel_bytes = sizeof(TexelState);
     for (const BakedLayer& layer : baked_layers) {
-        if (layer.is_wanted(wanted)) texel_bytes += sizeof(float) * layer.channels;
+        if (layer.is_requested(requested)) texel_bytes += sizeof(float) * layer.channels;
     }
-    const auto fitting =
+    const auto max_rows =
         static_cast<int>(strip_bytes / texel_bytes / static_cast<std::size_t>(width));
-    const int rows = std::max(fitting / least_rows, 1) * least_rows;
+    const int rows = std::max(max_rows / strip_row_step, 1) * strip_row_step;
     return std::min(rows, height);
 }
 
-/// Bakes rows [first, last), and says what there was.
+/// Bakes rows [first, last) of the map into a strip.
 void bake_strip(const BakeWork& work, const TexelCover& cover, Strip& strip, int first, int last,
                 BakeResult& result, BakeCounts& counts, int& rows_done, Report& report) {
     const int side = work.side;
     std::mutex mutex;
-    std::map<int, Report> reports;  // By row, so that their order is no matter of threads.
+    std::map<int, Report> reports;  // By row, so that the order does not depend on threads.
     const auto take = [&](int first_sample_row, std::span<const CoveredTexel> owners) {
         const int row = first_sample_row / side;
         const int count = static_cast<int>(owners.size() / static_cast<std::size_t>(side * side) /
                                            static_cast<std::size_t>(work.options.width));
-        Report found;
+        Report row_report;
         const BakeCounts more = bake_rows(
-            work, row, owners, strip.rows(work.options.width, row, row - first, count), found);
+            work, row, owners, strip.rows(work.options.width, row, row - first, count), row_report);
         const std::lock_guard lock(mutex);
         counts += more;
         rows_done += count;
         if (work.options.progress) work.options.progress({rows_done, counts.rays});
-        reports.emplace(row, std::move(found));
+        reports.emplace(row, std::move(row_report));
     };
     result.coverage += cover.cover(first * side, last * side, take, report);
-    for (const auto& [row, found] : reports)
-        report.merge(found);
+    for (const auto& [row, row_report] : reports)
+        report.merge(row_report);
 }
 
 }  // namespace
+
+SeenSurface::SeenSurface(std::span<const Mesh> meshes, const Mesh& low, const BakeOptions& options,
+                         double reach, const std::string& name, Report& report)
+    : fit(compare_boxes(meshes, low)),
+      extent(checked_extent(fit, meshes, options, reach, name, report)),
+      high(meshes, options, report),
+      distances(ray_distances(meshes, high, low, options)) {}
+
+BakeParts::BakeParts(std::span<const Mesh> high, const LowSurface& low, const BakeOptions& options,
+                     Report& report) {
+    surfaces_.push_back(
+        std::make_unique<SeenSurface>(high, low.mesh(), options, low.cage_reach(), "", report));
+}
+
+BakeParts::BakeParts(std::span<const BakePart> parts, const LowSurface& low,
+                     const BakeOptions& options, Report& report)
+    : part_of_triangle_(parts_of_triangles(parts, low.mesh())) {
+    const double reach = low.cage_reach();
+    for (const BakePart& part : parts) {
+        const Mesh own = part_of(low.mesh(), part.triangles);
+        surfaces_.push_back(
+            std::make_unique<SeenSurface>(part.high, own, options, reach, part.name, report));
+    }
+}
+
+LayerBounds BakeParts::bounds(const BakeLayers& layers) const {
+    LayerBounds bounds;
+    for (const auto& surface : surfaces_) {
+        if (layers.curvature) {
+            const HighSurface::CurvatureRange range = surface->high.curvature_range();
+            bounds.curvature = std::max(bounds.curvature, range.greatest);
+            bounds.usual_curvature = std::max(bounds.usual_curvature, range.usual);
+        }
+        if (layers.positions) {
+            bounds.position = std::max(bounds.position,
+                                       surface->high.largest_coordinate(layers.position_from_mesh));
+        }
+    }
+    return bounds;
+}
+
+BakeFit BakeParts::fit() const {
+    const auto grow = [](Bounds& box, const Bounds& other) {
+        box.min = glm::min(box.min, other.min);
+        box.max = glm::max(box.max, other.max);
+    };
+    Bounds high;
+    Bounds low;
+    for (const auto& surface : surfaces_) {
+        grow(high, surface->fit.high);
+        grow(low, surface->fit.low);
+    }
+    return compare_boxes(high, low);
+}
+
+BakeDistances BakeParts::largest_distances() const {
+    BakeDistances largest;
+    for (const auto& surface : surfaces_) {
+        largest.offset = std::max(largest.offset, surface->distances.offset);
+        largest.max_distance = std::max(largest.max_distance, surface->distances.max_distance);
+    }
+    return largest;
+}
 
 struct Baker::Implementation {
     template <typename High>
@@ -251,15 +378,15 @@ BakeResult Baker::bake(const BakeMapOptions& map,
     check_layers(map.layers, implementation_->options.layers);
     BakeOptions options = implementation_->options;
     static_cast<BakeMapOptions&>(options) = map;
-    const int side = side_of(map.samples);
+    const int side = samples_across(map.samples);
     const BakeRowRange range = map.rows.value_or(BakeRowRange{0, map.height});
-    Report said_before;
+    Report ignored;
     const TexelCover cover(low().texcoords, low().triangles, coverage_options(map, side),
-                           range.first == 0 ? report : said_before);
+                           range.first == 0 ? report : ignored);
     BakeResult result;
     result.distances = distances();
     const BakeWork work{implementation_->parts, implementation_->low, options, side};
-    const int rows = rows_of_strip(options.layers, map.width, range.last - range.first);
+    const int rows = rows_per_strip(options.layers, map.width, range.last - range.first);
     Strip strip(options.layers, static_cast<std::size_t>(map.width),
                 static_cast<std::size_t>(rows));
     std::optional<BorderFill> border;
@@ -292,7 +419,7 @@ BakeResult Baker::bake(const BakeMapOptions& map,
 
 BakeResult bake_normals(std::span<const Mesh> high, const Mesh& low, const BakeOptions& options,
                         const std::function<void(const BakedRows& rows)>& take, Report& report) {
-    // What is wrong with the map is said before the meshes are made ready, which takes a while.
+    // Errors of the map options are reported before the meshes are prepared, which is slow.
     check_map(options, low);
     return Baker(high, low, options, report).bake(options, take, report);
 }

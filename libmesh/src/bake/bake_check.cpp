@@ -1,28 +1,259 @@
 // SPDX-License-Identifier: Apache-2.0
-// Strips of the map from the top: truth, bake and map side by side, then sums.
-// Tests: tests/mesh/bake/bake_check_test.cpp.
+// Checks of baked maps against a reference bake of many samples, in strips of rows.
+// Tests: tests/mesh/bake/bake_check_test.cpp, bake_trials_test.cpp.
 #include "relief/mesh/bake_check.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numbers>
 
-#include "bake/bake_check_casts.h"
+#include "bake/bake_check_rows.h"
+#include "bake/texel_frame.h"
+#include "geometry/direction.h"
+#include "parallel.h"
+#include "relief/mesh/direction_error.h"
 #include "relief/mesh/error.h"
 
 namespace relief {
 namespace {
 
+constexpr double reference_angle = 0.5;  // In degrees.
+constexpr int usual_max_samples = 256;   // Of a reference, unless the map has as many.
+constexpr int max_samples = 1024;
 constexpr std::size_t strip_texels = 1'000'000;
-constexpr std::size_t known_texels = 16384;  // For the search of a convention, at least if known.
+constexpr std::size_t known_texels = 16384;  // For the search of a convention.
+constexpr std::size_t max_worst = 8;
+/// A texel is torn if its mean height differs from that of its center by more than this share of
+/// its width. A slope that changes by 45 degrees within a texel gives a sixth.
+constexpr double torn_share = 0.25;
 
-int rows_of_strip(int width) {
-    const auto fitting = static_cast<int>(strip_texels / static_cast<std::size_t>(width));
-    return std::max(fitting / TexelCover::band_rows, 1) * TexelCover::band_rows;
+/// The input of a comparison of rows, from row `first` of the map on.
+struct RowsToCheck {
+    int first = 0;
+    int width = 0;
+    int height = 0;                       ///< The height of the map.
+    std::vector<CoveredTexel> owners;     ///< The owners of texel centers.
+    std::span<const float> map;           ///< Decoded, three values per texel.
+    const CastRows* reference = nullptr;  ///< The bake of many samples.
+    const CastRows* center = nullptr;     ///< The bake of one sample.
+    const CastRows* made = nullptr;  ///< The bake with the options of the map; may be `center`.
+    std::span<const float> remade;   ///< `made`, encoded and decoded.
+};
+
+bool is_worse(const WorstTexel& a, const WorstTexel& b) {
+    if (a.degrees != b.degrees) return a.degrees > b.degrees;
+    return a.y != b.y ? a.y < b.y : a.x < b.x;
 }
 
-/// Rows of an image of its own kind.
+void keep_worst(std::vector<WorstTexel>& worst, const WorstTexel& texel) {
+    if (worst.size() == max_worst && !is_worse(texel, worst.back())) return;
+    worst.insert(std::lower_bound(worst.begin(), worst.end(), texel, is_worse), texel);
+    if (worst.size() > max_worst) worst.pop_back();
+}
+
+/// Transforms normals of a map to the axes of the meshes, at one texel.
+class MapToMesh {
+  public:
+    MapToMesh(const Baker& baker, const CoveredTexel& owner)
+        : mesh_(baker.low()), owner_(owner), options_(baker.options()) {
+        if (options_.space != BakeSpace::tangent) {
+            mesh_from_output_ = glm::inverse(options_.output_from_mesh);
+            is_usable_ = std::isfinite(mesh_from_output_[0].x);
+            return;
+        }
+        const TexelFrame frame(mesh_, owner.triangle, glm::dvec3(owner.weights()));
+        is_usable_ = frame.is_usable();
+        mesh_from_output_ = glm::dmat3(frame.tangent, frame.bitangent, frame.normal);
+    }
+
+    [[nodiscard]] bool is_usable() const { return is_usable_; }
+    [[nodiscard]] glm::dvec3 shown(const glm::dvec3& normal) const {
+        return direction_or_zero(mesh_from_output_ * normal);
+    }
+    /// Returns the interpolated normal of the low mesh.
+    [[nodiscard]] glm::dvec3 low_normal() const {
+        const glm::uvec3 corners = mesh_.triangles[owner_.triangle];
+        glm::dvec3 sum(0.0);
+        for (int i = 0; i < 3; ++i)
+            sum += double{owner_.weights()[i]} * glm::dvec3(mesh_.normals[corners[i]]);
+        return sum;
+    }
+    /// Returns the width of a texel on the mesh: the square root of its area.
+    [[nodiscard]] double width_of_texel(double texels) const {
+        const glm::uvec3 c = mesh_.triangles[owner_.triangle];
+        const glm::dvec3 a(mesh_.positions[c.x]);
+        const glm::dvec2 u(mesh_.texcoords[c.x]);
+        const glm::dvec2 e(glm::dvec2(mesh_.texcoords[c.y]) - u);
+        const glm::dvec2 f(glm::dvec2(mesh_.texcoords[c.z]) - u);
+        const double area = glm::length(
+            glm::cross(glm::dvec3(mesh_.positions[c.y]) - a, glm::dvec3(mesh_.positions[c.z]) - a));
+        return std::sqrt(area / (std::abs(e.x * f.y - e.y * f.x) * texels));
+    }
+
+  private:
+    const Mesh& mesh_;
+    const CoveredTexel& owner_;
+    const BakeOptions& options_;
+    glm::dmat3 mesh_from_output_{1.0};
+    bool is_usable_ = true;
+};
+
+glm::dvec3 at(std::span<const float> normals, std::size_t texel) {
+    return {normals[3 * texel], normals[3 * texel + 1], normals[3 * texel + 2]};
+}
+
+/// Compares single texels.
+class TexelCheck {
+  public:
+    TexelCheck(const Baker& baker, const RowsToCheck& rows, int step)
+        : baker_(baker), rows_(rows), step_(step) {}
+
+    double check(std::size_t texel, CheckSums& sums) const {
+        const double none = std::numeric_limits<double>::quiet_NaN();
+        const CoveredTexel& owner = rows_.owners[texel];
+        if (!owner.is_covered()) return none;
+        if (!rows_.reference->is_baked(texel)) {
+            ++sums.missed;
+            return none;
+        }
+        const MapToMesh to_mesh(baker_, owner);
+        if (!to_mesh.is_usable()) {
+            ++sums.frameless;
+            return none;
+        }
+        const glm::dvec3 reference = to_mesh.shown(rows_.reference->normal(texel));
+        const glm::dvec3 shown = to_mesh.shown(at(rows_.map, texel));
+        if (rows_.center->is_baked(texel)) {
+            sums.center.add(degrees_between(shown, to_mesh.shown(rows_.center->normal(texel))));
+        }
+        const double degrees = degrees_between(shown, reference);
+        sums.error.add(degrees);
+        const bool is_torn = tears(texel, to_mesh, reference);
+        keep_worst(sums.worst, {column(texel), row(texel), degrees, is_torn});
+        split(texel, to_mesh, reference, shown, is_torn, sums);
+        return degrees;
+    }
+
+  private:
+    [[nodiscard]] int column(std::size_t texel) const {
+        return static_cast<int>(texel % static_cast<std::size_t>(rows_.width));
+    }
+    [[nodiscard]] int row(std::size_t texel) const {
+        return rows_.first + static_cast<int>(texel / static_cast<std::size_t>(rows_.width));
+    }
+
+    [[nodiscard]] bool tears(std::size_t texel, const MapToMesh& to_mesh,
+                             const glm::dvec3& reference) const {
+        if (!rows_.center->is_baked(texel)) return true;
+        const double jump = std::abs(double{rows_.reference->heights[texel]} -
+                                     double{rows_.center->heights[texel]});
+        const double texels = static_cast<double>(rows_.width) * rows_.height;
+        return jump > torn_share * to_mesh.width_of_texel(texels) ||
+               glm::dot(reference, to_mesh.low_normal()) < 0.0;
+    }
+
+    /// Attributes the error to pipeline stages.
+    void split(std::size_t texel, const MapToMesh& to_mesh, const glm::dvec3& reference,
+               const glm::dvec3& shown, bool is_torn, CheckSums& sums) const {
+        const auto stage = [](BakeStage s) { return static_cast<std::size_t>(s); };
+        const glm::dvec3 whole = shown - reference;
+        const bool is_made = rows_.made->is_baked(texel);
+        const glm::dvec3 recoded = at(rows_.remade, texel);
+        const glm::dvec3 remade = to_mesh.shown(recoded);
+        if (is_made) sums.remade.add(degrees_between(remade, reference));
+        if (is_torn || !is_made) {
+            ++sums.torn;
+            sums.stages[stage(BakeStage::projection)].add(degrees_between(shown, reference));
+            sums.squares[stage(BakeStage::projection)] += glm::dot(whole, whole);
+            return;
+        }
+        const glm::dvec3 made = to_mesh.shown(rows_.made->normal(texel));
+        const double in_map = degrees_between(recoded, rows_.made->normal(texel));
+        const double in_object = degrees_between(remade, made);
+        sums.stages[stage(BakeStage::sampling)].add(degrees_between(made, reference));
+        sums.stages[stage(BakeStage::quantisation)].add(in_map);
+        sums.stages[stage(BakeStage::other)].add(degrees_between(shown, remade));
+        sums.tangent_squares += in_map * in_map;
+        sums.object_squares += in_object * in_object;
+        sums.squares[stage(BakeStage::sampling)] += glm::dot(made - reference, whole);
+        sums.squares[stage(BakeStage::quantisation)] += glm::dot(remade - made, whole);
+        sums.squares[stage(BakeStage::other)] += glm::dot(shown - remade, whole);
+        // Conventions are compared at texels where sampling has no influence.
+        keep_known(texel, made, in_object, sums);
+    }
+
+    void keep_known(std::size_t texel, const glm::dvec3& reference, double expected,
+                    CheckSums& sums) const {
+        if (step_ == 0 || row(texel) % step_ != step_ / 2 || column(texel) % step_ != step_ / 2)
+            return;
+        const CoveredTexel& owner = rows_.owners[texel];
+        sums.known.push_back({column(texel), row(texel), owner.triangle,
+                              glm::dvec3(owner.weights()), reference, expected});
+    }
+
+    const Baker& baker_;
+    const RowsToCheck& rows_;
+    int step_;
+};
+
+BakeMapOptions with_samples(BakeMapOptions map, int samples, std::optional<double> angle) {
+    map.samples = samples;
+    map.sample_angle = angle;
+    return map;
+}
+
+std::vector<CoveredTexel> owners_of(const Baker& baker, const BakeMapOptions& map, int first,
+                                    int last) {
+    CoverageOptions options;
+    options.width = map.width;
+    options.height = map.height;
+    options.tile = map.placement.tile;
+    options.repeat = map.placement.repeat;
+    options.only = map.triangles;
+    const auto width = static_cast<std::size_t>(map.width);
+    std::vector<CoveredTexel> owners(width * static_cast<std::size_t>(last - first));
+    Report ignored;
+    const TexelCover cover(baker.low().texcoords, baker.low().triangles, options, ignored);
+    cover.cover(
+        first, last,
+        [&](int row, std::span<const CoveredTexel> texels) {
+            std::copy(texels.begin(), texels.end(),
+                      owners.begin() + static_cast<std::ptrdiff_t>(
+                                           width * static_cast<std::size_t>(row - first)));
+        },
+        ignored);
+    return owners;
+}
+
+CheckSums check_texels(const Baker& baker, const RowsToCheck& rows, int step,
+                       std::span<float> degrees) {
+    const auto width = static_cast<std::size_t>(rows.width);
+    const std::size_t count = degrees.size() / width;
+    constexpr std::size_t piece = 16;  // Rows; each piece has its own histograms.
+    std::vector<CheckSums> sums((count + piece - 1) / piece);
+    const TexelCheck texels(baker, rows, step);
+    parallel_for(sums.size(), 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t part = begin; part < end; ++part) {
+            const std::size_t last = std::min((part + 1) * piece, count) * width;
+            for (std::size_t texel = part * piece * width; texel < last; ++texel)
+                degrees[texel] = static_cast<float>(texels.check(texel, sums[part]));
+        }
+    });
+    CheckSums all;
+    for (const CheckSums& part : sums)
+        all.add(part);
+    return all;
+}
+
+int check_strip_rows(int width) {
+    const auto max_rows = static_cast<int>(strip_texels / static_cast<std::size_t>(width));
+    return std::max(max_rows / TexelCover::band_rows, 1) * TexelCover::band_rows;
+}
+
+/// Rows of an image, in the same format.
 Image part_of(const Image& map, int first, int last) {
     Image part;
     part.width = map.width;
@@ -52,9 +283,9 @@ void check(const Image& map, const BakeMapOptions& options) {
     }
 }
 
-void summarise(const CheckSums& sums, BakeCheck& check) {
+void summarize(const CheckSums& sums, BakeCheck& check) {
     check.error = sums.error.summary();
-    check.centre = sums.centre.summary();
+    check.centre = sums.center.summary();
     check.remade = sums.remade.summary();
     check.missed = sums.missed;
     check.frameless = sums.frameless;
@@ -68,21 +299,21 @@ void summarise(const CheckSums& sums, BakeCheck& check) {
         check.stages[i].rms = sums.stages[i].summary().rms;
         check.stages[i].share = all > 0.0 ? sums.squares[i] / all : 0.0;
     }
-    // Of the codes' part in object space, what tangent space does not have is the basis's.
+    // The error of the codes in object space minus that in tangent space is the error of the basis.
     StageError& codes = check.stages[index(BakeStage::quantisation)];
     StageError& basis = check.stages[index(BakeStage::basis)];
     const double texels =
         static_cast<double>(sums.stages[index(BakeStage::quantisation)].summary().count);
     const double more = sums.object_squares - sums.tangent_squares;
     if (!(more > 0.0)) return;
-    // No mean of angles: what one mean square has more than another.
+    // This is the difference of two mean squares, not a mean of angles.
     basis.rms = std::sqrt(more / texels);
     basis.share = codes.share * more / sums.object_squares;
     codes.share -= basis.share;
 }
 
-/// How far apart the texels are that a convention is looked for by.
-int step_of(const BakeMapOptions& map) {
+/// Returns the distance of the texels that the search of a convention uses.
+int search_step(const BakeMapOptions& map) {
     const double texels = static_cast<double>(map.width) * map.height;
     return std::max(static_cast<int>(std::sqrt(texels / known_texels)), 1);
 }
@@ -102,6 +333,91 @@ ConventionFit convention_of(const Baker& baker, const Image& map, const BakeChec
 
 }  // namespace
 
+void CheckSums::add(const CheckSums& other) {
+    error.add(other.error);
+    center.add(other.center);
+    remade.add(other.remade);
+    for (std::size_t i = 0; i < stages.size(); ++i) {
+        stages[i].add(other.stages[i]);
+        squares[i] += other.squares[i];
+    }
+    missed += other.missed;
+    frameless += other.frameless;
+    torn += other.torn;
+    tangent_squares += other.tangent_squares;
+    object_squares += other.object_squares;
+    for (const WorstTexel& texel : other.worst)
+        keep_worst(worst, texel);
+    known.insert(known.end(), other.known.begin(), other.known.end());
+}
+
+CastRows cast_rows(const Baker& baker, BakeMapOptions map, int first, int last, Report& report) {
+    map.rows = BakeRowRange{first, last};
+    map.padding = 0;
+    map.border_folder.reset();
+    map.layers = {.heights = true};
+    CastRows cast;
+    const auto take = [&](const BakedRows& rows) {
+        cast.normals.insert(cast.normals.end(), rows.normals.begin(), rows.normals.end());
+        cast.heights.insert(cast.heights.end(), rows.heights.begin(), rows.heights.end());
+        cast.states.insert(cast.states.end(), rows.states.begin(), rows.states.end());
+    };
+    cast.rays = baker.bake(map, take, report).rays;
+    return cast;
+}
+
+std::vector<float> coded(const std::vector<float>& normals, int width,
+                         const NormalMapFormat& format) {
+    Image image;
+    image.width = width;
+    image.height = static_cast<int>(normals.size() / (3 * static_cast<std::size_t>(width)));
+    image.channels = 3;
+    image.samples = normals;
+    Report ignored;  // Unit normals cause no findings.
+    const Image decoded = decode_normal_map(encode_normal_map(image, format, ignored), format.green,
+                                            format.flat, ignored);
+    return std::get<std::vector<float>>(decoded.samples);
+}
+
+BakeMapOptions reference_of(const BakeMapOptions& map, int samples) {
+    const int default_count = map.samples < usual_max_samples
+                                  ? std::min(16 * map.samples, usual_max_samples)
+                                  : max_samples;
+    int count = samples > 0 ? samples : default_count;
+    // Texel coverage limits the number of samples of large maps.
+    const int longest = std::max(map.width, map.height);
+    while (count > 4 && std::sqrt(count) * longest > static_cast<double>(TexelCover::largest_side))
+        count /= 4;
+    return with_samples(map, count, reference_angle * std::numbers::pi / 180.0);
+}
+
+BakeCasts::BakeCasts(const Baker& baker, const BakeMapOptions& map, int reference_samples,
+                     int first, int last, Report& report) {
+    Report ignored;
+    center = cast_rows(baker, with_samples(map, 1, std::nullopt), first, last,
+                       map.samples == 1 ? report : ignored);
+    reference = cast_rows(baker, reference_of(map, reference_samples), first, last, ignored);
+    if (map.samples > 1) several = cast_rows(baker, map, first, last, report);
+}
+
+CheckSums compare_rows(const Baker& baker, const BakeMapOptions& map, const BakeCasts& casts,
+                       const CastRows& made, std::span<const float> remade,
+                       std::span<const float> shown, int first, int step,
+                       std::span<float> degrees) {
+    const auto count = static_cast<int>(degrees.size() / static_cast<std::size_t>(map.width));
+    RowsToCheck rows;
+    rows.first = first;
+    rows.width = map.width;
+    rows.height = map.height;
+    rows.owners = owners_of(baker, map, first, first + count);
+    rows.reference = &casts.reference;
+    rows.center = &casts.center;
+    rows.made = &made;
+    rows.remade = remade;
+    rows.map = shown.empty() ? remade : shown;
+    return check_texels(baker, rows, step, degrees);
+}
+
 BakeCheck check_bake(const Baker& baker, const Image& map, const BakeCheckOptions& options,
                      const std::function<void(int first_row, std::span<const float> degrees)>& take,
                      Report& report) {
@@ -110,8 +426,8 @@ BakeCheck check_bake(const Baker& baker, const Image& map, const BakeCheckOption
     format.bits = map.bits();
     BakeCheck result;
     result.reference_samples = reference_of(options.map, options.reference_samples).samples;
-    const int step = options.finds_convention ? step_of(options.map) : 0;
-    const int rows = rows_of_strip(map.width);
+    const int step = options.finds_convention ? search_step(options.map) : 0;
+    const int rows = check_strip_rows(map.width);
     CheckSums sums;
     for (int first = 0; first < map.height; first += rows) {
         const int last = std::min(first + rows, map.height);
@@ -121,12 +437,12 @@ BakeCheck check_bake(const Baker& baker, const Image& map, const BakeCheckOption
         std::vector<float> degrees(static_cast<std::size_t>(map.width) *
                                    static_cast<std::size_t>(last - first));
         const std::vector<float> remade = coded(casts.made().normals, map.width, format);
-        sums.add(check_strip(baker, options.map, casts, casts.made(), remade, shown.as<float>(),
-                             first, step, degrees));
+        sums.add(compare_rows(baker, options.map, casts, casts.made(), remade, shown.as<float>(),
+                              first, step, degrees));
         result.rays += casts.rays();
         if (take) take(first, degrees);
     }
-    summarise(sums, result);
+    summarize(sums, result);
     if (options.finds_convention)
         result.convention = convention_of(baker, map, options, sums.known);
     return result;

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Some rows of a map held against the surface: each texel's error, and the stages that it comes
-/// from. In the axes of the meshes, in degrees. Tests: tests/mesh/bake/bake_check_test.cpp.
+/// Comparison of rows of a baked map with a reference bake of many samples: the error of each texel
+/// in degrees, in the space of the meshes, and its causes. Tests:
+/// tests/mesh/bake/bake_check_test.cpp, bake_trials_test.cpp.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -12,7 +14,7 @@
 
 namespace relief {
 
-/// Normals that a bake makes of some rows.
+/// The bake of some rows.
 struct CastRows {
     std::vector<float> normals, heights;
     std::vector<TexelState> states;
@@ -29,40 +31,54 @@ struct CastRows {
 /// Bakes rows [first, last).
 CastRows cast_rows(const Baker& baker, BakeMapOptions map, int first, int last, Report& report);
 
-/// The codes that normals become, decoded again.
+/// Normals encoded as map codes and decoded again.
 std::vector<float> coded(const std::vector<float>& normals, int width,
                          const NormalMapFormat& format);
 
-/// All that is known of some rows, from row `first` of the map on.
-struct RowsToCheck {
-    int first = 0;
-    int width = 0;
-    int height = 0;                       ///< Of the map.
-    std::vector<CoveredTexel> owners;     ///< Of texel centres.
-    std::span<const float> map;           ///< Decoded: three a texel.
-    const CastRows* reference = nullptr;  ///< The truth: of many samples.
-    const CastRows* centre = nullptr;     ///< Of one.
-    const CastRows* made = nullptr;       ///< As the map was: may be `centre`.
-    std::span<const float> remade;        ///< `made`, through codes.
-};
-
-/// Sums over texels.
+/// Sums of errors over texels.
 struct CheckSums {
-    AngleSum error, centre, remade;
+    AngleSum error, center, remade;
     std::array<AngleSum, bake_stage_count> stages;
-    std::array<double, bake_stage_count> squares{};  ///< Stage's vectors along the whole.
+    /// The part of each stage in the squared error vector.
+    std::array<double, bake_stage_count> squares{};
     std::size_t missed = 0, frameless = 0, torn = 0;
-    double tangent_squares = 0.0, object_squares = 0.0;  ///< Of angles between codes and normals.
+    /// Squared angles between codes and normals, in tangent and in object space.
+    double tangent_squares = 0.0, object_squares = 0.0;
     std::vector<WorstTexel> worst;
     std::vector<KnownTexel> known;
 
-    void add(const CheckSums& others);
+    void add(const CheckSums& other);
 };
 
-/// \param step     every so many texels, along and across, one of those that are not torn is kept
-///                 in CheckSums::known; 0: none
-/// \param degrees  gets the errors, NaN where there is none
-CheckSums check_rows(const Baker& baker, const RowsToCheck& rows, int step,
-                     std::span<float> degrees);
+/// Returns the options of the reference bake of a map. \param samples  0: the default of
+/// BakeCheckOptions
+BakeMapOptions reference_of(const BakeMapOptions& map, int samples);
+
+/// The bakes for a check of some rows.
+struct BakeCasts {
+    CastRows reference;               ///< Many samples.
+    CastRows center;                  ///< One sample, at the center of each texel.
+    std::optional<CastRows> several;  ///< The number of samples of the map, if not one.
+
+    /// \param report  gets the findings of the bake with the options of the map
+    BakeCasts(const Baker& baker, const BakeMapOptions& map, int reference_samples, int first,
+              int last, Report& report);
+
+    [[nodiscard]] const CastRows& made() const { return several ? *several : center; }
+    [[nodiscard]] std::size_t rays() const {
+        return reference.rays + center.rays + (several ? several->rays : 0);
+    }
+};
+
+/// Compares rows with the reference, in parallel.
+/// \param made     the bake with the options of the map, which may be one of `casts`
+/// \param remade   `made`, encoded and decoded
+/// \param shown    the map, decoded; empty: `remade`
+/// \param first    the first row
+/// \param step     the distance, along and across, of texels stored in CheckSums::known; 0: none
+/// \param degrees  gets the errors, NaN if there is none
+CheckSums compare_rows(const Baker& baker, const BakeMapOptions& map, const BakeCasts& casts,
+                       const CastRows& made, std::span<const float> remade,
+                       std::span<const float> shown, int first, int step, std::span<float> degrees);
 
 }  // namespace relief

@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
-// The truth once, then bake after bake of the same rows. Tests:
-// tests/mesh/bake/bake_trials_test.cpp.
+// Errors and times of bakes with several sample counts and encodings. The reference is baked once,
+// for bands spread over the map. Tests: tests/mesh/bake/bake_trials_test.cpp.
 #include "relief/mesh/bake_trials.h"
 
 #include <algorithm>
 #include <array>
 #include <glm/trigonometric.hpp>
 
-#include "bake/bake_check_casts.h"
+#include "bake/bake_check_rows.h"
 #include "progress_stage.h"
 
 namespace relief {
 namespace {
 
-/// Some rows whose truth is known.
+/// Rows with their reference.
 struct Band {
     BakeRowRange rows;
     BakeCasts casts;
@@ -23,7 +23,7 @@ struct Band {
 
 struct BakeTrials::Implementation {
     const Baker& baker;
-    BakeMapOptions map;  ///< Of one sample.
+    BakeMapOptions map;  ///< With one sample.
     int reference_samples;
     std::vector<Band> bands;
     bool is_whole = true;
@@ -44,56 +44,56 @@ struct BakeTrials::Implementation {
 BakeTrials::BakeTrials(const Baker& baker, const BakeMapOptions& map, std::size_t texels,
                        int reference_samples)
     : implementation_(new Implementation{baker, map, 0, {}, true}) {
-    Implementation& all = *implementation_;
-    all.map.samples = 1;
-    all.map.sample_angle.reset();
-    all.reference_samples =
+    Implementation& data = *implementation_;
+    data.map.samples = 1;
+    data.map.sample_angle.reset();
+    data.reference_samples =
         reference_of(map, reference_samples > 0 ? reference_samples : 256).samples;
     constexpr int band = TexelCover::band_rows;
     const int bands = (map.height + band - 1) / band;
     const std::size_t band_texels =
         static_cast<std::size_t>(map.width) * static_cast<std::size_t>(band);
-    const auto wanted =
+    const auto count =
         static_cast<int>(std::min(texels / band_texels + 1, static_cast<std::size_t>(bands)));
-    all.is_whole = wanted == bands;
-    Report unsaid;
-    for (int i = 0; i < wanted; ++i) {
-        // The middle one of as many equal parts.
-        const int first = (2 * i + 1) * bands / (2 * wanted) * band;
+    data.is_whole = count == bands;
+    Report ignored;
+    for (int i = 0; i < count; ++i) {
+        // The middle band of each of `count` equal parts.
+        const int first = (2 * i + 1) * bands / (2 * count) * band;
         const BakeRowRange rows{first, std::min(first + band, map.height)};
-        all.bands.push_back({rows, BakeCasts(baker, all.map, all.reference_samples, rows.first,
-                                             rows.last, unsaid)});
+        data.bands.push_back({rows, BakeCasts(baker, data.map, data.reference_samples, rows.first,
+                                              rows.last, ignored)});
     }
 }
 
 BakeTrials::~BakeTrials() = default;
 
 BakeTrial BakeTrials::measure(const BakeWay& way, std::span<const NormalMapFormat> formats) const {
-    const Implementation& all = *implementation_;
-    const BakeMapOptions map = all.map_by(way);
+    const Implementation& data = *implementation_;
+    const BakeMapOptions map = data.map_by(way);
     BakeTrial trial;
     trial.code_seconds.resize(formats.size());
     std::vector<CheckSums> sums(formats.size());
-    Report unsaid;
-    for (const Band& part : all.bands) {
+    Report ignored;
+    for (const Band& part : data.bands) {
         CastRows made;
         trial.cast_seconds += seconds_of(
-            [&] { made = cast_rows(all.baker, map, part.rows.first, part.rows.last, unsaid); });
+            [&] { made = cast_rows(data.baker, map, part.rows.first, part.rows.last, ignored); });
         trial.rays += made.rays;
-        std::vector<float> degrees(all.texels_of(part.rows));
+        std::vector<float> degrees(data.texels_of(part.rows));
         for (std::size_t f = 0; f < formats.size(); ++f) {
             std::vector<float> remade;
             trial.code_seconds[f] +=
                 seconds_of([&] { remade = coded(made.normals, map.width, formats[f]); });
-            sums[f].add(check_strip(all.baker, map, part.casts, made, remade, {}, part.rows.first,
-                                    0, degrees));
+            sums[f].add(compare_rows(data.baker, map, part.casts, made, remade, {}, part.rows.first,
+                                     0, degrees));
         }
     }
     for (const CheckSums& sum : sums) {
         trial.errors.push_back(sum.error.summary());
         const auto codes = static_cast<std::size_t>(BakeStage::quantisation);
         trial.quantisation.push_back(sum.stages[codes].summary());
-        trial.centre.push_back(sum.centre.summary());
+        trial.centre.push_back(sum.center.summary());
     }
     if (!sums.empty()) {
         const auto samples = static_cast<std::size_t>(BakeStage::sampling);
@@ -103,17 +103,17 @@ BakeTrial BakeTrials::measure(const BakeWay& way, std::span<const NormalMapForma
 }
 
 Image BakeTrials::error_map(const BakeWay& way, const NormalMapFormat& format) const {
-    const Implementation& all = *implementation_;
-    const BakeMapOptions map = all.map_by(way);
+    const Implementation& data = *implementation_;
+    const BakeMapOptions map = data.map_by(way);
     Image errors =
         make_image(map.width, static_cast<int>(texels()) / map.width, 1, 32, ColorSpace::data);
     std::span<float> left = errors.as<float>();
-    Report unsaid;
-    for (const Band& part : all.bands) {
-        const CastRows made = cast_rows(all.baker, map, part.rows.first, part.rows.last, unsaid);
+    Report ignored;
+    for (const Band& part : data.bands) {
+        const CastRows made = cast_rows(data.baker, map, part.rows.first, part.rows.last, ignored);
         const std::vector<float> remade = coded(made.normals, map.width, format);
-        const std::span<float> rows = left.first(all.texels_of(part.rows));
-        check_strip(all.baker, map, part.casts, made, remade, {}, part.rows.first, 0, rows);
+        const std::span<float> rows = left.first(data.texels_of(part.rows));
+        compare_rows(data.baker, map, part.casts, made, remade, {}, part.rows.first, 0, rows);
         left = left.subspan(rows.size());
     }
     return errors;
@@ -162,16 +162,16 @@ std::vector<TimedBakeTrial> measured_in_turns(const BakeTrials& trials,
                                               std::span<const BakeWay> ways,
                                               std::span<const NormalMapFormat> formats,
                                               const Repeats& repeats) {
-    std::vector<TimedBakeTrial> all(ways.size());
+    std::vector<TimedBakeTrial> results(ways.size());
     interleave(ways.size(), repeats, [&](std::size_t way, bool counted) {
         check_cancelled();
-        TimedBakeTrial& one = all[way];
+        TimedBakeTrial& one = results[way];
         one.trial = trials.measure(ways[way], formats);
         one.seconds.resize(formats.size());
         for (std::size_t f = 0; counted && f < formats.size(); ++f)
             one.seconds[f].push_back(one.trial.cast_seconds + one.trial.code_seconds[f]);
     });
-    return all;
+    return results;
 }
 
 }  // namespace relief

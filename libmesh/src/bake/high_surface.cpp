@@ -1,24 +1,102 @@
 // SPDX-License-Identifier: Apache-2.0
+// Attributes of the high-poly meshes at hits, and the filtering of their textures.
 // Tests: tests/mesh/bake/bake_test.cpp, high_detail_test.cpp.
 #include "bake/high_surface.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
+#include <cstdint>
+#include <limits>
 #include <tuple>
 #include <utility>
 
-#include "bake/surface_texture.h"
 #include "bake/texel_frame.h"
 #include "geometry/direction.h"
+#include "image/normal_coding.h"
 #include "relief/mesh/curvature.h"
+#include "relief/mesh/error.h"
 #include "relief/mesh/frames.h"
 
 namespace relief {
 namespace {
 
+/// Returns the texel that a wrapped index refers to.
+std::size_t wrapped(double index, int size, TextureWrap wrap) {
+    const double count = size;
+    if (wrap == TextureWrap::clamp)
+        return static_cast<std::size_t>(std::clamp(index, 0.0, count - 1.0));
+    const double period = wrap == TextureWrap::mirror ? 2.0 * count : count;
+    // Large doubles are coarser than texels, so that the remainder may be a whole period.
+    const double within = std::min(index - std::floor(index / period) * period, period - 1.0);
+    return static_cast<std::size_t>(within < count ? within : period - 1.0 - within);
+}
+
+/// Filters value(texel) at a texture coordinate.
+template <typename Value>
+glm::dvec3 filtered(const SurfaceTexture& texture, const glm::dvec2& texcoord, const Value& value) {
+    const Image& image = *texture.image;
+    glm::dvec2 uv = texcoord;
+    if (texture.transform != GltfTextureTransform{})
+        uv = glm::dvec2(transformed(texture.transform, glm::vec2(texcoord)));
+    if (!is_finite(uv)) uv = glm::dvec2(0.0);
+    const glm::dvec2 place = uv * glm::dvec2(image.width, image.height);
+    const auto at = [&](double x, double y) {
+        return value(wrapped(y, image.height, texture.wrap_v) *
+                         static_cast<std::size_t>(image.width) +
+                     wrapped(x, image.width, texture.wrap_u));
+    };
+    if (texture.filter == TextureFilter::nearest) {
+        const glm::dvec2 texel = glm::floor(place);
+        return at(texel.x, texel.y);
+    }
+    const glm::dvec2 corner = glm::floor(place - 0.5);
+    const glm::dvec2 share = place - 0.5 - corner;
+    const glm::dvec3 upper =
+        glm::mix(at(corner.x, corner.y), at(corner.x + 1.0, corner.y), share.x);
+    const glm::dvec3 lower =
+        glm::mix(at(corner.x, corner.y + 1.0), at(corner.x + 1.0, corner.y + 1.0), share.x);
+    return glm::mix(upper, lower, share.y);
+}
+
+/// Returns the linear values of 8-bit sRGB codes.
+const std::array<double, 256>& linear_from_bytes() {
+    static const std::array<double, 256> table = [] {
+        std::array<double, 256> linear{};
+        for (std::size_t code = 0; code < linear.size(); ++code)
+            linear[code] = static_cast<double>(linear_from_srgb(static_cast<float>(code) / 255.0F));
+        return linear;
+    }();
+    return table;
+}
+
+template <typename Sample>
+double linear_value(Sample sample, bool is_srgb) {
+    if constexpr (std::is_same_v<Sample, std::uint8_t>) {
+        return is_srgb ? linear_from_bytes()[sample] : sample / 255.0;
+    } else if constexpr (std::is_same_v<Sample, std::uint16_t>) {
+        return is_srgb
+                   ? static_cast<double>(linear_from_srgb(static_cast<float>(sample) / 65535.0F))
+                   : sample / 65535.0;
+    } else {
+        return static_cast<double>(sample);
+    }
+}
+
+void check(const SurfaceTexture& texture, int min_channels, const char* what) {
+    if (texture.image == nullptr || texture.image->empty())
+        throw InvalidInput(fmt::format("{} without an image", what));
+    if (texture.image->channels < min_channels) {
+        throw InvalidInput(
+            fmt::format("{} of {} channels, not {}", what, texture.image->channels, min_channels));
+    }
+}
+
 constexpr double usual_share = 0.99;  // Of the area.
-constexpr std::size_t most_asked = 250'000;
+constexpr std::size_t max_area_samples = 250'000;
 
 const HighDetail* detail_of(const Mesh& mesh, const BakeOptions& options) {
     for (const HighDetail& detail : options.details) {
@@ -36,9 +114,9 @@ bool has_normal_map(const HighDetail* detail) {
                        [](const HighMaterial& material) { return material.normal_map; });
 }
 
-/// What is asked of a mesh that it does not have.
-void count_missing(const Mesh& mesh, const HighDetail* detail, std::size_t index,
-                   const BakeLayers& layers, Report& report) {
+/// Reports layers whose input a mesh does not have.
+void report_missing(const Mesh& mesh, const HighDetail* detail, std::size_t index,
+                    const BakeLayers& layers, Report& report) {
     if (layers.colors && mesh.colors.empty() &&
         (detail == nullptr || (detail->materials.empty() && !detail->otherwise)))
         report.add("high mesh without colours", "mesh", index, "is white");
@@ -61,7 +139,7 @@ Wide interpolated(std::span<const Value> values, const glm::uvec3& corners, cons
     return sum;
 }
 
-/// Of maps that are covered all over.
+/// Returns the number of rays if charts cover the maps completely.
 double expected_rays(const BakeOptions& options) {
     const int rays = options.layers.occlusion ? options.layers.occlusion->rays : 0;
     return static_cast<double>(options.map_count) * options.width * options.height *
@@ -69,6 +147,65 @@ double expected_rays(const BakeOptions& options) {
 }
 
 }  // namespace
+
+glm::dvec3 color_at(const SurfaceTexture& texture, const glm::dvec2& texcoord) {
+    const Image& image = *texture.image;
+    const auto channels = static_cast<std::size_t>(image.channels);
+    const bool is_srgb = image.color_space == ColorSpace::srgb;
+    return std::visit(
+        [&](const auto& samples) {
+            return filtered(texture, texcoord, [&](std::size_t texel) {
+                const auto* sample = &samples[channels * texel];
+                const double red = linear_value(sample[0], is_srgb);
+                if (channels < 3) return glm::dvec3(red);
+                return glm::dvec3(red, linear_value(sample[1], is_srgb),
+                                  linear_value(sample[2], is_srgb));
+            });
+        },
+        image.samples);
+}
+
+glm::dvec3 normal_at(const SurfaceNormalMap& map, const glm::dvec2& texcoord) {
+    const Image& image = *map.texture.image;
+    const auto channels = static_cast<std::size_t>(image.channels);
+    const auto scale = static_cast<double>(map.scale);
+    const glm::dvec3 scales(scale, map.green == Green::up ? scale : -scale, 1.0);
+    return std::visit(
+        [&](const auto& samples) {
+            using Sample = std::decay_t<decltype(samples[0])>;
+            const NormalCoding<Sample> coding{map.flat};
+            const ExactFlat<Sample> exact(map.flat == FlatCode::half ? map.flat_codes
+                                                                     : std::nullopt);
+            return scales * filtered(map.texture, texcoord, [&](std::size_t texel) {
+                       const Sample* sample = &samples[channels * texel];
+                       if (exact.is_flat(sample[0], sample[1]))
+                           return glm::dvec3(0.0, 0.0, coding.decoded(sample[2]));
+                       return glm::dvec3(coding.decoded(sample[0]), coding.decoded(sample[1]),
+                                         coding.decoded(sample[2]));
+                   });
+        },
+        image.samples);
+}
+
+void check(const HighDetail& detail) {
+    std::vector<HighMaterial> all = detail.materials;
+    if (detail.otherwise) all.push_back(*detail.otherwise);
+    for (const HighMaterial& material : all) {
+        if (material.color_texture) check(*material.color_texture, 1, "a colour texture");
+        if (material.normal_map) check(material.normal_map->texture, 3, "a normal map");
+    }
+    const std::size_t vertices = detail.mesh->positions.size();
+    if (!detail.color_texcoords.empty() && detail.color_texcoords.size() != vertices) {
+        throw InvalidInput(fmt::format("{} texture coordinates for {} vertices",
+                                       detail.color_texcoords.size(), vertices));
+    }
+    for (const MaterialRange& range : detail.mesh->material_ranges) {
+        if (range.material && *range.material >= detail.materials.size()) {
+            throw InvalidInput(fmt::format("a high mesh names material {}, but there are only {}",
+                                           *range.material, detail.materials.size()));
+        }
+    }
+}
 
 HighSurface::HighSurface(std::span<const Mesh> meshes, const BakeOptions& options, Report& report)
     : made_(meshes.size()) {
@@ -125,7 +262,7 @@ HighSurface::Entry HighSurface::entry(const Mesh& mesh, std::size_t index,
     Entry result;
     result.mesh = &mesh;
     const HighDetail* detail = detail_of(mesh, options);
-    count_missing(mesh, detail, index, layers, report);
+    report_missing(mesh, detail, index, layers, report);
     if (layers.normals || layers.colors) result.detail = detail;
     if (layers.colors && detail != nullptr) {
         result.color_texcoords =
@@ -157,7 +294,7 @@ const HighMaterial* HighSurface::material(const RayHit& hit) const {
     const HighMaterial* otherwise = entry.detail->otherwise ? &*entry.detail->otherwise : nullptr;
     const std::vector<MaterialRange>& ranges = entry.mesh->material_ranges;
     if (ranges.empty()) {
-        // Nothing is said of triangles: the only material is that of all.
+        // Without ranges, one material applies to all triangles.
         return otherwise != nullptr || entry.detail->materials.empty()
                    ? otherwise
                    : &entry.detail->materials.front();
@@ -175,30 +312,31 @@ glm::dvec3 HighSurface::face_normal(const RayHit& hit) const {
     return direction_or_zero(glm::cross(place[1] - place[0], place[2] - place[0]));
 }
 
-glm::dvec3 HighSurface::smooth_normal(const RayHit& hit, std::size_t sample, Report& found) const {
+glm::dvec3 HighSurface::smooth_normal(const RayHit& hit, std::size_t sample, Report& report) const {
     const Mesh& mesh = *entries_[hit.mesh].mesh;
     const glm::dvec3 unit = direction_or_zero(
         interpolated<glm::vec3>(mesh.normals, mesh.triangles[hit.triangle], hit, glm::dvec3(0.0)));
     if (unit != glm::dvec3(0.0)) return unit;
-    found.add("high normal without direction", "texel", sample, "is its triangle's");
+    report.add("high normal without direction", "texel", sample, "is its triangle's");
     return face_normal(hit);
 }
 
-glm::dvec3 HighSurface::normal(const RayHit& hit, std::size_t sample, Report& found) const {
-    const HighMaterial* what = material(hit);
+glm::dvec3 HighSurface::normal(const RayHit& hit, std::size_t sample, Report& report) const {
+    const HighMaterial* hit_material = material(hit);
     const Mesh& mesh = *entries_[hit.mesh].mesh;
-    if (what == nullptr || !what->normal_map || mesh.tangents.empty() || mesh.texcoords.empty())
-        return smooth_normal(hit, sample, found);
+    if (hit_material == nullptr || !hit_material->normal_map || mesh.tangents.empty() ||
+        mesh.texcoords.empty())
+        return smooth_normal(hit, sample, report);
     TexelFrame frame(mesh, hit.triangle, hit.weights);
-    const GltfTextureTransform& transform = what->normal_map->texture.transform;
+    const GltfTextureTransform& transform = hit_material->normal_map->texture.transform;
     if (transform != GltfTextureTransform{}) frame = frame.transformed_by(transform);
     const glm::dvec2 texcoord =
         interpolated<glm::vec2>(mesh.texcoords, mesh.triangles[hit.triangle], hit, glm::dvec2(0.0));
     const glm::dvec3 unit =
-        direction_or_zero(frame.to_object(normal_at(*what->normal_map, texcoord)));
+        direction_or_zero(frame.to_object(normal_at(*hit_material->normal_map, texcoord)));
     if (frame.is_usable() && unit != glm::dvec3(0.0)) return unit;
-    found.add("high normal map without a frame or a direction", "texel", sample, "is left out");
-    return smooth_normal(hit, sample, found);
+    report.add("high normal map without a frame or a direction", "texel", sample, "is left out");
+    return smooth_normal(hit, sample, report);
 }
 
 glm::dvec3 HighSurface::position(const RayHit& hit) const {
@@ -221,25 +359,26 @@ glm::dvec3 HighSurface::color(const RayHit& hit) const {
         color =
             glm::dvec3(interpolated<glm::vec4>(entry.mesh->colors, corners, hit, glm::dvec4(0.0)));
     }
-    const HighMaterial* what = material(hit);
-    if (what == nullptr) return color;
-    color *= glm::dvec3(what->color);
-    if (!what->color_texture || entry.color_texcoords.empty()) return color;
+    const HighMaterial* hit_material = material(hit);
+    if (hit_material == nullptr) return color;
+    color *= glm::dvec3(hit_material->color);
+    if (!hit_material->color_texture || entry.color_texcoords.empty()) return color;
     const glm::dvec2 texcoord =
         interpolated<glm::vec2>(entry.color_texcoords, corners, hit, glm::dvec2(0.0));
-    return color * color_at(*what->color_texture, texcoord);
+    return color * color_at(*hit_material->color_texture, texcoord);
 }
 
 HighSurface::CurvatureRange HighSurface::curvature_range() const {
     CurvatureRange range;
-    std::vector<std::pair<float, double>> sizes;  // Of each corner, with its share of the area.
+    std::vector<std::pair<float, double>>
+        curvatures;  // Absolute curvatures of corners, with their shares of the area.
     double area = 0.0;
     for (std::size_t i = 0; i < entries_.size(); ++i) {
         const Entry& entry = entries_[i];
         for (const float value : entry.curvature)
             range.greatest = std::max(range.greatest, static_cast<double>(std::abs(value)));
-        // Of many triangles some all over.
-        const std::size_t stride = entry.mesh->triangles.size() / most_asked + 1;
+        // A large mesh is sampled with a stride.
+        const std::size_t stride = entry.mesh->triangles.size() / max_area_samples + 1;
         for (std::size_t triangle = 0; triangle < entry.mesh->triangles.size();
              triangle += stride) {
             const auto corners = scene_->corners(static_cast<std::uint32_t>(i),
@@ -249,14 +388,14 @@ HighSurface::CurvatureRange HighSurface::curvature_range() const {
             if (entry.curvature.empty() || !std::isfinite(share)) continue;
             for (int corner = 0; corner < 3; ++corner) {
                 const std::uint32_t vertex = entry.mesh->triangles[triangle][corner];
-                sizes.emplace_back(std::abs(entry.curvature[vertex]), share);
+                curvatures.emplace_back(std::abs(entry.curvature[vertex]), share);
                 area += share;
             }
         }
     }
-    std::sort(sizes.begin(), sizes.end());
+    std::sort(curvatures.begin(), curvatures.end());
     double below = 0.0;
-    for (const auto& [size, share] : sizes) {
+    for (const auto& [size, share] : curvatures) {
         range.usual = static_cast<double>(size);
         below += share;
         if (below >= usual_share * area) break;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// The high meshes of a bake: rays into all of them, and what is known where one hits. Each
-/// attribute is a function of a hit, made ready only if it is wanted.
-/// Tests: tests/mesh/bake/bake_test.cpp, high_detail_test.cpp.
+/// The high-poly meshes of a bake: a ray scene, and the attributes at a hit (normal, color,
+/// curvature, position). An attribute is prepared only if a layer needs it. Tests:
+/// tests/mesh/bake/bake_test.cpp, high_detail_test.cpp.
 #pragma once
 
 #include <memory>
@@ -10,65 +10,82 @@
 
 #include "bake/ray_scene.h"
 #include "relief/mesh/bake.h"
+#include "relief/mesh/high_detail.h"
 #include "relief/mesh/mesh.h"
 #include "relief/mesh/report.h"
 
 namespace relief {
 
+/// Textures are decoded to linear values before they are filtered, in double, as OpenGL defines it
+/// for the full-size level. A coordinate that is not finite reads the first texel.
+
+/// Returns the linear RGB color of a texture.
+glm::dvec3 color_at(const SurfaceTexture& texture, const glm::dvec2& texcoord);
+
+/// Returns the normal of a normal map, y up, with x and y scaled; its length is arbitrary.
+glm::dvec3 normal_at(const SurfaceNormalMap& map, const glm::dvec2& texcoord);
+
+/// Checks the images, materials and texture coordinates of a high mesh.
+/// \throws InvalidInput if an image is missing, empty or has too few channels, if the mesh names a
+///         missing material, or if texture coordinates and vertices differ in number
+void check(const HighDetail& detail);
+
 class HighSurface {
   public:
-    /// The meshes, and what the options name, must outlive this. Meshes without normals get
-    /// averaged ones (frames.h), those with normal maps MikkTSpace's tangents where they have none.
-    /// \throws InvalidInput if one is not valid
+    /// The meshes and everything that the options refer to must outlive this object. Meshes without
+    /// normals get averaged ones (frames.h). Meshes with normal maps but without tangents get
+    /// MikkTSpace tangents. \throws InvalidInput if a mesh is not valid
     HighSurface(std::span<const Mesh> meshes, const BakeOptions& options, Report& report);
 
     [[nodiscard]] const RayScene& scene() const { return *scene_; }
 
-    /// Unit, interpolated; where it has no direction, the triangle's own, and counted.
+    /// Returns the interpolated unit normal. If it has no direction, the result is the face normal,
+    /// and is reported.
     [[nodiscard]] glm::dvec3 smooth_normal(const RayHit& hit, std::size_t sample,
-                                           Report& found) const;
+                                           Report& report) const;
 
-    /// The same with the mesh's normal map on top, if normals are wanted.
-    [[nodiscard]] glm::dvec3 normal(const RayHit& hit, std::size_t sample, Report& found) const;
+    /// Returns the smooth normal with the normal map applied, if a normal layer is requested.
+    [[nodiscard]] glm::dvec3 normal(const RayHit& hit, std::size_t sample, Report& report) const;
 
-    /// The triangle's own, unit.
+    /// Returns the unit normal of the triangle.
     [[nodiscard]] glm::dvec3 face_normal(const RayHit& hit) const;
 
     [[nodiscard]] glm::dvec3 position(const RayHit& hit) const;
 
-    /// If wanted: mean curvature, interpolated; positive where it bulges to the front.
+    /// Returns the interpolated mean curvature, positive where the surface is convex, if requested.
     [[nodiscard]] double curvature(const RayHit& hit) const;
 
-    /// If wanted: linear RGB; white where the mesh has none.
+    /// Returns the linear RGB color, white if the mesh has none, if requested.
     [[nodiscard]] glm::dvec3 color(const RayHit& hit) const;
 
-    /// Over all meshes, if wanted: what most of their area does not exceed, and none of it does.
+    /// Bounds of the absolute curvature over all meshes, if requested.
     struct CurvatureRange {
-        double usual = 0.0;  ///< On 99% of the area.
+        double usual = 0.0;  ///< Holds on 99% of the area.
         double greatest = 0.0;
     };
     [[nodiscard]] CurvatureRange curvature_range() const;
 
-    /// Of any position, in size, in other axes: at most this.
+    /// Returns the largest absolute coordinate of a position in other axes.
     [[nodiscard]] double largest_coordinate(const glm::dmat4& axes_from_mesh) const;
 
   private:
-    /// A mesh and what hangs on it.
+    /// A mesh with its attributes.
     struct Entry {
         const Mesh* mesh = nullptr;
-        const HighDetail* detail = nullptr;  ///< None where nothing asks for it.
+        const HighDetail* detail = nullptr;  ///< Null if no layer needs it.
         std::span<const glm::vec2> color_texcoords;
-        std::vector<glm::vec2> split_texcoords;  ///< The same, where vertices were split.
-        std::vector<float> curvature;            ///< By vertex.
+        std::vector<glm::vec2>
+            split_texcoords;           ///< Storage of `color_texcoords` if vertices were split.
+        std::vector<float> curvature;  ///< By vertex.
     };
     [[nodiscard]] Entry entry(const Mesh& mesh, std::size_t index, const BakeOptions& options,
                               Report& report);
     [[nodiscard]] const HighMaterial* material(const RayHit& hit) const;
-    /// Whatever a bake can read of a triangle, in an order that does not depend on which of its
-    /// corners is the first one.
+    /// All attributes of a triangle that a bake can read, independent of its first corner. They
+    /// order triangles that coincide.
     [[nodiscard]] std::vector<std::uint32_t> attributes(const MetTriangle& met) const;
 
-    std::vector<Mesh> made_;  ///< Those that had to be given normals or tangents.
+    std::vector<Mesh> made_;  ///< Meshes that got normals or tangents.
     std::vector<Entry> entries_;
     std::unique_ptr<RayScene> scene_;
 };

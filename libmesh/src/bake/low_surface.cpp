@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Directions by vertex once, then by texel whatever is asked for. Tests:
-// tests/mesh/bake/bake_test.cpp.
+// Texels on the low-poly mesh: interpolated positions and ray directions.
+// Tests: tests/mesh/bake/bake_test.cpp, border_sample_test.cpp.
 #include "bake/low_surface.h"
 
 #include <fmt/format.h>
+
+#include <cmath>
 
 #include "geometry/direction.h"
 #include "relief/mesh/error.h"
@@ -13,35 +15,48 @@
 namespace relief {
 namespace {
 
-std::vector<glm::vec3> corner_places(const Mesh& cage, const Mesh& low) {
+std::vector<glm::vec3> cage_corners(const Mesh& cage, const Mesh& low) {
     validate(cage);
     if (cage.triangles.size() != low.triangles.size()) {
         throw InvalidInput(fmt::format("the cage has {} triangles, not {} as the low mesh",
                                        cage.triangles.size(), low.triangles.size()));
     }
-    std::vector<glm::vec3> places;
-    places.reserve(3 * cage.triangles.size());
+    std::vector<glm::vec3> positions;
+    positions.reserve(3 * cage.triangles.size());
     for (const glm::uvec3& triangle : cage.triangles) {
         for (int i = 0; i < 3; ++i)
-            places.push_back(cage.positions[triangle[i]]);
+            positions.push_back(cage.positions[triangle[i]]);
     }
-    return places;
+    return positions;
 }
 
-/// Normals averaged over all that meets at a position, drawn to the mesh's own.
-std::vector<glm::vec3> directions_of(const Mesh& mesh, const BakeOptions& options) {
+/// Returns the ray directions by vertex: smoothed normals (hard edges ignored), blended with the
+/// vertex normals by the hardness. Empty for face normals.
+std::vector<glm::vec3> ray_directions(const Mesh& mesh, const BakeOptions& options) {
     if (options.directions == RayDirections::face) return {};
     if (options.directions == RayDirections::shading) return mesh.normals;
-    // What is wrong with triangles has been said of the frames, or of the rays.
-    Report unsaid;
+    Report ignored;  // Frames and rays report defects of triangles.
     std::vector<glm::vec3> directions =
-        vertex_normals(mesh.positions, mesh.triangles, NormalWeight::angle, unsaid);
+        vertex_normals(mesh.positions, mesh.triangles, NormalWeight::angle, ignored);
     if (options.hardness == 0.0) return directions;
     for (std::size_t i = 0; i < directions.size(); ++i) {
         directions[i] = rounded(direction_or_zero(
             glm::mix(glm::dvec3(directions[i]), glm::dvec3(mesh.normals[i]), options.hardness)));
     }
     return directions;
+}
+
+double sum(const glm::dvec3& v) {
+    return v.x + v.y + v.z;
+}
+
+/// Returns the inverse of the height of each corner above its opposite edge.
+glm::dvec3 inverse_heights(const Mesh& mesh, const glm::uvec3& corners) {
+    const glm::dvec3 a(mesh.positions[corners.x]);
+    const glm::dvec3 b(mesh.positions[corners.y]);
+    const glm::dvec3 c(mesh.positions[corners.z]);
+    const double twice_area = glm::length(glm::cross(b - a, c - a));
+    return glm::dvec3(glm::distance(b, c), glm::distance(c, a), glm::distance(a, b)) / twice_area;
 }
 
 }  // namespace
@@ -57,10 +72,10 @@ LowSurface::LowSurface(const Mesh& low, const BakeOptions& options, Report& repo
                                              : TangentMode::keep;
     mesh_ = with_frames(low, frames, report).mesh;
     if (options.cage != nullptr) {
-        cage_ = corner_places(*options.cage, low);
+        cage_ = cage_corners(*options.cage, low);
         cage_inside_ = options.max_distance;
     } else {
-        directions_ = directions_of(mesh_, options);
+        directions_ = ray_directions(mesh_, options);
     }
 }
 
@@ -84,11 +99,11 @@ glm::dvec3 LowSurface::interpolated(std::span<const glm::vec3> values,
 }
 
 glm::dvec3 LowSurface::direction(const CoveredTexel& texel, std::size_t sample,
-                                 Report& found) const {
+                                 Report& report) const {
     if (!directions_.empty()) {
         const glm::dvec3 outward = direction_or_zero(interpolated(directions_, texel));
         if (outward != glm::dvec3(0.0)) return outward;
-        found.add("ray without a direction", "texel", sample, "runs along its triangle's normal");
+        report.add("ray without a direction", "texel", sample, "runs along its triangle's normal");
     }
     const glm::uvec3 corners = mesh_.triangles[texel.triangle];
     const glm::dvec3 a(mesh_.positions[corners.x]);
@@ -97,7 +112,7 @@ glm::dvec3 LowSurface::direction(const CoveredTexel& texel, std::size_t sample,
 }
 
 ProjectionLine LowSurface::line(const CoveredTexel& texel, const BakeDistances& distances,
-                                std::size_t sample, Report& found) const {
+                                std::size_t sample, Report& report) const {
     ProjectionLine line;
     line.point = interpolated(mesh_.positions, texel);
     line.outside = distances.offset;
@@ -114,14 +129,35 @@ ProjectionLine LowSurface::line(const CoveredTexel& texel, const BakeDistances& 
         line.inside = cage_inside_.value_or(line.outside);
         line.outward = direction_or_zero(start - line.point);
     } else {
-        line.outward = direction(texel, sample, found);
+        line.outward = direction(texel, sample, report);
     }
-    // Without a direction, or not finite: a line that is over before it begins.
+    // A line without a direction, or that is not finite, gets a negative length.
     if (!(glm::length(line.outward) > 0.5) || !is_finite(line.point)) {
-        found.add("place without a ray", "texel", sample, "missed");
+        report.add("place without a ray", "texel", sample, "missed");
         line = {glm::dvec3(0.0), glm::dvec3(0.0, 0.0, 1.0), -1.0, 0.0};
     }
     return line;
+}
+
+std::optional<CoveredTexel> moved_inside(const Mesh& mesh, const CoveredTexel& texel,
+                                         double distance) {
+    const glm::dvec3 weights(texel.weights());
+    glm::dvec3 least = distance * inverse_heights(mesh, mesh.triangles[texel.triangle]);
+    if (!std::isfinite(sum(least))) return std::nullopt;
+    if (glm::all(glm::greaterThanEqual(weights, least))) return std::nullopt;
+    // The distance from an edge is the weight of the opposite corner times that corner's height.
+    // Weights that are too small are raised; the others give in proportion to their excess.
+    glm::dvec3 moved;
+    if (sum(least) >= 1.0) {
+        moved = least / sum(least);  // Proportional to the lengths of the edges: the incenter.
+    } else {
+        const glm::dvec3 excess = glm::max(weights - least, glm::dvec3(0.0));
+        moved = least + excess * ((1.0 - sum(least)) / sum(excess));
+    }
+    CoveredTexel result = texel;
+    result.second = static_cast<float>(moved.y);
+    result.third = static_cast<float>(moved.z);
+    return result;
 }
 
 }  // namespace relief

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// The low mesh of a bake: where a texel is on it, along which line its ray runs, and what a normal
-/// is in its tangent space. Space and unit of the meshes; in double.
-/// Tests: tests/mesh/bake/bake_test.cpp.
+/// The low-poly mesh of a bake: positions and projection lines of texels. All values are in the
+/// space and unit of the meshes, in double. Tests: tests/mesh/bake/bake_test.cpp,
+/// border_sample_test.cpp.
 #pragma once
 
+#include <optional>
+
 #include "bake/projection.h"
-#include "bake/texel_frame.h"
 #include "relief/mesh/bake.h"
 
 namespace relief {
@@ -16,33 +17,44 @@ class LowSurface {
     /// \throws InvalidInput as bake_normals()
     LowSurface(const Mesh& low, const BakeOptions& options, Report& report);
 
-    /// The mesh with the frames that the map will be seen with.
+    /// Returns the mesh with the frames that renderers of the map use.
     [[nodiscard]] const Mesh& mesh() const { return mesh_; }
 
-    /// \param sample  for what is found out about a line, the index that it is counted by
+    /// Returns the line along which a texel is projected onto the high meshes.
+    /// \param sample  the texel index for findings
     [[nodiscard]] ProjectionLine line(const CoveredTexel& texel, const BakeDistances& distances,
-                                      std::size_t sample, Report& found) const;
+                                      std::size_t sample, Report& report) const;
 
-    /// Where a texel is.
+    /// Returns the position of a texel on the mesh.
     [[nodiscard]] glm::dvec3 position(const CoveredTexel& texel) const {
         return interpolated(mesh_.positions, texel);
     }
 
-    /// Whether rays run from a cage.
+    /// Returns whether rays start on a cage.
     [[nodiscard]] bool has_cage() const { return !cage_.empty(); }
-    /// How far the cage is from the mesh at most; 0 without one.
+    /// Returns the largest distance of a cage vertex from its mesh vertex; 0 without a cage.
     [[nodiscard]] double cage_reach() const;
 
   private:
     [[nodiscard]] glm::dvec3 direction(const CoveredTexel& texel, std::size_t sample,
-                                       Report& found) const;
+                                       Report& report) const;
     [[nodiscard]] glm::dvec3 interpolated(std::span<const glm::vec3> values,
                                           const CoveredTexel& texel) const;
 
     Mesh mesh_;
-    std::vector<glm::vec3> directions_;  ///< By vertex; none: of faces.
-    std::vector<glm::vec3> cage_;        ///< Its places, by corner.
-    std::optional<double> cage_inside_;  ///< How far rays go on behind the surface.
+    std::vector<glm::vec3> directions_;  ///< By vertex; empty for face normals.
+    std::vector<glm::vec3> cage_;        ///< Cage positions by corner.
+    std::optional<double> cage_inside_;  ///< Ray length behind the surface.
 };
+
+/// Moves a sample to at least `distance` from every edge of its triangle. If the triangle is too
+/// small, the sample moves to the incenter. Returns none if the sample is far enough inside
+/// already, or if its triangle has no area or is not finite.
+///
+/// A texel that only touches a chart has its nearest point exactly on an edge. If the high mesh has
+/// an open border there, rounding decides whether a ray through that point hits it. A point further
+/// inside than the rounding errors has no such problem.
+std::optional<CoveredTexel> moved_inside(const Mesh& mesh, const CoveredTexel& texel,
+                                         double distance);
 
 }  // namespace relief

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Readings of a map tried one after another on some of its texels, the best one kept, part by part.
-// In double, in the axes of the meshes, degrees. Tests: tests/mesh/bake/map_convention_test.cpp.
+// Finds the convention of a normal map by local search: candidate conventions are compared on some
+// of its texels, and the best one is kept. Errors are in degrees, in the space of the meshes.
+// Tests: tests/mesh/bake/map_convention_test.cpp.
 #include "relief/mesh/map_convention.h"
 
 #include <algorithm>
@@ -17,12 +18,12 @@
 namespace relief {
 namespace {
 
-constexpr std::size_t most_texels = 4096;
-constexpr double kept_share = 0.98;  // Of texels, the best ones: silhouettes say nothing.
+constexpr std::size_t max_texels = 4096;
+constexpr double kept_share = 0.98;  // Of the best texels; the others may be silhouettes.
 constexpr double sure_degrees = 0.02;
-constexpr double least_gain = 0.8;  // A round must bring the error below so much of what it was.
-constexpr double alike = 0.98;      // Readings this close to each other fit alike.
-constexpr int most_rounds = 3;
+constexpr double max_remaining = 0.8;  // A round must reduce the error to this share.
+constexpr double tie_ratio = 0.98;     // Errors within this ratio are ties.
+constexpr int max_rounds = 3;
 
 constexpr std::array curves = {StoredCurve::none, StoredCurve::srgb_encoded,
                                StoredCurve::srgb_decoded};
@@ -35,7 +36,7 @@ constexpr std::array bases = {MapBasis::used, MapBasis::mikktspace, MapBasis::ar
 constexpr std::array frames = {MapFrame::interpolated, MapFrame::unit, MapFrame::orthonormal,
                                MapFrame::vertex_bitangent};
 
-/// Every signed permutation, or those that leave z alone; plain signs first.
+/// All signed permutations, or those that keep z; positive signs come first.
 std::vector<AxisMapping> mappings(bool keeps_z) {
     std::vector<AxisMapping> all;
     std::array<int, 3> order = {0, 1, 2};
@@ -52,10 +53,10 @@ std::vector<AxisMapping> mappings(bool keeps_z) {
 }
 
 /// Tangents by corner.
-using Corners = std::vector<glm::vec4>;
+using CornerTangents = std::vector<glm::vec4>;
 
-Corners corners_of(const Mesh& mesh) {
-    Corners corners;
+CornerTangents corner_tangents(const Mesh& mesh) {
+    CornerTangents corners;
     corners.reserve(3 * mesh.triangles.size());
     for (const glm::uvec3& triangle : mesh.triangles) {
         for (int i = 0; i < 3; ++i)
@@ -64,27 +65,28 @@ Corners corners_of(const Mesh& mesh) {
     return corners;
 }
 
-Corners corners_by(const Mesh& mesh, MapBasis basis) {
-    Report unsaid;  // What is wrong with the mesh, the bake has said.
+CornerTangents make_corner_tangents(const Mesh& mesh, MapBasis basis) {
+    Report ignored;  // The bake reports defects of the mesh.
     const auto make = basis == MapBasis::area_weighted ? area_weighted_tangents
                       : basis == MapBasis::lengyel     ? lengyel_tangents
                                                        : mikktspace_tangents;
-    return make(mesh.positions, mesh.normals, mesh.texcoords, mesh.triangles, unsaid);
+    return make(mesh.positions, mesh.normals, mesh.texcoords, mesh.triangles, ignored);
 }
 
+/// The errors of a map under different conventions.
 class Readings {
   public:
     Readings(const Image& map, std::span<const KnownTexel> texels, const ConventionSearch& search)
         : map_(map), search_(search) {
-        const std::size_t step = (texels.size() + most_texels - 1) / most_texels;
+        const std::size_t step = (texels.size() + max_texels - 1) / max_texels;
         for (std::size_t i = 0; i < texels.size(); i += step)
             texels_.push_back(texels[i]);
     }
 
-    /// How far off the map is, read so.
+    /// Returns the error of the map under a convention.
     double error(const MapConvention& convention) {
         ++tried;
-        const Corners* tangents =
+        const CornerTangents* tangents =
             convention.space == MapAxes::tangent ? &tangents_by(convention.basis) : nullptr;
         std::vector<double> degrees(texels_.size());
         parallel_for(texels_.size(), 512, [&](std::size_t begin, std::size_t end) {
@@ -117,22 +119,22 @@ class Readings {
         return kept.rms();
     }
 
-    const Corners& tangents_by(MapBasis basis) {
+    const CornerTangents& tangents_by(MapBasis basis) {
         const auto known = corners_.find(basis);
         if (known != corners_.end()) return known->second;
         const Mesh& low = *search_.low;
-        const bool has_own = search_.given != nullptr && !search_.given->tangents.empty();
-        Corners made;
+        const bool has_given = search_.given != nullptr && !search_.given->tangents.empty();
+        CornerTangents made;
         if (basis == MapBasis::used && !low.tangents.empty())
-            made = corners_of(low);
-        else if (basis == MapBasis::used && has_own)
-            made = corners_of(*search_.given);
+            made = corner_tangents(low);
+        else if (basis == MapBasis::used && has_given)
+            made = corner_tangents(*search_.given);
         else
-            made = corners_by(low, basis);
+            made = make_corner_tangents(low, basis);
         return corners_.emplace(basis, std::move(made)).first->second;
     }
 
-    /// A sample of the map, 0 to 1, and how many codes there are above 0.
+    /// Returns a sample of the map, 0 to 1.
     [[nodiscard]] double sample(std::size_t index) const {
         if (map_.bits() == 8) return map_.as<std::uint8_t>()[index] / 255.0;
         if (map_.bits() == 16) return map_.as<std::uint16_t>()[index] / 65535.0;
@@ -151,12 +153,12 @@ class Readings {
 
     [[nodiscard]] glm::dvec3 stored(const KnownTexel& texel,
                                     const MapConvention& convention) const {
-        const bool turns_x =
+        const bool flips_x =
             convention.turn == MapTurn::mirrored || convention.turn == MapTurn::half_turn;
-        const bool turns_y =
+        const bool flips_y =
             convention.turn == MapTurn::upside_down || convention.turn == MapTurn::half_turn;
-        const int x = turns_x ? map_.width - 1 - texel.x : texel.x;
-        const int y = turns_y ? map_.height - 1 - texel.y : texel.y;
+        const int x = flips_x ? map_.width - 1 - texel.x : texel.x;
+        const int y = flips_y ? map_.height - 1 - texel.y : texel.y;
         const std::size_t first =
             (static_cast<std::size_t>(y) * static_cast<std::size_t>(map_.width) +
              static_cast<std::size_t>(x)) *
@@ -175,9 +177,8 @@ class Readings {
 
     [[nodiscard]] glm::dvec3 in_mesh(const KnownTexel& texel, const glm::dvec3& vector,
                                      const MapConvention& convention,
-                                     const Corners* tangents) const {
+                                     const CornerTangents* tangents) const {
         if (convention.space == MapAxes::world) return vector;
-        // Normals go back by the transpose of what takes them there, where that is a rotation.
         if (convention.space == MapAxes::object)
             return glm::inverse(search_.object_from_mesh) * vector;
         glm::dvec3 n(0.0), t(0.0), b(0.0);
@@ -208,11 +209,11 @@ class Readings {
     const Image& map_;
     const ConventionSearch& search_;
     std::vector<KnownTexel> texels_;
-    std::map<MapBasis, Corners> corners_;
+    std::map<MapBasis, CornerTangents> corners_;
 };
 
-/// All readings one step from another, the simplest first.
-std::vector<MapConvention> neighbours_of(const MapConvention& from) {
+/// All conventions one step away from another, the simplest first.
+std::vector<MapConvention> neighbors_of(const MapConvention& from) {
     static const std::vector<AxisMapping> in_plane_mappings = mappings(true);
     static const std::vector<AxisMapping> all_mappings = mappings(false);
     const auto mappings_of = [](MapAxes space) -> const std::vector<AxisMapping>& {
@@ -293,18 +294,18 @@ ConventionFit find_convention(const Image& map, std::span<const KnownTexel> texe
     fit.found_degrees = fit.told_degrees;
     const double fine = std::max(2.0 * fit.expected_degrees, fit.expected_degrees + sure_degrees);
     fit.was_searched = fit.told_degrees > fine;
-    for (int round = 0; round < most_rounds && fit.found_degrees > fine; ++round) {
+    for (int round = 0; round < max_rounds && fit.found_degrees > fine; ++round) {
         MapConvention best = fit.convention;
-        double least = fit.found_degrees;
-        for (const MapConvention& one : neighbours_of(fit.convention)) {
+        double min_degrees = fit.found_degrees;
+        for (const MapConvention& one : neighbors_of(fit.convention)) {
             const double degrees = readings.error(one);
-            if (degrees >= alike * least) continue;
+            if (degrees >= tie_ratio * min_degrees) continue;
             best = one;
-            least = degrees;
+            min_degrees = degrees;
         }
-        if (least > least_gain * fit.found_degrees) break;
+        if (min_degrees > max_remaining * fit.found_degrees) break;
         fit.convention = best;
-        fit.found_degrees = least;
+        fit.found_degrees = min_degrees;
     }
     fit.tried = readings.tried;
     fit.changes = changes_between(search.told, fit.convention);

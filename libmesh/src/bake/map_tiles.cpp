@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The tiles of a triangle's box, and of several those that it reaches into. Texture space, v down;
-// in double. Tests: tests/mesh/bake/map_tiles_test.cpp.
+// Assigns triangles to the texture tiles that they overlap. Texture space with v down, in double.
+// Tests: tests/mesh/bake/map_tiles_test.cpp.
 #include "relief/mesh/map_tiles.h"
 
 #include <fmt/format.h>
@@ -16,12 +16,12 @@
 namespace relief {
 namespace {
 
-constexpr double tile_margin = 1e-5;  // Of a tile's side.
-constexpr std::size_t most_tiles = 1000;
+constexpr double tile_margin = 1e-5;  // Relative to the side of a tile.
+constexpr std::size_t max_tiles = 1000;
 
 using Corners = std::array<glm::dvec2, 3>;
 
-/// First and last of the tiles that an interval reaches into.
+/// The first and the last tile that an interval overlaps.
 struct Interval {
     double first, last;
 
@@ -31,13 +31,13 @@ struct Interval {
     }
 };
 
-/// Whether an edge of the triangle has all of the square, but for the margin, outside of it.
+/// Returns whether an edge of the triangle separates it from the square.
 bool is_apart(const Corners& corners, const glm::dvec2& low, const glm::dvec2& high) {
     for (std::size_t i = 0; i < 3; ++i) {
         const glm::dvec2 edge = corners[(i + 1) % 3] - corners[i];
         const glm::dvec2 across(-edge.y, edge.x);
         const double third = glm::dot(across, corners[(i + 2) % 3] - corners[i]);
-        // Towards the triangle; of one without area, which way does not matter.
+        // The normal towards the triangle; for a triangle without area, either one.
         const glm::dvec2 inwards = third < 0.0 ? -across : across;
         const glm::dvec2 farthest(inwards.x > 0.0 ? high.x : low.x,
                                   inwards.y > 0.0 ? high.y : low.y);
@@ -46,13 +46,14 @@ bool is_apart(const Corners& corners, const glm::dvec2& low, const glm::dvec2& h
     return false;
 }
 
-/// By UDIM number, which also tells tiles apart that are next to each other.
+/// Orders tiles by UDIM number.
 struct ByNumber {
     bool operator()(const glm::ivec2& a, const glm::ivec2& b) const {
         return a.y != b.y ? a.y > b.y : a.x < b.x;
     }
 };
 
+/// Collects the triangles of each tile.
 class Sorting {
   public:
     explicit Sorting(const TileRange& range) : range_(range) {}
@@ -98,9 +99,9 @@ class Sorting {
   private:
     void place(const glm::ivec2& tile, std::uint32_t index) {
         tiles_[tile].push_back(index);
-        if (tiles_.size() > most_tiles) {
+        if (tiles_.size() > max_tiles) {
             throw InvalidInput(
-                fmt::format("the texture coordinates enter more than {} tiles", most_tiles));
+                fmt::format("the texture coordinates enter more than {} tiles", max_tiles));
         }
     }
 

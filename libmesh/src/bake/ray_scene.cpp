@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tests: tests/mesh/bake/ray_scene_test.cpp.
+// Ray casting against several meshes. Tests: tests/mesh/bake/ray_scene_test.cpp.
 #include "bake/ray_scene.h"
 
 #include <algorithm>
@@ -9,8 +9,8 @@
 namespace relief {
 namespace {
 
-/// If fewer rays are cast for each triangle, Embree's faster way to build a scene pays: it saves 85
-/// of 300 nanoseconds a triangle and costs 10 to 20 a ray (urn of 1.7 million triangles).
+/// Below this number of rays per triangle, Embree's fast build is worthwhile: it saves 85 of 300 ns
+/// per triangle and costs 10 to 20 ns per ray (urn of 1.7 million triangles).
 constexpr double few_rays_per_triangle = 5.0;
 
 SceneBuild build_for(double expected_rays, const std::vector<RayMesh>& meshes) {

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// The tangent space of a texel as the shader has it: normal and tangent interpolated linearly, not
-/// made unit again, and b = w cross(n, t). In double. The one home of this basis: what one way
-/// makes with it, the other takes back. Source: [Mikkelsen 2008]. Tests:
-/// tests/mesh/bake/normal_space_test.cpp.
+/// The tangent frame at a point of a triangle, as the shader computes it: normal and tangent are
+/// interpolated linearly and not renormalized, and b = w cross(n, t). Source: [Mikkelsen 2008].
+/// Tests: tests/mesh/bake/normal_space_test.cpp.
 #pragma once
 
 #include <cmath>
@@ -14,14 +13,14 @@
 
 namespace relief {
 
-/// Axes of tangent space, in object space.
+/// The axes of tangent space, in object space, in double.
 struct TexelFrame {
-    static constexpr double least_volume = 1e-6;  ///< Over the lengths of the axes.
+    static constexpr double min_volume = 1e-6;  ///< Relative to the lengths of the axes.
 
     glm::dvec3 tangent, bitangent, normal;
     double volume;
 
-    /// \param weights  of the triangle's corners
+    /// \param weights  barycentric
     TexelFrame(const Mesh& mesh, std::uint32_t triangle, const glm::dvec3& weights) {
         const glm::uvec3 corners = mesh.triangles[triangle];
         glm::dvec4 t(0.0);
@@ -33,7 +32,7 @@ struct TexelFrame {
         set_tangent(t);
     }
 
-    /// The frame in which a map is read whose texture coordinates a material transforms.
+    /// Returns the frame of a map whose texture coordinates a material transforms.
     [[nodiscard]] TexelFrame transformed_by(const GltfTextureTransform& transform) const {
         const double handedness = glm::dot(bitangent, glm::cross(normal, tangent)) < 0.0 ? -1 : 1;
         const glm::vec4 unit(glm::vec3(glm::normalize(tangent)), handedness);
@@ -45,8 +44,8 @@ struct TexelFrame {
 
     [[nodiscard]] bool is_usable() const {
         const double lengths = glm::length(tangent) * glm::length(normal);
-        // The bitangent's own length is in both; w near 0 makes it short.
-        return std::isfinite(volume) && std::abs(volume) > least_volume * lengths * lengths &&
+        // The bitangent has the length of tangent times normal times w; w near 0 makes it short.
+        return std::isfinite(volume) && std::abs(volume) > min_volume * lengths * lengths &&
                lengths > 0.0;
     }
     [[nodiscard]] glm::dvec3 to_object(const glm::dvec3& n) const {

@@ -7,7 +7,7 @@
 #include <array>
 #include <tuple>
 
-#include "rays/embree_scene.h"
+#include "bake/embree_scene.h"
 
 namespace relief::reference {
 

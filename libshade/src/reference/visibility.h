@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// The triangles that a ray from the eye hits, with exact positions. View space: the eye is at the
-/// origin and looks along -z. The rules of rays/embree_scene.h make the result the same on every
+/// origin and looks along -z. The rules of bake/embree_scene.h make the result the same on every
 /// processor.
 #pragma once
 

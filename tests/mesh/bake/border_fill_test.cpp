@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Filling to the border: as padding without a limit, to the bit, and no file is left.
-#include "bake/border_fill.h"
+#include "bake/edge_padding.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <random>
 
-#include "bake/dilation.h"
 #include "mesh/bake/bake_support.h"
 #include "relief/mesh/error.h"
 #include "relief/mesh/shapes.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Samples moved inside by hand; then whole bakes of open meshes onto themselves, whose borders
 // texels touch.
-#include "bake/border_sample.h"
+#include "bake/low_surface.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Padding against every texel tried, in strips of any size.
-#include "bake/dilation.h"
+#include "bake/edge_padding.h"
 
 #include <gtest/gtest.h>
 

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "bake/surface_texture.h"
+#include "bake/high_surface.h"
 #include "mesh/bake/bake_support.h"
 #include "relief/mesh/direction_error.h"
 #include "relief/mesh/error.h"

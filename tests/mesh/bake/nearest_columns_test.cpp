@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The envelope of parabolas against every column tried.
-#include "bake/nearest_columns.h"
+#include "bake/edge_padding.h"
 
 #include <gtest/gtest.h>
 

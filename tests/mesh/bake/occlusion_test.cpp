@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Occlusion against closed forms: under a disc, inside of a bowl, on what hides nothing of itself.
-#include "bake/occlusion.h"
+#include "bake/layers.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What Embree is asked for: the nearest triangle of each ray, every triangle of one, distances.
-#include "rays/embree_scene.h"
+#include "bake/embree_scene.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

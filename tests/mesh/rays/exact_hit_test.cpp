@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Whether a ray meets a triangle: held to whole numbers, and to closed surfaces, which let no ray
 // through.
-#include "rays/exact_hit.h"
+#include "bake/triangle_clusters.h"
 
 #include <gtest/gtest.h>
 

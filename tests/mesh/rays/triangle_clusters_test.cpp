@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Clusters of triangles: each triangle is in one, boxes hold their triangles, no candidate is left
 // out.
-#include "rays/triangle_clusters.h"
+#include "bake/triangle_clusters.h"
 
 #include <gtest/gtest.h>
 

@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rows in pieces of 4, or of as many as have samples in 4 rows, in blocks of 4 x 4 samples: rays
-// that run side by side share a packet. Tests: tests/mesh/bake/bake_test.cpp.
-#include "bake/band_bake.h"
+// Bakes rows of texels: rays in blocks of 4 x 4 samples, so that rays of a packet are coherent,
+// then sums and means per texel. Rows are processed in parallel pieces. Tests:
+// tests/mesh/bake/bake_test.cpp.
+#include "bake/bake_work.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <mutex>
 
-#include "bake/border_sample.h"
-#include "bake/layer_bake.h"
+#include "bake/layers.h"
+#include "bake/texel_frame.h"
 #include "geometry/direction.h"
 #include "geometry/portable_math.h"
 #include "parallel.h"
@@ -17,12 +18,12 @@
 namespace relief {
 namespace {
 
-constexpr int block = 4;                    // Samples along a block's side.
-constexpr std::size_t rays_at_once = 4096;  // What is known of them fits a cache.
+constexpr int block = 4;                    // Samples along the side of a block.
+constexpr std::size_t rays_at_once = 4096;  // Their data fits a cache.
 constexpr std::size_t max_first_missed = 8;
 constexpr int bins_per_octave = 8;  // Of ray lengths.
 
-/// Keeps the first of the missed texels, by row and column.
+/// Keeps the first missed texels, by row and column.
 void keep_first(std::vector<MissedTexel>& missed) {
     std::sort(missed.begin(), missed.end(), [](const MissedTexel& a, const MissedTexel& b) {
         return a.y != b.y ? a.y < b.y : a.x < b.x;
@@ -30,30 +31,31 @@ void keep_first(std::vector<MissedTexel>& missed) {
     if (missed.size() > max_first_missed) missed.resize(max_first_missed);
 }
 
-/// Whether a sample is among those that are cast first: in each 4 x 4 one a row and a column.
+/// Returns whether adaptive sampling casts a sample in its first pass: one in each row and column
+/// of 16.
 bool is_first(int x, int y, int side) {
     if (side == 2) return x == y;
     constexpr std::array<int, block> column = {1, 3, 0, 2};
     return column[static_cast<std::size_t>(y % block)] == x % block;
 }
 
-/// What has come together for a texel.
+/// The sums of a texel over its samples.
 struct TexelSum {
     glm::dvec3 normal{0.0};
     double height = 0.0;
     glm::dvec3 first{0.0};     ///< The normal of the first sample that hit.
-    double widest = 1.0;       ///< Least cosine between it and others.
-    bool lacks_frame = false;  ///< Some sample of it.
-    bool is_behind = false;    ///< Some sample's normal, behind the low surface.
+    double min_cosine = 1.0;   ///< Minimum cosine between it and the others.
+    bool lacks_frame = false;  ///< True if it holds for any sample.
+    bool is_behind = false;    ///< True if any normal points behind the low surface.
     std::uint32_t hits = 0;
     std::uint32_t cast = 0;
 };
 
-/// A piece: whole rows of texels, which no other piece writes to.
+/// Bakes a piece of the map: whole rows, which no other piece writes.
 class Piece {
   public:
     Piece(const BakeWork& work, int first_row, std::span<const CoveredTexel> owners,
-          const BakedRows& rows, int begin, int end, Report& found)
+          const BakedRows& rows, int begin, int end, Report& report)
         : work_(work),
           owners_(owners),
           rows_(rows),
@@ -61,11 +63,11 @@ class Piece {
           begin_(begin),
           end_(end),
           width_(work.options.width),
-          found_(found),
+          report_(report),
           needs_normals_(work.options.layers.normals || work.options.sample_angle),
           sums_(static_cast<std::size_t>(width_) * static_cast<std::size_t>(end - begin)) {
         const int samples = work.side * work.side;
-        if (LayerBake::is_wanted(work.options.layers)) {
+        if (LayerBake::is_requested(work.options.layers)) {
             layers_.emplace(
                 work.options.layers, map_index(0), sums_.size(),
                 is_adaptive_bake() ? first_count() : static_cast<std::uint32_t>(samples));
@@ -77,12 +79,12 @@ class Piece {
             cast([&](int x, int y, std::size_t) {
                 return is_first(x % work_.side, y % work_.side, work_.side);
             });
-            const double least = portable::cos(*work_.options.sample_angle);
+            const double limit = portable::cos(*work_.options.sample_angle);
             std::vector<bool> disagree(sums_.size());
             for (std::size_t i = 0; i < sums_.size(); ++i) {
                 const TexelSum& sum = sums_[i];
                 disagree[i] =
-                    sum.hits != sum.cast || sum.widest < least || sum.cast < first_count();
+                    sum.hits != sum.cast || sum.min_cosine < limit || sum.cast < first_count();
             }
             cast([&](int x, int y, std::size_t texel) {
                 return disagree[texel] && !is_first(x % work_.side, y % work_.side, work_.side);
@@ -104,9 +106,9 @@ class Piece {
         return static_cast<std::uint32_t>(count);
     }
 
-    /// Casts rays for all samples with an owner that are wanted, block by block.
-    template <typename Wanted>
-    void cast(const Wanted& wanted) {
+    /// Casts rays for all covered samples that `requested` selects, block by block.
+    template <typename Requested>
+    void cast(const Requested& requested) {
         const int side = work_.side;
         const int columns = width_ * side;
         const int rows = (end_ - begin_) * side;
@@ -121,8 +123,8 @@ class Piece {
                             owners_[(static_cast<std::size_t>(begin_ * side + y)) *
                                         static_cast<std::size_t>(columns) +
                                     static_cast<std::size_t>(x)];
-                        if (owner.is_covered() && wanted(x, y, texel))
-                            add(owner, texel, (y % side) * side + x % side);
+                        if (owner.is_covered() && requested(x, y, texel))
+                            add_line(owner, texel, (y % side) * side + x % side);
                     }
                 }
                 if (lines_.size() + block * block > rays_at_once) flush();
@@ -131,13 +133,13 @@ class Piece {
         flush();
     }
 
-    void add(const CoveredTexel& owner, std::size_t texel, int index) {
-        const SeenSurface& seen = work_.parts.seen_by(owner.triangle);
-        if (&seen != seen_) {
+    void add_line(const CoveredTexel& owner, std::size_t texel, int index) {
+        const SeenSurface& surface = work_.parts.surface_of(owner.triangle);
+        if (&surface != surface_) {
             flush();
-            seen_ = &seen;
+            surface_ = &surface;
         }
-        lines_.push_back(work_.low.line(owner, seen.distances, map_index(texel), found_));
+        lines_.push_back(work_.low.line(owner, surface.distances, map_index(texel), report_));
         samples_.push_back({owner, texel, static_cast<std::uint32_t>(index)});
         ++sums_[texel].cast;
     }
@@ -145,12 +147,12 @@ class Piece {
     void flush() {
         if (lines_.empty()) return;
         points_.resize(lines_.size());
-        const Projection projection(seen_->high.scene(), work_.options.back_faces);
+        const Projection projection(surface_->high.scene(), work_.options.back_faces);
         counts_.rays += projection.find(lines_, points_);
         counts_.samples += lines_.size();
         cast_again_from_borders(projection);
         for (std::size_t i = 0; i < lines_.size(); ++i) {
-            if (points_[i].hit.is_hit()) take(samples_[i], points_[i]);
+            if (points_[i].hit.is_hit()) add_hit(samples_[i], points_[i]);
         }
         if (layers_) add_layers();
         lines_.clear();
@@ -160,19 +162,19 @@ class Piece {
     struct Sample {
         CoveredTexel owner;
         std::size_t texel;
-        std::uint32_t index;  ///< Of those of the texel.
+        std::uint32_t index;  ///< Index in the texel.
     };
 
-    /// Samples on the border of their triangle that missed are cast once more, from just inside.
+    /// Casts missed samples on the border of their triangle again, from slightly inside.
     void cast_again_from_borders(const Projection& projection) {
-        Report said_already;
+        Report ignored;
         for (std::size_t i = 0; i < lines_.size(); ++i) {
             if (points_[i].hit.is_hit()) continue;
             const auto moved =
-                moved_inside(work_.low.mesh(), samples_[i].owner, projection.least_from_border());
+                moved_inside(work_.low.mesh(), samples_[i].owner, projection.border_distance());
             if (!moved) continue;
-            lines_[i] = work_.low.line(*moved, seen_->distances, map_index(samples_[i].texel),
-                                       said_already);
+            lines_[i] =
+                work_.low.line(*moved, surface_->distances, map_index(samples_[i].texel), ignored);
             counts_.rays += projection.find({&lines_[i], 1}, {&points_[i], 1});
         }
     }
@@ -183,24 +185,24 @@ class Piece {
             if (points_[i].hit.is_hit())
                 hits.push_back({points_[i].hit, samples_[i].texel, samples_[i].index});
         }
-        counts_.occlusion_rays += layers_->add(seen_->high, hits, found_);
+        counts_.occlusion_rays += layers_->add(surface_->high, hits, report_);
     }
 
-    void take(const Sample& sample, const ProjectedPoint& point) {
+    void add_hit(const Sample& sample, const ProjectedPoint& point) {
         TexelSum& sum = sums_[sample.texel];
-        if (needs_normals_) take_normal(sample, point, sum);
+        if (needs_normals_) add_normal(sample, point, sum);
         sum.height += point.height;
         ++sum.hits;
         counts_.least_height = std::min(counts_.least_height, point.height);
         counts_.greatest_height = std::max(counts_.greatest_height, point.height);
     }
 
-    void take_normal(const Sample& sample, const ProjectedPoint& point, TexelSum& sum) {
-        glm::dvec3 normal = seen_->high.normal(point.hit, map_index(sample.texel), found_);
+    void add_normal(const Sample& sample, const ProjectedPoint& point, TexelSum& sum) {
+        glm::dvec3 normal = surface_->high.normal(point.hit, map_index(sample.texel), report_);
         if (!point.hit.faces_origin) normal = -normal;
         normal = in_output_space(normal, sample, sum);
         if (sum.hits == 0) sum.first = normal;
-        sum.widest = std::min(sum.widest, glm::dot(sum.first, normal));
+        sum.min_cosine = std::min(sum.min_cosine, glm::dot(sum.first, normal));
         sum.normal += normal;
     }
 
@@ -219,23 +221,23 @@ class Piece {
         return result;
     }
 
-    /// The mean over the samples that hit.
+    /// Stores the means over the samples that hit.
     void store(std::size_t texel) {
         const TexelSum& sum = sums_[texel];
         const std::size_t at =
             static_cast<std::size_t>(begin_) * static_cast<std::size_t>(width_) + texel;
         if (sum.lacks_frame)
-            found_.add("texel without a frame", "texel", map_index(texel), "is (0, 0, 1)");
+            report_.add("texel without a frame", "texel", map_index(texel), "is (0, 0, 1)");
         if (sum.is_behind)
-            found_.add("normal behind the surface", "texel", map_index(texel), "kept");
+            report_.add("normal behind the surface", "texel", map_index(texel), "kept");
         TexelState state = sum.cast == 0 ? TexelState::empty : TexelState::missed;
         if (sum.hits > 0) {
             state = TexelState::baked;
             ++counts_.baked;
         } else if (state == TexelState::missed) {
             ++counts_.missed;
-            found_.add("texel missed by its rays", "texel", map_index(texel),
-                       "is filled from its neighbours");
+            report_.add("texel missed by its rays", "texel", map_index(texel),
+                        "is filled from its neighbours");
             describe_missed(texel);
         }
         rows_.states[at] = state;
@@ -245,7 +247,7 @@ class Piece {
         if (layers_) layers_->store(texel, rows_, at);
     }
 
-    /// The first sample of a texel that a triangle owns.
+    /// Returns the owner of the first covered sample of a texel.
     [[nodiscard]] const CoveredTexel& first_owner(std::size_t texel) const {
         const auto side = static_cast<std::size_t>(work_.side);
         const auto width = static_cast<std::size_t>(width_);
@@ -263,29 +265,29 @@ class Piece {
         const bool is_first = counts_.first_missed.size() < max_first_missed;
         if (!is_first && !work_.options.measures_missed) return;
         const CoveredTexel& owner = first_owner(texel);
-        const SeenSurface& seen = work_.parts.seen_by(owner.triangle);
-        Report said_already;
+        const SeenSurface& surface = work_.parts.surface_of(owner.triangle);
+        Report ignored;
         const ProjectionLine line =
-            work_.low.line(owner, seen.distances, map_index(texel), said_already);
+            work_.low.line(owner, surface.distances, map_index(texel), ignored);
         if (is_first) {
             const auto width = static_cast<std::size_t>(width_);
             counts_.first_missed.push_back({static_cast<int>(texel % width),
                                             first_row_ + begin_ + static_cast<int>(texel / width),
                                             work_.low.position(owner)});
         }
-        if (work_.options.measures_missed && line.outside >= 0.0) measure_missed(line, seen);
+        if (work_.options.measures_missed && line.outside >= 0.0) measure_missed(line, surface);
     }
 
-    /// The nearest surfaces of a missed texel, outwards and inwards.
-    void measure_missed(const ProjectionLine& line, const SeenSurface& seen) {
-        const RayScene& scene = seen.high.scene();
-        const RayHit outwards = scene.nearest({line.point, line.outward, 0.0, seen.extent});
-        const RayHit inwards = scene.nearest({line.point, -line.outward, 0.0, seen.extent});
+    /// Measures the distance of the nearest surfaces of a missed texel, outwards and inwards.
+    void measure_missed(const ProjectionLine& line, const SeenSurface& surface) {
+        const RayScene& scene = surface.high.scene();
+        const RayHit outwards = scene.nearest({line.point, line.outward, 0.0, surface.extent});
+        const RayHit inwards = scene.nearest({line.point, -line.outward, 0.0, surface.extent});
         counts_.measuring_rays += 2;
         const bool takes_back_faces = work_.options.back_faces == BackFaces::take;
         const bool is_within = (outwards.is_hit() && outwards.distance <= line.outside) ||
                                (inwards.is_hit() && inwards.distance <= line.inside);
-        // Seen from the texel, the surface faces away outwards of it, and faces it inwards of it.
+        // Seen from the texel, a front face lies inwards, and faces away outwards.
         const bool hits_outside = outwards.is_hit() && outwards.distance > line.outside &&
                                   (takes_back_faces || !outwards.faces_origin);
         const bool hits_inside = inwards.is_hit() && inwards.distance > line.inside &&
@@ -314,12 +316,12 @@ class Piece {
     }
 
     const BakeWork& work_;
-    const SeenSurface* seen_ = nullptr;  ///< By the lines that wait.
+    const SeenSurface* surface_ = nullptr;  ///< The surface of the pending lines.
     std::span<const CoveredTexel> owners_;
     const BakedRows& rows_;
     int first_row_, begin_, end_, width_;
-    Report& found_;
-    bool needs_normals_;  ///< To be stored, or for whether samples disagree.
+    Report& report_;
+    bool needs_normals_;  ///< For the layer, or for adaptive sampling.
     BakeCounts counts_;
     std::optional<LayerBake> layers_;
     std::vector<TexelSum> sums_;
@@ -389,9 +391,9 @@ BakeCounts bake_rows(const BakeWork& work, int first_row, std::span<const Covere
     BakeCounts counts;
     std::mutex mutex;
     parallel_for_reporting(static_cast<std::size_t>(rows.row_count), piece_rows, report,
-                           [&](std::size_t begin, std::size_t end, Report& found) {
+                           [&](std::size_t begin, std::size_t end, Report& piece_report) {
                                Piece piece(work, first_row, owners, rows, static_cast<int>(begin),
-                                           static_cast<int>(end), found);
+                                           static_cast<int>(end), piece_report);
                                const BakeCounts more = piece.bake();
                                const std::lock_guard lock(mutex);
                                counts += more;

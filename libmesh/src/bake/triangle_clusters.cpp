@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Triangles are sorted along a curve through space [Morton 1966], which is cut where the next ones
-// lie elsewhere. Tests: tests/mesh/rays/triangle_clusters_test.cpp.
-#include "rays/triangle_clusters.h"
+// Clustering of triangles along a space-filling curve [Morton 1966], and ray tests of whole
+// clusters. Tests: tests/mesh/rays/triangle_clusters_test.cpp.
+#include "bake/triangle_clusters.h"
 
 #include <algorithm>
 #include <bit>
@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t size = TriangleCluster<float>::size;
 
-/// The center of a triangle's box as a place on the curve.
+/// The position of the center of a triangle's box on the curve.
 struct CurvePlace {
     std::uint64_t key = 0;
     std::uint32_t triangle = 0;
@@ -24,7 +24,7 @@ struct CurvePlace {
 constexpr std::uint64_t not_met = std::numeric_limits<std::uint64_t>::max();
 constexpr int key_bits = 48;
 
-/// Moves the 16 bits of a number to every third place.
+/// Moves the 16 bits of a number to every third bit.
 std::uint64_t spread(std::uint64_t bits) {
     bits = (bits | (bits << 16)) & 0x0000ff0000ffULL;
     bits = (bits | (bits << 8)) & 0x00f00f00f00fULL;
@@ -32,8 +32,8 @@ std::uint64_t spread(std::uint64_t bits) {
     return (bits | (bits << 2)) & 0x249249249249ULL;
 }
 
-/// A range becomes several clusters only if rays meet them less often by this factor: each cluster
-/// takes memory and makes the tree larger.
+/// A range is split into several clusters only if that reduces the expected number of ray tests by
+/// this factor, because each cluster takes memory and enlarges the tree.
 constexpr double split_gain = 1.3;
 
 struct Box {
@@ -48,14 +48,14 @@ struct Box {
         low = glm::min(low, box.low);
         high = glm::max(high, box.high);
     }
-    /// Half of its surface, where it is larger by the margin.
+    /// Half of the surface of the enlarged box.
     [[nodiscard]] double area() const {
         const glm::dvec3 side = high - low + 2.0 * embree_margin;
         return side.x * side.y + side.y * side.z + side.z * side.x;
     }
 };
 
-/// Sorts by key. Places with equal keys keep their order.
+/// Sorts by key, stably.
 void sort(std::vector<CurvePlace>& places) {
     constexpr int digit_bits = 12;
     constexpr std::size_t digits = std::size_t{1} << digit_bits;
@@ -98,7 +98,7 @@ void sort(std::vector<CurvePlace>& places) {
     }
 }
 
-/// A part of the sorted triangles.
+/// A range of the sorted triangles.
 struct Range {
     std::uint32_t first = 0;
     std::uint32_t last = 0;
@@ -168,7 +168,8 @@ class Clustering {
                spread(static_cast<std::uint64_t>(cell.z));
     }
 
-    /// Where the keys' first different bit changes, or the middle.
+    /// Returns the first position after the highest differing bit of the keys changes, or the
+    /// middle.
     [[nodiscard]] std::uint32_t middle_of(const Range& range) const {
         const std::uint64_t first = places_[range.first].key;
         const std::uint64_t last = places_[range.last - 1].key;
@@ -203,9 +204,9 @@ class Clustering {
         cluster({middle, range.last}, clusters);
     }
 
-    /// Makes one cluster of a range, or several if rays meet those less often.
-    /// \param box  becomes the box around all
-    /// \return how often rays meet the clusters
+    /// Makes one cluster of a range, or several if that is cheaper.
+    /// \param box  gets the box around all
+    /// \return the expected number of ray tests
     double join(const Range& range, std::vector<Range>& clusters, Box& box) const {
         if (range.count() == 1) {
             const glm::uvec3& triangle = triangles_[places_[range.first].triangle];
@@ -250,7 +251,7 @@ class Clustering {
                 around.add(glm::dvec3(position));
             }
         }
-        // Embree leaves out boxes that are too large; rays do not reach so far.
+        // Embree ignores boxes that are too large; rays do not reach that far.
         constexpr double beyond = 1e9;
         box.lower = glm::vec3(glm::clamp(in_space(around.low) - embree_margin, -beyond, beyond));
         box.upper = glm::vec3(glm::clamp(in_space(around.high) + embree_margin, -beyond, beyond));
@@ -274,8 +275,8 @@ RELIEF_INLINE Line line_of(const RayLines<16>& lines, std::size_t i) {
             lines.slope_x[i],   lines.slope_y[i]};
 }
 
-/// Whether a line meets a triangle, or may meet it: 1 or 0. The coordinates are those of
-/// intersect(), bit by bit. The sign of an area is right, or it is 0: see exact_cross().
+/// Returns whether a line may hit a triangle, 1 or 0. The coordinates equal those of intersect()
+/// bit for bit. Each area has the correct sign or is 0; see exact_cross().
 template <typename Axis>
 RELIEF_INLINE std::uint64_t may_meet(const std::array<Axis, 3>& x, const std::array<Axis, 3>& y,
                                      const std::array<Axis, 3>& z, double origin_x, double origin_y,
@@ -354,7 +355,7 @@ RELIEF_INLINE void of_lines(const TriangleCluster<Number>& cluster, const RayLin
         of_lines<4>(cluster, lines, begin, bits);
 }
 
-/// The same loops for one set of vector instructions.
+/// The loops for one set of vector instructions.
 template <typename Number>
 struct Loops {
     std::uint32_t (*of_one_line)(const TriangleCluster<Number>&, const RayLines<16>&, std::size_t);
@@ -395,7 +396,7 @@ RELIEF_TARGET_512 void of_lines_512(const TriangleCluster<Number>& cluster,
     of_lines(cluster, lines, begin, count, bits);
 }
 
-/// The results are the same from all three: additions and multiplications, one after another.
+/// All three give the same results, because none fuses or reorders operations.
 template <typename Number>
 const Loops<Number> best_loops = [] {
     switch (best_vector_target()) {

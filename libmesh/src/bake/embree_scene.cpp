@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Clusters of triangles are "user geometry" to Embree: it asks back for their boxes, and for the
-// hits of each cluster whose box a ray meets. Tests: tests/mesh/rays/embree_scene_test.cpp.
-#include "rays/embree_scene.h"
+// Ray casting with Embree. Clusters of triangles are user geometry: Embree calls back for the boxes
+// of clusters, and for the hits in each cluster whose box a ray hits. Tests:
+// tests/mesh/rays/embree_scene_test.cpp.
+#include "bake/embree_scene.h"
 
 #include <embree3/rtcore.h>
 
@@ -16,7 +17,7 @@
 
 namespace relief {
 
-/// A hit that may be as near as another one of the same ray.
+/// A hit that may tie with another one of the same ray.
 struct TiedHit {
     std::size_t lane = 0;
     double distance = 0.0;
@@ -26,7 +27,7 @@ struct TiedHit {
 struct EmbreeScene::MeshOfScene {
     virtual ~MeshOfScene() = default;
     [[nodiscard]] virtual std::array<glm::dvec3, 3> corners(std::uint32_t triangle) const = 0;
-    /// The distance of the nearest triangle of a cluster from a point.
+    /// Returns the distance of the nearest triangle of a cluster from a point.
     [[nodiscard]] virtual double distance_from(const glm::dvec3& point,
                                                std::uint32_t cluster) const = 0;
 };
@@ -35,7 +36,7 @@ namespace {
 
 using Corners = std::array<glm::dvec3, 3>;
 
-/// The point of a triangle that is nearest to another. Source: [Ericson 2005], 5.1.5.
+/// Returns the point of a triangle nearest to `p`. Source: [Ericson 2005], 5.1.5.
 glm::dvec3 nearest_point(const glm::dvec3& p, const Corners& corners) {
     const auto& [a, b, c] = corners;
     const glm::dvec3 ab = b - a;
@@ -62,7 +63,7 @@ struct ClusteredMesh : EmbreeScene::MeshOfScene {
     std::uint32_t name = 0;
     std::span<const glm::vec<3, Number>> positions;
     std::span<const glm::uvec3> triangles;
-    TriangleClusters<Number> shapes{};  ///< Embree sees each cluster as one shape.
+    TriangleClusters<Number> shapes{};  ///< Each cluster is one primitive of Embree.
 
     [[nodiscard]] Corners corners(std::uint32_t triangle) const override {
         const glm::uvec3& all = triangles[triangle];
@@ -81,16 +82,16 @@ struct ClusteredMesh : EmbreeScene::MeshOfScene {
     }
 };
 
-/// Hits this near to each other are equally near, in Embree's space: what doubles leave of
-/// distances along a ray, with a factor of 1000 for triangles that the ray grazes.
+/// Distances that differ by less than this are ties, in Embree's space: the rounding error of
+/// double, with a factor of 1000 for triangles at a grazing angle.
 constexpr double tie_share = 1e-12;
-/// Origins further away than this are moved along their rays, in Embree's space.
+/// Origins farther away than this are moved along their rays, in Embree's space.
 constexpr double far_away = 4.0;
-/// Rays end here, in Embree's space: beyond the scene, and beyond what a camera sees, whose far
-/// distance is 1 there.
-constexpr double longest = 64.0;
-/// So far away doubles are as coarse as floats are within the scene.
-constexpr double too_far_away = 1e10;
+/// The maximum length of rays, in Embree's space: beyond the scene, and beyond a camera's far
+/// plane, which is at 1.
+constexpr double max_length = 64.0;
+/// At this distance, doubles are as coarse as floats within the scene.
+constexpr double max_origin = 1e10;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
@@ -98,12 +99,12 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 struct Cast {
     RTCIntersectContext context;
     RayPacket* packet;
-    bool have_one_axis;  ///< All rays: RayLines::along.
+    bool have_one_axis;  ///< All rays have the same RayLines::along.
     std::vector<TiedHit>* tied;
-    std::vector<MetTriangle>* all;  ///< Not null: every hit is wanted.
+    std::vector<MetTriangle>* all;  ///< If not null, gets every hit.
 };
 
-/// A hit of a lane; keeps all that may be equally near in the end.
+/// Records a hit of a lane, if it may be the nearest one or a tie.
 void keep_nearest(Cast& cast, std::size_t lane, double distance, const MetTriangle& met) {
     RayPacket& packet = *cast.packet;
     const double nearest = packet.distance[lane];
@@ -120,8 +121,8 @@ void keep_nearest(Cast& cast, std::size_t lane, double distance, const MetTriang
     packet.triangle[lane] = met.triangle;
 }
 
-/// Calls each(triangle, hit) for those of some triangles of a cluster that a ray meets between its
-/// ends, until that returns false. \param places  a bit for each triangle
+/// Calls each(triangle, hit) for the hits of a ray in a cluster, until that returns false.
+/// \param places  the candidates, a bit for each triangle
 template <typename Number, typename Each>
 void for_hits(const RayPacket& packet, std::size_t lane, const TriangleCluster<Number>& cluster,
               std::uint64_t places, const Each& each) {
@@ -138,12 +139,12 @@ void for_hits(const RayPacket& packet, std::size_t lane, const TriangleCluster<N
 template <typename Number, typename Each>
 void for_rays(const Cast& cast, const int* valid, const unsigned* lane, unsigned count,
               const TriangleCluster<Number>& cluster, const Each& each) {
-    constexpr unsigned many = 4;  // So many rays are tested together.
+    constexpr unsigned min_block = 4;  // Fewer rays are tested one by one.
     const RayLines<16>& lines = cast.packet->lines;
     unsigned active = 0;
     for (unsigned i = 0; i < count; ++i)
         active += valid[i] != 0 ? 1U : 0U;
-    const bool is_block = active >= many && cast.have_one_axis;
+    const bool is_block = active >= min_block && cast.have_one_axis;
     alignas(64) std::array<std::uint64_t, RayPacket::size> bits;
     if (is_block) candidates<Number>(cluster, lines, lane[0], count, bits);
     for (unsigned i = 0; i < count; ++i) {
@@ -155,7 +156,7 @@ void for_rays(const Cast& cast, const int* valid, const unsigned* lane, unsigned
 }
 
 template <typename Number>
-void meet_nearest(const RTCIntersectFunctionNArguments* arguments) {
+void intersect_nearest(const RTCIntersectFunctionNArguments* arguments) {
     const auto& mesh = *static_cast<const ClusteredMesh<Number>*>(arguments->geometryUserPtr);
     const TriangleCluster<Number>& cluster = mesh.shapes.clusters[arguments->primID];
     Cast& cast = *reinterpret_cast<Cast*>(arguments->context);
@@ -163,7 +164,7 @@ void meet_nearest(const RTCIntersectFunctionNArguments* arguments) {
     const unsigned count = arguments->N;
     RTCRayN* rays = RTCRayHitN_RayN(arguments->rayhit, count);
     float* const far = &RTCRayN_tfar(rays, count, 0);
-    const auto meet = [&](unsigned i, std::size_t lane, std::uint64_t places) {
+    const auto visit = [&](unsigned i, std::size_t lane, std::uint64_t places) {
         for_hits(packet, lane, cluster, places, [&](std::uint32_t triangle, const ExactHit& hit) {
             if (cast.all != nullptr) {
                 cast.all->push_back({mesh.name, triangle});
@@ -172,7 +173,7 @@ void meet_nearest(const RTCIntersectFunctionNArguments* arguments) {
             keep_nearest(cast, lane, hit.distance, {mesh.name, triangle});
             if (hit.distance <= packet.until[lane])
                 packet.last[lane] = std::max(packet.last[lane], hit.distance);
-            // Hits that are farther away are not needed; the margin covers the errors of Embree's
+            // Farther hits are not needed. The margin covers the rounding errors of Embree's
             // floats.
             const double end = std::max(hit.distance, packet.until[lane]);
             const double from_start = (end - packet.start[lane]) * packet.scale[lane];
@@ -180,23 +181,23 @@ void meet_nearest(const RTCIntersectFunctionNArguments* arguments) {
             return true;
         });
     };
-    for_rays(cast, arguments->valid, &RTCRayN_id(rays, count, 0), count, cluster, meet);
+    for_rays(cast, arguments->valid, &RTCRayN_id(rays, count, 0), count, cluster, visit);
 }
 
 template <typename Number>
-void meet_any(const RTCOccludedFunctionNArguments* arguments) {
+void intersect_any(const RTCOccludedFunctionNArguments* arguments) {
     const auto& mesh = *static_cast<const ClusteredMesh<Number>*>(arguments->geometryUserPtr);
     const TriangleCluster<Number>& cluster = mesh.shapes.clusters[arguments->primID];
     const Cast& cast = *reinterpret_cast<Cast*>(arguments->context);
     const unsigned count = arguments->N;
     float* const far = &RTCRayN_tfar(arguments->ray, count, 0);
-    const auto meet = [&](unsigned i, std::size_t lane, std::uint64_t places) {
+    const auto visit = [&](unsigned i, std::size_t lane, std::uint64_t places) {
         for_hits(*cast.packet, lane, cluster, places, [&](std::uint32_t, const ExactHit&) {
             far[i] = -std::numeric_limits<float>::infinity();
             return false;
         });
     };
-    for_rays(cast, arguments->valid, &RTCRayN_id(arguments->ray, count, 0), count, cluster, meet);
+    for_rays(cast, arguments->valid, &RTCRayN_id(arguments->ray, count, 0), count, cluster, visit);
 }
 
 template <typename Number>
@@ -210,18 +211,18 @@ void find_box(const RTCBoundsFunctionArguments* arguments) {
 struct PointQuery {
     std::span<const std::unique_ptr<EmbreeScene::MeshOfScene>> meshes;
     glm::dvec3 point;
-    double enough;  ///< A triangle as near as that ends the query.
+    double enough;  ///< A triangle within this distance ends the query.
     double half_size;
     double distance = infinity;
 };
 
-bool come_nearer(RTCPointQueryFunctionArguments* arguments) {
+bool visit_cluster(RTCPointQueryFunctionArguments* arguments) {
     auto* query = static_cast<PointQuery*>(arguments->userPtr);
     const double distance =
         query->meshes[arguments->geomID]->distance_from(query->point, arguments->primID);
     if (!(distance < query->distance)) return false;
     query->distance = distance;
-    // Rounding of the radius is relative, that of boxes is within their embree_margin.
+    // The radius has a relative rounding error; embree_margin covers that of the boxes.
     constexpr double relative_margin = 1.0 + 1e-6;
     arguments->query->radius =
         distance <= query->enough
@@ -241,14 +242,14 @@ std::optional<int> rays_at_once() {
     return wanted == 1 || wanted == 4 || wanted == 8 ? wanted : 16;
 }
 
-/// Some lanes of a packet as Embree's rays.
+/// Copies lanes of a packet to Embree's rays.
 template <typename RTCRays>
 void copy_rays(const RayPacket& packet, std::size_t begin, std::size_t count, RTCRays& rays) {
     RTCRayN* all = reinterpret_cast<RTCRayN*>(&rays);
     constexpr auto size = static_cast<unsigned>(sizeof(rays.tnear) / sizeof(float));
     for (unsigned i = 0; i < size; ++i) {
-        // Where the processor has no packets of this size, Embree ignores which rays are valid. A
-        // ray that ends before it begins meets nothing.
+        // If the processor has no packets of this size, Embree ignores the valid flags. A ray with
+        // a negative length hits nothing.
         const std::size_t lane = i < count ? begin + i : begin;
         RTCRayN_org_x(all, size, i) = packet.float_origin[lane].x;
         RTCRayN_org_y(all, size, i) = packet.float_origin[lane].y;
@@ -265,7 +266,7 @@ void copy_rays(const RayPacket& packet, std::size_t begin, std::size_t count, RT
     }
 }
 
-/// Calls one of Embree's functions for each so many rays of a packet.
+/// Splits a packet into packets of Embree and calls call(begin, count, valid, rays) for each.
 template <typename RTCRays, typename Rays, typename Call>
 void cast_each(const RayPacket& packet, std::size_t count, const Rays& rays_of, const Call& call) {
     constexpr std::size_t size = sizeof(rays_of(std::declval<RTCRays&>()).tnear) / sizeof(float);
@@ -309,15 +310,15 @@ void cast_any(RayPacket& packet, std::size_t count, const Call& call) {
         });
 }
 
-using Place = std::array<std::tuple<double, double, double>, 3>;
+using SortedCorners = std::array<std::tuple<double, double, double>, 3>;
 
 /// Returns the key that orders triangles by the positions of their corners.
-Place place_of(const Corners& corners) {
-    Place place;
+SortedCorners sorted_corners(const Corners& corners) {
+    SortedCorners sorted;
     for (std::size_t i = 0; i < 3; ++i)
-        place[i] = {corners[i].x, corners[i].y, corners[i].z};
-    std::sort(place.begin(), place.end());
-    return place;
+        sorted[i] = {corners[i].x, corners[i].y, corners[i].z};
+    std::sort(sorted.begin(), sorted.end());
+    return sorted;
 }
 
 }  // namespace
@@ -361,8 +362,8 @@ void EmbreeScene::add(std::uint32_t name, std::span<const glm::vec<3, Number>> p
     rtcSetGeometryUserPrimitiveCount(geometry, static_cast<unsigned>(mesh->shapes.boxes.size()));
     rtcSetGeometryUserData(geometry, mesh.get());
     rtcSetGeometryBoundsFunction(geometry, find_box<Number>, nullptr);
-    rtcSetGeometryIntersectFunction(geometry, meet_nearest<Number>);
-    rtcSetGeometryOccludedFunction(geometry, meet_any<Number>);
+    rtcSetGeometryIntersectFunction(geometry, intersect_nearest<Number>);
+    rtcSetGeometryOccludedFunction(geometry, intersect_any<Number>);
     rtcCommitGeometry(geometry);
     rtcAttachGeometryByID(scene_, geometry, name);
     rtcReleaseGeometry(geometry);
@@ -378,8 +379,8 @@ std::array<glm::dvec3, 3> EmbreeScene::corners(const MetTriangle& met) const {
     return meshes_[met.mesh]->corners(met.triangle);
 }
 
-/// Embree gets the ray from where it comes near the scene, which lies within -1 to 1: floats far
-/// away are coarse, and Embree ends the program at origins beyond 1.8e18.
+/// Embree's ray starts near the scene, which lies within -1 to 1, because floats far away are
+/// coarse and Embree aborts at origins beyond 1.8e18.
 void EmbreeScene::set(RayPacket& packet, std::size_t lane, const Ray& ray, double until) const {
     packet.until[lane] = until;
     packet.near[lane] = ray.near;
@@ -392,7 +393,7 @@ void EmbreeScene::set(RayPacket& packet, std::size_t lane, const Ray& ray, doubl
     double near = ray.near * scale;
     double far = ray.far * scale;
     double start = ray.near;
-    bool is_usable = away_squared <= too_far_away * too_far_away && length > 0.0 &&
+    bool is_usable = away_squared <= max_origin * max_origin && length > 0.0 &&
                      std::isfinite(length) && near <= far;
     if (away_squared > far_away * far_away) {
         const double middle = -glm::dot(origin, unit);
@@ -401,7 +402,7 @@ void EmbreeScene::set(RayPacket& packet, std::size_t lane, const Ray& ray, doubl
         far = std::min(far, middle + far_away);
         start = near / scale;
     } else {
-        far = std::min(far, longest);
+        far = std::min(far, max_length);
     }
     packet.scale[lane] = scale;
     if (!(is_usable && near <= far)) {
@@ -457,14 +458,14 @@ void EmbreeScene::find_nearest(RayPacket& packet, std::size_t count) const {
     if (!tied.empty()) settle_ties(packet, tied);
 }
 
-/// Gives each lane the first of its nearest hits.
+/// Selects the first of the tied hits of each lane.
 void EmbreeScene::settle_ties(RayPacket& packet, std::vector<TiedHit>& tied) const {
     const auto is_before = [&](const RayFrame& frame, const MetTriangle& a, const MetTriangle& b) {
         const auto rank = [&](const MetTriangle& met) {
-            const Corners places = corners(met);
+            const Corners positions = corners(met);
             ExactHit hit;
-            intersect(frame, places, hit);
-            return std::tuple(!hit.faces_origin, place_of(places));
+            intersect(frame, positions, hit);
+            return std::tuple(!hit.faces_origin, sorted_corners(positions));
         };
         const auto first = rank(a);
         const auto second = rank(b);
@@ -487,7 +488,7 @@ void EmbreeScene::find_any(RayPacket& packet, std::size_t count) const {
     Cast cast{};
     rtcInitIntersectContext(&cast.context);
     cast.packet = &packet;
-    // Such rays run in all directions: packets of them are slower.
+    // These rays are incoherent, so packets are slower.
     switch (rays_at_once_.value_or(1)) {
         case 1:
             cast_any<RTCRay>(packet, count, [&](const int*, RTCRay& rays) {
@@ -511,19 +512,19 @@ void EmbreeScene::find_any(RayPacket& packet, std::size_t count) const {
     }
 }
 
-void EmbreeScene::find_all(const Ray& ray, std::vector<MetTriangle>& found) const {
+void EmbreeScene::find_all(const Ray& ray, std::vector<MetTriangle>& triangles) const {
     RayPacket packet;
     set(packet, 0, ray);
     Cast cast{};
     rtcInitIntersectContext(&cast.context);
     cast.packet = &packet;
-    cast.all = &found;
+    cast.all = &triangles;
     cast_nearest<RTCRayHit>(
         packet, 1, [&](const int*, RTCRayHit& one) { rtcIntersect1(scene_, &cast.context, &one); });
 }
 
 double EmbreeScene::distance_from(const glm::dvec3& point, double enough) const {
-    PointQuery ours{meshes_, point, enough, space_.half_size};
+    PointQuery state{meshes_, point, enough, space_.half_size};
     RTCPointQuery query{};
     const glm::vec3 moved((point - space_.center) / space_.half_size);
     query.x = moved.x;
@@ -532,8 +533,8 @@ double EmbreeScene::distance_from(const glm::dvec3& point, double enough) const 
     query.radius = std::numeric_limits<float>::infinity();
     RTCPointQueryContext context;
     rtcInitPointQueryContext(&context);
-    rtcPointQuery(scene_, &query, &context, come_nearer, &ours);
-    return ours.distance;
+    rtcPointQuery(scene_, &query, &context, visit_cluster, &state);
+    return state.distance;
 }
 
 }  // namespace relief

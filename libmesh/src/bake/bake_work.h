@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// The internal interface of the baker: the high meshes by part, and the baking of rows of texels.
+/// bake.cpp prepares the meshes and bakes a map strip by strip; bake_rows.cpp bakes the rows of a
+/// strip. Tests: tests/mesh/bake/baker_test.cpp, bake_test.cpp.
+#pragma once
+
+#include <limits>
+#include <map>
+#include <memory>
+#include <vector>
+
+#include "bake/high_surface.h"
+#include "bake/low_surface.h"
+#include "relief/mesh/bake.h"
+
+namespace relief {
+
+/// The high meshes that some triangles of the low mesh see, and the length of their rays.
+struct SeenSurface {
+    /// \param low    the triangles that see the meshes; their distance determines the ray length
+    /// \param reach  the length of rays from a cage; 0 without a cage
+    /// \param name   the name of the part, for messages
+    /// \throws BakeMismatch
+    SeenSurface(std::span<const Mesh> meshes, const Mesh& low, const BakeOptions& options,
+                double reach, const std::string& name, Report& report);
+
+    BakeFit fit;
+    double extent;  ///< The largest possible distance between a high and a low point.
+    HighSurface high;
+    BakeDistances distances;
+};
+
+/// The high meshes of a bake by part. Each part has its own ray scene, so rays do not test meshes
+/// that the part does not see.
+class BakeParts {
+  public:
+    /// One part: all triangles see all meshes.
+    BakeParts(std::span<const Mesh> high, const LowSurface& low, const BakeOptions& options,
+              Report& report);
+
+    /// \throws InvalidInput if a triangle of `low` is not in exactly one part
+    BakeParts(std::span<const BakePart> parts, const LowSurface& low, const BakeOptions& options,
+              Report& report);
+
+    /// Returns the surface that texels of a triangle of the low mesh see.
+    [[nodiscard]] const SeenSurface& surface_of(std::uint32_t triangle) const {
+        return *surfaces_[part_of_triangle_.empty() ? 0 : part_of_triangle_[triangle]];
+    }
+
+    [[nodiscard]] BakeDistances largest_distances() const;
+    /// Returns the comparison of the boxes around all parts.
+    [[nodiscard]] BakeFit fit() const;
+    /// Returns the bounds of curvature and positions.
+    [[nodiscard]] LayerBounds bounds(const BakeLayers& layers) const;
+
+  private:
+    std::vector<std::unique_ptr<SeenSurface>> surfaces_;
+    std::vector<std::uint32_t> part_of_triangle_;  ///< Empty if there is only one part.
+};
+
+/// The input that all rows of a map share.
+struct BakeWork {
+    const BakeParts& parts;
+    const LowSurface& low;
+    const BakeOptions& options;
+    int side = 1;  ///< Samples along each side of a texel.
+};
+
+/// Statistics of ray lengths that would hit: count, minimum, maximum, and a histogram.
+class RayLengths {
+  public:
+    void add(double length);
+    RayLengths& operator+=(const RayLengths& other);
+    [[nodiscard]] ClippedRays summary() const;
+
+  private:
+    std::size_t count_ = 0;
+    double shortest_ = std::numeric_limits<double>::infinity();
+    double longest_ = 0.0;
+    std::map<int, std::size_t> bins_;  ///< Eight equal bins for each power of two.
+};
+
+/// Counts over some rows; the order of sums has no influence.
+struct BakeCounts {
+    std::size_t samples = 0;
+    std::size_t rays = 0;
+    std::size_t occlusion_rays = 0;
+    std::size_t baked = 0;
+    std::size_t missed = 0;
+    double least_height = std::numeric_limits<double>::infinity();
+    double greatest_height = -std::numeric_limits<double>::infinity();
+    std::vector<MissedTexel> first_missed;
+    std::size_t missed_from_behind = 0;
+    std::size_t measuring_rays = 0;
+    RayLengths clipped_outside, clipped_inside;
+
+    BakeCounts& operator+=(const BakeCounts& other);
+};
+
+/// Bakes rows of texels in parallel, from the owners of their samples to the texel means.
+///
+/// \param first_row  the index of the first texel row
+/// \param owners     the owners of all samples of these rows
+/// \param rows       gets the result
+BakeCounts bake_rows(const BakeWork& work, int first_row, std::span<const CoveredTexel> owners,
+                     const BakedRows& rows, Report& report);
+
+}  // namespace relief

@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: Apache-2.0
+// Ambient occlusion, and texel means of layers.
+// Tests: tests/mesh/bake/bake_layers_test.cpp, occlusion_test.cpp.
+#include "bake/layers.h"
+
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "geometry/direction.h"
+#include "geometry/portable_math.h"
+
+namespace relief {
+namespace {
+
+/// The start distance of rays above the surface, relative to the scene's size. It exceeds the
+/// errors of Embree's floats, so that no surface occludes itself.
+constexpr double relative_start = 4e-6;
+
+/// The minimum cosine between the normal and the face normal for which the normal is used.
+constexpr double min_cosine = 0.1;
+
+/// Returns a hash that decorrelates similar numbers. Source: [Steele et al. 2014].
+std::uint64_t scrambled(std::uint64_t bits) {
+    bits += 0x9e3779b97f4a7c15ULL;
+    bits = (bits ^ (bits >> 30)) * 0xbf58476d1ce4e5b9ULL;
+    bits = (bits ^ (bits >> 27)) * 0x94d049bb133111ebULL;
+    return bits ^ (bits >> 31);
+}
+
+std::uint32_t reversed(std::uint32_t bits) {
+    bits = (bits << 16) | (bits >> 16);
+    bits = ((bits & 0x00ff00ffU) << 8) | ((bits & 0xff00ff00U) >> 8);
+    bits = ((bits & 0x0f0f0f0fU) << 4) | ((bits & 0xf0f0f0f0U) >> 4);
+    bits = ((bits & 0x33333333U) << 2) | ((bits & 0xccccccccU) >> 2);
+    return ((bits & 0x55555555U) << 1) | ((bits & 0xaaaaaaaaU) >> 1);
+}
+
+/// Returns the second dimension of the Sobol sequence; the first one is reversed(index).
+std::uint32_t sobol2(std::uint32_t index) {
+    std::uint32_t result = 0;
+    for (std::uint32_t column = 0x80000000U; index != 0; index >>= 1, column ^= column >> 1) {
+        if ((index & 1U) != 0) result ^= column;
+    }
+    return result;
+}
+
+double unit_of(std::uint32_t bits) {
+    return (static_cast<double>(bits) + 0.5) * 0x1p-32;
+}
+
+/// Returns an orthonormal basis with the given third axis.
+glm::dmat3 axes_about(const glm::dvec3& normal) {
+    const glm::dvec3 aside(perpendicular_to(glm::vec3(normal)));
+    const glm::dvec3 first = direction_or_zero(in_plane(aside, normal));
+    return {first, glm::cross(normal, first), normal};
+}
+
+/// Collects rays in packets and counts the blocked rays of each point.
+class Packets {
+  public:
+    Packets(const RayScene& scene, std::span<std::uint32_t> blocked)
+        : scene_(scene), blocked_(blocked) {}
+
+    void add(std::size_t point, const Ray& ray) {
+        scene_.set(packet_, count_, ray);
+        points_[count_++] = point;
+        if (count_ == RayPacket::size) flush();
+    }
+    void flush() {
+        scene_.find_any(packet_, count_);
+        for (std::size_t lane = 0; lane < count_; ++lane) {
+            if (packet_.is_blocked(lane)) ++blocked_[points_[lane]];
+        }
+        count_ = 0;
+    }
+
+  private:
+    const RayScene& scene_;
+    std::span<std::uint32_t> blocked_;
+    RayPacket packet_{};
+    std::array<std::size_t, RayPacket::size> points_{};
+    std::size_t count_ = 0;
+};
+
+void store_mean(const glm::dvec3& sum, std::uint32_t hits, std::span<float> values,
+                std::size_t at) {
+    const glm::vec3 mean = hits > 0 ? rounded(sum / static_cast<double>(hits)) : glm::vec3(0.0F);
+    for (int axis = 0; axis < 3; ++axis)
+        values[3 * at + static_cast<std::size_t>(axis)] = mean[axis];
+}
+
+}  // namespace
+
+Occlusion::Occlusion(const OcclusionOptions& options, std::uint32_t samples)
+    : distance_(options.distance),
+      rays_((static_cast<std::uint32_t>(options.rays) + samples - 1) / samples) {}
+
+std::vector<double> Occlusion::open_shares(const RayScene& scene,
+                                           std::span<const OcclusionPlace> points,
+                                           Report& report) const {
+    std::vector<std::uint32_t> cast(points.size(), 0), blocked(points.size(), 0);
+    Packets packets(scene, blocked);
+    const double start = relative_start * scene.half_size();
+    const double far = distance_.value_or(scene.half_size());
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const OcclusionPlace& point = points[i];
+        const bool is_usable = glm::dot(point.normal, point.face) >= min_cosine;
+        if (!is_usable) {
+            report.add("normal along its triangle or behind it", "texel", point.texel,
+                       "has its occlusion about the triangle's");
+        }
+        const glm::dmat3 axes = axes_about(is_usable ? point.normal : point.face);
+        const std::uint64_t scramble = scrambled(point.texel);
+        const auto first = static_cast<std::uint32_t>(scramble >> 32);
+        const auto second = static_cast<std::uint32_t>(scramble);
+        const glm::dvec3 origin = point.position + start * point.face;
+        for (std::uint32_t k = 0; k < rays_; ++k) {
+            const std::uint32_t index = point.sample * rays_ + k;
+            const double u = unit_of(reversed(index) ^ first);
+            const double angle = 2.0 * std::numbers::pi * unit_of(sobol2(index) ^ second);
+            // A uniform distribution on the disk is cosine-weighted on the hemisphere.
+            const double radius = std::sqrt(u);
+            const glm::dvec3 direction =
+                axes * glm::dvec3(radius * portable::cos(angle), radius * portable::sin(angle),
+                                  std::sqrt(1.0 - u));
+            if (glm::dot(direction, point.face) <= 0.0) continue;
+            ++cast[i];
+            packets.add(i, {origin, direction, 0.0, far});
+        }
+    }
+    packets.flush();
+    std::vector<double> open(points.size(), 1.0);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        if (cast[i] > 0) open[i] = 1.0 - static_cast<double>(blocked[i]) / cast[i];
+    }
+    return open;
+}
+
+LayerBake::LayerBake(const BakeLayers& layers, std::size_t first_texel, std::size_t texels,
+                     std::uint32_t min_samples)
+    : layers_(layers), first_texel_(first_texel), hits_(texels, 0) {
+    if (layers.occlusion) {
+        occlusion_.emplace(*layers.occlusion, min_samples);
+        open_.resize(texels);
+    }
+    if (layers.curvature) curvature_.resize(texels);
+    if (layers.positions) positions_.resize(texels);
+    if (layers.colors) colors_.resize(texels);
+}
+
+std::size_t LayerBake::add(const HighSurface& high, std::span<const LayerHit> hits,
+                           Report& report) {
+    for (const LayerHit& here : hits) {
+        ++hits_[here.texel];
+        if (layers_.curvature) curvature_[here.texel] += high.curvature(here.hit);
+        if (layers_.colors) colors_[here.texel] += high.color(here.hit);
+        if (layers_.positions) {
+            positions_[here.texel] +=
+                glm::dvec3(layers_.position_from_mesh * glm::dvec4(high.position(here.hit), 1.0));
+        }
+    }
+    return occlusion_ ? add_occlusion(high, hits, report) : 0;
+}
+
+std::size_t LayerBake::add_occlusion(const HighSurface& high, std::span<const LayerHit> hits,
+                                     Report& report) {
+    std::vector<OcclusionPlace> points;
+    Report ignored;  // The normal layer reports the same findings.
+    Report& normal_report = layers_.normals ? ignored : report;
+    for (const LayerHit& here : hits) {
+        const double side = here.hit.faces_origin ? 1.0 : -1.0;
+        const std::size_t texel = first_texel_ + here.texel;
+        points.push_back({high.position(here.hit),
+                          side * high.smooth_normal(here.hit, texel, normal_report),
+                          side * high.face_normal(here.hit), texel, here.sample});
+    }
+    const std::vector<double> shares = occlusion_->open_shares(high.scene(), points, report);
+    for (std::size_t i = 0; i < hits.size(); ++i)
+        open_[hits[i].texel] += shares[i];
+    return points.size() * occlusion_->rays_of_sample();
+}
+
+void LayerBake::store(std::size_t texel, const BakedRows& rows, std::size_t at) const {
+    const std::uint32_t hits = hits_[texel];
+    if (layers_.occlusion)
+        rows.occlusion[at] = hits > 0 ? static_cast<float>(open_[texel] / hits) : 1.0F;
+    if (layers_.curvature)
+        rows.curvature[at] = hits > 0 ? static_cast<float>(curvature_[texel] / hits) : 0.0F;
+    if (layers_.positions) store_mean(positions_[texel], hits, rows.positions, at);
+    if (layers_.colors) store_mean(colors_[texel], hits, rows.colors, at);
+}
+
+}  // namespace relief
