@@ -17,7 +17,7 @@
 #include <utility>
 #include <vector>
 
-#include "image/bump/bump_rows.h"
+#include "bump/bump_rows.h"
 #include "image/height_holes.h"
 #include "image/normal_coding.h"
 #include "image/texel_loops.h"

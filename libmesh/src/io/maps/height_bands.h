@@ -10,7 +10,7 @@
 #include <span>
 #include <vector>
 
-#include "image/bump/bump_rows.h"
+#include "bump/bump_rows.h"
 #include "relief/mesh/bump_file.h"
 
 namespace relief {

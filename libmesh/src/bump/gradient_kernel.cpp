@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Weights of the kernels that take slopes, and their properties in closed form. Offsets in texels,
-// frequencies in radians a texel. A radius out of range throws.
+// Weights of gradient kernels, and their properties in closed form. Offsets are in texels,
+// frequencies in radians per texel.
 #include "relief/mesh/gradient_kernel.h"
 
 #include <fmt/format.h>
@@ -15,7 +15,8 @@
 namespace relief {
 namespace {
 
-/// Antisymmetric differences, nearest first, and lines on both sides; `divisor` follows from both.
+/// Returns a kernel of antisymmetric differences and symmetric smoothing weights, both from the
+/// center outwards.
 GradientKernel symmetric(int order, const std::vector<double>& differences,
                          std::vector<double> smoothing) {
     GradientKernel kernel;
@@ -35,8 +36,9 @@ GradientKernel symmetric(int order, const std::vector<double>& differences,
     return kernel;
 }
 
-/// The slope b that minimises sum g(x) g(y) (h - a - b x - c y)^2 is sum g(x) g(y) x h over
-/// sum g(x) g(y) x^2, which separates; g a Gaussian of deviation radius / 2.
+/// Returns the kernel of the least-squares slope with Gaussian weights g of standard deviation
+/// radius / 2: the b that minimizes sum g(x) g(y) (h - a - b x - c y)^2 is sum g(x) g(y) x h / sum
+/// g(x) g(y) x^2, which is separable.
 GradientKernel gaussian(int radius) {
     if (radius < 1 || radius > largest_kernel_radius) {
         throw InvalidInput(fmt::format("the kernel's radius {} is not within 1 and {}", radius,
@@ -82,7 +84,7 @@ GradientKernel gradient_kernel(Kernel kernel, int gaussian_radius) {
 }
 
 double noise_gain(const GradientKernel& kernel) {
-    // Weights at the same place add up before they are squared.
+    // Weights at the same offset are added before they are squared.
     std::vector<double> along(static_cast<std::size_t>(2 * kernel.radius + 1), 0.0);
     const auto at = [&](int offset) -> double& {
         return along[static_cast<std::size_t>(kernel.radius + offset)];
@@ -101,8 +103,8 @@ double noise_gain(const GradientKernel& kernel) {
 }
 
 double slope_response(const GradientKernel& kernel, glm::dvec2 frequency) {
-    // A difference of the wave exp(i w x), over its true slope i w exp(i w x) at the center of the
-    // kernel. All differences have that center, so the ratio is real.
+    // The difference of the wave exp(i w x) over its slope i w exp(i w x) at the center of the
+    // kernel. All differences have the same center, so the ratio is real.
     const HeightDifference& first = kernel.differences.front();
     const double center = 0.5 * (first.before + first.after);
     double along = 0.0;
@@ -125,7 +127,7 @@ double anisotropy(const GradientKernel& kernel, double wavelength) {
     const double length = 2.0 * std::numbers::pi / wavelength;
     double greatest = 0.0;
     for (int i = 0; i <= directions; ++i) {
-        // By symmetry the first quarter turn holds all there is to find.
+        // By symmetry, the first quadrant is sufficient.
         const double angle = std::numbers::pi / 2.0 * i / directions;
         const glm::dvec2 wave(length * portable::cos(angle), length * portable::sin(angle));
         const double x = wave.x * slope_response(kernel, wave);

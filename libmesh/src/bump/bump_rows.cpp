@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rows of slopes, pieces of 1024 columns at a time: rows around brought to one (combine_rows), what
-// lies beyond the left and right border filled in, columns combined (combine_columns), the slopes
-// stored as asked. Beyond the border, smoothing reads the edge again and differences the point
-// reflection where the map is clamped: a plane stays a plane. Pieces too steep for float are done
-// in double.
-#include "image/bump/bump_rows.h"
+// Rows of slopes, normals or codes, in pieces of 1024 columns.
+//
+// For each piece, the rows are combined, the columns beyond the left and right borders are filled
+// in, the columns are combined, and the slopes are stored as the requested result. Beyond a clamped
+// border, smoothing repeats the edge and differences use the point reflection, so that a plane
+// stays a plane. Pieces that are too steep for float are computed in double.
+#include "bump/bump_rows.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -13,15 +15,13 @@
 #include <optional>
 #include <type_traits>
 
-#include "image/bump/codes_3x3.h"
-#include "image/bump/normal_loops.h"
-#include "image/bump/slope_loops.h"
+#include "bump/bump_loops.h"
 #include "image/texel_loops.h"
 
 namespace relief {
 namespace {
 
-/// What a slope's sum of samples is multiplied by, to the right and upwards.
+/// The factors of the kernel sums, to the right and upwards.
 struct SlopeScales {
     double right, up;
 };
@@ -37,7 +37,7 @@ SlopeScales scales_of(const HeightRows& heights, const BumpOptions& options) {
             options.strength / (divisor * options.texel.y)};
 }
 
-/// Whether float holds both scales with all its digits.
+/// Returns whether float represents both scales at full precision.
 bool are_for_float(const SlopeScales& scales) {
     const auto fits = [](double scale) {
         return scale == 0.0 || (std::abs(scale) > 1e-30 && std::abs(scale) < 1e30);
@@ -45,7 +45,7 @@ bool are_for_float(const SlopeScales& scales) {
     return fits(scales.right) && fits(scales.up);
 }
 
-/// Finds the rows around a row. Where a clamped border is among them they are copies.
+/// Finds the rows around a row. Rows near a clamped border are copies.
 template <typename Sample, typename Real>
 class RowFinder {
   public:
@@ -59,7 +59,7 @@ class RowFinder {
         copies_.resize(2 * count);
     }
 
-    /// Makes `plain()` those around a row, or `copied()` where it returns true.
+    /// Sets plain() to the rows around a row, or copied() if it returns true.
     bool find(int row) {
         const bool inside = row >= radius_ && row + radius_ < heights_.height;
         const bool copy = wrap_ == Wrap::clamp && !inside;
@@ -87,7 +87,7 @@ class RowFinder {
         return std::vector<Real>(samples, samples + heights_.width);
     }
 
-    /// `reflected` for whole rows.
+    /// reflected() for a whole row.
     [[nodiscard]] std::vector<Real> reflected_row(int row) const {
         if (row >= 0 && row < heights_.height) return read(row);
         if (heights_.height == 1) return read(0);
@@ -107,7 +107,20 @@ class RowFinder {
     std::vector<std::vector<Real>> copies_;
 };
 
-/// Slopes of pieces of a row.
+/// Returns the weights for codes_3x3(), if the kernel has that form.
+std::optional<Weights3x3> scaled_weights_3x3(const KernelWeights<float>& weights, float right_scale,
+                                             float up_scale) {
+    const auto& differences = weights.differences;
+    const bool fits = differences.size() == 1 && differences[0].before == -1 &&
+                      differences[0].after == 1 && differences[0].weight == 1.0F &&
+                      weights.smoothing.size() <= 2;
+    if (!fits) return {};
+    return Weights3x3{weights.smoothing[0],
+                      weights.smoothing.size() == 2 ? weights.smoothing[1] : 0.0F, right_scale,
+                      up_scale};
+}
+
+/// Computes the slopes of pieces of a row.
 template <typename Sample, typename Real>
 class SlopePieces {
   public:
@@ -124,7 +137,7 @@ class SlopePieces {
 
     void begin_row(int row) { are_copied_ = rows_.find(row); }
 
-    /// Slopes of columns [first, first + count), to be read from right() and up().
+    /// Computes the slopes of columns [first, first + count) into right() and up().
     void make(int first, int count) {
         const int radius = static_cast<int>(weights_.radius);
         const int begin = std::max(first - radius, 0);
@@ -141,10 +154,10 @@ class SlopePieces {
                         static_cast<std::size_t>(count), right_scale_, up_scale_, right_.data(),
                         up_.data());
     }
-    /// The scaled weights, if the kernel is one of 3x3.
+    /// Returns the scaled weights, if the kernel is a 3x3 kernel.
     [[nodiscard]] std::optional<Weights3x3> weights_3x3()
         const requires std::is_same_v<Real, float> {
-        return relief::weights_3x3(weights_, right_scale_, up_scale_);
+        return scaled_weights_3x3(weights_, right_scale_, up_scale_);
     }
     [[nodiscard]] const Real* right() const { return right_.data(); }
     [[nodiscard]] const Real* up() const { return up_.data(); }
@@ -190,7 +203,7 @@ void store_slopes(const Real* right, const Real* up, std::size_t count, float* s
     }
 }
 
-/// Calls with_codes(pointer to the first sample of a texel), of the type that the format has.
+/// Calls with_codes(pointer to the first sample of a texel) with the sample type of the format.
 template <typename WithCodes>
 void at_codes(const BumpTarget& target, int row, int column, const WithCodes& with_codes) {
     void* const samples = target.row(row);
@@ -203,7 +216,7 @@ void at_codes(const BumpTarget& target, int row, int column, const WithCodes& wi
         with_codes(static_cast<float*>(samples) + offset);
 }
 
-/// Stores what is asked of slopes of columns from `first` on.
+/// Stores the requested result of slopes, for columns from `first` on.
 template <typename Real>
 void store(VectorTarget vectors, const BumpTarget& target, int row, int first, std::size_t count,
            const Real* right, const Real* up) {
@@ -240,7 +253,7 @@ bool all_pieces(int width, const Make& make) {
     return true;
 }
 
-/// Makes rows with any kernel. Each function returns false where a height is not finite.
+/// Computes rows with any kernel. Functions return false if a height is not finite.
 template <typename Sample, typename Real>
 class RowMaker {
   public:
@@ -271,16 +284,16 @@ class RowMaker {
         if constexpr (std::is_same_v<Real, double>)
             return false;
         else
-            return make_carefully(row_, first, count);
+            return make_in_double(row_, first, count);
     }
-    /// In double.
-    bool make_carefully(int row, int first, int count) {
-        if (!careful_) {
-            careful_ =
+    /// Computes a piece in double.
+    bool make_in_double(int row, int first, int count) {
+        if (!in_double_) {
+            in_double_ =
                 std::make_unique<RowMaker<Sample, double>>(vectors_, heights_, options_, target_);
         }
-        careful_->begin_row(row);
-        return careful_->make_piece(first, count);
+        in_double_->begin_row(row);
+        return in_double_->make_piece(first, count);
     }
     [[nodiscard]] const SlopePieces<Sample, Real>& slopes() const { return slopes_; }
 
@@ -291,10 +304,74 @@ class RowMaker {
     const BumpTarget& target_;
     int row_ = 0;
     SlopePieces<Sample, Real> slopes_;
-    std::unique_ptr<RowMaker<Sample, double>> careful_;
+    std::unique_ptr<RowMaker<Sample, double>> in_double_;
 };
 
-/// Makes rows of codes with kernels of 3x3: clamped borders by a RowMaker, all else in one loop.
+/// Rows of heights as floats, extended by one sample at each end by the wrap rule. Three rows are
+/// kept, so that each is converted once.
+template <typename Sample>
+class PaddedRows {
+  public:
+    PaddedRows(const HeightRows& heights, Wrap wrap);
+
+    /// Returns the rows above, at and below a row (after wrapping), from the column before the
+    /// first one. They are valid until the next call.
+    std::array<const float*, 3> around(int row, Wrap wrap);
+
+  private:
+    struct Slot {
+        int row = -1;
+        std::vector<float> samples;
+    };
+    Slot& load(int row, const std::array<int, 3>& needed);
+
+    const HeightRows& heights_;
+    Wrap wrap_;
+    std::array<Slot, 3> slots_;
+};
+
+template <typename Sample>
+PaddedRows<Sample>::PaddedRows(const HeightRows& heights, Wrap wrap)
+    : heights_(heights), wrap_(wrap) {
+    for (Slot& slot : slots_)
+        slot.samples.resize(static_cast<std::size_t>(heights.width) + 2);
+}
+
+template <typename Sample>
+typename PaddedRows<Sample>::Slot& PaddedRows<Sample>::load(int row,
+                                                            const std::array<int, 3>& needed) {
+    const auto has_row = [row](const Slot& slot) { return slot.row == row; };
+    const auto loaded = std::find_if(slots_.begin(), slots_.end(), has_row);
+    if (loaded != slots_.end()) return *loaded;
+    // A slot that holds none of the needed rows; one exists, because no slot holds `row`.
+    Slot& slot = *std::find_if(slots_.begin(), slots_.end(), [&](const Slot& candidate) {
+        return std::find(needed.begin(), needed.end(), candidate.row) == needed.end();
+    });
+    const auto* samples = static_cast<const Sample*>(heights_.row(row));
+    const auto width = static_cast<std::size_t>(heights_.width);
+    float* const to = slot.samples.data() + 1;
+    if constexpr (std::is_same_v<Sample, float>)
+        std::copy_n(samples, width, to);
+    else
+        std::transform(samples, samples + width, to,
+                       [](Sample sample) { return static_cast<float>(sample); });
+    slot.samples.front() = to[place_within(-1, heights_.width, wrap_)];
+    slot.samples.back() = to[place_within(heights_.width, heights_.width, wrap_)];
+    slot.row = row;
+    return slot;
+}
+
+template <typename Sample>
+std::array<const float*, 3> PaddedRows<Sample>::around(int row, Wrap wrap) {
+    const std::array<int, 3> needed = {place_within(row - 1, heights_.height, wrap), row,
+                                       place_within(row + 1, heights_.height, wrap)};
+    std::array<const float*, 3> rows{};
+    for (std::size_t i = 0; i < 3; ++i)
+        rows[i] = load(needed[i], needed).samples.data();
+    return rows;
+}
+
+/// Computes rows of codes with 3x3 kernels in one loop, and clamped borders with a RowMaker.
 template <typename Sample>
 class DirectRowMaker {
   public:
@@ -324,7 +401,7 @@ class DirectRowMaker {
 
   private:
     bool make_piece(const std::array<const float*, 3>& rows, int row, int first, int count) {
-        // The row after the one below, if rows lie one behind the other.
+        // If rows are contiguous, this is the row after the one below.
         const auto* const below = static_cast<const Sample*>(
             heights_.row(place_within(row + 1, heights_.height, wrap_.y)));
         const Sample* const next = below + heights_.width + first;
@@ -335,7 +412,7 @@ class DirectRowMaker {
                                       target_.format, codes, next, sizeof(Sample));
             }
         });
-        return !too_steep || general_.make_carefully(row, first, count);
+        return !too_steep || general_.make_in_double(row, first, count);
     }
 
     VectorTarget vectors_;

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Normals, codes and slopes of a height field [Blinn 1978], its rows shared out among threads (the
-// rows themselves: bump_rows.cpp). Non-finite heights show in the slopes that they touch; only then
-// are they looked for, filled (height_holes.cpp) and counted, and all is done again. A bad image,
-// strength or texel throws.
+// Normals, codes and slopes of a height field [Blinn 1978]. Rows are computed in parallel by
+// bump_rows.cpp. Heights that are not finite are detected by their slopes; only then are they
+// filled and reported, and all rows are computed again.
 #include "relief/mesh/bump.h"
 
 #include <fmt/format.h>
@@ -11,7 +10,7 @@
 #include <atomic>
 #include <cmath>
 
-#include "image/bump/bump_rows.h"
+#include "bump/bump_rows.h"
 #include "image/height_holes.h"
 #include "large_memory.h"
 #include "parallel.h"
@@ -22,9 +21,10 @@
 namespace relief {
 namespace {
 
-// Differences of floats reach 7e38; with these, slopes and their squares stay in double's range.
-constexpr double largest_bump_strength = 1e30;
-constexpr double largest_bump_texel = 1e30;
+// Differences of floats reach 7e38. With these limits, squares of slopes stay within the range of
+// double.
+constexpr double max_bump_strength = 1e30;
+constexpr double max_bump_texel = 1e30;
 
 void check(const Image& height, const BumpOptions& options) {
     if (height.empty()) throw InvalidInput("an empty height field has no normals");
@@ -33,7 +33,7 @@ void check(const Image& height, const BumpOptions& options) {
     check_bump(options);
 }
 
-/// All rows, on all threads. False where a height is not finite.
+/// Computes all rows in parallel. Returns false if a height is not finite.
 bool make_all_rows(const HeightRows& heights, const BumpOptions& options,
                    const BumpTarget& target) {
     const std::size_t grain =
@@ -53,7 +53,7 @@ std::function<const void*(int)> rows_of(std::span<const Sample> samples, int wid
     return [=](int row) { return samples.data() + static_cast<std::ptrdiff_t>(row) * width; };
 }
 
-/// From the image as it is; where that has holes, from a copy without.
+/// Computes all rows of an image. If it has holes, the rows are computed from a filled copy.
 void make_image_rows(const Image& height, const BumpOptions& given, const BumpTarget& target,
                      Report& report) {
     const BumpOptions options = settled_options(height, given);
@@ -67,7 +67,7 @@ void make_image_rows(const Image& height, const BumpOptions& given, const BumpTa
     make_all_rows(heights, options, target);
 }
 
-/// Where the rows of an image are written to.
+/// The rows of an image as a target.
 template <typename Sample>
 std::function<void*(int)> target_rows(Image& image) {
     Sample* const first = image.as<Sample>().data();
@@ -83,7 +83,7 @@ Image floats_from_height(const Image& height, int channels, BumpResult result,
     return image;
 }
 
-/// An image whose memory is asked for in large pages, since all of it will be written.
+/// Returns an image in large memory pages, because all of it will be written.
 template <typename Sample>
 Image image_to_fill(int width, int height, int channels) {
     Image image{width, height, channels, ColorSpace::data, {}};
@@ -98,20 +98,20 @@ Image image_to_fill(int width, int height, int channels, int bits) {
     if (bits == 8) return image_to_fill<std::uint8_t>(width, height, channels);
     if (bits == 16) return image_to_fill<std::uint16_t>(width, height, channels);
     if (bits == 32) return image_to_fill<float>(width, height, channels);
-    return make_image(width, height, channels, bits, ColorSpace::data);  // Which refuses.
+    return make_image(width, height, channels, bits, ColorSpace::data);  // Throws.
 }
 
 }  // namespace
 
 void check_bump(const BumpOptions& options) {
-    if (!(std::abs(options.strength) <= largest_bump_strength)) {
-        throw InvalidInput(fmt::format("the strength {} is not within +-{}", options.strength,
-                                       largest_bump_strength));
+    if (!(std::abs(options.strength) <= max_bump_strength)) {
+        throw InvalidInput(
+            fmt::format("the strength {} is not within +-{}", options.strength, max_bump_strength));
     }
     for (const double size : {options.texel.x, options.texel.y}) {
-        if (!(size >= 1.0 / largest_bump_texel && size <= largest_bump_texel)) {
+        if (!(size >= 1.0 / max_bump_texel && size <= max_bump_texel)) {
             throw InvalidInput(fmt::format("the texel size {} is not within {} and {}", size,
-                                           1.0 / largest_bump_texel, largest_bump_texel));
+                                           1.0 / max_bump_texel, max_bump_texel));
         }
     }
     gradient_kernel(options.kernel.value_or(Kernel::gaussian), options.gaussian_radius);
