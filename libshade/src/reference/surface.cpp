@@ -16,7 +16,7 @@
 #include "relief/mesh/frames.h"
 #include "relief/shade/effects.h"
 #include "relief/shade/image_source.h"
-#include "render/material_textures.h"
+#include "render/textures.h"
 
 namespace relief::reference {
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Uniform values of a draw: materials, places and cameras as numbers, computed in double and
-// rounded once. World space. Singular and mirroring matrices have the outcomes stated in
-// draw_values.h. Tests: tests/shade/render/draw_values_test.cpp.
+// Uniform values of materials, matrices and cameras, computed in double and rounded once; buffers
+// of lights. Tests: tests/shade/render/draw_values_test.cpp.
 #include "render/draw_values.h"
 
 #include <algorithm>
@@ -62,7 +61,8 @@ const std::map<std::string_view, Setter>& setters() {
     return all;
 }
 
-/// A matrix with its largest element scaled to 1, so that directions keep within a float's range.
+/// Returns a matrix scaled to a largest element of 1, so that directions stay in the range of
+/// float.
 glm::mat3 scaled_to_one(const glm::dmat3& matrix) {
     double largest = 0.0;
     for (int column = 0; column < 3; ++column) {
@@ -127,7 +127,7 @@ void set_normal_map(DrawValues& values, const NormalMap& map, int bits, FlatCode
     glm::dvec3 factor(2.0);
     glm::dvec3 bias(-1.0);
     if (flat == FlatCode::middle && bits < 32) {
-        // n = (code - middle) / (middle - 1), and a texel is looked up as code / largest.
+        // n = (code - middle) / (middle - 1), and a lookup returns code / largest.
         const double middle = bits == 8 ? 128.0 : 32768.0;
         factor = glm::dvec3(largest / (middle - 1.0));
         bias = glm::dvec3(-middle / (middle - 1.0));
@@ -138,7 +138,7 @@ void set_normal_map(DrawValues& values, const NormalMap& map, int bits, FlatCode
     values.normal_map_bias = glm::vec3(bias * by_channel);
     const double unscale = along == 0.0 ? 0.0 : 1.0 / along;
     values.normal_map_unscale = glm::vec3(glm::dvec3(unscale, unscale, 1.0));
-    // Each component is off by half a code at most: by half of 2 / largest.
+    // The error of each component is at most half a code, which is 1 / largest.
     values.normal_map_rounding = bits < 32 ? static_cast<float>(std::sqrt(3.0) / largest) : 1e-6F;
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// The values that draw calls upload: the uniforms of a draw by their GLSL names, each defined here
-/// only, and the lights of a scene.
+/// The values that draw calls upload: the uniforms of a draw by GLSL name, and the lights of a
+/// scene. Tests: tests/shade/render/draw_values_test.cpp.
 #pragma once
 
 #include <array>
@@ -17,7 +17,7 @@
 
 namespace relief {
 
-/// One member for each uniform of shaders/surface.*.glsl and what they include, of the same name.
+/// The uniforms of the surface shaders; each member has the name of its uniform.
 struct DrawValues {
     glm::mat4 clip_from_object{1.0F};
     glm::mat4 world_from_object{1.0F};
@@ -26,9 +26,9 @@ struct DrawValues {
     float handedness = 1.0F;                    ///< -1 if the matrix mirrors, else 1.
     glm::vec3 eye_world{0.0F};
 
-    glm::vec3 ambient_scattered{0.0F};  ///< Metallic-roughness: the scene's, unscattered.
+    glm::vec3 ambient_scattered{0.0F};  ///< For metallic-roughness, the ambient light itself.
     glm::vec3 diffuse_color{0.0F};
-    glm::vec3 specular_color{0.0F};  ///< With the model's normalisation.
+    glm::vec3 specular_color{0.0F};  ///< With the normalization of the model.
     float shininess = 0.0F;
     glm::vec3 emission_color{0.0F};
     glm::vec3 base_color{0.0F};
@@ -48,7 +48,7 @@ struct DrawValues {
     float transmission = 0.0F;
     float environment_intensity = 0.0F;
     float blurred_levels = 0.0F;
-    std::array<glm::vec4, 9> irradiance_sh{};  ///< With the environment's intensity.
+    std::array<glm::vec4, 9> irradiance_sh{};  ///< Times the intensity of the environment.
 
     glm::vec3 normal_map_scale{1.0F};  ///< normal = texel * scale + bias.
     glm::vec3 normal_map_bias{0.0F};
@@ -59,29 +59,30 @@ struct DrawValues {
     float exposure = 1.0F;
 };
 
-/// Sets the uniform `name` of the current program. False if no value has that name.
+/// Sets the uniform `name` of the current program. \return false if there is no such value
 bool set_uniform(const gl::LinkedProgram& program, std::string_view name, const DrawValues& values);
 
-/// The values that a material and a scene's light decide; the environment's are made elsewhere.
+/// Sets the values of a material and of the scene's light, except for those of environment maps.
 void set_material(DrawValues& values, const Material& material, const Scene& scene);
 
-/// The values that an instance's place decides, but for clip_from_object.
+/// Sets the values of an instance's matrix, except for clip_from_object.
 ///
-/// The normal matrix is the matrix of cofactors, which is the inverse transpose times the
-/// determinant and exists for singular matrices too: for one that flattens, it turns normals
-/// perpendicular to the plane. A matrix that leaves less than a plane draws nothing.
+/// The normal matrix is the cofactor matrix, which is the inverse transpose times the determinant
+/// and also exists for singular matrices: if a matrix flattens to a plane, normals become
+/// perpendicular to it. A matrix of lower rank draws nothing.
 void set_place(DrawValues& values, const glm::mat4& world_from_object);
 
-/// How a map of this many bits (8, 16; 32 is float) is read, as normal_map.h says: scale and bias
-/// with the green direction and the material's scale of x and y in them, how to take that scale
-/// out again, and how far rounding may make a unit vector shorter.
+/// Sets the decoding of a normal map of 8, 16 or 32 (float) bits (normal_map.h): scale and bias,
+/// which include the green direction and the material's scale of x and y; the inverse of that
+/// scale; and the rounding error of the length of a unit vector.
 void set_normal_map(DrawValues& values, const NormalMap& map, int bits, FlatCode flat);
 
-/// The camera's perspective, OpenGL's clip space. \param aspect  width / height
+/// Returns the perspective projection of a camera to OpenGL's clip space. \param aspect  width /
+/// height
 glm::dmat4 clip_from_world(const Camera& camera, double aspect);
 
-/// The lights of a scene on the GPU: a uniform block, or a buffer texture if they are too many.
-/// There is one buffer for each layout of lights; more than one only if a plan is forced.
+/// The lights of a scene on the GPU: a uniform block, or a buffer texture if there are too many
+/// lights. There is one buffer for each light layout; only forced plans have several.
 class LightStorage {
   public:
     /// Uploads the lights for these features on their first use. \throws GpuError

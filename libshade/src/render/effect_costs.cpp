@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Effects priced by drawing with and without them in turns, and dropped by what an eye would miss
-// for each millisecond. Milliseconds of wall clock; what drawing throws passes. Findings of these
-// drawings are those of the plan itself, and not told again.
-// Tests: tests/shade/render/effect_costs_test.cpp.
+// Costs of effects, measured by interleaved drawing with and without them, and the choice of
+// effects to drop by visible change per millisecond of wall-clock time. Tests:
+// tests/shade/render/effect_costs_test.cpp.
 #include "relief/shade/effect_costs.h"
 
 #include <algorithm>
@@ -17,24 +16,23 @@ namespace {
 
 FramePlan without(const MeasuredFrame& frame, const FramePlan& plan,
                   const std::vector<std::string>& effects) {
-    EffectWishes wishes;
+    EffectWishes requests;
     for (const std::string& effect : effects)
-        wishes.forced.push_back({effect, false});
-    return force_effects(frame.scene, frame.settings, plan, wishes);
+        requests.forced.push_back({effect, false});
+    return force_effects(frame.scene, frame.settings, plan, requests);
 }
 
-/// Findings of these drawings were told already.
+/// Returns a renderer whose findings are ignored, because the plan has reported them.
 std::unique_ptr<Renderer> renderer_of(const MeasuredFrame& frame, const FramePlan& plan) {
-    Report told_already;
+    Report ignored;
     if (frame.cache != nullptr) {
         return std::make_unique<Renderer>(*frame.cache, frame.context, frame.scene, plan,
-                                          frame.settings, told_already);
+                                          frame.settings, ignored);
     }
-    return std::make_unique<Renderer>(frame.context, frame.scene, plan, frame.settings,
-                                      told_already);
+    return std::make_unique<Renderer>(frame.context, frame.scene, plan, frame.settings, ignored);
 }
 
-double seen_per_millisecond(const EffectCost& cost) {
+double change_per_millisecond(const EffectCost& cost) {
     return cost.change.flip_mean / cost.milliseconds;
 }
 
@@ -59,7 +57,7 @@ struct EffectPricing::Implementation {
     std::unique_ptr<Renderer> whole;
     Image picture;  ///< With all effects.
 
-    // Of the effect that is measured now.
+    // The state of the effect that is being measured.
     std::unique_ptr<Renderer> less;
     std::size_t round = 0;
     std::vector<double> with, without;
@@ -72,8 +70,8 @@ struct EffectPricing::Implementation {
         less = renderer_of(frame, relief::without(frame, plan, {names[done.size()]}));
     }
 
-    /// First the one, then the other, the other way round each time: what goes on between rounds
-    /// meets the first of a pair.
+    /// Draws with and without the effect, in alternating order, because pauses between rounds
+    /// affect the first drawing of a pair.
     void draw_both() {
         std::array<Renderer*, 2> both{whole.get(), less.get()};
         const std::size_t first = round % 2;
@@ -130,13 +128,13 @@ EffectCosts measure_effects(const MeasuredFrame& frame, const FramePlan& plan) {
     return pricing.costs();
 }
 
-std::vector<std::string> drop_order(std::span<const EffectCost> costs, double least_saving) {
+std::vector<std::string> drop_order(std::span<const EffectCost> costs, double min_saving) {
     std::vector<EffectCost> worth;
     for (const EffectCost& cost : costs) {
-        if (cost.milliseconds > 0.0 && cost.milliseconds >= least_saving) worth.push_back(cost);
+        if (cost.milliseconds > 0.0 && cost.milliseconds >= min_saving) worth.push_back(cost);
     }
     std::stable_sort(worth.begin(), worth.end(), [](const EffectCost& a, const EffectCost& b) {
-        return seen_per_millisecond(a) < seen_per_millisecond(b);
+        return change_per_millisecond(a) < change_per_millisecond(b);
     });
     std::vector<std::string> order;
     for (const EffectCost& cost : worth)
@@ -172,11 +170,10 @@ BudgetedPlan plan_within_budget(const MeasuredFrame& frame, const FramePlan& pla
         result.choice = {{}, result.milliseconds_before, true};
         return result;
     }
-    // Less than a hundredth of the frame is not told from noise.
-    constexpr double told_from_noise = 0.01;
+    constexpr double noise_share = 0.01;  // Of the frame time; smaller savings are noise.
     const EffectCosts costs = measure_effects(frame, plan);
     const std::vector<std::string> order =
-        drop_order(costs.effects, told_from_noise * costs.frame.median);
+        drop_order(costs.effects, noise_share * costs.frame.median);
     result.choice = fit_to_budget(budget, order, frame_time);
     result.plan = without(frame, plan, result.choice.dropped);
     const std::unique_ptr<Renderer> less = renderer_of(frame, result.plan);

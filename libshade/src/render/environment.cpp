@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// From an environment's images to a cube map and a skybox. World space, looked up by direction as
-// it is. Unreadable images throw FileError, ones that do not fit together InvalidInput. Tests:
-// tests/shade/render/environment_test.cpp.
+// Cube maps, prefiltered maps and irradiance of environments, and the skybox. Directions are in
+// world space. Tests: tests/shade/render/environment_test.cpp.
 #include "render/environment.h"
 
 #include <algorithm>
@@ -35,8 +34,8 @@ std::span<const ImageSource> sources_of(const Environment& environment) {
 
 gl::CubeMap black_cube_map(const gl::Api& api) {
     const std::vector<Image> faces(6, make_image(1, 1, 3, 32, ColorSpace::linear));
-    Report nothing_to_find;
-    return gl::make_cube_map(api, faces, "black", nothing_to_find);
+    Report ignored;
+    return gl::make_cube_map(api, faces, "black", ignored);
 }
 
 gl::CubeMap cube_map_of(const gl::Api& api, const Environment& environment,
@@ -54,17 +53,17 @@ gl::CubeMap cube_map_of(const gl::Api& api, const Environment& environment,
     return gl::make_cube_map_from_panorama(api, images.front(), name, report);
 }
 
-/// What the surroundings shed.
+/// Returns the irradiance of an environment.
 IrradianceSh irradiance_of(const gl::Api& api, const gl::CubeMap& environment) {
-    // The harmonics are as wide as the sphere: details of a degree and a half do not matter.
-    constexpr int enough_texels = 64;
+    // Spherical harmonics of second order do not resolve details of 1.5 degrees.
+    constexpr int max_size = 64;
     int level = 0;
-    while (environment.size >> level > enough_texels)
+    while (environment.size >> level > max_size)
         ++level;
     return irradiance_sh(read_faces(api, environment, level));
 }
 
-/// Times the intensity, padded as the shader wants it.
+/// Returns the coefficients times the intensity, padded to the layout of the shader.
 std::array<glm::vec4, 9> padded(const IrradianceSh& sh, float intensity) {
     std::array<glm::vec4, 9> rows{};
     for (std::size_t i = 0; i < sh.size(); ++i)
@@ -72,8 +71,8 @@ std::array<glm::vec4, 9> padded(const IrradianceSh& sh, float intensity) {
     return rows;
 }
 
-/// Column for the root of n.v, row for roughness; red is A, green B
-/// (environment/ggx.h).
+/// Returns the albedo table of environment/ggx.h: columns are sqrt(n.v), rows are roughness; red is
+/// A, green is B.
 gl::Texture brdf_texture(const gl::Api& api) {
     constexpr int size = 64;
     gl::Texture texture =
@@ -81,7 +80,7 @@ gl::Texture brdf_texture(const gl::Api& api) {
     api->BindTexture(GL_TEXTURE_2D, texture.name());
     gl::set_sampling(api, GL_TEXTURE_2D,
                      {GL_CLAMP_TO_EDGE, GL_CLAMP_TO_EDGE, GL_LINEAR, GL_LINEAR, 1.0F});
-    // Two channels stand for grey and alpha elsewhere.
+    // Other textures of two channels are gray and alpha.
     api->TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_SWIZZLE_G, GL_GREEN);
     api->BindTexture(GL_TEXTURE_2D, 0);
     return texture;
@@ -135,14 +134,14 @@ std::shared_ptr<GpuEnvironment> EnvironmentCache::get(const Environment& environ
     std::shared_ptr<GpuEnvironment> maps = find(environment);
     if (!maps) {
         maps = std::make_shared<GpuEnvironment>();
-        maps->sharp = cube_map_of(*api_, environment, decoded_, maps->found);
+        maps->sharp = cube_map_of(*api_, environment, decoded_, maps->findings);
         decoded_.clear();
         Entry entry{{}, environment.source.index(), is_left_handed(environment), maps};
         for (const ImageSource& source : sources_of(environment))
             entry.images.emplace_back(source);
         environments_.push_back(std::move(entry));
     }
-    report.merge(maps->found);
+    report.merge(maps->findings);
     return maps;
 }
 
@@ -207,7 +206,7 @@ float EnvironmentMaps::blurred_levels() const {
 
 Skybox::Skybox(const gl::Api& api, ProgramCache& programs, const Scene& scene, OutputCoding output)
     : program_(programs.get("skybox", output_steps(output, scene))),
-      nothing_(api),
+      empty_vertices_(api),
       intensity_(scene.environment ? scene.environment->intensity : 0.0F),
       exposure_(scene.exposure) {}
 
@@ -220,7 +219,7 @@ void Skybox::draw(const gl::Api& api, const Camera& camera, float aspect) const 
     program_->set("world_from_screen", world_from_screen);
     program_->set("environment_intensity", intensity_);
     program_->set("exposure", exposure_);
-    api->BindVertexArray(nothing_.name());
+    api->BindVertexArray(empty_vertices_.name());
     api->DrawArrays(GL_TRIANGLES, 0, 3);
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// The surroundings on the GPU, in the forms that the plan calls for, and their picture behind the
-/// model. Tests: tests/shade/render/environment_test.cpp.
+/// Environment maps on the GPU, in the forms that the plan requires, and the skybox.
+/// Tests: tests/shade/render/environment_test.cpp.
 #pragma once
 
 #include <array>
@@ -20,24 +20,25 @@
 
 namespace relief {
 
-/// An environment's maps, each made when it is wanted first.
+/// The maps of an environment, each computed on first use.
 struct GpuEnvironment {
     gl::CubeMap sharp;
     std::optional<gl::CubeMap> blurred;
     std::optional<IrradianceSh> irradiance;
-    Report found;  ///< When it was uploaded.
+    Report findings;  ///< Of the upload.
 };
 
-/// Environments on the GPU, kept by what they are made of, and GGX's albedo, which all have in
-/// common.
+/// The environments of a context by the identity of their images, and the GGX albedo table that all
+/// share.
 class EnvironmentCache {
   public:
     explicit EnvironmentCache(const gl::Api& api) : api_(&api) {}
 
-    /// Decodes the images of one that is not there. \throws FileError if one cannot be read
+    /// Decodes the images of an environment that is not in the cache. \throws FileError if one
+    /// cannot be read
     void decode(const Environment& environment);
 
-    /// Uploaded if it is not there yet; decode() came before.
+    /// Gets the maps, which are uploaded on first use after decode().
     /// \throws InvalidInput if images do not fit together; GpuError
     std::shared_ptr<GpuEnvironment> get(const Environment& environment, Report& report);
 
@@ -50,7 +51,7 @@ class EnvironmentCache {
   private:
     struct Entry {
         std::vector<ImageIdentity> images;
-        std::size_t layout = 0;  ///< Which of Environment's.
+        std::size_t layout = 0;  ///< The index of the variant Environment::source.
         bool left_handed = false;
         std::shared_ptr<GpuEnvironment> maps;
 
@@ -65,22 +66,23 @@ class EnvironmentCache {
     std::shared_ptr<const gl::Texture> brdf_;
 };
 
-/// What the plan's effects look up. A plan may name an environment where there is none: it is
-/// black.
+/// The maps that the effects of a plan sample. They are black if a forced plan names a missing
+/// environment.
 class EnvironmentMaps {
   public:
-    /// \param is_shown  the scene has an environment and the plan shows it; decode() came before
+    /// \param is_shown  the scene has an environment that the plan shows and that is decoded
     /// \throws InvalidInput if images do not fit together; GpuError
     EnvironmentMaps(const gl::Api& api, EnvironmentCache& cache, const Scene& scene,
                     const FramePlan& plan, bool is_shown, Report& report);
 
-    /// To their texture units.
+    /// Binds the maps to their texture units.
     void bind(const gl::Api& api) const;
 
     [[nodiscard]] std::size_t texture_count() const;
-    /// The last level of the blurred map, which stands for roughness 1.
+    /// Returns the last level of the blurred map, for roughness 1.
     [[nodiscard]] float blurred_levels() const;
-    /// The nine numbers of shaders/environment.glsl (irradiance), times the intensity.
+    /// Returns the nine coefficients of the irradiance in shaders/environment.glsl, times the
+    /// intensity.
     [[nodiscard]] const std::array<glm::vec4, 9>& irradiance_sh() const { return irradiance_sh_; }
 
   private:
@@ -90,10 +92,10 @@ class EnvironmentMaps {
     std::array<glm::vec4, 9> irradiance_sh_{};
 };
 
-/// Draws the environment wherever nothing is nearer.
+/// Draws the environment behind all surfaces.
 class Skybox {
   public:
-    /// \param output  what surfaces write (picture.h)
+    /// \param output  the encoding that surfaces write (picture.h)
     /// \throws GpuError
     Skybox(const gl::Api& api, ProgramCache& programs, const Scene& scene, OutputCoding output);
 
@@ -102,7 +104,7 @@ class Skybox {
 
   private:
     std::shared_ptr<const gl::LinkedProgram> program_;
-    gl::VertexArray nothing_;  ///< Core OpenGL draws only with a vertex array.
+    gl::VertexArray empty_vertices_;  ///< Core OpenGL draws only with a vertex array.
     float intensity_;
     float exposure_;
 };

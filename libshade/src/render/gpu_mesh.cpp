@@ -14,8 +14,6 @@
 
 namespace relief {
 
-// Meshes
-
 void PlannedStreams::add(const PlannedInterface& planned) {
     const auto uses = [&](const char* name) {
         return std::binary_search(planned.attributes.begin(), planned.attributes.end(), name);
@@ -87,8 +85,6 @@ void set_attribute_constants(const gl::Api& api) {
     set(Attribute::color_linear, glm::vec4(1.0F));
 }
 
-// The cache
-
 namespace {
 
 std::shared_ptr<GpuMesh> uploaded(const gl::Api& api, const Mesh& mesh,
@@ -120,8 +116,6 @@ std::shared_ptr<GpuMesh> MeshCache::get(const Shared<Mesh>& mesh, const PlannedS
 void MeshCache::drop_unused() {
     std::erase_if(meshes_, [](const Entry& entry) { return entry.mesh.use_count() == 1; });
 }
-
-// Painter's order
 
 SortedTriangles::SortedTriangles(const Mesh& mesh, const MaterialRange& range) {
     const auto first = mesh.triangles.begin() + static_cast<std::ptrdiff_t>(range.first_triangle);

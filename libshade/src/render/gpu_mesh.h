@@ -30,8 +30,8 @@ struct PlannedStreams {
     void add(const PlannedInterface& planned);
 };
 
-/// The mesh with the missing normals and tangents that the streams need: angle-weighted normals,
-/// and MikkTSpace tangents if it has texture coordinates.
+/// Returns the mesh with the missing normals and tangents that the streams need: angle-weighted
+/// normals, and MikkTSpace tangents if it has texture coordinates.
 Mesh with_planned_frames(const Mesh& mesh, const PlannedStreams& streams, Report& report);
 
 /// Vertex array and buffers. An attribute whose stream is missing keeps its constant.
@@ -61,8 +61,8 @@ class MeshCache {
   public:
     explicit MeshCache(const gl::Api& api) : api_(&api) {}
 
-    /// A mesh with these streams. On first use the missing frames are computed, and it is uploaded.
-    /// \param report  gets the findings of that computation, on every call
+    /// Returns a mesh with these streams. On first use the missing frames are computed, and it is
+    /// uploaded. \param report  gets the findings of that computation, on every call
     std::shared_ptr<GpuMesh> get(const Shared<Mesh>& mesh, const PlannedStreams& streams,
                                  Report& report);
 
@@ -93,7 +93,7 @@ class SortedTriangles {
     /// \return the triangles, farthest first; ties keep the order of the mesh
     std::span<const glm::uvec3> sort(const glm::vec3& farther_object);
 
-    /// The center of the range in object space, by which draws are sorted.
+    /// Returns the center of the range in object space, by which draws are sorted.
     [[nodiscard]] const glm::vec3& center() const { return center_; }
 
   private:

@@ -1,20 +1,32 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lines and points over a finished picture, in colours that are coded as it is. World space. Depth
-// is drawn anew, pushed away by polygon offset, so that lines on a surface are not hidden by it.
-// Tests: tests/shade/render/overlays_test.cpp.
+// Overlay lines and points, whose colors are final codes. The depth of the surfaces is moved back
+// by polygon offset, so that a surface does not hide lines on it. Vertex frames are computed in
+// double, relative to a center. Tests: tests/shade/render/overlays_test.cpp,
+// vertex_frames_test.cpp.
 #include "render/overlays.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "relief/mesh/error.h"
 #include "relief/mesh/image.h"
+#include "render/draw_values.h"
+#include "scene/is_finite.h"
 
 namespace relief {
-
 namespace {
+
+/// Adds a line from a point, unless the direction has no length.
+void add_line(const glm::dvec3& from, const glm::dvec3& direction, double length,
+              std::vector<glm::vec3>& lines) {
+    const double size = glm::length(direction);
+    if (!(size > 0.0) || !std::isfinite(size)) return;
+    lines.emplace_back(from);
+    lines.emplace_back(from + direction * (length / size));
+}
 
 void check_markers(const Scene& scene, const std::vector<Marker>& markers) {
     for (std::size_t i = 0; i < markers.size(); ++i) {
@@ -24,7 +36,7 @@ void check_markers(const Scene& scene, const std::vector<Marker>& markers) {
     }
 }
 
-void check_length(const std::optional<float>& share) {
+void check_frame_length(const std::optional<float>& share) {
     if (!share || (*share > 0.0F && *share <= 1000.0F)) return;
     throw InvalidInput(fmt::format(
         "vertex frames of {} times the scene's size; from above 0 to 1000 can be drawn", *share));
@@ -32,10 +44,32 @@ void check_length(const std::optional<float>& share) {
 
 }  // namespace
 
+void add_vertex_frames(const Mesh& mesh, const glm::mat4& world_from_object,
+                       const glm::dvec3& center, double length, VertexFrameLines& lines) {
+    DrawValues values;
+    set_place(values, world_from_object);
+    const glm::dmat4 to_world(world_from_object);
+    const glm::dmat3 normal_to_world(values.world_from_object_normal);
+    const glm::dmat3 tangent_to_world(values.world_from_object_tangent);
+    for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
+        const glm::dvec3 from =
+            glm::dvec3(to_world * glm::dvec4(glm::dvec3(mesh.positions[i]), 1.0)) - center;
+        if (!is_finite(from)) continue;
+        const glm::dvec3 normal = normal_to_world * glm::dvec3(mesh.normals[i]);
+        add_line(from, normal, length, lines.normals);
+        if (mesh.tangents.empty()) continue;
+        const glm::vec4& stored = mesh.tangents[i];
+        const glm::dvec3 tangent = tangent_to_world * glm::dvec3(stored);
+        const auto handedness = static_cast<double>(stored.w * values.handedness);
+        add_line(from, tangent, length, lines.tangents);
+        add_line(from, handedness * glm::cross(normal, tangent), length, lines.bitangents);
+    }
+}
+
 OverlayDrawing::OverlayDrawing(const gl::Api& api, ProgramCache& programs, const Scene& scene,
                                const FramePlan& plan, const FrameSettings& settings, Report& report)
     : api_(&api), overlays_(settings.overlays), output_(settings.output) {
-    check_length(overlays_.vertex_frames);
+    check_frame_length(overlays_.vertex_frames);
     if (overlays_.markers) check_markers(scene, *overlays_.markers);
     for (const DrawPlan& draw : plan.draws)
         instances_.insert(draw.instance);

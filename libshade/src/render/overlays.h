@@ -1,48 +1,66 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// What is drawn over a finished picture: wireframe, vertex frames, markers (debug_views.h).
-/// Tests: tests/shade/render/overlays_test.cpp.
+/// Overlays on a finished picture: wireframe, vertex frames, markers (debug_views.h).
+/// Tests: tests/shade/render/overlays_test.cpp, vertex_frames_test.cpp.
 #pragma once
 
 #include <array>
+#include <glm/glm.hpp>
 #include <map>
 #include <set>
 #include <span>
 #include <vector>
 
+#include "relief/mesh/mesh.h"
 #include "relief/mesh/report.h"
 #include "relief/shade/effects.h"
 #include "render/gpu_mesh.h"
-#include "render/vertex_frames.h"
 
 namespace relief {
 
-/// A surface that was drawn, for what lies on it and what it hides.
+/// Lines along the frames of vertices; each pair of points is a line.
+struct VertexFrameLines {
+    std::vector<glm::vec3> tangents;
+    std::vector<glm::vec3> bitangents;
+    std::vector<glm::vec3> normals;
+};
+
+/// Adds the lines of an instance, along the world-space frame of each vertex as shaders compute it
+/// (vertex.glsl, normal_and_tangent). Vertices that are not finite and directions without length
+/// get no line.
+///
+/// \param mesh    with normals; tangents are optional
+/// \param center  the origin of the points, in world space, which keeps precision far from the
+/// world origin \param length  the length of each line, in world space
+void add_vertex_frames(const Mesh& mesh, const glm::mat4& world_from_object,
+                       const glm::dvec3& center, double length, VertexFrameLines& lines);
+
+/// A surface of the picture, which may show a wireframe and hide overlays.
 struct OverlaySurface {
     const GpuMesh* mesh = nullptr;
     MaterialRange range;
     glm::mat4 world_from_object{1.0F};
     bool both_sides = false;
     bool mirrored = false;
-    bool hides = true;  ///< Opaque everywhere.
+    bool hides = true;  ///< It is opaque everywhere.
 };
 
-/// Only made where some overlay is asked for. Lines are tested against a depth buffer of their own,
-/// since the finished picture has none; so they are the same for any number of samples.
+/// Draws the overlays. The finished picture has no depth buffer, so the depth of the surfaces is
+/// drawn again. Hence overlays are the same for any number of samples.
 class OverlayDrawing {
   public:
-    /// \param report  gets what computing missing frames found
+    /// \param report  gets the findings of computing missing frames
     OverlayDrawing(const gl::Api& api, ProgramCache& programs, const Scene& scene,
                    const FramePlan& plan, const FrameSettings& settings, Report& report);
 
-    /// Takes over where instances stand.
+    /// Updates the matrices of the instances.
     void move(const Scene& scene);
 
-    /// Draws into the bound target, whose depth is lost.
+    /// Draws into the bound target and overwrites its depth.
     void draw(const glm::dmat4& clip_from_world, std::span<const OverlaySurface> surfaces) const;
 
   private:
-    /// Points on the GPU, with or without a colour each.
+    /// Points on the GPU, optionally with colors.
     struct Points {
         gl::VertexArray vertices;
         std::vector<gl::Buffer> buffers;
@@ -54,7 +72,7 @@ class OverlayDrawing {
     void make_frames(const Scene& scene);
     void make_markers(const Scene& scene);
     [[nodiscard]] glm::vec3 coded(const glm::vec3& srgb) const;
-    /// With the lines' program, as the polygon mode says, facing as the surface was drawn.
+    /// Draws a surface with the line program in the current polygon mode.
     void draw_triangles(const glm::dmat4& clip_from_world, const OverlaySurface& surface) const;
     void draw_depth(const glm::dmat4& clip_from_world,
                     std::span<const OverlaySurface> surfaces) const;
@@ -68,12 +86,12 @@ class OverlayDrawing {
     OutputCoding output_;
     std::shared_ptr<const gl::LinkedProgram> lines_program_;
     std::shared_ptr<const gl::LinkedProgram> discs_program_;
-    std::set<std::size_t> instances_;           ///< That are drawn.
-    std::map<std::size_t, Mesh> framed_;        ///< By index; with the frames that it lacked.
-    glm::dvec3 center_{0.0};                    ///< Of the frames' lines.
+    std::set<std::size_t> instances_;           ///< The drawn instances.
+    std::map<std::size_t, Mesh> framed_;        ///< Meshes with computed frames, by index.
+    glm::dvec3 center_{0.0};                    ///< The origin of the frame lines.
     std::array<Points, 3> frames_;              ///< Tangents, bitangents, normals.
     std::map<std::size_t, Points> markers_;     ///< By instance.
-    std::vector<glm::mat4> world_from_object_;  ///< Of instances.
+    std::vector<glm::mat4> world_from_object_;  ///< By instance.
 };
 
 }  // namespace relief

@@ -1,16 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
-// Render targets of a picture and the pass that finishes samples. Linear light; sRGB codes by
-// [IEC 61966-2-1]. Bad sizes throw as RenderTarget says. Tests:
-// tests/shade/render/renderer_test.cpp.
+// Render targets of a picture, its finishing pass with sRGB codes by [IEC 61966-2-1], and the
+// exchange of finished pictures between threads. Tests: tests/shade/render/renderer_test.cpp,
+// picture_test.cpp, handover_test.cpp.
 #include "render/picture.h"
 
 #include <algorithm>
+#include <array>
+#include <mutex>
+#include <optional>
+#include <span>
 
 #include "effects/surface_program.h"
 #include "relief/mesh/error.h"
+#include "relief/shade/handover.h"
 
 namespace relief {
-
 namespace {
 
 gl::ColorFormat format_of(OutputCoding coding) {
@@ -24,7 +28,7 @@ gl::ColorFormat format_of(OutputCoding coding) {
     }
 }
 
-/// The background as it is to be seen, linear.
+/// Returns the background as displayed, linear.
 glm::vec4 shown_background(const glm::vec4& background, OutputCoding output) {
     if (output == OutputCoding::linear) return background;
     return {glm::min(glm::vec3(background), glm::vec3(1.0F)), background.a};
@@ -34,6 +38,24 @@ ShaderSteps finishing_steps(const Scene& scene, OutputCoding output, int samples
     ShaderSteps steps = output_steps(output, scene);
     steps["samples"].part = samples > 1 ? "picture.glsl#four_samples" : "picture.glsl#one_sample";
     return steps;
+}
+
+/// Texels of four channels, with row 0 at the bottom.
+std::vector<std::uint8_t> as_texels(const Image& picture) {
+    const std::span<const std::uint8_t> from = picture.as<std::uint8_t>();
+    const auto width = static_cast<std::size_t>(picture.width);
+    const auto height = static_cast<std::size_t>(picture.height);
+    const auto channels = static_cast<std::size_t>(picture.channels);
+    std::vector<std::uint8_t> texels(4 * width * height, 255);
+    for (std::size_t y = 0; y < height; ++y) {
+        for (std::size_t x = 0; x < width; ++x) {
+            const auto pixel = from.subspan(channels * (y * width + x), channels);
+            std::copy(
+                pixel.begin(), pixel.end(),
+                texels.begin() + static_cast<std::ptrdiff_t>(4 * ((height - 1 - y) * width + x)));
+        }
+    }
+    return texels;
 }
 
 }  // namespace
@@ -52,7 +74,7 @@ Picture::Picture(const gl::Api& api, TargetPool& targets, ProgramCache& programs
       exposure_(scene.exposure),
       samples_(targets.take(settings.width, settings.height,
                             format_of(drawn_coding(settings, finishes)), settings.samples)),
-      nothing_(api) {
+      empty_vertices_(api) {
     if (settings.output == OutputCoding::half) {
         throw InvalidInput("half is what a finishing pass reads, not a picture's coding");
     }
@@ -97,7 +119,7 @@ void Picture::finish() const {
         const GLenum target = sample_count_ > 1 ? GL_TEXTURE_2D_MULTISAMPLE : GL_TEXTURE_2D;
         gl->BindTexture(target, samples_->color().name());
         gl->BindSampler(static_cast<GLuint>(TextureUnit::drawn), 0);
-        gl->BindVertexArray(nothing_.name());
+        gl->BindVertexArray(empty_vertices_.name());
         gl->DrawArrays(GL_TRIANGLES, 0, 3);
         gl->BindTexture(target, 0);
     }
@@ -124,6 +146,90 @@ std::shared_ptr<const gl::RenderTarget> TargetPool::take(int width, int height,
 
 void TargetPool::drop_unused() {
     std::erase_if(targets_, [](const Entry& entry) { return entry.target.use_count() == 1; });
+}
+
+struct Handover::Implementation {
+    explicit Implementation(const gl::Api& gl) : api(gl) {}
+
+    using Target = std::optional<gl::RenderTarget>;
+    struct Slot {
+        Target picture;
+        Target beside;
+    };
+
+    /// Returns a slot that is neither shown nor the newest.
+    std::size_t free_slot() {
+        const std::lock_guard lock(mutex);
+        std::size_t free = 0;
+        while (free == shown || free == newest)
+            ++free;
+        return free;
+    }
+
+    void fit(Target& target, int width, int height) const {
+        if (target && target->width() == width && target->height() == height) return;
+        target.reset();
+        target.emplace(api, width, height, gl::ColorFormat::rgba8, 1);
+    }
+
+    void copy(Target& target, const gl::RenderTarget& drawn) const {
+        fit(target, drawn.width(), drawn.height());
+        target->copy(drawn);
+    }
+
+    void publish(std::size_t slot) {
+        api->Finish();
+        api.check("handing a picture over");
+        const std::lock_guard lock(mutex);
+        newest = slot;
+    }
+
+    const gl::Api& api;
+    std::array<Slot, 3> slots;
+    std::mutex mutex;
+    std::optional<std::size_t> shown;
+    std::optional<std::size_t> newest;
+};
+
+Handover::Handover(const Context& context)
+    : implementation_(std::make_unique<Implementation>(context.api())) {}
+
+Handover::~Handover() = default;
+
+void Handover::put(const Renderer& renderer, const Renderer* beside) {
+    Implementation& self = *implementation_;
+    const std::size_t free = self.free_slot();
+    Implementation::Slot& slot = self.slots.at(free);
+    self.copy(slot.picture, renderer.target());
+    if (beside == nullptr)
+        slot.beside.reset();
+    else
+        self.copy(slot.beside, beside->target());
+    self.publish(free);
+}
+
+void Handover::put(const Image& picture) {
+    Implementation& self = *implementation_;
+    const std::size_t free = self.free_slot();
+    Implementation::Slot& slot = self.slots.at(free);
+    slot.beside.reset();
+    self.fit(slot.picture, picture.width, picture.height);
+    const std::vector<std::uint8_t> texels = as_texels(picture);
+    self.api->BindTexture(GL_TEXTURE_2D, slot.picture->color().name());
+    self.api->TexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, picture.width, picture.height, GL_RGBA,
+                            GL_UNSIGNED_BYTE, texels.data());
+    self.api->BindTexture(GL_TEXTURE_2D, 0);
+    self.publish(free);
+}
+
+Handover::Shown Handover::get() {
+    Implementation& self = *implementation_;
+    const std::lock_guard lock(self.mutex);
+    self.shown = self.newest;
+    if (!self.shown) return {};
+    const Implementation::Slot& slot = self.slots.at(*self.shown);
+    return {slot.picture->color().name(), slot.picture->width(), slot.picture->height(),
+            slot.beside ? slot.beside->color().name() : 0U};
 }
 
 }  // namespace relief

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// From drawn samples to the finished picture: how they are stored, tone-mapped, averaged and
-/// coded. Tests: tests/shade/render/renderer_test.cpp, picture_test.cpp.
+/// The render targets of a picture and the finishing pass, which tone-maps, averages and encodes
+/// samples. Tests: tests/shade/render/renderer_test.cpp, picture_test.cpp.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -15,13 +15,13 @@
 
 namespace relief {
 
-/// Render targets that pictures take and return, since memory for millions of samples is slow to
-/// allocate.
+/// A pool of render targets, because allocating memory for millions of samples is slow.
 class TargetPool {
   public:
     explicit TargetPool(const gl::Api& api) : api_(&api) {}
 
-    /// A target without another owner; its content is undefined. \throws as RenderTarget does
+    /// Returns a target that nothing else uses; its content is undefined. \throws as RenderTarget
+    /// does
     std::shared_ptr<const gl::RenderTarget> take(int width, int height, gl::ColorFormat format,
                                                  int samples);
 
@@ -40,31 +40,31 @@ class TargetPool {
     std::vector<Entry> targets_;
 };
 
-/// Without a finishing pass (one sample a pixel, nothing blended) the shaders write the picture's
-/// own codes, and it is read back as it is. With one they write linear radiance with alpha
-/// multiplied in; the pass exposes and tone-maps each sample, lays it over the background, averages
-/// in linear light and codes. Averaging codes would darken edges, and averaging radiance before the
-/// tone curve would leave edges against bright light jagged.
+/// Without a finishing pass (one sample per pixel, no blending), shaders write the encoded picture.
+/// With it, they write linear radiance with premultiplied alpha; the pass exposes and tone-maps
+/// each sample, composites it over the background, averages linear values and encodes them.
+/// Averaging encoded values would darken edges, and averaging before tone mapping would leave edges
+/// against bright light aliased.
 class Picture {
   public:
     /// \param finishes  the plan's finishing_pass
-    /// \throws InvalidInput, GpuError as RenderTarget does; InvalidInput if samples are to be
-    ///         averaged without a finishing pass
+    /// \throws InvalidInput, GpuError as RenderTarget does; InvalidInput for several samples
+    ///         without a finishing pass
     Picture(const gl::Api& api, TargetPool& targets, ProgramCache& programs, const Scene& scene,
             const FrameSettings& settings, bool finishes);
 
-    /// Makes it the target of draws, cleared.
+    /// Binds the target of draws and clears it.
     void begin() const;
 
-    /// Finishes the samples, and waits until all is drawn.
+    /// Runs the finishing pass and waits for its completion.
     void finish() const;
 
-    /// Makes the finished picture the target, to be drawn over.
+    /// Binds the finished picture as the target of overlays.
     void bind_finished() const { target().bind(); }
 
     [[nodiscard]] Image read() const;
 
-    /// Where the finished picture is: one level, row 0 at the bottom.
+    /// Returns the finished picture: one level, row 0 at the bottom.
     [[nodiscard]] const gl::RenderTarget& target() const {
         return finished_ ? *finished_ : *samples_;
     }
@@ -77,15 +77,15 @@ class Picture {
     const gl::Api* api_;
     int sample_count_;
     OutputCoding output_;
-    glm::vec4 background_;  ///< As it is to be seen, linear, alpha multiplied in.
+    glm::vec4 background_;  ///< Linear, clamped as displayed.
     float exposure_;
     std::shared_ptr<const gl::RenderTarget> samples_;
     std::shared_ptr<const gl::RenderTarget> finished_;
     std::shared_ptr<const gl::LinkedProgram> finishing_;
-    gl::VertexArray nothing_;  ///< Core OpenGL draws only with a vertex array.
+    gl::VertexArray empty_vertices_;  ///< Core OpenGL draws only with a vertex array.
 };
 
-/// What surfaces write: the picture's coding, or linear light for the finishing pass.
+/// Returns the encoding that surfaces write: that of the picture, or linear for the finishing pass.
 OutputCoding drawn_coding(const FrameSettings& settings, bool finishes);
 
 }  // namespace relief

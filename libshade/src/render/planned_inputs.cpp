@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Attributes, textures and passes in words, read from the same tables that drawing reads. Pure.
+// Descriptions of the attributes, textures and passes of a plan, from the tables that drawing uses.
 // Tests: tests/shade/render/planned_inputs_test.cpp.
 #include "relief/shade/planned_inputs.h"
 
@@ -9,7 +9,7 @@
 #include <map>
 #include <string_view>
 
-#include "render/material_textures.h"
+#include "render/textures.h"
 
 namespace relief {
 
@@ -36,7 +36,7 @@ const std::vector<AttributeRow>& attribute_rows() {
     return all;
 }
 
-/// Why the samplers that are not a material's own are there, and whether they have mip levels.
+/// A sampler that belongs to no material: whether it has mip levels, and its reason.
 struct SharedSampler {
     bool mip_chain;
     const char* reason;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Programs, linked once for each set of features and bound alike. A shader that does not compile is
-// GpuError, with lines named by file. Tests: tests/shade/render/programs_test.cpp.
+// Links programs with common bindings, once for each set of features. Tests:
+// tests/shade/render/programs_test.cpp.
 #include "render/program_cache.h"
 
 #include <fmt/format.h>

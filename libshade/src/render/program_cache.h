@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Linked programs by the value of their Features, and what all of them agree on: attribute
-/// locations, texture units, the binding point of the lights.
-/// Tests: tests/shade/render/programs_test.cpp.
+/// Linked programs by their Features, and the bindings that all programs share: attribute
+/// locations, texture units, and the binding point of the lights. Tests:
+/// tests/shade/render/programs_test.cpp.
 #pragma once
 
 #include <map>
@@ -17,7 +17,7 @@
 
 namespace relief {
 
-/// Vertex attributes, by their GLSL names.
+/// Vertex attributes, by GLSL name.
 enum class Attribute : GLuint {
     position_object,
     normal_object,
@@ -26,7 +26,7 @@ enum class Attribute : GLuint {
     color_linear
 };
 
-/// Texture units, by the samplers' GLSL names. Those of materials come first.
+/// Texture units, by the GLSL names of samplers. Those of materials come first.
 enum class TextureUnit : GLint {
     diffuse_texture,
     specular_texture,
@@ -43,23 +43,23 @@ enum class TextureUnit : GLint {
     drawn,
 };
 
-/// The sampler that is bound to a unit.
+/// Returns the GLSL name of the sampler of a unit.
 std::string_view sampler_name(TextureUnit unit);
 
-/// How many units materials have.
+/// The number of units of materials.
 inline constexpr std::size_t material_unit_count = 8;
 
 /// The binding point of the uniform block Lights.
 inline constexpr GLuint lights_binding = 0;
 
-/// A program and the uniforms to set for every draw.
+/// A program and its planned uniforms.
 struct DrawProgram {
     gl::LinkedProgram linked;
     PlannedInterface planned;
 };
 
-/// Links two stages with everything bound as above.
-/// \throws GpuError with the driver's log, its lines named by shader file
+/// Links two stages with the bindings above.
+/// \throws GpuError with the driver's log, in which lines name shader files
 gl::LinkedProgram link(const gl::Api& api, const std::string& name, const ShaderSource& vertex,
                        const ShaderSource& fragment);
 
@@ -67,19 +67,19 @@ class ProgramCache {
   public:
     explicit ProgramCache(const gl::Api& api) : api_(&api) {}
 
-    /// The program for these (canonical) features, linked at first use. \throws GpuError
+    /// Returns the program for canonical features, linked on first use. \throws GpuError
     std::shared_ptr<const DrawProgram> get(const Features& features);
 
-    /// A program that draws no surface: the parts "vertex" and "fragment" of NAME.glsl.
+    /// Returns a program that draws no surface, from the parts "vertex" and "fragment" of
+    /// NAME.glsl.
     std::shared_ptr<const gl::LinkedProgram> get(const std::string& name, const ShaderSteps& steps);
 
-    /// Whoever holds a program keeps it.
+    /// Removes all programs from the cache; their owners keep them.
     void clear();
 
     [[nodiscard]] std::size_t size() const { return programs_.size(); }
 
-    /// Wall-clock milliseconds that assembling, compiling and linking of surfaces' programs took
-    /// so far.
+    /// Returns the wall-clock time of assembling, compiling and linking surface programs so far.
     [[nodiscard]] double milliseconds() const { return milliseconds_; }
 
   private:

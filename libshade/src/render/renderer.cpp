@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Draws a scene as its effect plan says: decodes and uploads what the plan names and nothing else,
-// then the opaque draws, the skybox behind them, the blended ones in painter's order, and the
-// finished picture. World space, linear light. Tests: tests/shade/render/renderer_test.cpp,
+// Draws a scene by its effect plan. The constructor decodes and uploads only what the plan names. A
+// frame draws the opaque surfaces, the skybox, the blended surfaces in painter's order, the
+// finishing pass, and the overlays. Tests: tests/shade/render/renderer_test.cpp,
 // forced_effects_test.cpp.
 #include "relief/shade/renderer.h"
 
@@ -20,11 +20,10 @@
 #include "render/draw_values.h"
 #include "render/environment.h"
 #include "render/gpu_mesh.h"
-#include "render/material_textures.h"
 #include "render/overlays.h"
 #include "render/picture.h"
 #include "render/program_cache.h"
-#include "render/scene_textures.h"
+#include "render/textures.h"
 
 namespace relief {
 
@@ -42,7 +41,7 @@ struct RenderCache::Implementation {
 
 namespace {
 
-/// Everything that one draw binds and sets.
+/// The resources and state of a draw.
 struct Draw {
     std::shared_ptr<const DrawProgram> program;
     Features features;
@@ -52,14 +51,14 @@ struct Draw {
     DrawValues values;
     bool both_sides = false;
     std::array<BoundTexture, material_unit_count> textures;  ///< By TextureUnit.
-    std::unique_ptr<SortedTriangles> sorted;                 ///< Only of blended draws.
+    std::unique_ptr<SortedTriangles> sorted;                 ///< Only for blended draws.
 };
 
 bool is_blended(const Draw& draw) {
     return draw.features.alpha == AlphaMode::blend;
 }
 
-/// The parts of one draw's plan, looked up in the scene.
+/// The scene objects that the plan of a draw refers to.
 struct Planned {
     const Features& features;
     const Material& material;
@@ -85,7 +84,7 @@ void request_planned(SceneTextures& textures, const Scene& scene, const FramePla
     }
 }
 
-/// Counts what a material asks for and a mesh without texture coordinates cannot show.
+/// Reports textured materials on meshes without texture coordinates.
 void report_missing_texcoords(const Scene& scene, const FramePlan& plan, Report& report) {
     for (std::size_t i = 0; i < plan.draws.size(); ++i) {
         const Planned p = planned(scene, plan.draws[i]);
@@ -95,8 +94,8 @@ void report_missing_texcoords(const Scene& scene, const FramePlan& plan, Report&
     }
 }
 
-/// How many lamps and instances there are: what stays the same when a scene moves.
-std::array<std::size_t, 4> population(const Scene& scene) {
+/// Returns the numbers of instances and lights, which must stay the same when a scene moves.
+std::array<std::size_t, 4> object_counts(const Scene& scene) {
     return {scene.instances.size(), scene.directional_lights.size(), scene.point_lights.size(),
             scene.spot_lights.size()};
 }
@@ -104,7 +103,7 @@ std::array<std::size_t, 4> population(const Scene& scene) {
 }  // namespace
 
 struct Renderer::Implementation {
-    /// \param given  absent: a cache of its own
+    /// \param given  the shared cache; null: the renderer has its own
     Implementation(const Context& context, const Scene& scene, FramePlan frame_plan,
                    const FrameSettings& settings, RenderCache* given, Report& report);
 
@@ -123,21 +122,21 @@ struct Renderer::Implementation {
     void draw_frame(const Camera& camera);
 
     const gl::Api& api;
-    std::unique_ptr<RenderCache> own;  ///< Where none was given.
+    std::unique_ptr<RenderCache> own;  ///< If none was given.
     RenderCache::Implementation& cache;
     FramePlan plan;
-    std::array<std::size_t, 4> things;
+    std::array<std::size_t, 4> counts;
     FrameTimes times;
     Picture picture;
     std::set<Features> programs;
     SceneTextures textures;
     LightStorage lights;
-    std::map<std::size_t, std::shared_ptr<GpuMesh>> meshes;  ///< By index; those that are drawn.
+    std::map<std::size_t, std::shared_ptr<GpuMesh>> meshes;  ///< Drawn meshes by index.
     std::vector<Draw> draws;                                 ///< Opaque ones first.
     std::optional<EnvironmentMaps> environment;
     std::optional<Skybox> skybox;
-    std::unique_ptr<OverlayDrawing> overlays;  ///< Where any is asked for.
-    bool counts_fragments;                     ///< Overdraw is what is shown.
+    std::unique_ptr<OverlayDrawing> overlays;  ///< If any is requested.
+    bool counts_fragments;                     ///< For the overdraw view.
 };
 
 Renderer::Implementation::Implementation(const Context& context, const Scene& scene,
@@ -147,13 +146,13 @@ Renderer::Implementation::Implementation(const Context& context, const Scene& sc
       own(given == nullptr ? std::make_unique<RenderCache>(context) : nullptr),
       cache((given == nullptr ? *own : *given).implementation()),
       plan(std::move(frame_plan)),
-      things(population(scene)),
+      counts(object_counts(scene)),
       picture(api, cache.targets, cache.programs, scene, settings, plan.finishing_pass),
       textures(cache.textures),
       counts_fragments(settings.view == DebugView::overdraw) {
     report_missing_texcoords(scene, plan, report);
 
-    Stopwatch stopwatch;  // Not OpenGL's timer queries: they are wrong on llvmpipe.
+    Stopwatch stopwatch;  // OpenGL's timer queries are wrong on llvmpipe.
     request_planned(textures, scene, plan);
     leave_out_textures(scene, textures.decode(scene.images), plan, report);
     const bool shows_environment = plan.environment_map && scene.environment.has_value();
@@ -199,7 +198,8 @@ void Renderer::Implementation::prepare_draws(const Scene& scene) {
         lights.add(api, scene, draw.features);
         draws.push_back(prepare_draw(scene, draw));
     }
-    // Neighbours with one program need no change of it; the depth buffer makes order invisible.
+    // Adjacent draws with the same program need no program change. The depth buffer hides the
+    // order.
     std::stable_sort(draws.begin(), draws.end(), [](const Draw& a, const Draw& b) {
         if (is_blended(a) != is_blended(b)) return is_blended(b);
         return a.features < b.features;
@@ -271,7 +271,7 @@ void Renderer::Implementation::set_state(const Draw& draw) const {
     } else {
         api->Enable(GL_CULL_FACE);
     }
-    // A mirroring matrix turns counter-clockwise triangles clockwise; the front stays the front.
+    // A mirroring matrix reverses the winding, but not the front of a surface.
     api->FrontFace(draw.values.handedness < 0.0F ? GL_CW : GL_CCW);
 }
 
@@ -295,8 +295,7 @@ void Renderer::Implementation::issue(Draw& draw, const glm::dmat4& to_clip, cons
     meshes.at(draw.mesh)->draw(api, draw.sorted->sort(farther_object));
 }
 
-/// Blended draws over all others, those whose centre is farthest first. They hide nothing, so they
-/// leave the depth buffer alone.
+/// Draws blended surfaces over all others, farthest center first, without writing depth.
 void Renderer::Implementation::issue_blended(const glm::dmat4& to_clip, const Camera& camera) {
     const auto depth = [&](const Draw& draw) {
         const glm::vec3 center(draw.values.world_from_object *
@@ -320,7 +319,7 @@ void Renderer::Implementation::issue_blended(const glm::dmat4& to_clip, const Ca
     api->Disable(GL_BLEND);
 }
 
-/// Fragments add up on black, whatever is nearer.
+/// Sets the state that counts fragments: additive blending on black without a depth test.
 void Renderer::Implementation::count_fragments() const {
     api->ClearColor(0.0F, 0.0F, 0.0F, 1.0F);
     api->Clear(GL_COLOR_BUFFER_BIT);
@@ -367,13 +366,13 @@ void Renderer::Implementation::draw_frame(const Camera& camera) {
 
 namespace {
 
-/// The plan that the renderer makes itself, of a scene found valid.
+/// Plans a scene after validation.
 FramePlan checked_plan(const Scene& scene, const FrameSettings& settings, Report& report) {
     validate(scene);
     return plan_view(scene, settings, plan_effects(scene, settings), report);
 }
 
-/// Views of data take one sample a pixel.
+/// Data views have one sample per pixel.
 FrameSettings drawn_settings(FrameSettings settings) {
     if (is_data(settings.view)) settings.samples = 1;
     return settings;
@@ -397,7 +396,8 @@ void check_draw(const Scene& scene, const DrawPlan& draw) {
     }
 }
 
-/// Another's plan must name what the scene has; what draws need of the frame is put in.
+/// Checks that a given plan refers to objects of the scene, and completes it for the frame
+/// settings.
 FramePlan checked_plan(const Scene& scene, FramePlan plan, const FrameSettings& settings,
                        Report& report) {
     validate(scene);
@@ -442,7 +442,7 @@ const FramePlan& Renderer::plan() const {
 
 void Renderer::move(const Scene& scene) {
     validate_places(scene);
-    if (population(scene) != implementation_->things) {
+    if (object_counts(scene) != implementation_->counts) {
         throw InvalidInput(
             "a moved scene has the instances and lamps that it had, no fewer or more");
     }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Frames as lines, by hand: where they begin and end, scaled, mirrored and far away.
-#include "render/vertex_frames.h"
+#include "render/overlays.h"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// A material's textures by the samplers that shaders have for them. A mesh without texture
-// coordinates shows none. Tests: tests/shade/render/renderer_test.cpp.
-#include "render/material_textures.h"
+// Textures of materials, omission of unreadable images, decoding and upload. Colors are sampled as
+// linear values, data unchanged. Meshes without texture coordinates show no textures. Tests:
+// tests/shade/render/renderer_test.cpp, forced_effects_test.cpp.
+#include "render/textures.h"
 
 #include <fmt/format.h>
 
@@ -13,16 +14,18 @@
 #include <string_view>
 #include <utility>
 
+#include "parallel.h"
+#include "progress_stage.h"
+#include "relief/mesh/error.h"
 #include "relief/shade/image_source.h"
 #include "relief/shade/labels.h"
 
 namespace relief {
-
 namespace {
 
 const char* const unreadable_reason = "its image cannot be read";
 
-/// One of a material's textures: where it is bound, how it is read, and whether features sample it.
+/// A texture of a material: its unit, its use, and access to it.
 struct TextureRow {
     TextureUnit unit;
     ImageUse use;
@@ -82,7 +85,7 @@ const std::array<TextureRow, material_unit_count>& texture_rows() {
     return all;
 }
 
-/// The effect that a texture makes, by its name in effects().
+/// Returns the name in effects() of the effect of a texture.
 const char* effect_of(TextureUnit unit, const Features& features) {
     switch (unit) {
         case TextureUnit::diffuse_texture:
@@ -105,22 +108,22 @@ const char* effect_of(TextureUnit unit, const Features& features) {
     }
 }
 
-void leave_out(Features& features, TextureUnit unit) {
+void omit_effect(Features& features, TextureUnit unit) {
     const std::string_view name = effect_of(unit, features);
     const auto effect = std::find_if(effects().begin(), effects().end(),
-                                     [&](const Effect& one) { return one.name == name; });
+                                     [&](const Effect& entry) { return entry.name == name; });
     effect->set(features, false);
     if (unit == TextureUnit::emission_texture) features.emission = false;
 }
 
-void report_left_out(const Scene& scene, std::optional<std::uint32_t> material, const char* effect,
-                     const std::pair<const std::size_t, std::string>& image, Report& report) {
+void report_omitted(const Scene& scene, std::optional<std::uint32_t> material, const char* effect,
+                    const std::pair<const std::size_t, std::string>& image, Report& report) {
     report.add(fmt::format("unreadable {} of {}", effect, material_label(scene, material)), "image",
                image.first,
                "drawn without it: " + with_origin(scene.images[image.first], image.second));
 }
 
-/// Turns off the reasons of effects that the draw does not have any more.
+/// Updates the reasons of effects that were removed from a draw.
 void correct_reasons(DrawPlan& draw, const Features& planned) {
     for (const Effect& effect : effects()) {
         if (!effect.on(planned) || effect.on(draw.features)) continue;
@@ -134,6 +137,18 @@ void correct_reasons(DrawPlan& draw, const Features& planned) {
         if (reason.effect == "computed tangents")
             reason = {reason.effect, false, unreadable_reason};
     }
+}
+
+GLenum wrap_of(TextureWrap wrap) {
+    switch (wrap) {
+        case TextureWrap::clamp:
+            return GL_CLAMP_TO_EDGE;
+        case TextureWrap::mirror:
+            return GL_MIRRORED_REPEAT;
+        case TextureWrap::repeat:
+            break;
+    }
+    return GL_REPEAT;
 }
 
 }  // namespace
@@ -161,9 +176,9 @@ void leave_out_textures(const Scene& scene, const std::map<std::size_t, std::str
             const auto entry =
                 used.texture == nullptr ? unreadable.end() : unreadable.find(used.texture->image);
             if (entry == unreadable.end()) continue;
-            leave_out(draw.features, used.unit);
+            omit_effect(draw.features, used.unit);
             if (!reported.emplace(number, used.unit).second) continue;
-            report_left_out(scene, number, effect_of(used.unit, planned), *entry, report);
+            report_omitted(scene, number, effect_of(used.unit, planned), *entry, report);
         }
         if (draw.features == planned) continue;
         draw.features = canonical(draw.features);
@@ -180,7 +195,7 @@ void leave_out_textures(const Scene& scene, const std::map<std::size_t, std::str
         const Texture* const texture = row.texture(material);
         const auto entry = texture == nullptr ? unreadable.end() : unreadable.find(texture->image);
         if (entry == unreadable.end()) continue;
-        report_left_out(scene, number, effect_of(row.unit, features), *entry, report);
+        report_omitted(scene, number, effect_of(row.unit, features), *entry, report);
         row.remove(material);
     }
 }
@@ -188,6 +203,137 @@ void leave_out_textures(const Scene& scene, const std::map<std::size_t, std::str
 bool has_textures(const Material& material) {
     return std::any_of(texture_rows().begin(), texture_rows().end(),
                        [&](const TextureRow& row) { return row.texture(material) != nullptr; });
+}
+
+std::shared_ptr<const GpuImage> TextureCache::find(const ImageSource& source,
+                                                   const ImagePurpose& purpose) {
+    const auto entry = std::find_if(images_.begin(), images_.end(), [&](const Entry& known) {
+        return known.purpose == purpose && known.identity.is(source);
+    });
+    return entry == images_.end() ? nullptr : entry->image;
+}
+
+std::shared_ptr<const GpuImage> TextureCache::add(const ImageSource& source,
+                                                  const ImagePurpose& purpose, const Image& image) {
+    GpuImage made{gl::make_texture(*api_, image, source.name), image.bits()};
+    if (purpose.normals) made.flat = detected_flat_code(source, image);
+    images_.push_back(
+        {ImageIdentity(source), purpose, std::make_shared<const GpuImage>(std::move(made))});
+    return images_.back().image;
+}
+
+const std::string* TextureCache::find_fault(const ImageSource& source,
+                                            const ImagePurpose& purpose) const {
+    const auto fault = std::find_if(faults_.begin(), faults_.end(), [&](const Fault& known) {
+        return known.purpose == purpose && known.identity.is(source);
+    });
+    return fault == faults_.end() ? nullptr : &fault->text;
+}
+
+void TextureCache::add_fault(ImageIdentity identity, const ImagePurpose& purpose,
+                             std::string fault) {
+    constexpr std::size_t max_faults = 256;  // A window may show many versions of a file.
+    if (faults_.size() == max_faults) faults_.erase(faults_.begin());
+    faults_.push_back({std::move(identity), purpose, std::move(fault)});
+}
+
+BoundTexture TextureCache::white() {
+    return constant(white_, 1.0F, 1.0F, "white");
+}
+
+BoundTexture TextureCache::flat() {
+    return constant(flat_, 0.0F, 1.0F, "flat");
+}
+
+BoundTexture TextureCache::constant(std::optional<gl::Texture>& texture, float rg, float b,
+                                    const char* name) {
+    if (!texture) {
+        Image image = make_image(1, 1, 3, 32, ColorSpace::data);
+        image.samples = std::vector<float>{rg, rg, b};
+        texture = gl::make_texture(*api_, image, name);
+    }
+    return {texture->name(),
+            sampler(TextureWrap::repeat, TextureWrap::repeat, TextureFilter::nearest)};
+}
+
+GLuint TextureCache::sampler(TextureWrap u, TextureWrap v, TextureFilter filter) {
+    gl::Sampler& entry = samplers_[{u, v, filter}];
+    if (!entry) {
+        gl::Sampling sampling;
+        sampling.wrap_s = wrap_of(u);
+        sampling.wrap_t = wrap_of(v);
+        if (filter == TextureFilter::nearest) {
+            sampling.minify = GL_NEAREST_MIPMAP_NEAREST;
+            sampling.magnify = GL_NEAREST;
+            sampling.anisotropy = 1.0F;
+        }
+        entry = gl::make_sampler(*api_, sampling);
+    }
+    return entry.name();
+}
+
+void TextureCache::drop_unused() {
+    std::erase_if(images_, [](const Entry& entry) { return entry.image.use_count() == 1; });
+}
+
+std::map<std::size_t, std::string> SceneTextures::decode(const std::vector<ImageSource>& sources) {
+    std::map<std::size_t, std::string> unreadable;
+    std::vector<ImageIdentity> identities;
+    for (auto& [key, image] : images_) {
+        const ImageSource& source = sources[key.first];
+        note_image_file(source);
+        image = cache_->find(source, key.second);
+        if (image) continue;
+        const std::string* const fault = cache_->find_fault(source, key.second);
+        if (fault != nullptr && !source.is_required) {
+            unreadable.try_emplace(key.first, *fault);
+            continue;
+        }
+        identities.emplace_back(source);
+        decoded_.emplace_back(key, Image{});
+    }
+    const std::vector<std::string> faults = decode_all(sources);
+    for (std::size_t i = 0; i < faults.size(); ++i) {
+        if (faults[i].empty()) continue;
+        const Key& key = decoded_[i].first;
+        cache_->add_fault(identities[i], key.second, faults[i]);
+        unreadable.try_emplace(key.first, faults[i]);
+    }
+    const auto is_unreadable = [&](const auto& entry) {
+        return unreadable.contains(entry.first.first);
+    };
+    std::erase_if(decoded_, is_unreadable);
+    std::erase_if(images_, is_unreadable);
+    return unreadable;
+}
+
+/// Fills decoded_. \return the error of each image; empty if there is none
+std::vector<std::string> SceneTextures::decode_all(const std::vector<ImageSource>& sources) {
+    std::vector<std::string> faults(decoded_.size());
+    ProgressStage stage("images", decoded_.size());
+    parallel_for(decoded_.size(), 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            auto& [key, image] = decoded_[i];
+            const ImageSource& source = sources[key.first];
+            try {
+                image = relief::decode(source, key.second.use);
+            } catch (const FileError& error) {
+                if (source.is_required) throw;
+                faults[i] = error.what();
+            }
+            stage.advance(1);
+        }
+    });
+    return faults;
+}
+
+void SceneTextures::upload(const std::vector<ImageSource>& sources) {
+    ProgressStage stage("uploading images", decoded_.size());
+    for (const auto& [key, image] : decoded_) {
+        images_.at(key) = cache_->add(sources[key.first], key.second, image);
+        stage.advance(1);
+    }
+    decoded_.clear();
 }
 
 }  // namespace relief

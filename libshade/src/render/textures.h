@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Images on the GPU: the cache of a context by image identity, and the images that the plan of one
-/// scene uses. Images that are not in the cache are decoded on all threads and uploaded once each.
+/// Textures of a scene: which textures a draw samples, which are omitted because their images
+/// cannot be read, and the images on the GPU. Images that are not in the cache are decoded in
+/// parallel and uploaded once. Tests: tests/shade/render/renderer_test.cpp,
+/// forced_effects_test.cpp.
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <map>
 #include <memory>
 #include <optional>
@@ -15,21 +19,54 @@
 #include "gl/resources.h"
 #include "relief/mesh/image.h"
 #include "relief/mesh/image_file.h"
+#include "relief/mesh/mesh.h"
 #include "relief/mesh/normal_map.h"
+#include "relief/mesh/report.h"
+#include "relief/shade/effects.h"
+#include "relief/shade/material.h"
 #include "relief/shade/scene.h"
+#include "render/program_cache.h"
 #include "scene/image_identity.h"
 
 namespace relief {
 
+/// A sampler of the program of a draw.
+struct UsedTexture {
+    TextureUnit unit{};
+    const Texture* texture =
+        nullptr;  ///< Null: a neutral texture, because a forced plan names a missing one.
+    ImageUse use = ImageUse::color;
+};
+
+/// Returns the material samplers of a program with these features.
+std::vector<UsedTexture> used_textures(const Features& features, const Material& material,
+                                       const Mesh& mesh);
+
+/// Removes textures whose images cannot be read from a plan, as if the materials did not have them.
+/// A material whose emission texture cannot be read emits nothing, because most texels of such
+/// textures are black.
+///
+/// \param unreadable  the error of each unreadable image, by index
+/// \param report      gets the effect, material, image and error of each texture
+void leave_out_textures(const Scene& scene, const std::map<std::size_t, std::string>& unreadable,
+                        FramePlan& plan, Report& report);
+
+/// Removes them from a material of the scene, by the same rules and with the same report.
+void leave_out_textures(const Scene& scene, const std::map<std::size_t, std::string>& unreadable,
+                        std::uint32_t number, Material& material, Report& report);
+
+/// Returns whether the material has any texture.
+bool has_textures(const Material& material);
+
 /// The use of an image.
 struct ImagePurpose {
     ImageUse use = ImageUse::color;
-    bool normals = false;  ///< A normal map, whose code of zero is detected.
+    bool normals = false;  ///< For normal maps the code of zero is detected.
 
     friend auto operator<=>(const ImagePurpose&, const ImagePurpose&) = default;
 };
 
-/// An image on the GPU, with the properties that the processor needs.
+/// An image on the GPU.
 struct GpuImage {
     gl::Texture texture;
     int bits = 8;
@@ -54,8 +91,8 @@ class TextureCache {
     std::shared_ptr<const GpuImage> add(const ImageSource& source, const ImagePurpose& purpose,
                                         const Image& image);
 
-    /// The error of an image that could not be decoded, while its file or its bytes are unchanged;
-    /// otherwise null.
+    /// Returns the error of an image that could not be decoded, while its file or its bytes are
+    /// unchanged; otherwise null.
     [[nodiscard]] const std::string* find_fault(const ImageSource& source,
                                                 const ImagePurpose& purpose) const;
 
