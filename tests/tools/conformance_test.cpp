@@ -1,20 +1,32 @@
 // SPDX-License-Identifier: Apache-2.0
-// Judging by hand-made meshes, and relief-mesh conformance as users run it.
+// The judgment of hand-made meshes, the files of the conformance kit, and the command
+// `relief-mesh conformance`.
+#include "conformance.h"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <fstream>
+#include <iterator>
 #include <limits>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 
-#include "conformance_judge.h"
+#include "relief/mesh/tangents.h"
+#include "support/shapes.h"
+#include "support/shared_data.h"
+#include "tools/run_program.h"
+#include "tools/tangent_definition.h"
 #include "tools/workplace.h"
 
 namespace relief::tools {
 namespace {
 
+namespace fs = std::filesystem;
 using nlohmann::json;
 using test::ProgramResult;
+using test::Twist;
 using test::Workplace;
 using testing::HasSubstr;
 
@@ -40,11 +52,11 @@ Mesh answer_to(const KitMesh& kit) {
 
 TEST(ConformanceJudge, PassesWhatIsExpected) {
     const KitMesh kit = square();
-    const Judgement judgement = judge(kit, answer_to(kit));
-    EXPECT_TRUE(judgement.passes(kit.group));
-    EXPECT_EQ(judgement.corners, 6U);
-    EXPECT_EQ(judgement.judged, 6U);
-    EXPECT_EQ(judgement.degrees.max, 0.0);
+    const Judgment judgment = judge(kit, answer_to(kit));
+    EXPECT_TRUE(judgment.passes(kit.group));
+    EXPECT_EQ(judgment.corners, 6U);
+    EXPECT_EQ(judgment.judged, 6U);
+    EXPECT_EQ(judgment.degrees.max, 0.0);
 }
 
 TEST(ConformanceJudge, FindsTrianglesInAnyOrderBegunAnywhereWithMinusZeros) {
@@ -53,20 +65,20 @@ TEST(ConformanceJudge, FindsTrianglesInAnyOrderBegunAnywhereWithMinusZeros) {
     theirs.positions[0] = {-0.0F, 0.0F, -0.0F};
     theirs.texcoords[1].y = 1.0F;
     theirs.triangles = {{2, 3, 0}, {1, 2, 0}};
-    const Judgement judgement = judge(kit, theirs);
-    EXPECT_EQ(judgement.judged, 6U);
-    EXPECT_TRUE(judgement.passes(kit.group));
+    const Judgment judgment = judge(kit, theirs);
+    EXPECT_EQ(judgment.judged, 6U);
+    EXPECT_TRUE(judgment.passes(kit.group));
 }
 
 TEST(ConformanceJudge, SaysWhatIsMissingAndWhatIsTooMuch) {
     const KitMesh kit = square();
     Mesh theirs = answer_to(kit);
     theirs.triangles = {{0, 1, 2}, {0, 1, 3}};
-    const Judgement judgement = judge(kit, theirs);
-    EXPECT_EQ(judgement.missing, 3U);
-    EXPECT_EQ(judgement.extra, 3U);
-    EXPECT_EQ(judgement.judged, 3U);
-    EXPECT_FALSE(judgement.passes(kit.group));
+    const Judgment judgment = judge(kit, theirs);
+    EXPECT_EQ(judgment.missing, 3U);
+    EXPECT_EQ(judgment.extra, 3U);
+    EXPECT_EQ(judgment.judged, 3U);
+    EXPECT_FALSE(judgment.passes(kit.group));
     theirs.triangles = {{0, 2, 1}, {0, 2, 3}};
     EXPECT_EQ(judge(kit, theirs).missing, 3U) << "the other way round";
 }
@@ -77,10 +89,10 @@ TEST(ConformanceJudge, LetsTrianglesWithoutAreaBeLeftOut) {
     kit.expected.resize(9, {1, 0, 0, 1});
     Mesh theirs = answer_to(kit);
     theirs.triangles.pop_back();
-    const Judgement judgement = judge(kit, theirs);
-    EXPECT_EQ(judgement.left_out, 3U);
-    EXPECT_EQ(judgement.missing, 0U);
-    EXPECT_TRUE(judgement.passes(kit.group));
+    const Judgment judgment = judge(kit, theirs);
+    EXPECT_EQ(judgment.omitted, 3U);
+    EXPECT_EQ(judgment.missing, 0U);
+    EXPECT_TRUE(judgment.passes(kit.group));
 }
 
 TEST(ConformanceJudge, TellsTrianglesAlikeByTheirNormals) {
@@ -104,17 +116,17 @@ TEST(ConformanceJudge, CountsEveryFault) {
     const auto judged = [&](const glm::vec4& tangent) {
         Mesh theirs = answer_to(kit);
         theirs.tangents[1] = tangent;  // One corner of six.
-        const Judgement judgement = judge(kit, theirs);
-        EXPECT_FALSE(judgement.passes(kit.group));
-        return judgement;
+        const Judgment judgment = judge(kit, theirs);
+        EXPECT_FALSE(judgment.passes(kit.group));
+        return judgment;
     };
     EXPECT_EQ(judged({std::numeric_limits<float>::quiet_NaN(), 0, 0, 1}).not_finite, 1U);
     EXPECT_EQ(judged({1.01F, 0, 0, 1}).not_unit, 1U);
-    EXPECT_EQ(judged({0.8F, 0, 0.6F, 1}).leaning, 1U);
-    EXPECT_EQ(judged({1, 0, 0, 0.5F}).unhanded, 1U);
+    EXPECT_EQ(judged({0.8F, 0, 0.6F, 1}).not_perpendicular, 1U);
+    EXPECT_EQ(judged({1, 0, 0, 0.5F}).invalid_sign, 1U);
     EXPECT_EQ(judged({1, 0, 0, -1}).other_sign, 1U);
-    EXPECT_EQ(judged({1, 0, 0, -1}).mixed, 3U) << "all corners of its triangle";
-    const Judgement off = judged({std::cos(0.0002F), std::sin(0.0002F), 0, 1});
+    EXPECT_EQ(judged({1, 0, 0, -1}).mixed_signs, 3U) << "all corners of its triangle";
+    const Judgment off = judged({std::cos(0.0002F), std::sin(0.0002F), 0, 1});
     EXPECT_EQ(off.too_far, 1U) << "0.0115 degrees";
     EXPECT_NEAR(off.degrees.max, 0.01146, 1e-4);
     EXPECT_NEAR(off.degrees.mean, 0.01146 / 6, 1e-4);
@@ -131,7 +143,7 @@ TEST(ConformanceJudge, JudgesHardMeshesOnlyByWhatIsUsable) {
     theirs.tangents.assign(4, {0, 1, 0, -1});
     EXPECT_TRUE(judge(kit, theirs).passes(kit.group)) << "any direction in the plane";
     theirs.tangents[2] = {0, 1, 2e-6F, -1};
-    EXPECT_EQ(judge(kit, theirs).leaning, 2U);
+    EXPECT_EQ(judge(kit, theirs).not_perpendicular, 2U);
     kit.mesh.normals.assign(4, {0, 0, 0});
     EXPECT_TRUE(judge(kit, theirs).passes(kit.group)) << "a normal without direction binds nothing";
 }
@@ -141,9 +153,9 @@ TEST(ConformanceJudge, PassesOverCornersThatTheKitExcuses) {
     kit.expected[1] = glm::vec4(0.0F);
     Mesh theirs = answer_to(kit);
     theirs.tangents[1] = {0, 1, 0, 1};
-    const Judgement judgement = judge(kit, theirs);
-    EXPECT_EQ(judgement.judged, 5U);
-    EXPECT_TRUE(judgement.passes(kit.group));
+    const Judgment judgment = judge(kit, theirs);
+    EXPECT_EQ(judgment.judged, 5U);
+    EXPECT_TRUE(judgment.passes(kit.group));
 }
 
 void process_kit(const Workplace& workplace) {
@@ -159,9 +171,9 @@ TEST(ConformanceCommand, SaysThatReliefConforms) {
     EXPECT_EQ(result.exit_code, 0) << result.out;
     EXPECT_EQ(result.error, "");
     EXPECT_THAT(result.out,
-                HasSubstr("sphere                  conforms: 672 of 672 corners judged, "
-                          "degrees off "));
-    EXPECT_THAT(result.out, HasSubstr("unsorted-bucket         defect mended: "));
+                HasSubstr("sphere                  conforms: 672 of 672 corners compared, "
+                          "error in degrees: mean "));
+    EXPECT_THAT(result.out, HasSubstr("unsorted-bucket         defect corrected: "));
     EXPECT_THAT(result.out,
                 HasSubstr("verdict   conforms on 23 of 23 meshes; usable tangents on 16 "
                           "of 16 hard ones\n"));
@@ -200,13 +212,13 @@ TEST(ConformanceCommand, ExitsWith1WhereTangentsDiffer) {
     std::ofstream(workplace / "out/kit/quads.glb") << "glTF";
     const ProgramResult result = workplace.run("relief-mesh conformance out/kit");
     EXPECT_EQ(result.exit_code, 1);
-    EXPECT_THAT(result.out, HasSubstr("sphere                  NOT JUDGED: has no tangents\n"));
-    EXPECT_THAT(result.out, HasSubstr("facets                  DIFFERS: 0 of 294 corners judged; "
-                                      "294 missing, 450 not of this mesh\n"));
+    EXPECT_THAT(result.out, HasSubstr("sphere                  NOT COMPARED: has no tangents\n"));
+    EXPECT_THAT(result.out, HasSubstr("facets                  DIFFERS: 0 of 294 corners compared; "
+                                      "294 missing, 450 not in this mesh\n"));
     EXPECT_THAT(
         result.out,
-        HasSubstr("soup                    NOT JUDGED: there is no soup.glb or soup.gltf\n"));
-    EXPECT_THAT(result.out, HasSubstr("quads                   NOT JUDGED: out/kit/quads.glb: "));
+        HasSubstr("soup                    NOT COMPARED: there is no soup.glb or soup.gltf\n"));
+    EXPECT_THAT(result.out, HasSubstr("quads                   NOT COMPARED: out/kit/quads.glb: "));
     EXPECT_THAT(result.out, HasSubstr("verdict   DIFFERS on 4 of 23 meshes;"));
     const json report = json::parse(workplace.run("relief-mesh conformance out/kit --json").out);
     EXPECT_EQ(report["tool"], "relief-mesh conformance");
@@ -235,8 +247,8 @@ TEST(ConformanceCommand, SaysWhereTheKitAndTheResultsShouldBe) {
     const ProgramResult result = workplace.run("relief-mesh conformance nowhere");
     EXPECT_EQ(result.exit_code, 1);
     EXPECT_EQ(result.error,
-              "relief-mesh: error: nowhere: no such folder (it holds what a program made of the "
-              "kit's meshes, under their names)\n");
+              "relief-mesh: error: nowhere: no such folder (it must contain the program's output "
+              "for each mesh of the kit, with the same names)\n");
     EXPECT_EQ(workplace.run("relief-mesh conformance out --json --quiet").exit_code, 2);
 }
 
@@ -255,6 +267,150 @@ TEST(ConformanceCommand, RefusesAKitThatIsNone) {
     workplace.write("kit/fan.f32", "short");
     EXPECT_THAT(error_of(R"({"format":1,"meshes":[{"name":"fan","group":"defect","about":""}]})"),
                 HasSubstr("kit/fan.f32: does not hold 450 tangents of 16 bytes"));
+}
+
+const fs::path kit_folder = test::source_directory() / "conformance/kit";
+
+const std::vector<KitMesh>& kit() {
+    static const std::vector<KitMesh> meshes = read_kit(kit_folder);
+    return meshes;
+}
+
+std::string bytes_of(const fs::path& file) {
+    std::ifstream stream(file, std::ios::binary);
+    return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+/// Three vertices for every triangle, with a tangent each.
+Mesh loose(const Mesh& mesh, const std::vector<glm::vec4>& tangents) {
+    Mesh result = test::soup(mesh);
+    result.tangents = tangents;
+    return result;
+}
+
+std::vector<glm::vec4> relief_tangents(const Mesh& mesh) {
+    Report ignored;
+    return mikktspace_tangents(mesh.positions, mesh.normals, mesh.texcoords, mesh.triangles,
+                               ignored);
+}
+
+/// The plain definition does not cover these (tangent_definition.h).
+bool is_beyond_the_definition(const KitMesh& mesh) {
+    return mesh.name == "degenerate" || mesh.name == "non-manifold" || mesh.name == "folded-back" ||
+           mesh.name == "folded-over";
+}
+
+TEST(ConformanceKit, IsWhatItsProgramWrites) {
+    const test::TemporaryDirectory folder;
+    const test::ProgramResult result =
+        test::run_program({"relief-make-conformance-kit", "again"}, folder.path());
+    ASSERT_EQ(result.exit_code, 0) << result.error;
+    std::set<std::string> written;
+    for (const auto& entry : fs::directory_iterator(folder / "again"))
+        written.insert(entry.path().filename().string());
+    EXPECT_EQ(written.size(), 42U) << "40 meshes, one of them as quads too, and the list";
+    std::uintmax_t bytes = 0;
+    for (const auto& entry : fs::directory_iterator(kit_folder)) {
+        bytes += entry.file_size();
+        const std::string name = entry.path().filename().string();
+        if (entry.path().extension() == ".f32") continue;
+        EXPECT_EQ(written.erase(name), 1U) << name;
+        EXPECT_TRUE(bytes_of(entry.path()) == bytes_of(folder / "again" / name)) << name;
+    }
+    EXPECT_THAT(written, testing::IsEmpty()) << "not in the kit";
+    EXPECT_LT(bytes, 500'000U) << "small enough to keep anywhere";
+    EXPECT_EQ(test::run_program({"relief-make-conformance-kit"}, folder.path()).exit_code, 2);
+}
+
+TEST(ConformanceKit, JudgesNearlyAllCornersOfItsMeshes) {
+    std::map<std::string, std::size_t> not_judged;
+    std::size_t judged = 0;
+    for (const KitMesh& mesh : kit()) {
+        for (const glm::vec4& expected : mesh.expected) {
+            ++judged;
+            if (expected.w == 0.0F) ++not_judged[mesh.name];
+        }
+    }
+    EXPECT_EQ(judged, 8853U);
+    // Only where the reference contradicts itself.
+    EXPECT_THAT(not_judged, testing::ElementsAre(testing::Pair("degenerate", 40),
+                                                 testing::Pair("non-manifold", 90),
+                                                 testing::Pair("scrambled", 2)));
+}
+
+TEST(ConformanceKit, AgreesWithThePlainDefinitionInDoublePrecision) {
+    std::size_t checked = 0;
+    for (const KitMesh& mesh : kit()) {
+        if (mesh.group == KitGroup::stability || is_beyond_the_definition(mesh)) continue;
+        const Judgment judgment =
+            judge(mesh, loose(mesh.mesh, test::tangents_by_definition(mesh.mesh)));
+        EXPECT_TRUE(judgment.passes(mesh.group))
+            << mesh.name << ": " << judgment.other_sign << " signs, " << judgment.too_far
+            << " directions, at most " << judgment.degrees.max << " degrees";
+        checked += judgment.judged;
+    }
+    EXPECT_EQ(checked, 7855U);
+}
+
+TEST(ConformanceKit, IsPassedByReliefOnEveryMesh) {
+    for (const KitMesh& mesh : kit()) {
+        const Judgment judgment = judge(mesh, loose(mesh.mesh, relief_tangents(mesh.mesh)));
+        EXPECT_TRUE(judgment.passes(mesh.group)) << mesh.name;
+        EXPECT_LE(judgment.degrees.max, 1e-4) << mesh.name;
+    }
+}
+
+TEST(ConformanceKit, FindsHandednessOfTheOtherConvention) {
+    for (const KitMesh& mesh : kit()) {
+        if (mesh.group == KitGroup::stability) continue;
+        std::vector<glm::vec4> tangents = relief_tangents(mesh.mesh);
+        for (glm::vec4& tangent : tangents)
+            tangent.w = -tangent.w;
+        const Judgment judgment = judge(mesh, loose(mesh.mesh, tangents));
+        EXPECT_FALSE(judgment.passes(mesh.group)) << mesh.name;
+        EXPECT_EQ(judgment.other_sign, judgment.judged) << mesh.name;
+        EXPECT_EQ(judgment.too_far, 0U) << mesh.name;
+    }
+}
+
+/// The meshes that a twisted basis does not pass.
+std::set<std::string> failed_by(Twist twist) {
+    std::set<std::string> failed;
+    for (const KitMesh& mesh : kit()) {
+        if (mesh.group != KitGroup::conformance || is_beyond_the_definition(mesh)) continue;
+        const auto tangents = test::tangents_by_definition(mesh.mesh, twist);
+        if (!judge(mesh, loose(mesh.mesh, tangents)).passes(mesh.group)) failed.insert(mesh.name);
+    }
+    return failed;
+}
+
+TEST(ConformanceKit, FindsTangentsAveragedAcrossMirrors) {
+    EXPECT_THAT(failed_by(Twist::across_mirrors),
+                testing::ElementsAre("hills-mirrored", "scrambled", "torus-mirrored"));
+}
+
+TEST(ConformanceKit, FindsWeightsOfArea) {
+    const auto failed = failed_by(Twist::area_weights);
+    for (const char* name : {"sphere", "torus-mirrored", "fan", "scrambled", "sheared", "quads"})
+        EXPECT_EQ(failed.count(name), 1U) << name;
+    EXPECT_EQ(failed.count("facets"), 0U) << "where nothing is averaged";
+}
+
+/// One tangent for each stored vertex: that of its last corner.
+TEST(ConformanceKit, FindsCornersPutBackOnTheirOldVertices) {
+    for (const KitMesh& mesh : kit()) {
+        if (mesh.name != "torus-mirrored") continue;
+        const std::vector<glm::vec4> tangents = relief_tangents(mesh.mesh);
+        Mesh theirs = mesh.mesh;
+        theirs.tangents.resize(theirs.positions.size());
+        for (std::size_t corner = 0; corner < tangents.size(); ++corner)
+            theirs.tangents[theirs.triangles[corner / 3][static_cast<int>(corner % 3)]] =
+                tangents[corner];
+        const Judgment judgment = judge(mesh, theirs);
+        EXPECT_GT(judgment.other_sign, 0U);
+        EXPECT_GT(judgment.mixed_signs, 0U) << "triangles with two handednesses";
+        EXPECT_FALSE(judgment.passes(mesh.group));
+    }
 }
 
 }  // namespace

@@ -112,12 +112,12 @@ TEST_F(ProcessTangents, ComeFromTheSetAskedFor) {
     expect_along(first_tangent(), {1, 0, 0}, 1);
     const ProgramResult second = process("--tangents mikktspace --uv-set 1");
     ASSERT_EQ(second.exit_code, 0) << second.error;
-    EXPECT_THAT(second.out, HasSubstr("from texture coordinate set 1 (asked for)\n"));
+    EXPECT_THAT(second.out, HasSubstr("from texture coordinate set 1 (requested)\n"));
     // u grows with y, and v, downwards, with x: as seen from the front the image is turned.
     expect_along(first_tangent(), {0, 1, 0}, 1);
     EXPECT_EQ(report()["options"]["uv_set"], 1);
     EXPECT_EQ(report()["primitives"][0]["texcoord_set"], 1);
-    EXPECT_EQ(report()["primitives"][0]["texcoord_set_reason"], "asked for");
+    EXPECT_EQ(report()["primitives"][0]["texcoord_set_reason"], "requested");
     EXPECT_THAT(written().texcoord_sets({0, 0}), ElementsAre(0, 1)) << "all sets stay";
     EXPECT_EQ(written().mesh({0, 0}, 0).texcoords[1], glm::vec2(1, 1));
     EXPECT_EQ(written().mesh({0, 0}, 1).texcoords[1], glm::vec2(0, 1));
@@ -135,9 +135,8 @@ TEST_F(ProcessTangents, FollowTheNormalTextureByDefault) {
     const ProgramResult other = process("--tangents mikktspace --uv-set 0");
     ASSERT_EQ(other.exit_code, 0) << other.error;
     expect_along(first_tangent(), {1, 0, 0}, 1);
-    EXPECT_THAT(other.out,
-                HasSubstr("notes     mesh 'Tri' primitive 0: normalTexture is on texture "
-                          "coordinate set 1, tangents are of 0\n"));
+    EXPECT_THAT(other.out, HasSubstr("notes     mesh 'Tri' primitive 0: normalTexture uses texture "
+                                     "coordinate set 1, the tangents use 0\n"));
 }
 
 TEST_F(ProcessTangents, OfNewNormalsComeFromTheNormalTexturesSetToo) {
@@ -193,7 +192,7 @@ TEST_F(ProcessTangents, BelongToTheCoordinatesAsStoredWhateverTheTransform) {
     EXPECT_EQ(notes(), 1U);
     EXPECT_EQ(tangent_with({{"scale", {-1, 1}}}), plain);
     EXPECT_THAT(report()["primitives"][0]["notes"][0].get<std::string>(),
-                HasSubstr("turns or mirrors normalTexture"));
+                HasSubstr("rotates or mirrors normalTexture"));
     expect_along(tangent_with({{"texCoord", 1}}), {0, 1, 0}, 1);
 }
 
@@ -224,7 +223,7 @@ TEST_F(ProcessTangents, GivenWithoutNormalsAreIgnored) {
     EXPECT_THAT(kept.out, HasSubstr("normals   computed, one per triangle\n"
                                     "tangents  computed, MikkTSpace\n"));
     EXPECT_THAT(kept.out, HasSubstr("tangents without normals (primitive 0): are ignored, as glTF "
-                                    "asks, and computed anew\n"));
+                                    "requires, and recomputed\n"));
     expect_along(first_tangent(), {1, 0, 0}, 1);
     EXPECT_EQ(written().mesh({0, 0}).normals.front(), glm::vec3(0, 0, 1));
     EXPECT_EQ(process("--strict --tangents mikktspace").exit_code, 0) << "asked for: no fallback";
@@ -251,7 +250,7 @@ TEST_F(ProcessTangents, AreKeptWhereNothingBetterCanBeHad) {
     const json findings = report()["findings"];
     ASSERT_EQ(findings.size(), 2U);
     EXPECT_EQ(findings[0]["kind"], "primitive without texture coordinates");
-    EXPECT_EQ(findings[0]["outcome"], "keeps the tangents that it has");
+    EXPECT_EQ(findings[0]["outcome"], "keeps its tangents");
     EXPECT_EQ(findings[1]["outcome"], "gets no tangents");
     // New normals leave nothing to keep.
     ASSERT_EQ(process("--tangents mikktspace --normals flat").exit_code, 0);
@@ -265,7 +264,7 @@ TEST_F(ProcessTangents, OfASetThatAPrimitiveLacks) {
     const ProgramResult some = process("--tangents mikktspace --uv-set 1");
     ASSERT_EQ(some.exit_code, 0) << some.error;
     EXPECT_EQ(report()["findings"][0]["kind"],
-              "primitive without the texture coordinate set asked for");
+              "primitive without the requested texture coordinate set");
     EXPECT_TRUE(written().mesh({0, 1}).tangents.empty());
 }
 
@@ -273,7 +272,7 @@ TEST_F(ProcessTangents, OfASetThatNoPrimitiveHasAreRefused) {
     write(both_);
     expect_refusal(workplace_, "relief-mesh",
                    {"relief-mesh process model.gltf out/old.glb --tangents mikktspace --uv-set 2",
-                    1, "model.gltf: no primitive has texture coordinate set 2 (there is 0, 1)"},
+                    1, "model.gltf: no primitive has texture coordinate set 2 (available: 0, 1)"},
                    "old.glb");
 }
 
@@ -293,13 +292,13 @@ TEST_F(ProcessTangents, SetsAreRefusedWhereTheyMeanNothing) {
     for (const test::Refused& refused :
          {test::Refused{
               "relief-mesh process square.obj out/old.glb --tangents mikktspace --uv-set 1", 2,
-              "--uv-set 1: square.obj: has no texture coordinate set but 0 (only glTF "
+              "--uv-set 1: square.obj: has only texture coordinate set 0 (only glTF "
               "has several)"},
           test::Refused{"relief-mesh process model.gltf out/old.glb --uv-set 1", 2,
-                        "--uv-set 1: is for tangents that are computed (give --tangents "
+                        "--uv-set 1: applies only to computed tangents (give --tangents "
                         "mikktspace)"},
           test::Refused{"relief-mesh process model.gltf out/old.glb --tangents none --uv-set 0", 2,
-                        "--uv-set 0: is for tangents that are computed (give --tangents "
+                        "--uv-set 0: applies only to computed tangents (give --tangents "
                         "mikktspace)"},
           test::Refused{
               "relief-mesh process model.gltf out/old.glb --tangents mikktspace --uv-set x", 2,

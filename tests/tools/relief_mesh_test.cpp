@@ -283,7 +283,7 @@ TEST(ProcessCommand, SaysWhatTheOutputFormatLeavesBehind) {
         0);
     const ProgramResult result = workplace.run("relief-mesh process out/a.glb out/a.obj");
     EXPECT_EQ(result.exit_code, 0) << result.error;
-    EXPECT_THAT(result.out, HasSubstr("left out  tangents (cannot be stored in .obj)\n"));
+    EXPECT_THAT(result.out, HasSubstr("omitted   tangents (cannot be stored in .obj)\n"));
 }
 
 TEST(ProcessCommand, KeepsARealModelsTangentsAndTexturesUntilAskedOtherwise) {
@@ -310,11 +310,12 @@ TEST(InfoCommand, CountsWhatIsThere) {
     workplace.write_square("square.obj");
     const ProgramResult result = workplace.run("relief-mesh info square.obj");
     EXPECT_EQ(result.exit_code, 0) << result.error;
-    EXPECT_THAT(result.out, HasSubstr("contents  2 triangles, 4 vertices, 1 primitive\n"
-                                      // 4 x (3 + 2) floats, 6 indices.
-                                      "memory    80 B of attributes, 24 B of indices, alike on the "
-                                      "GPU\n"
-                                      "bounds    (-1, -1, 0) to (1, 1, 0), size 2 x 2 x 0\n"));
+    EXPECT_THAT(result.out,
+                HasSubstr("contents  2 triangles, 4 vertices, 1 primitive\n"
+                          // 4 x (3 + 2) floats, 6 indices.
+                          "memory    80 B of attributes, 24 B of indices, the same on the "
+                          "GPU\n"
+                          "bounds    (-1, -1, 0) to (1, 1, 0), size 2 x 2 x 0\n"));
     EXPECT_THAT(result.out, HasSubstr("2 triangles, 4 vertices; texcoords\n"));
 }
 
@@ -396,13 +397,13 @@ TEST(MeshRefusal, SaysWhyAndLeavesNothingBehind) {
          {"relief-mesh process square.obj out/square", 2,
           "out/square: no extension says what format this is (use one of .glb, "},
          {"relief-mesh process square.obj out/square.obj --tangents mikktspace", 2,
-          "--tangents mikktspace: .obj cannot hold tangents (write .glb or .gltf)"},
+          "--tangents mikktspace: .obj cannot store tangents (write .glb or .gltf)"},
          {"relief-mesh process square.obj out/old.glb --crease 30", 2,
-          "--crease: is for averaged normals: --normals auto, angle, max, ..."},
+          "--crease: applies only to averaged normals: --normals auto, angle, max, ..."},
          {"relief-mesh process square.obj out/old.glb --normals flat --weld 1", 2,
-          "--weld: is for averaged normals"},
+          "--weld: applies only to averaged normals"},
          {"relief-mesh process square.obj out/old.glb --normals max --repair-normals", 2,
-          "--repair-normals: is for normals that are kept"},
+          "--repair-normals: applies only to kept normals"},
          {"relief-mesh process square.obj out/old.glb --normals max --crease 181", 2,
           "--crease 181: "},
          {"relief-mesh process square.obj out/old.glb --normals max --weld -1", 2, "--weld -1: "},

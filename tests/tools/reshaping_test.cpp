@@ -97,7 +97,7 @@ TEST(DecimateCommand, MeetsANumberARatioAndReports) {
         "relief-mesh decimate data/vase.obj out/a.glb --triangles 1000 --report out/a.json");
     ASSERT_EQ(result.exit_code, 0) << result.error;
     EXPECT_THAT(result.out, HasSubstr("read      data/vase.obj: Wavefront OBJ, 5760 triangles, "));
-    EXPECT_THAT(result.out, HasSubstr("made      1000 triangles, "));
+    EXPECT_THAT(result.out, HasSubstr("result    1000 triangles, "));
     EXPECT_EQ(read_document(workplace / "out/a.glb").mesh({0, 0}).triangles.size(), 1000U);
     const json report = json::parse(workplace.read("out/a.json"));
     EXPECT_EQ(report["tool"], "relief-mesh decimate");
@@ -107,8 +107,8 @@ TEST(DecimateCommand, MeetsANumberARatioAndReports) {
 
     result = workplace.run("relief-mesh decimate data/vase.obj out/b.ply --ratio 0.25");
     ASSERT_EQ(result.exit_code, 0) << result.error;
-    EXPECT_THAT(result.out, HasSubstr("made      1440 triangles, "));
-    EXPECT_THAT(result.out, HasSubstr("left out  1 material (cannot be stored in .ply)\n"));
+    EXPECT_THAT(result.out, HasSubstr("result    1440 triangles, "));
+    EXPECT_THAT(result.out, HasSubstr("omitted   1 material (cannot be stored in .ply)\n"));
     // The same command, the same bytes.
     ASSERT_EQ(workplace.run("relief-mesh decimate data/vase.obj out/c.ply --ratio 0.25 --threads 1")
                   .exit_code,
@@ -159,7 +159,7 @@ TEST(SubdivideCommand, MakesFourOfEachAndKeepsMaterials) {
     const ProgramResult result = workplace.run(
         "relief-mesh subdivide out/sheet.glb out/fine.glb --levels 2 --report out/r.json");
     ASSERT_EQ(result.exit_code, 0) << result.error;
-    EXPECT_THAT(result.out, HasSubstr("made      1152 triangles, "));
+    EXPECT_THAT(result.out, HasSubstr("result    1152 triangles, "));
     const GltfDocument document = read_document(workplace / "out/fine.glb");
     EXPECT_EQ(document.mesh({0, 0}).triangles.size(), 576U);
     EXPECT_EQ(document.mesh({0, 1}).triangles.size(), 576U);
@@ -188,9 +188,9 @@ TEST(ReshapingRefusal, SaysWhyAndLeavesNothingBehind) {
     expect_refusals(
         workplace, "relief-mesh", "old.glb",
         {{"relief-mesh decimate square.obj out/old.glb", 2,
-          "nothing says when to stop (give --triangles N, --ratio R or --max-error E)"},
+          "no limit is given (give --triangles N, --ratio R or --max-error E)"},
          {"relief-mesh decimate square.obj out/old.glb --triangles 1 --ratio 0.5", 2,
-          "--triangles and --ratio: both say how many (give one of them)"},
+          "--triangles and --ratio contradict each other (give one of them)"},
          {"relief-mesh decimate square.obj out/old.glb --triangles 0", 2,
           "--triangles 0: not between 1 and "},
          {"relief-mesh decimate square.obj out/old.glb --ratio 1.5", 2,

@@ -21,7 +21,7 @@ MapModelPart part_of(const GltfDocument& document, GltfPrimitiveId id, Report& r
     if (mesh.normals.empty()) {
         if (!mesh.tangents.empty()) {
             report.add("tangents without normals", "primitive", id.primitive,
-                       "are ignored, as glTF asks");
+                       "are ignored, as glTF requires");
         }
         FrameOptions options;
         options.if_missing = NormalMode::flat;

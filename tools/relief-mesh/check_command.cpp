@@ -1,21 +1,449 @@
 // SPDX-License-Identifier: Apache-2.0
-// `relief-mesh check FILES...`: the health of model files, as text or JSON. Every file is looked
-// at, whatever is wrong with those before it. Tests: tests/tools/relief_mesh_check_test.cpp.
+// `relief-mesh check FILES...` diagnoses model files, identifies the method of their tangents, and
+// prints the result as text or JSON. All files are checked, also after errors.
+// Tests: tests/tools/relief_mesh_check_test.cpp.
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "commands.h"
+#include "common/findings.h"
 #include "common/model_file.h"
 #include "common/options.h"
 #include "common/text.h"
-#include "model_check.h"
+#include "relief/mesh/diagnose.h"
+#include "relief/mesh/gltf_document.h"
+#include "relief/mesh/tangent_basis.h"
 #include "relief/mesh/threads.h"
 
 namespace relief::tools {
 namespace {
+
+/// The result of identifying the tangents of a primitive.
+struct CheckedTangents {
+    SniffedTangents sniffed;
+    int texcoord_set = 0;       ///< The set that the tangents match, or else `usual_set`.
+    int usual_set = 0;          ///< The set that glTF assigns to the tangents.
+    bool has_normals = true;    ///< Without normals, glTF ignores tangents.
+    bool has_texcoords = true;  ///< Without them, no method can be compared.
+};
+
+/// A triangle primitive of a glTF file, or the mesh of another file.
+struct CheckedPart {
+    std::string name;  ///< Empty for a file with one mesh.
+    std::size_t triangles = 0;
+    std::size_t vertices = 0;
+    Diagnosis diagnosis;
+    Report trouble;
+    Report remarks;
+    std::optional<CheckedTangents> tangents;  ///< Absent if the primitive has no tangents.
+};
+
+struct CheckedModel {
+    std::filesystem::path file;
+    std::string error;  ///< The reason why the file cannot be read, or empty.
+    std::string format;
+    /// Findings of the reader. Missing references are trouble; content that relief does not use
+    /// (points, lines, foreign properties) is a remark.
+    Report reading_trouble;
+    Report reading_remarks;
+    std::vector<CheckedPart> parts;
+
+    [[nodiscard]] bool is_sound() const;
+};
+
+bool CheckedModel::is_sound() const {
+    return error.empty() && reading_trouble.empty() &&
+           std::all_of(parts.begin(), parts.end(),
+                       [](const CheckedPart& part) { return part.trouble.empty(); });
+}
+
+/// Identifies the method of a primitive's stored tangents. If no method matches with the texture
+/// coordinates that glTF assigns to the tangents, the other sets are tried.
+/// \return nothing if the primitive has no tangents
+std::optional<CheckedTangents> check_tangents(const GltfDocument& document, GltfPrimitiveId id,
+                                              const Mesh& mesh) {
+    if (mesh.tangents.empty()) return std::nullopt;
+    CheckedTangents result;
+    result.usual_set = document.tangent_texcoords(id).set;
+    result.texcoord_set = result.usual_set;
+    result.has_normals = !mesh.normals.empty();
+    const std::vector<int> sets = document.texcoord_sets(id);
+    result.has_texcoords = !sets.empty();
+    if (!result.has_normals || sets.empty()) return result;
+    result.sniffed = sniff_tangents(document.mesh(id, result.usual_set));
+    for (const int set : sets) {
+        if (result.sniffed.basis) break;
+        if (set == result.usual_set) continue;
+        SniffedTangents other = sniff_tangents(document.mesh(id, set));
+        if (!other.basis) continue;
+        result.sniffed = std::move(other);
+        result.texcoord_set = set;
+    }
+    return result;
+}
+
+/// Returns whether the model is complete in spite of a finding of its reader.
+bool is_harmless(const Finding& finding) {
+    static constexpr std::array kinds = {"far from the origin",
+                                         "point",
+                                         "line",
+                                         "unknown statement",
+                                         "line with more values than the header names",
+                                         "bytes behind the GLB",
+                                         "bytes behind the last triangle"};
+    return finding.kind.starts_with("PLY property") ||
+           std::find(kinds.begin(), kinds.end(), finding.kind) != kinds.end();
+}
+
+void add_reading(CheckedModel& model, const Report& reading) {
+    for (const Finding& finding : reading.findings())
+        (is_harmless(finding) ? model.reading_remarks : model.reading_trouble).add(finding);
+}
+
+/// The intended use of a part, which decides the severity of a condition.
+struct Use {
+    bool tangents = false;
+    bool baking = false;
+};
+
+Severity severity_of(MeshCondition condition, const Use& use) {
+    if (condition == MeshCondition::texture_degenerate && !use.tangents && !use.baking)
+        return Severity::remark;
+    if (condition == MeshCondition::texture_overlapping && use.baking) return Severity::trouble;
+    return condition_info(condition).severity;
+}
+
+void add_part(CheckedModel& model, std::string name, const Mesh& mesh, const Use& use) {
+    CheckedPart part{
+        std::move(name), mesh.triangles.size(), mesh.positions.size(), diagnose(mesh), {}, {}, {}};
+    for (const FoundCondition& found : part.diagnosis.found) {
+        const bool is_trouble = severity_of(found.condition, use) == Severity::trouble;
+        (is_trouble ? part.trouble : part.remarks).add(to_finding(found));
+    }
+    model.parts.push_back(std::move(part));
+}
+
+bool wants_tangents(const Mesh& mesh, const std::vector<GltfMaterial>& materials) {
+    if (!mesh.tangents.empty()) return true;
+    return std::any_of(mesh.material_ranges.begin(), mesh.material_ranges.end(),
+                       [&](const MaterialRange& range) {
+                           return range.material && *range.material < materials.size() &&
+                                  materials[*range.material].normal_texture;
+                       });
+}
+
+/// Returns true also if no material has a texture, because the use of the mesh is then unknown.
+bool wants_tangents(const std::vector<MtlMaterial>& materials) {
+    bool has_textures = false;
+    for (const MtlMaterial& material : materials) {
+        if (material.normal_map || material.bump_map) return true;
+        has_textures = has_textures || material.diffuse_map || material.emission_map;
+    }
+    return !has_textures;
+}
+
+void add_parts(CheckedModel& model, const GltfDocument& document, bool for_baking) {
+    const std::vector<GltfMaterial> materials = document.view().materials;
+    for (const GltfPrimitiveId id : document.triangle_primitives()) {
+        const Mesh mesh = document.mesh(id);
+        add_part(model, document.describe(id), mesh, {wants_tangents(mesh, materials), for_baking});
+        model.parts.back().tangents = check_tangents(document, id, mesh);
+    }
+}
+
+void add_parts(CheckedModel& model, const MeshFile& contents, bool for_baking) {
+    add_part(model, "", contents.mesh, {wants_tangents(contents.materials), for_baking});
+}
+
+/// Reads and diagnoses a file. A file that cannot be read, or is not valid, gets an `error`.
+///
+/// The severities are those of diagnose.h with two exceptions. With `for_baking`, overlapping
+/// texture coordinates are trouble. Triangles without texture gradient are only a remark if nothing
+/// needs tangents: no baking, no normal or bump map in the materials, and no stored tangents.
+CheckedModel check_model(const std::filesystem::path& file, bool for_baking) {
+    CheckedModel model;
+    model.file = file;
+    model.format = format_name(readable_format(file));
+    try {
+        Report reading;
+        const Model contents = read_model(file, reading);
+        add_reading(model, reading);
+        about(file, [&] {
+            std::visit([&](const auto& document) { add_parts(model, document, for_baking); },
+                       contents);
+        });
+    } catch (const FileError& error) {
+        model.error = error.what();
+    }
+    return model;
+}
+
+/// A few corners may have the other sign: degenerate triangles, welded seams.
+constexpr double min_sign_share = 0.99;
+
+/// Whether the sign w matches the method: at all corners, at none, or at some.
+enum class Sign { correct, negated, mixed };
+
+Sign sign_of(const BasisAgreement& agreement) {
+    const auto all = static_cast<double>(agreement.agreeing());
+    const auto negated = static_cast<double>(agreement.negated);
+    if (negated >= min_sign_share * all) return Sign::negated;
+    return negated <= (1.0 - min_sign_share) * all ? Sign::correct : Sign::mixed;
+}
+
+std::string variant_of(const BasisAgreement& agreement) {
+    return std::string(
+        variant_in_words(agreement.quarter_turns, sign_of(agreement) == Sign::negated));
+}
+
+/// Angles below 0.001 degrees are shown as 0.001.
+std::string angles_in_words(AngleDistribution angles) {
+    for (double* degrees : {&angles.median, &angles.p90, &angles.p99, &angles.max})
+        *degrees = std::max(*degrees, 0.001);
+    return fmt::format("median {:.2g}, 90 % within {:.2g}, 99 % within {:.2g}, maximum {:.2g}",
+                       angles.median, angles.p90, angles.p99, angles.max);
+}
+
+std::string identified_in_words(const CheckedTangents& tangents) {
+    const SniffedTangents& sniffed = tangents.sniffed;
+    const BasisAgreement& best = *sniffed.best();
+    std::string text(word_of(*sniffed.basis));
+    const std::string variant = variant_of(best);
+    if (!variant.empty()) text += ", " + variant;
+    if (sign_of(best) == Sign::mixed) {
+        text += fmt::format(", w negated at {} of {} corners", best.negated, best.agreeing());
+    }
+    if (tangents.texcoord_set != tangents.usual_set)
+        text += fmt::format(", from texture coordinate set {}", tangents.texcoord_set);
+    text += fmt::format(": {} of {} within {:.2g} degrees ({})", best.agreeing(),
+                        counted(sniffed.corners, "corner"), sniffed.tolerance,
+                        angles_in_words(best.angles));
+    if (!sniffed.same_here.empty()) {
+        std::vector<std::string_view> words;
+        for (const TangentBasis basis : sniffed.same_here)
+            words.push_back(word_of(basis));
+        text += fmt::format("; {} {} the same tangents here", fmt::join(words, ", "),
+                            words.size() == 1 ? "gives" : "give");
+    }
+    return text;
+}
+
+std::string in_words(const CheckedTangents& tangents) {
+    if (!tangents.has_normals) return "no normals: glTF ignores these tangents";
+    if (!tangents.has_texcoords) return "of unknown basis: there are no texture coordinates";
+    const SniffedTangents& sniffed = tangents.sniffed;
+    if (sniffed.basis) return identified_in_words(tangents);
+    const BasisAgreement* best = sniffed.best();
+    if (best == nullptr) {
+        return fmt::format(
+            "of unknown basis: all triangles are too small in the image, or all tangents are "
+            "without direction ({} omitted, {} without direction)",
+            sniffed.left_out, sniffed.undefined);
+    }
+    const std::string variant = variant_of(*best);
+    return fmt::format("of unknown basis; nearest{} is {}{}: {} of {} within {:.2g} degrees ({})",
+                       sniffed.is_best_by_far() ? " by far" : "", word_of(best->basis),
+                       variant.empty() ? "" : ", " + variant, best->agreeing(),
+                       counted(sniffed.corners, "corner"), sniffed.tolerance,
+                       angles_in_words(best->angles));
+}
+
+nlohmann::ordered_json json_of(const CheckedTangents& tangents) {
+    const SniffedTangents& sniffed = tangents.sniffed;
+    nlohmann::ordered_json agreements = nlohmann::ordered_json::array();
+    for (const BasisAgreement& agreement : sniffed.agreements) {
+        const AngleDistribution& angles = agreement.angles;
+        nlohmann::ordered_json histogram = nlohmann::ordered_json::array();
+        for (std::size_t i = 0; i < angles.histogram.size(); ++i)
+            histogram.push_back(
+                {{"up_to", AngleDistribution::bounds[i]}, {"corners", angles.histogram[i]}});
+        agreements.push_back({{"basis", word_of(agreement.basis)},
+                              {"agreeing", agreement.agreeing()},
+                              {"variant", variant_of(agreement)},
+                              {"w_negated", agreement.negated},
+                              {"rms", angles.rms},
+                              {"mean", angles.mean},
+                              {"median", angles.median},
+                              {"p90", angles.p90},
+                              {"p99", angles.p99},
+                              {"max", angles.max},
+                              {"histogram", std::move(histogram)}});
+    }
+    nlohmann::ordered_json same_here = nlohmann::ordered_json::array();
+    for (const TangentBasis basis : sniffed.same_here)
+        same_here.push_back(word_of(basis));
+    const BasisAgreement* best = sniffed.best();
+    return {{"basis", sniffed.basis ? std::string(word_of(*sniffed.basis)) : "unknown"},
+            {"variant", best == nullptr ? "" : variant_of(*best)},
+            {"nearest", best == nullptr ? "" : std::string(word_of(best->basis))},
+            {"nearest_by_far", sniffed.is_best_by_far()},
+            {"same_here", std::move(same_here)},
+            {"texcoord_set", tangents.texcoord_set},
+            {"texcoord_set_of_material", tangents.usual_set},
+            {"corners", sniffed.corners},
+            {"left_out", sniffed.left_out},
+            {"without_direction", sniffed.undefined},
+            {"stored_bits", sniffed.stored_bits == 0 ? 32 : sniffed.stored_bits},
+            {"tolerance", sniffed.tolerance},
+            {"agreements", std::move(agreements)}};
+}
+
+std::size_t triangles_of(const CheckedModel& model) {
+    std::size_t triangles = 0;
+    for (const CheckedPart& part : model.parts)
+        triangles += part.triangles;
+    return triangles;
+}
+
+std::string verdict(const CheckedModel& model) {
+    if (!model.is_sound()) return "trouble";
+    return triangles_of(model) == 0 ? "no triangles" : "sound";
+}
+
+/// The findings of one condition in all parts.
+struct Sum {
+    std::size_t count = 0;
+    std::size_t parts = 0;
+    const CheckedPart* first_part = nullptr;
+    Finding first;
+};
+
+Sum sum_of(const CheckedModel& model, Report CheckedPart::*list, std::string_view word) {
+    Sum sum;
+    for (const CheckedPart& part : model.parts) {
+        for (const Finding& finding : (part.*list).findings()) {
+            if (finding.kind != word) continue;
+            sum.count += finding.count;
+            if (sum.parts++ > 0) continue;
+            sum.first_part = &part;
+            sum.first = finding;
+        }
+    }
+    return sum;
+}
+
+/// Returns a line per condition, with its first place and the number of primitives.
+std::vector<std::string> trouble_lines(const CheckedModel& model) {
+    std::vector<std::string> lines;
+    for (const Finding& finding : model.reading_trouble.findings())
+        lines.push_back(to_string(finding));
+    for (const MeshConditionInfo& condition : mesh_conditions()) {
+        const Sum sum = sum_of(model, &CheckedPart::trouble, condition.word);
+        if (sum.parts == 0) continue;
+        const std::string place = sum.first_part->name.empty() ? "" : sum.first_part->name + ": ";
+        std::string line = place + to_string(sum.first);
+        if (sum.parts > 1)
+            line += fmt::format(" ({} in {})", sum.count, counted(sum.parts, "primitive"));
+        lines.push_back(line);
+    }
+    return lines;
+}
+
+/// "36 x boundary edge in 3 primitives, 12 x needle triangle"
+std::string remarks_in_words(const CheckedModel& model) {
+    std::vector<std::string> words;
+    for (const Finding& finding : model.reading_remarks.findings())
+        words.push_back(fmt::format("{} x {} {}", finding.count, finding.kind, finding.outcome));
+    for (const MeshConditionInfo& condition : mesh_conditions()) {
+        const Sum sum = sum_of(model, &CheckedPart::remarks, condition.word);
+        if (sum.parts == 0) continue;
+        words.push_back(fmt::format("{} x {}", sum.count, condition.word));
+        if (model.parts.size() > 1)
+            words.back() += fmt::format(" in {}", counted(sum.parts, "primitive"));
+    }
+    return fmt::format("{}", fmt::join(words, ", "));
+}
+
+/// Returns a line per distinct result of the primitives' tangents.
+std::vector<std::string> tangents_in_words(const CheckedModel& model) {
+    struct Group {
+        std::string words;
+        const CheckedPart* first;
+        std::size_t parts;
+    };
+    std::vector<Group> groups;
+    for (const CheckedPart& part : model.parts) {
+        if (!part.tangents) continue;
+        std::string words = in_words(*part.tangents);
+        const auto group = std::find_if(groups.begin(), groups.end(),
+                                        [&](const Group& other) { return other.words == words; });
+        if (group == groups.end())
+            groups.push_back({std::move(words), &part, 1});
+        else
+            ++group->parts;
+    }
+    constexpr std::size_t max_lines = 12;
+    std::vector<std::string> lines;
+    for (const Group& group : groups) {
+        if (lines.size() == max_lines) {
+            lines.push_back(
+                fmt::format("... and {} more (--json lists all)", groups.size() - max_lines));
+            break;
+        }
+        const std::string others =
+            group.parts == 1 ? "" : fmt::format(" (and {} more)", group.parts - 1);
+        const std::string place =
+            group.first->name.empty() ? "" : group.first->name + others + ": ";
+        lines.push_back(place + group.words);
+    }
+    return lines;
+}
+
+/// Returns findings without "where", which the enclosing object gives.
+nlohmann::ordered_json findings_json(const Report& report) {
+    Findings findings;
+    findings.add("", report);
+    nlohmann::ordered_json list = findings.json();
+    for (nlohmann::ordered_json& finding : list)
+        finding.erase("where");
+    return list;
+}
+
+nlohmann::ordered_json part_json(const CheckedPart& part) {
+    return {{"name", part.name},
+            {"sound", part.trouble.empty()},
+            {"triangles", part.triangles},
+            {"vertices", part.vertices},
+            {"size", part.diagnosis.size},
+            {"spacing", part.diagnosis.spacing},
+            {"overlap_raster", part.diagnosis.overlap_raster},
+            {"tangents", part.tangents ? json_of(*part.tangents) : nlohmann::ordered_json()},
+            {"trouble", findings_json(part.trouble)},
+            {"remarks", findings_json(part.remarks)}};
+}
+
+void print_text(const CheckedModel& model) {
+    print_entry("file", fmt::format("{}: {}, {}, {}: {}", model.file.string(), model.format,
+                                    counted(model.parts.size(), "primitive"),
+                                    counted(triangles_of(model), "triangle"), verdict(model)));
+    print_entry("trouble", trouble_lines(model));
+    const std::string remarks = remarks_in_words(model);
+    if (!remarks.empty()) print_entry("remarks", remarks);
+    print_entry("tangents", tangents_in_words(model));
+}
+
+nlohmann::ordered_json json_of(const CheckedModel& model) {
+    if (!model.error.empty())
+        return {{"file", model.file.string()}, {"sound", false}, {"error", model.error}};
+    nlohmann::ordered_json parts = nlohmann::ordered_json::array();
+    for (const CheckedPart& part : model.parts)
+        parts.push_back(part_json(part));
+    return {{"file", model.file.string()},
+            {"sound", model.is_sound()},
+            {"format", model.format},
+            {"trouble", findings_json(model.reading_trouble)},
+            {"remarks", findings_json(model.reading_remarks)},
+            {"primitives", std::move(parts)}};
+}
 
 constexpr const char* page = "docs/hard-cases.md";
 
@@ -27,7 +455,7 @@ struct CheckOptions {
     GeneralOptions general;
 };
 
-/// How many files are how.
+/// The number of files by verdict.
 struct Verdicts {
     std::size_t sound = 0;
     std::size_t in_trouble = 0;
@@ -46,7 +474,7 @@ void print_verdicts(const Verdicts& verdicts, std::size_t file_count) {
                                            verdicts.in_trouble, verdicts.unreadable));
     }
     if (verdicts.sound + verdicts.in_trouble > 0)
-        print_entry("words", fmt::format("{} says what each comes to", page));
+        print_entry("details", fmt::format("{} describes each condition", page));
 }
 
 void print_checks(const std::vector<CheckedModel>& models, const Verdicts& verdicts) {
@@ -99,7 +527,7 @@ ExitCode run(const CLI::App& app, const CheckOptions& options) {
 Command add_check_command(CLI::App& tool) {
     CLI::App& app = add_subcommand(
         tool, "check",
-        "Says how healthy model files are, and by which method their tangents were made.");
+        "Reports defects of model files, and identifies the method of their tangents.");
     const auto options = std::make_shared<CheckOptions>();
     add_files(app, "FILES", options->files, "Models to read: .glb .gltf .obj .ply .stl .off")
         .required();
@@ -113,10 +541,10 @@ Command add_check_command(CLI::App& tool) {
         "without_direction, stored_bits, tolerance, agreements} or null, "
         "trouble and remarks [kind, element, count, first, outcome]]].");
     add_switch(app, "--strict", options->strict,
-               "Exit with 3 if a file has trouble. Remarks are no trouble.");
+               "Exit with 3 if a file has trouble. Remarks do not count.");
     add_switch(app, "--for-baking", options->for_baking,
-               "Maps are to be baked onto the models: overlapping texture is trouble then, and so "
-               "is texture without gradient, whatever the materials say.");
+               "Check for baking: overlapping texture coordinates and triangles without texture "
+               "gradient are trouble, for any material.");
     add_general_options(app, options->general);
     set_examples(app, {"relief-mesh check data/vase.obj data/scenes/pot.glb",
                        "relief-mesh check data/scenes/knot.glb --for-baking --strict",

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// `relief-mesh conformance OUTPUT_DIR`: judges what any program made of the conformance kit's
-// meshes, as text or JSON. Tests: tests/tools/conformance_test.cpp.
+// `relief-mesh conformance OUTPUT_DIR` compares the tangents that a program computed for the
+// conformance kit with MikkTSpace's, as text or JSON. Tests: tests/tools/conformance_test.cpp.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -10,7 +10,7 @@
 #include "commands.h"
 #include "common/options.h"
 #include "common/text.h"
-#include "conformance_judge.h"
+#include "conformance.h"
 
 namespace relief::tools {
 namespace {
@@ -23,14 +23,14 @@ struct ConformanceOptions {
     bool quiet = false;
 };
 
-/// A mesh of the kit and what became of it.
+/// The result for a mesh of the kit.
 struct Result {
     std::string name;
     KitGroup group = KitGroup::conformance;
-    std::string error;  ///< Why there is no judgement.
-    Judgement judgement;
+    std::string error;  ///< The reason why there is no judgment, or empty.
+    Judgment judgment;
 
-    [[nodiscard]] bool passed() const { return error.empty() && judgement.passes(group); }
+    [[nodiscard]] bool passed() const { return error.empty() && judgment.passes(group); }
 };
 
 Result result_of(const KitMesh& kit, const std::filesystem::path& folder) {
@@ -42,13 +42,13 @@ Result result_of(const KitMesh& kit, const std::filesystem::path& folder) {
         return result;
     }
     try {
-        const Mesh theirs = read_triangles(file);
-        const bool has_none = std::all_of(theirs.tangents.begin(), theirs.tangents.end(),
+        const Mesh mesh = read_triangles(file);
+        const bool has_none = std::all_of(mesh.tangents.begin(), mesh.tangents.end(),
                                           [](const glm::vec4& t) { return t == glm::vec4(0.0F); });
         if (has_none)
             result.error = "has no tangents";
         else
-            result.judgement = judge(kit, theirs);
+            result.judgment = judge(kit, mesh);
     } catch (const FileError& error) {
         result.error = error.what();
     }
@@ -56,46 +56,48 @@ Result result_of(const KitMesh& kit, const std::filesystem::path& folder) {
 }
 
 /// "3 corners of other sign, 5 off by more than 0.01 degrees"
-std::string faults(const Judgement& judgement) {
+std::string faults(const Judgment& judgment) {
     std::vector<std::string> list;
     const auto add = [&](std::size_t count, const std::string& what) {
         if (count != 0) list.push_back(fmt::format("{} {}", count, what));
     };
-    add(judgement.missing, "missing");
-    add(judgement.extra, "not of this mesh");
-    add(judgement.not_finite, "not finite");
-    add(judgement.not_unit, "not unit");
-    add(judgement.leaning, "not perpendicular");
-    add(judgement.unhanded, "with w not 1 or -1");
-    add(judgement.mixed, "of triangles with two handednesses");
-    if (judgement.other_sign == judgement.judged && judgement.judged != 0)
-        list.emplace_back("all of the other sign (w for v upwards? glTF's v runs down)");
+    add(judgment.missing, "missing");
+    add(judgment.extra, "not in this mesh");
+    add(judgment.not_finite, "not finite");
+    add(judgment.not_unit, "not unit");
+    add(judgment.not_perpendicular, "not perpendicular");
+    add(judgment.invalid_sign, "with w not 1 or -1");
+    add(judgment.mixed_signs, "of triangles with both signs");
+    if (judgment.other_sign == judgment.judged && judgment.judged != 0)
+        list.emplace_back(
+            "all with the opposite sign (is w computed for v upwards? In glTF, v points down)");
     else
-        add(judgement.other_sign, "of the other sign");
-    add(judgement.too_far, fmt::format("off by more than {} degrees", conforming_degrees));
+        add(judgment.other_sign, "with the opposite sign");
+    add(judgment.too_far, fmt::format("with an error above {} degrees", conforming_degrees));
     return list.empty() ? "" : fmt::format("; {}", fmt::join(list, ", "));
 }
 
 std::string verdict(const Result& result) {
     if (result.group == KitGroup::stability) return result.passed() ? "usable" : "UNUSABLE";
     if (result.group == KitGroup::defect)
-        return result.passed() ? "defect mended" : "with the reference's defect, or worse";
+        return result.passed() ? "defect corrected"
+                               : "has the reference's defect, or a larger error";
     return result.passed() ? "conforms" : "DIFFERS";
 }
 
 std::string in_words(const Result& result) {
-    if (!result.error.empty()) return "NOT JUDGED: " + result.error;
-    const Judgement& j = result.judgement;
-    std::string text =
-        fmt::format("{}: {} of {} judged", verdict(result), j.judged, counted(j.corners, "corner"));
+    if (!result.error.empty()) return "NOT COMPARED: " + result.error;
+    const Judgment& j = result.judgment;
+    std::string text = fmt::format("{}: {} of {} compared", verdict(result), j.judged,
+                                   counted(j.corners, "corner"));
     if (result.group != KitGroup::stability && j.judged != 0) {
-        text += fmt::format(", degrees off {:.2g} mean, {:.2g} for 99 %, {:.2g} at most",
+        text += fmt::format(", error in degrees: mean {:.2g}, 99 % within {:.2g}, maximum {:.2g}",
                             j.degrees.mean, j.degrees.p99, j.degrees.max);
     }
     return text + faults(j);
 }
 
-/// How many meshes of a group there are, and passed.
+/// The number of meshes of a group, and of those that passed.
 struct Score {
     std::size_t passed = 0;
     std::size_t meshes = 0;
@@ -111,7 +113,7 @@ Score score_of(const std::vector<Result>& results, KitGroup group) {
     return score;
 }
 
-/// How many meshes of both groups that count there are, and passed.
+/// The scores of the two groups that decide the verdict.
 struct Scores {
     Score conforming;
     Score usable;
@@ -142,7 +144,7 @@ void show_text(const std::vector<Result>& results) {
                     conforming.meshes, scores.usable.passed, scores.usable.meshes));
 }
 
-const char* word(KitGroup group) {
+const char* group_name(KitGroup group) {
     switch (group) {
         case KitGroup::conformance:
             return "conformance";
@@ -156,22 +158,22 @@ const char* word(KitGroup group) {
 
 nlohmann::ordered_json json_of(const Result& result) {
     nlohmann::ordered_json json = {
-        {"name", result.name}, {"group", word(result.group)}, {"passed", result.passed()}};
+        {"name", result.name}, {"group", group_name(result.group)}, {"passed", result.passed()}};
     if (!result.error.empty()) {
         json["error"] = result.error;
         return json;
     }
-    const Judgement& j = result.judgement;
+    const Judgment& j = result.judgment;
     json.update({{"corners", j.corners},
                  {"judged", j.judged},
                  {"missing", j.missing},
-                 {"left_out", j.left_out},
+                 {"left_out", j.omitted},
                  {"extra", j.extra},
                  {"not_finite", j.not_finite},
                  {"not_unit", j.not_unit},
-                 {"not_perpendicular", j.leaning},
-                 {"unhanded", j.unhanded},
-                 {"mixed_handedness", j.mixed}});
+                 {"not_perpendicular", j.not_perpendicular},
+                 {"unhanded", j.invalid_sign},
+                 {"mixed_handedness", j.mixed_signs}});
     if (result.group == KitGroup::stability) return json;
     json.update(
         {{"other_sign", j.other_sign},
@@ -197,8 +199,9 @@ ExitCode run(const CLI::App& app, const ConformanceOptions& options) {
     if (options.json && options.quiet) throw UsageError("--json and --quiet contradict each other");
     const std::vector<KitMesh> kit = read_kit(options.kit);
     if (!std::filesystem::is_directory(options.results)) {
-        throw failure(options.results, "no such folder",
-                      "it holds what a program made of the kit's meshes, under their names");
+        throw failure(
+            options.results, "no such folder",
+            "it must contain the program's output for each mesh of the kit, with the same names");
     }
     Stages stages(options.quiet);
     std::vector<Result> results;
@@ -223,13 +226,13 @@ ExitCode run(const CLI::App& app, const ConformanceOptions& options) {
 Command add_conformance_command(CLI::App& tool) {
     CLI::App& app = add_subcommand(
         tool, "conformance",
-        "Judges any program's tangents for the conformance kit against MikkTSpace's.");
+        "Compares any program's tangents for the conformance kit with those of MikkTSpace.");
     const auto options = std::make_shared<ConformanceOptions>();
     add_file(app, "OUTPUT_DIR", options->results,
-             "Folder with what the program made of conformance/kit: NAME.glb or NAME.gltf with "
-             "TANGENT for each NAME.glb there");
+             "Folder with the program's output for conformance/kit: NAME.glb or NAME.gltf with "
+             "TANGENT for each NAME.glb of the kit");
     add_value(app, "--kit", "FOLDER",
-              "Folder of the kit. Default: conformance/kit, as seen from relief's sources.",
+              "Folder of the kit. Default: conformance/kit in the sources of relief.",
               [options](const std::string&, const std::string& text) { options->kit = text; });
     add_switch(app, "--json", options->json,
                "Print one JSON object: tool, version, conforms, stable, meshes [name, group, "
@@ -238,9 +241,9 @@ Command add_conformance_command(CLI::App& tool) {
                "not_perpendicular, unhanded, mixed_handedness and, against the reference, "
                "other_sign, too_far, degrees {mean, p99, max}, worst_corner].");
     add_switch(app, "--strict", options->strict,
-               "Exit with 3 if tangents conform, but are unusable on hard meshes: those of the "
+               "Exit with 3 if the tangents conform, but are unusable on the hard meshes of the "
                "stability group.");
-    add_switch(app, "--quiet", options->quiet, "Print nothing but errors; the exit code tells.");
+    add_switch(app, "--quiet", options->quiet, "Print only errors; the exit code is the result.");
     set_examples(app,
                  {"relief-mesh process conformance/kit/*.glb -o out/kit/ --tangents mikktspace",
                   "relief-mesh conformance out/kit",

@@ -1,21 +1,199 @@
 // SPDX-License-Identifier: Apache-2.0
-// `relief-mesh info IN`: what is in a model file, as text or JSON.
-// Tests: tests/tools/relief_mesh_test.cpp.
+// `relief-mesh info IN` lists the contents of a model file: counts, memory, bounds, attributes,
+// materials, and the parts of a scene that are not meshes. Tests: tests/tools/relief_mesh_test.cpp.
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "commands.h"
+#include "common/command.h"
+#include "common/findings.h"
+#include "common/model_file.h"
 #include "common/options.h"
 #include "common/text.h"
-#include "model_info.h"
+#include "relief/mesh/mesh.h"
 
 namespace relief::tools {
 namespace {
 
-constexpr std::size_t lines_listed_at_most = 24;
+constexpr std::size_t max_lines = 24;
+
+/// The size of a mesh's arrays in bytes, with 32-bit floats and indices.
+struct MeshBytes {
+    std::size_t attributes = 0;
+    std::size_t indices = 0;
+};
+
+/// A triangle primitive of a glTF file, or the mesh of another file.
+struct PartInfo {
+    std::string name;
+    std::size_t vertices = 0;
+    std::size_t triangles = 0;
+    /// "normals", "texcoords", ...; positions are not listed.
+    std::vector<std::string> attributes;
+    std::vector<std::string> materials;  ///< The names of the materials in use.
+    Bounds bounds;                       ///< In object space.
+    MeshBytes memory;
+};
+
+struct MaterialInfo {
+    std::string name;
+    std::vector<std::string> textures;  ///< "base color", "normal", ...
+};
+
+struct ModelInfo {
+    std::string format;
+    std::uintmax_t bytes = 0;
+    std::vector<PartInfo> parts;
+    std::size_t instances = 0;  ///< The scene may contain a part several times.
+    std::size_t vertices = 0;   ///< Each part counts once.
+    std::size_t triangles = 0;
+    MeshBytes memory;  ///< Each part counts once.
+    Bounds bounds;     ///< The bounds of all instances in world space.
+    std::vector<MaterialInfo> materials;
+    std::size_t images = 0;
+    std::size_t lights = 0;
+    std::size_t cameras = 0;
+    std::vector<std::string> beyond_a_mesh;  ///< "2 animations", "1 skin", ...
+    std::vector<std::string> compression;    ///< "EXT_meshopt_compression of 3 buffer views", ...
+    Findings findings;
+};
+
+std::vector<std::string> attributes_of(const Mesh& mesh) {
+    std::vector<std::string> names;
+    if (!mesh.normals.empty()) names.emplace_back("normals");
+    if (!mesh.texcoords.empty()) names.emplace_back("texcoords");
+    if (!mesh.tangents.empty()) names.emplace_back("tangents");
+    if (!mesh.colors.empty()) names.emplace_back("colors");
+    return names;
+}
+
+/// Returns the name, or "material 3" for a material without a name.
+std::string material_name(const std::string& name, std::size_t index) {
+    return name.empty() ? fmt::format("material {}", index) : name;
+}
+
+std::vector<std::string> materials_of(const Mesh& mesh,
+                                      const std::vector<MaterialInfo>& materials) {
+    std::set<std::uint32_t> used;
+    for (const MaterialRange& range : mesh.material_ranges) {
+        if (range.material) used.insert(*range.material);
+    }
+    std::vector<std::string> names;
+    for (const std::uint32_t index : used) {
+        if (index < materials.size()) names.push_back(materials[index].name);
+    }
+    return names;
+}
+
+template <typename T>
+std::size_t bytes_of(const std::vector<T>& values) {
+    return values.size() * sizeof(T);
+}
+
+MeshBytes memory_of(const Mesh& mesh) {
+    return {bytes_of(mesh.positions) + bytes_of(mesh.normals) + bytes_of(mesh.texcoords) +
+                bytes_of(mesh.tangents) + bytes_of(mesh.colors),
+            bytes_of(mesh.triangles)};
+}
+
+void add_part(ModelInfo& info, std::string name, const Mesh& mesh) {
+    info.parts.push_back({.name = std::move(name),
+                          .vertices = mesh.positions.size(),
+                          .triangles = mesh.triangles.size(),
+                          .attributes = attributes_of(mesh),
+                          .materials = materials_of(mesh, info.materials),
+                          .bounds = bounds_of(mesh),
+                          .memory = memory_of(mesh)});
+    info.memory.attributes += info.parts.back().memory.attributes;
+    info.memory.indices += info.parts.back().memory.indices;
+    info.vertices += mesh.positions.size();
+    info.triangles += mesh.triangles.size();
+}
+
+/// Returns the bounds of the transformed vertices, which are tighter than the transformed bounds.
+Bounds bounds_in_world(Mesh mesh, const glm::mat4& world_from_object) {
+    for (glm::vec3& position : mesh.positions)
+        position = glm::vec3(world_from_object * glm::vec4(position, 1.0F));
+    return bounds_of(mesh);
+}
+
+void include(Bounds& all, const Bounds& more) {
+    if (more.empty()) return;
+    all.min = glm::min(all.min, more.min);
+    all.max = glm::max(all.max, more.max);
+}
+
+MaterialInfo material_info(const GltfMaterial& material, std::size_t index) {
+    MaterialInfo info{material_name(material.name, index), {}};
+    if (material.base_color_texture) info.textures.emplace_back("base color");
+    if (material.metallic_roughness_texture) info.textures.emplace_back("metallic-roughness");
+    if (material.normal_texture) info.textures.emplace_back("normal");
+    if (material.emission_texture) info.textures.emplace_back("emission");
+    return info;
+}
+
+MaterialInfo material_info(const MtlMaterial& material, std::size_t index) {
+    MaterialInfo info{material_name(material.name, index), {}};
+    if (material.diffuse_map) info.textures.emplace_back("diffuse");
+    if (material.normal_map) info.textures.emplace_back("normal");
+    if (material.bump_map) info.textures.emplace_back("bump");
+    if (material.emission_map) info.textures.emplace_back("emission");
+    return info;
+}
+
+template <typename Material>
+void add_materials(ModelInfo& info, const std::vector<Material>& materials) {
+    for (std::size_t i = 0; i < materials.size(); ++i)
+        info.materials.push_back(material_info(materials[i], i));
+}
+
+void describe(const GltfDocument& document, ModelInfo& info) {
+    const GltfView view = document.view();
+    add_materials(info, view.materials);
+    for (const GltfPrimitiveId id : document.triangle_primitives())
+        add_part(info, document.describe(id), document.mesh(id));
+    for (const GltfPlaced<GltfPrimitiveId>& placed : view.primitives)
+        include(info.bounds, bounds_in_world(document.mesh(placed.what), placed.world_from_object));
+    info.instances = view.primitives.size();
+    info.images = view.images.size();
+    info.lights = view.lights.size();
+    info.cameras = view.cameras.size();
+    info.beyond_a_mesh = document.beyond_a_mesh();
+    info.compression = compression_in_words(document, false);
+}
+
+void describe(const MeshFile& contents, ModelInfo& info) {
+    add_materials(info, contents.materials);
+    add_part(info, contents.mesh.name, contents.mesh);
+    info.bounds = info.parts.front().bounds;
+    if (!info.bounds.empty()) {
+        info.bounds.min = glm::vec3(glm::dvec3(info.bounds.min) + contents.origin);
+        info.bounds.max = glm::vec3(glm::dvec3(info.bounds.max) + contents.origin);
+    }
+    info.instances = 1;
+}
+
+/// \throws FileError if the file cannot be read
+ModelInfo model_info(const std::filesystem::path& file) {
+    ModelInfo info;
+    info.format = format_name(readable_format(file));
+    Report report;
+    const Model model = read_model(file, report);
+    info.bytes = std::filesystem::file_size(file);
+    about(file,
+          [&] { std::visit([&](const auto& contents) { describe(contents, info); }, model); });
+    info.findings.add("", report);
+    return info;
+}
 
 std::string in_words(const Bounds& bounds) {
     if (bounds.empty()) return "empty: no finite position";
@@ -27,7 +205,7 @@ std::string in_words(const Bounds& bounds) {
 }
 
 std::string in_words(const MeshBytes& memory) {
-    return fmt::format("{} of attributes, {} of indices, alike on the GPU",
+    return fmt::format("{} of attributes, {} of indices, the same on the GPU",
                        byte_size(memory.attributes), byte_size(memory.indices));
 }
 
@@ -57,12 +235,12 @@ std::string in_words(const MaterialInfo& material) {
     return fmt::format("{}: textures {}", material.name, fmt::join(material.textures, ", "));
 }
 
-/// One line each, cut off where a list gets too long to read.
+/// Returns one line per entry, and cuts long lists.
 template <typename Things>
 std::vector<std::string> list(const Things& things) {
     std::vector<std::string> lines;
     for (const auto& thing : things) {
-        if (lines.size() == lines_listed_at_most) {
+        if (lines.size() == max_lines) {
             lines.push_back(
                 fmt::format("... and {} more (--json lists all)", things.size() - lines.size()));
             break;
@@ -80,7 +258,7 @@ void print_info(const std::filesystem::path& file, const ModelInfo& info) {
                             counted(info.vertices, "vertex", "vertices"),
                             counted(info.parts.size(), "primitive")) +
                     (info.instances != info.parts.size()
-                         ? fmt::format(", placed {} in the scene", counted(info.instances, "time"))
+                         ? fmt::format(", {} in the scene", counted(info.instances, "instance"))
                          : ""));
     print_entry("memory", in_words(info.memory));
     print_entry("bounds", in_words(info.bounds));
@@ -144,7 +322,7 @@ ExitCode run(const InfoOptions& options) {
 Command add_info_command(CLI::App& tool) {
     CLI::App& app = add_subcommand(
         tool, "info",
-        "Says what is in a model file: counts, memory, bounds, attributes, materials.");
+        "Lists the contents of a model file: counts, memory, bounds, attributes, materials.");
     const auto options = std::make_shared<InfoOptions>();
     add_file(app, "IN", options->input, "Model to read: .glb .gltf .obj .ply .stl .off");
     add_switch(app, "--json", options->json,

@@ -1,80 +1,337 @@
 // SPDX-License-Identifier: Apache-2.0
-// `relief-mesh process IN OUT` and `IN... -o DIR/`: options in, process() called for each model,
-// report out. A request that could have no effect is refused before anything is read.
-// Tests: tests/tools/relief_mesh_test.cpp, process_jobs_test.cpp, process_batch_test.cpp.
+// `relief-mesh process IN OUT` and `IN... -o DIR/` process one or more models, print a summary and
+// write the report. Options that could have no effect are refused before a file is read.
+// Tests: tests/tools/relief_mesh_test.cpp, process_batch_test.cpp, process_tangents_test.cpp.
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <functional>
 #include <limits>
+#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <vector>
 
 #include "commands.h"
+#include "common/batch.h"
+#include "common/command.h"
 #include "common/frame_choices.h"
 #include "common/options.h"
 #include "common/report_options.h"
 #include "common/text.h"
-#include "process_batch.h"
-#include "process_jobs.h"
-#include "process_summary.h"
-#include "processing.h"
+#include "process.h"
 #include "relief/mesh/threads.h"
 
 namespace relief::tools {
 namespace {
 
-constexpr int largest_uv_set = 1000;
+std::string normal_name(NormalMode mode) {
+    return name_of(mode, normal_choices());
+}
+
+std::string tangent_name(TangentMode mode) {
+    return name_of(mode, tangent_choices());
+}
+
+struct Totals {
+    std::size_t triangles = 0;
+    std::size_t vertices_read = 0;
+    std::size_t vertices_written = 0;
+};
+
+Totals totals_of(const Processed& done) {
+    Totals totals;
+    for (const ProcessedPart& part : done.parts) {
+        totals.triangles += part.triangles;
+        totals.vertices_read += part.vertices_read;
+        totals.vertices_written += part.vertices_written;
+    }
+    return totals;
+}
+
+std::string part_normals_in_words(const ProcessedPart& part) {
+    switch (part.normals) {
+        case Fate::kept:
+            return "kept";
+        case Fate::removed:
+            return "removed";
+        case Fate::absent:
+            return "none";
+        case Fate::computed:
+            break;
+    }
+    if (part.normal_mode == NormalMode::flat) return "computed, one per triangle";
+    std::string text = fmt::format("computed, averaged by {}", normal_name(part.normal_mode));
+    if (part.normal_mode == NormalMode::automatic) {
+        text = "computed, averaged by max";
+        if (part.normals_by_area != 0) {
+            text += fmt::format(", and by area at {} with folded triangles",
+                                counted(part.normals_by_area, "vertex", "vertices"));
+        }
+    }
+    return text + (part.smoothing_groups ? ", within the file's smoothing groups" : "");
+}
+
+/// "MikkTSpace", "area-weighted", ...
+std::string method_in_words(TangentMode mode) {
+    return mode == TangentMode::mikktspace ? "MikkTSpace" : tangent_name(mode);
+}
+
+std::string part_tangents_in_words(const ProcessedPart& part) {
+    switch (part.tangents) {
+        case Fate::kept:
+            return "kept";
+        case Fate::computed: {
+            const std::string method = "computed, " + method_in_words(part.tangent_mode);
+            if (part.texcoords.is_only && part.texcoords.set == 0) return method;
+            return fmt::format("{}, from texture coordinate set {} ({})", method,
+                               part.texcoords.set, part.texcoords.reason);
+        }
+        case Fate::removed:
+            return "removed";
+        case Fate::absent:
+            break;
+    }
+    return "none";
+}
+
+/// "kept", or for different primitives: "kept in 3 primitives; computed in 1 primitive".
+std::string summary_of(const std::vector<ProcessedPart>& parts,
+                       const std::function<std::string(const ProcessedPart&)>& words) {
+    std::map<std::string, std::size_t> counts;
+    for (const ProcessedPart& part : parts)
+        ++counts[words(part)];
+    if (counts.size() == 1) return counts.begin()->first;
+    std::string text;
+    for (const auto& [what, count] : counts) {
+        text +=
+            fmt::format("{}{} in {}", text.empty() ? "" : "; ", what, counted(count, "primitive"));
+    }
+    return text;
+}
+
+std::string splits_in_words(const Totals& totals) {
+    if (totals.vertices_written == totals.vertices_read) return "none needed";
+    return fmt::format("{} -> {} vertices", totals.vertices_read, totals.vertices_written);
+}
+
+std::string fate_name(Fate fate) {
+    switch (fate) {
+        case Fate::kept:
+            return "kept";
+        case Fate::computed:
+            return "computed";
+        case Fate::removed:
+            return "removed";
+        case Fate::absent:
+            break;
+    }
+    return "none";
+}
+
+/// Returns the notes of all primitives. Equal notes share a line.
+std::vector<std::string> notes_in_words(const Processed& done) {
+    std::vector<std::pair<std::string, std::vector<std::string>>> places;
+    for (const ProcessedPart& part : done.parts) {
+        for (const std::string& note : part.notes) {
+            auto place = std::find_if(places.begin(), places.end(),
+                                      [&](const auto& other) { return other.first == note; });
+            if (place == places.end()) place = places.insert(places.end(), {note, {}});
+            place->second.push_back(part.name);
+        }
+    }
+    std::vector<std::string> lines;
+    for (const auto& [note, names] : places) {
+        lines.push_back(fmt::format(
+            "{}{}: {}", names.front(),
+            names.size() == 1 ? "" : fmt::format(" and {} more", names.size() - 1), note));
+    }
+    return lines;
+}
+
+nlohmann::ordered_json parts_json(const Processed& done) {
+    nlohmann::ordered_json parts = nlohmann::ordered_json::array();
+    for (const ProcessedPart& part : done.parts) {
+        nlohmann::ordered_json json = {{"name", part.name},
+                                       {"triangles", part.triangles},
+                                       {"vertices_read", part.vertices_read},
+                                       {"vertices_written", part.vertices_written},
+                                       {"normals", fate_name(part.normals)}};
+        if (part.normals == Fate::computed) {
+            json["normal_method"] = normal_name(part.normal_mode);
+            if (part.normal_mode == NormalMode::automatic)
+                json["vertices_by_area"] = part.normals_by_area;
+            json["smoothing_groups"] = part.smoothing_groups;
+        }
+        json["tangents"] = fate_name(part.tangents);
+        if (part.tangents == Fate::computed) {
+            json["tangent_method"] = tangent_name(part.tangent_mode);
+            json["texcoord_set"] = part.texcoords.set;
+            json["texcoord_set_reason"] = part.texcoords.reason;
+        }
+        json["notes"] = part.notes;
+        parts.push_back(std::move(json));
+    }
+    return parts;
+}
+
+void print_summary(const ProcessRequest& request, const Processed& done, const Stages& stages) {
+    const Totals totals = totals_of(done);
+    print_entry("read", fmt::format("{}: {}, {}, {}, {}", request.input.string(),
+                                    format_name(readable_format(request.input)),
+                                    counted(done.parts.size(), "primitive"),
+                                    counted(totals.triangles, "triangle"),
+                                    counted(totals.vertices_read, "vertex", "vertices")));
+    print_entry("normals", summary_of(done.parts, part_normals_in_words));
+    print_entry("tangents", summary_of(done.parts, part_tangents_in_words));
+    print_entry("splits", splits_in_words(totals));
+    print_entry("findings",
+                done.findings.empty() ? std::vector<std::string>{"none"} : done.findings.lines());
+    print_entry("notes", notes_in_words(done));
+    if (!done.decompressed.empty()) {
+        print_entry("unpacked",
+                    fmt::format("{} (written uncompressed)", fmt::join(done.decompressed, ", ")));
+    }
+    if (!done.omitted.empty()) {
+        print_entry("omitted",
+                    fmt::format("{} (cannot be stored in {})", fmt::join(done.omitted, ", "),
+                                extension_of(request.output)));
+    }
+    print_entry("time", durations(stages.finished()));
+    const bool has_companions = writable_format(request.output) == ModelFormat::gltf;
+    print_entry("wrote", file_and_size(request.output) +
+                             (has_companions ? ", its buffer and images beside it" : ""));
+}
+
+std::string line_of(const ProcessRequest& request, const Processed& done, const Stages& stages) {
+    const Totals totals = totals_of(done);
+    double sum = 0;
+    for (const Stage& stage : stages.finished())
+        sum += stage.milliseconds;
+    return fmt::format(
+        "{}: {}, {}, normals {}, tangents {}, {}{}, {}", request.output.string(),
+        counted(totals.triangles, "triangle"),
+        counted(totals.vertices_written, "vertex", "vertices"),
+        summary_of(done.parts, part_normals_in_words),
+        summary_of(done.parts, part_tangents_in_words),
+        done.findings.empty() ? "no findings" : counted(done.findings.all().size(), "finding"),
+        done.omitted.empty() ? "" : fmt::format(", left out: {}", fmt::join(done.omitted, ", ")),
+        duration(sum));
+}
+
+nlohmann::ordered_json options_json(const ProcessRequest& request) {
+    nlohmann::ordered_json json = {{"normals", normal_name(request.normals)},
+                                   {"tangents", tangent_name(request.tangents)}};
+    if (request.uv_set) json["uv_set"] = *request.uv_set;
+    if (request.crease_degrees) json["crease_degrees"] = *request.crease_degrees;
+    json["weld_tolerance"] = request.weld_tolerance;
+    return json;
+}
+
+nlohmann::ordered_json results_json(const Processed& done, const Stages& stages) {
+    return {{"primitives", parts_json(done)},
+            {"findings", done.findings.json()},
+            {"decompressed", done.decompressed},
+            {"left_behind", done.omitted},
+            {"milliseconds", durations_json(stages.finished())}};
+}
+
+nlohmann::ordered_json process_json(const ProcessRequest& request, const Processed& done,
+                                    const Stages& stages) {
+    nlohmann::ordered_json json = {{"tool", "relief-mesh process"},
+                                   {"version", version()},
+                                   {"input", request.input.string()},
+                                   {"output", request.output.string()},
+                                   {"options", options_json(request)}};
+    json.update(results_json(done, stages));
+    return json;
+}
+
+/// Buffers and images beside two .gltf files may have the same name.
+bool may_share_companions(const std::vector<ProcessRequest>& requests) {
+    return std::any_of(requests.begin(), requests.end(), [](const ProcessRequest& request) {
+        return writable_format(request.output) == ModelFormat::gltf;
+    });
+}
+
+FileOutcome outcome_of(const ProcessRequest& request) {
+    Stages stages(true);
+    const Processed done = process(request, stages);
+    return {line_of(request, done, stages), done.findings, results_json(done, stages)};
+}
+
+/// Processes several models, in parallel unless they could write the same companion files. An error
+/// in one model does not stop the others. Prints a line per model in the given order, and writes
+/// the report.
+///
+/// \return failed if a model failed; else fell_back if --strict was given and there are findings
+ExitCode process_all(const CLI::App& app, const std::vector<ProcessRequest>& requests,
+                     const ReportOptions& report, const GeneralOptions& general) {
+    Batch batch;
+    for (const ProcessRequest& request : requests)
+        batch.jobs.push_back({request.input, request.output});
+    batch.work = [&](std::size_t index) { return outcome_of(requests[index]); };
+    batch.one_by_one = may_share_companions(requests);
+    batch.head = {{"tool", "relief-mesh process"},
+                  {"version", version()},
+                  {"options", options_json(requests.front())}};
+    return run_batch(app, batch, report, general);
+}
+
+constexpr int max_uv_set = 1000;
 
 struct ProcessOptions {
     FileWords words;
-    std::optional<ModelFormat> format;  ///< Of what is written to a folder.
-    ProcessRequest request;  ///< What to do to each model; its files are filled in per model.
+    std::optional<ModelFormat> format;  ///< The format of files in an output folder.
+    ProcessRequest request;             ///< The files are set for each model.
     ReportOptions report;
     GeneralOptions general;
 };
 
-/// Refuses what the command line alone shows to be useless.
-void check_request(const ProcessRequest& request) {
+/// Refuses requests that the formats of input and output cannot fulfill.
+void check_formats(const ProcessRequest& request) {
     const ModelFormat input = readable_format(request.input);
     const ModelFormat output = writable_format(request.output);
     if (computes_tangents(request.tangents) && !is_document(output)) {
-        throw UsageError(fmt::format("--tangents {}: {} cannot hold tangents",
-                                     word_of(request.tangents), extension_of(request.output)),
+        throw UsageError(fmt::format("--tangents {}: {} cannot store tangents",
+                                     tangent_name(request.tangents), extension_of(request.output)),
                          "write .glb or .gltf");
     }
     if (request.uv_set.value_or(0) > 0 && !is_document(input)) {
-        throw UsageError(fmt::format("--uv-set {}: {}: has no texture coordinate set but 0",
+        throw UsageError(fmt::format("--uv-set {}: {}: has only texture coordinate set 0",
                                      *request.uv_set, request.input.string()),
                          "only glTF has several");
     }
 }
 
-/// Refuses options that could not do anything.
-void check_normals(const ProcessRequest& request) {
+/// Refuses normal options without effect.
+void check_normal_options(const ProcessRequest& request) {
     const bool averages =
         request.normals != NormalMode::keep && request.normals != NormalMode::flat;
-    const auto need = [](bool holds, const char* option, const char* what) {
-        if (!holds) throw UsageError(fmt::format("{}: {}", option, what));
+    const auto require = [](bool condition, const char* option, const char* what) {
+        if (!condition) throw UsageError(fmt::format("{}: {}", option, what));
     };
-    const char* averaged = "is for averaged normals: --normals auto, angle, max, ...";
-    need(averages || !request.crease_degrees, "--crease", averaged);
-    need(averages || !request.ignore_smoothing_groups, "--ignore-smoothing-groups", averaged);
-    need(averages || request.repair_normals || request.weld_tolerance == 0.0, "--weld", averaged);
-    need(request.normals == NormalMode::keep || !request.repair_normals, "--repair-normals",
-         "is for normals that are kept: leave --normals out");
+    const char* averaged = "applies only to averaged normals: --normals auto, angle, max, ...";
+    require(averages || !request.crease_degrees, "--crease", averaged);
+    require(averages || !request.ignore_smoothing_groups, "--ignore-smoothing-groups", averaged);
+    require(averages || request.repair_normals || request.weld_tolerance == 0.0, "--weld",
+            averaged);
+    require(request.normals == NormalMode::keep || !request.repair_normals, "--repair-normals",
+            "applies only to kept normals: omit --normals");
 }
 
-/// Refuses to choose texture coordinates for tangents that are not computed.
+/// Refuses --uv-set if no tangents are computed.
 void check_tangent_options(const ProcessRequest& request) {
     const bool follow_normals =
         request.tangents == TangentMode::keep && request.normals != NormalMode::keep;
     if (!request.uv_set || computes_tangents(request.tangents) || follow_normals) return;
-    throw UsageError(fmt::format("--uv-set {}: is for tangents that are computed", *request.uv_set),
+    throw UsageError(fmt::format("--uv-set {}: applies only to computed tangents", *request.uv_set),
                      "give --tangents mikktspace");
 }
 
-/// The same work for every model. \throws UsageError, FileError before anything is done
+/// Returns a request per model. \throws UsageError, FileError
 std::vector<ProcessRequest> requests_of(const ProcessOptions& options, const JobList& list) {
-    check_normals(options.request);
+    check_normal_options(options.request);
     check_tangent_options(options.request);
     std::vector<ProcessRequest> requests;
     std::vector<std::filesystem::path> files;
@@ -82,7 +339,7 @@ std::vector<ProcessRequest> requests_of(const ProcessOptions& options, const Job
         ProcessRequest request = options.request;
         request.input = job.input;
         request.output = job.output;
-        check_request(request);
+        check_formats(request);
         files.insert(files.end(), {job.input, job.output});
         requests.push_back(std::move(request));
     }
@@ -113,64 +370,65 @@ void add_file_options(CLI::App& app, ProcessOptions& options) {
     FileWords& words = options.words;
     add_files(app, "FILE...", words.files,
               "IN OUT: the model to read (.glb .gltf .obj .ply .stl .off) and the file to write "
-              "(.glb .gltf .obj .ply), which may be IN itself: it is replaced only once the new "
-              "file is complete. With -o: the models to read, any number of them. glTF compressed "
-              "by Draco or meshopt is read, and written uncompressed.");
-    add_value(app, "-o,--output", "PATH",
-              "Where to write: a folder, which ends in / or exists, or for one model a file. In a "
-              "folder each model keeps its name. One that fails does not stop the others.",
-              [&words](const std::string&, const std::string& text) { words.output = text; })
+              "(.glb .gltf .obj .ply), which may be IN itself: it is replaced when the new file is "
+              "complete. With -o: any number of models to read. glTF compressed with Draco or "
+              "meshopt is written uncompressed.");
+    add_value(
+        app, "-o,--output", "PATH",
+        "The output: a folder (with / at the end, or existing), or a file for one model. In a "
+        "folder, each model keeps its name. If a model fails, the others are still processed.",
+        [&words](const std::string&, const std::string& text) { words.output = text; })
         .group("Output");
     add_choice(app, "--format", options.format, writable_choices(),
-               "The format of what is written to a folder. Default: that of the input, or glb for "
-               ".stl and .off, which cannot be written.")
+               "The format of the files in an output folder. Default: the format of the input, or "
+               "glb for .stl and .off, which cannot be written.")
         .group("Output");
 }
 
 void add_normal_options(CLI::App& app, ProcessRequest& request) {
     const char* group = "Normals";
     add_choice(app, "--normals", request.normals, normal_choices(),
-               "Where normals come from: the file (keep), one per triangle (flat), or averaged "
-               "around each vertex, with triangles weighted as named; auto takes max, the most "
-               "accurate on smooth meshes, but area where triangles fold over. docs/normals.md has "
-               "errors and times. Default: keep; a mesh that has none gets flat ones from glTF, as "
-               "its rules ask, and angle ones otherwise.")
+               "The source of normals: the file (keep), one per triangle (flat), or an average "
+               "around each vertex with the named weights. auto uses max, the most accurate on "
+               "smooth meshes, and area at folded triangles. docs/normals.md lists errors and "
+               "times. Default: keep; a mesh without normals gets flat ones if it is glTF, which "
+               "requires it, and angle otherwise.")
         .group(group);
     add_number(app, "--crease", "DEG", request.crease_degrees, {0.0, 180.0, "degrees"},
-               "Edges sharper than this many degrees are hard: vertices are split along them. "
-               "Triangles that only touch in a vertex are apart too. Default: no hard edges but "
-               "those between an OBJ file's smoothing groups.")
+               "Edges sharper than this angle in degrees are hard: vertices are split along them, "
+               "and between triangles that share only a vertex. Default: hard edges only between "
+               "the smoothing groups of an OBJ file.")
         .group(group);
     add_switch(app, "--ignore-smoothing-groups", request.ignore_smoothing_groups,
-               "Smooth across the smoothing groups of an OBJ file, and where it says off.")
+               "Smooth across the smoothing groups of an OBJ file, also if they are off.")
         .group(group);
     add_number(app, "--weld", "TOLERANCE", request.weld_tolerance,
                {0.0, std::numeric_limits<float>::max(), "units"},
-               "Vertices no further apart than this, in the model's unit, share their normal. "
-               "Default: 0, those at equal positions.")
+               "Vertices within this distance, in the unit of the model, share a normal. Default: "
+               "0 (equal positions).")
         .group(group);
     add_switch(app, "--repair-normals", request.repair_normals,
-               "Of the file's own normals, replace those that are zero or not finite by averaged "
-               "ones, and scale others to unit length. Default: they are kept and reported.")
+               "Replace zero and non-finite normals of the file by averaged ones, and normalize "
+               "the others. Default: such normals are kept and reported.")
         .group(group);
 }
 
 void add_tangent_options(CLI::App& app, ProcessRequest& request) {
     const char* group = "Tangents";
     add_choice(app, "--tangents", request.tangents, tangent_choices(),
-               "Tangents for normal maps: the file's own (keep; computed anew where normals are), "
-               "none, or computed, splitting vertices where needed: as bakers and glTF assume "
-               "(mikktspace), weighted by area, so that thin bevels do not disturb large faces, or "
-               "by Lengyel's sum over each vertex. A map is right only in the frame that it was "
-               "baked for: docs/tangents.md. Default: keep.")
+               "Tangents for normal maps: those of the file (keep; recomputed if normals are), "
+               "none, or computed, with split vertices where necessary: by the standard of bakers "
+               "and glTF (mikktspace), weighted by area, so that thin bevels do not affect large "
+               "faces, or by Lengyel's sum over each vertex. A normal map is correct only with the "
+               "tangents for which it was baked, see docs/tangents.md. Default: keep.")
         .group(group);
     add_value(app, "--uv-set", "N",
               "Compute tangents from texture coordinate set N (TEXCOORD_N of glTF; other formats "
-              "have set 0 alone). Default: for each primitive the set of its normal texture, as "
-              "glTF asks, where KHR_texture_transform has the last word; the first set if there "
-              "is no normal texture. All sets stay in the file.",
+              "have only set 0). Default: the set of the normal texture of each primitive, as glTF "
+              "requires, including the set of KHR_texture_transform; without normal texture, the "
+              "first set. All sets stay in the file.",
               [&request](const std::string& subject, const std::string& text) {
-                  request.uv_set = parse_integer(subject, text, 0, largest_uv_set);
+                  request.uv_set = parse_integer(subject, text, 0, max_uv_set);
               })
         .group(group);
 }
@@ -197,7 +455,7 @@ void add_options(CLI::App& app, ProcessOptions& options) {
 Command add_process_command(CLI::App& tool) {
     CLI::App& app = add_subcommand(
         tool, "process",
-        "Gives models normals and tangents; everything else in a glTF file stays as it is.");
+        "Computes the normals and tangents of models; all other content of a glTF file is kept.");
     const auto options = std::make_shared<ProcessOptions>();
     add_options(app, *options);
     return {&app, [&app, options] { return run(app, *options); }};

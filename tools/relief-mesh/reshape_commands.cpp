@@ -1,23 +1,63 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reading, changing mesh by mesh, writing. The primitives of a glTF mesh are joined, each a
-// material range, changed as one, and taken apart again. Tests: tests/tools/reshaping_test.cpp.
-#include "reshaping.h"
-
+// `relief-mesh decimate IN OUT` and `relief-mesh subdivide IN OUT` give a model other triangles.
+// The primitives of a glTF mesh are joined, with a material range each, so that no gap opens
+// between materials; they are changed together and separated again.
+// Tests: tests/tools/reshaping_test.cpp.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
+#include <filesystem>
+#include <functional>
+#include <limits>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <numeric>
+#include <optional>
+#include <string>
+#include <vector>
 
+#include "commands.h"
+#include "common/command.h"
+#include "common/findings.h"
 #include "common/frame_choices.h"
 #include "common/model_file.h"
+#include "common/options.h"
+#include "common/report_options.h"
 #include "common/text.h"
+#include "relief/mesh/decimate.h"
+#include "relief/mesh/frames.h"
+#include "relief/mesh/report.h"
 #include "relief/mesh/split.h"
+#include "relief/mesh/subdivide.h"
 #include "relief/mesh/threads.h"
 
 namespace relief::tools {
 namespace {
+
+/// Returns a mesh with other triangles. `source_vertex` of the result is empty if its vertices are
+/// not copies of the given ones. `all_triangles` is the number of triangles of the whole model.
+using MeshChange =
+    std::function<FramedMesh(const Mesh& mesh, std::size_t all_triangles, Report& report)>;
+
+struct ReshapeRequest {
+    std::filesystem::path input;
+    std::filesystem::path output;
+    NormalMode normals = NormalMode::keep;
+    ReportOptions report;
+    GeneralOptions general;
+};
+
+struct Reshaped {
+    std::size_t triangles_read = 0;
+    std::size_t triangles_written = 0;
+    std::size_t vertices_read = 0;
+    std::size_t vertices_written = 0;
+    bool has_tangents = false;
+    std::vector<std::string> omitted;  ///< Content that the output format cannot store.
+    Findings findings;
+};
 
 /// The primitives of one glTF mesh as one mesh.
 class JoinedPrimitives {
@@ -27,7 +67,7 @@ class JoinedPrimitives {
     [[nodiscard]] const Mesh& mesh() const { return joined_; }
     [[nodiscard]] const std::vector<GltfPrimitiveId>& ids() const { return ids_; }
 
-    /// What became of primitive `i`, over its own vertices.
+    /// Returns primitive `i` of the changed mesh, with indices into its own vertices.
     [[nodiscard]] FramedMesh part(const FramedMesh& changed, std::size_t i, NormalMode normals,
                                   Report& report) const;
 
@@ -38,13 +78,13 @@ class JoinedPrimitives {
 
     std::vector<GltfPrimitiveId> ids_;
     std::vector<Mesh> primitives_;
-    /// The texture coordinates that each one's tangents belong to; empty where it has none.
+    /// By primitive: the texture coordinates of its tangents, or none.
     std::vector<std::vector<glm::vec2>> tangent_texcoords_;
     std::vector<std::uint32_t> first_vertex_;
     Mesh joined_;
 };
 
-/// Appends values; `filler` where the primitive has none but another has.
+/// Appends values. If only some primitives have values, `filler` completes the others.
 template <typename T>
 void append(std::vector<T>& values, const std::vector<T>& more, std::size_t before,
             std::size_t count, const T& filler) {
@@ -84,7 +124,7 @@ JoinedPrimitives::JoinedPrimitives(const GltfDocument& document, std::vector<Glt
     joined_.name = primitives_.front().name;
 }
 
-/// The part of a mesh that a range of its triangles uses, and which vertices those were.
+/// Returns the triangles of a range with the vertices that they use.
 FramedMesh range_of(const Mesh& mesh, const MaterialRange& range) {
     VertexSplit used;
     const auto begin = mesh.triangles.begin() + range.first_triangle;
@@ -104,14 +144,14 @@ FramedMesh range_of(const Mesh& mesh, const MaterialRange& range) {
         triangle = {place[triangle.x], place[triangle.y], place[triangle.z]};
     FramedMesh part;
     part.mesh = carried(mesh, used);
-    part.mesh.tangents.clear();  // Of other triangles.
+    part.mesh.tangents.clear();  // They belong to the old triangles.
     part.mesh.material_ranges.clear();
     part.source_vertex = std::move(used.source_vertex);
     return part;
 }
 
-/// Tangents made anew, from the texture coordinates that they belong to. Those of further sets go
-/// along with vertices that stay; where there are new vertices no primitive has further sets.
+/// Computes new tangents from the texture coordinates of the old ones. Further texture coordinate
+/// sets are kept for copied vertices; if there are new vertices, no primitive has further sets.
 FramedMesh JoinedPrimitives::with_new_tangents(FramedMesh part, const FramedMesh& changed,
                                                std::size_t i, Report& report) const {
     if (!changed.source_vertex.empty()) {
@@ -136,10 +176,10 @@ FramedMesh JoinedPrimitives::part(const FramedMesh& changed, std::size_t i, Norm
     if (before.texcoords.empty()) part.mesh.texcoords.clear();
     if (before.colors.empty()) part.mesh.colors.clear();
     if (!before.tangents.empty()) {
-        // Without normals glTF says that tangents do not count.
+        // glTF ignores tangents without normals.
         const bool possible = !tangent_texcoords_[i].empty() && !part.mesh.normals.empty();
         report.add("tangents of other triangles", "primitive", ids_[i].primitive,
-                   possible ? "are computed anew" : "are removed");
+                   possible ? "are recomputed" : "are removed");
         if (possible) part = with_new_tangents(std::move(part), changed, i, report);
     }
     for (std::uint32_t& source : part.source_vertex) {
@@ -150,7 +190,7 @@ FramedMesh JoinedPrimitives::part(const FramedMesh& changed, std::size_t i, Norm
     return part;
 }
 
-/// The primitives of each mesh of a document.
+/// Returns the primitives of a document by mesh.
 std::vector<std::vector<GltfPrimitiveId>> primitives_by_mesh(const GltfDocument& document) {
     std::vector<std::vector<GltfPrimitiveId>> meshes;
     for (const GltfPrimitiveId id : document.triangle_primitives()) {
@@ -168,7 +208,7 @@ void reshape_joined(GltfDocument& document, const JoinedPrimitives& joined,
     for (std::size_t i = 0; i < joined.ids().size(); ++i) {
         const GltfPrimitiveId id = joined.ids()[i];
         if (changed.mesh.material_ranges[i].triangle_count == 0) {
-            report.add("primitive without area", "primitive", id.primitive, "stays as it is");
+            report.add("primitive without area", "primitive", id.primitive, "is unchanged");
             continue;
         }
         const FramedMesh part = joined.part(changed, i, normals, report);
@@ -226,7 +266,7 @@ Reshaped run(const ReshapeRequest& request, const std::string& verb, const MeshC
     });
     Report write_report;
     stages.run("write", [&] {
-        done.left_behind =
+        done.omitted =
             write_model(request.output, model, request.input, done.has_tangents, write_report);
     });
     done.findings.add("", write_report);
@@ -238,13 +278,13 @@ void print_reshaped(const ReshapeRequest& request, const Reshaped& done, const S
                                     format_name(readable_format(request.input)),
                                     counted(done.triangles_read, "triangle"),
                                     counted(done.vertices_read, "vertex", "vertices")));
-    print_entry("made", fmt::format("{}, {}", counted(done.triangles_written, "triangle"),
-                                    counted(done.vertices_written, "vertex", "vertices")));
+    print_entry("result", fmt::format("{}, {}", counted(done.triangles_written, "triangle"),
+                                      counted(done.vertices_written, "vertex", "vertices")));
     print_entry("findings",
                 done.findings.empty() ? std::vector<std::string>{"none"} : done.findings.lines());
-    if (!done.left_behind.empty()) {
-        print_entry("left out",
-                    fmt::format("{} (cannot be stored in {})", fmt::join(done.left_behind, ", "),
+    if (!done.omitted.empty()) {
+        print_entry("omitted",
+                    fmt::format("{} (cannot be stored in {})", fmt::join(done.omitted, ", "),
                                 extension_of(request.output)));
     }
     print_entry("time", durations(stages.finished()));
@@ -264,12 +304,11 @@ nlohmann::ordered_json report_json(const std::string& command, const ReshapeRequ
             {"vertices_read", done.vertices_read},
             {"vertices_written", done.vertices_written},
             {"findings", done.findings.json()},
-            {"left_behind", done.left_behind},
+            {"left_behind", done.omitted},
             {"milliseconds", durations_json(stages.finished())}};
 }
 
-}  // namespace
-
+/// Adds IN, OUT, --normals, --report, --strict, --threads and --quiet.
 void add_reshape_options(CLI::App& app, ReshapeRequest& request, const std::string& about_normals) {
     add_file(app, "IN", request.input, "Model to read: .glb .gltf .obj .ply .stl .off");
     add_file(app, "OUT", request.output, "Model to write: .glb .gltf .obj .ply. May be IN itself.");
@@ -278,6 +317,10 @@ void add_reshape_options(CLI::App& app, ReshapeRequest& request, const std::stri
     add_general_options(app, request.general);
 }
 
+/// Runs a command: reads, changes and writes the model, and reports.
+///
+/// \param options  the command's options for the report
+/// \throws UsageError, FileError; then no file is written
 ExitCode reshape(const CLI::App& app, const ReshapeRequest& request, const MeshChange& change,
                  const nlohmann::ordered_json& options) {
     readable_format(request.input);
@@ -290,6 +333,129 @@ ExitCode reshape(const CLI::App& app, const ReshapeRequest& request, const MeshC
     if (!request.general.quiet) print_reshaped(request, done, stages);
     return finish(app, request.report, request.input, done.findings,
                   report_json(command_name(app), request, options, done, stages));
+}
+
+struct DecimateCommand {
+    ReshapeRequest request;
+    std::optional<int> triangles;
+    std::optional<double> ratio;
+    std::optional<double> max_error;
+};
+
+void check_limits(const DecimateCommand& command) {
+    if (command.triangles && command.ratio)
+        throw UsageError("--triangles and --ratio contradict each other", "give one of them");
+    if (!command.triangles && !command.ratio && !command.max_error)
+        throw UsageError("no limit is given", "give --triangles N, --ratio R or --max-error E");
+}
+
+/// Returns the number of triangles for one of several meshes, in proportion to its size.
+std::optional<std::size_t> wanted_triangles(const DecimateCommand& command, std::size_t count,
+                                            std::size_t all) {
+    if (!command.triangles && !command.ratio) return std::nullopt;
+    const double ratio = command.ratio ? *command.ratio
+                                       : static_cast<double>(*command.triangles) /
+                                             static_cast<double>(std::max<std::size_t>(all, 1));
+    const double wanted = std::round(ratio * static_cast<double>(count));
+    return static_cast<std::size_t>(std::max(wanted, 1.0));
+}
+
+nlohmann::ordered_json options_json(const DecimateCommand& command) {
+    nlohmann::ordered_json json = nlohmann::ordered_json::object();
+    if (command.triangles) json["triangles"] = *command.triangles;
+    if (command.ratio) json["ratio"] = *command.ratio;
+    if (command.max_error) json["max_error"] = *command.max_error;
+    json["normals"] = name_of(command.request.normals, normal_choices());
+    return json;
+}
+
+ExitCode decimate(const CLI::App& app, const DecimateCommand& command) {
+    check_limits(command);
+    const auto change = [&](const Mesh& mesh, std::size_t all_triangles, Report& report) {
+        DecimateOptions options;
+        options.triangles = wanted_triangles(command, mesh.triangles.size(), all_triangles);
+        options.max_error = command.max_error;
+        options.frames.normals = command.request.normals;
+        return decimated(mesh, options, report);
+    };
+    return reshape(app, command.request, change, options_json(command));
+}
+
+void add_decimate_options(CLI::App& app, DecimateCommand& command) {
+    add_reshape_options(
+        app, command.request,
+        "Normals: those of the file at the remaining vertices (keep), with hard edges preserved "
+        "like seams, or recomputed, with hard edges ignored. Default: keep.");
+    const std::string limits = "Limits; the first one reached ends the decimation";
+    add_value(app, "--triangles", "N",
+              "Stop at N triangles in total. Several meshes are reduced by the same ratio.",
+              [&command](const std::string& subject, const std::string& text) {
+                  command.triangles =
+                      parse_integer(subject, text, 1, std::numeric_limits<int>::max());
+              })
+        .group(limits);
+    add_number(app, "--ratio", "R", command.ratio, {0.0, 1.0, ""},
+               "Stop at this fraction of the triangles, 0 to 1.")
+        .group(limits);
+    add_number(app, "--max-error", "E", command.max_error, {0.0, Range().max, ""},
+               "Stop before a vertex of IN would be farther than E from the result, in the unit of "
+               "the model (relief-mesh info prints its size).")
+        .group(limits);
+    set_examples(
+        app, {"relief-mesh decimate data/vase.obj out/vase-1000.glb --triangles 1000",
+              "relief-mesh decimate data/vase.obj out/vase-tenth.obj --ratio 0.1 --normals angle",
+              "relief-mesh decimate data/vase.obj out/vase-near.glb --max-error 0.01"});
+}
+
+struct SubdivideCommand {
+    ReshapeRequest request;
+    int levels = 1;
+};
+
+ExitCode subdivide(const CLI::App& app, const SubdivideCommand& command) {
+    const auto change = [&](const Mesh& mesh, std::size_t, Report& report) {
+        return FramedMesh{
+            subdivided(mesh, command.levels, {.normals = command.request.normals}, report), {}};
+    };
+    return reshape(app, command.request, change,
+                   {{"levels", command.levels},
+                    {"normals", name_of(command.request.normals, normal_choices())}});
+}
+
+void add_subdivide_options(CLI::App& app, SubdivideCommand& command) {
+    constexpr int max_levels = 12;
+    add_reshape_options(
+        app, command.request,
+        "Normals of the result: one per triangle (flat), or averaged with the named weights. "
+        "Default: keep, which recomputes them by angle if the file has normals.");
+    add_value(app, "--levels", "N",
+              "The number of steps, 1 to 12; each step makes four triangles of one. Default: 1.",
+              [&command](const std::string& subject, const std::string& text) {
+                  command.levels = parse_integer(subject, text, 1, max_levels);
+              })
+        .group("Shape");
+    set_examples(app, {"relief-mesh subdivide data/vase.obj out/vase-fine.glb",
+                       "relief-mesh subdivide data/vase.obj out/vase-finer.ply --levels 2"});
+}
+
+}  // namespace
+
+Command add_decimate_command(CLI::App& tool) {
+    CLI::App& app = add_subcommand(
+        tool, "decimate",
+        "Reduces the number of triangles; texture seams, materials and borders are kept.");
+    const auto command = std::make_shared<DecimateCommand>();
+    add_decimate_options(app, *command);
+    return {&app, [&app, command] { return decimate(app, *command); }};
+}
+
+Command add_subdivide_command(CLI::App& tool) {
+    CLI::App& app = add_subcommand(
+        tool, "subdivide",
+        "Refines and smooths a model by Loop subdivision; the texture mapping is kept.");
+    const auto command = std::make_shared<SubdivideCommand>();
+    add_subdivide_options(app, *command);
+    return {&app, [&app, command] { return subdivide(app, *command); }};
 }
 
 }  // namespace relief::tools

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads, computes frames primitive by primitive, writes. Tangents of a glTF primitive belong to the
-// texture coordinates of its normal texture, or to those asked for. Primitives without cannot have
-// new tangents: one finding each, or a failure where none has any.
-// Tests: tests/tools/relief_mesh_test.cpp.
-#include "processing.h"
+// Tangents of a glTF primitive belong to the texture coordinates of its normal texture, or to the
+// requested set. A primitive without texture coordinates gets no new tangents, which is a finding;
+// it is an error if no primitive has any.
+#include "process.h"
 
 #include <fmt/format.h>
 
@@ -11,12 +10,14 @@
 #include <numbers>
 #include <set>
 
+#include "common/command.h"
 #include "common/text.h"
 
 namespace relief::tools {
 namespace {
 
-/// glTF says that missing normals are flat; other formats leave it open, and smooth looks right.
+/// glTF requires flat normals if a mesh has none. Other formats do not specify them, and get smooth
+/// ones.
 FrameOptions frame_options(const ProcessRequest& request, ModelFormat input) {
     return {.normals = request.normals,
             .if_missing = is_document(input) ? NormalMode::flat : NormalMode::angle,
@@ -34,71 +35,70 @@ Fate fate(bool before, bool after, bool computed) {
     return before ? Fate::removed : Fate::absent;
 }
 
-/// Sets in words: "0, 1".
+/// Returns a list of sets: "0, 1".
 std::string in_words(const std::vector<int>& sets) {
     return fmt::format("{}", fmt::join(sets, ", "));
 }
 
-/// The texture coordinate set of a primitive's tangents, and why that one.
+/// Returns the texture coordinate set for a primitive's tangents, and the reason for it.
 TangentTexcoords choose_texcoords(const GltfDocument& document, GltfPrimitiveId id,
-                                  std::optional<int> asked_for) {
+                                  std::optional<int> requested) {
     TangentTexcoords chosen;
     const std::vector<int> sets = document.texcoord_sets(id);
-    const GltfTangentTexcoords own = document.tangent_texcoords(id);
+    const GltfTangentTexcoords usual = document.tangent_texcoords(id);
     chosen.is_only = sets.size() <= 1;
-    chosen.set = asked_for.value_or(own.set);
-    if (asked_for)
-        chosen.reason = "asked for";
-    else if (own.texture.empty() || own.missing)
+    chosen.set = requested.value_or(usual.set);
+    if (requested)
+        chosen.reason = "requested";
+    else if (usual.texture.empty() || usual.missing)
         chosen.reason = "the first";
     else
-        chosen.reason = "of " + own.texture;
+        chosen.reason = "of " + usual.texture;
     return chosen;
 }
 
-/// What the material says of computed tangents that is not as one may expect.
-void remark_on_material(const GltfDocument& document, GltfPrimitiveId id, ProcessedPart& part,
+/// Adds findings and notes about texture settings that affect computed tangents.
+void add_material_notes(const GltfDocument& document, GltfPrimitiveId id, ProcessedPart& part,
                         Report& report) {
-    const GltfTangentTexcoords own = document.tangent_texcoords(id);
-    if (own.missing && part.texcoords.reason == "the first") {
+    const GltfTangentTexcoords usual = document.tangent_texcoords(id);
+    if (usual.missing && part.texcoords.reason == "the first") {
         report.add("texture on a missing texture coordinate set", "primitive", id.primitive,
-                   "gets tangents from the first set that there is");
+                   "gets tangents from the first set");
     }
-    const int of_texture = own.missing.value_or(own.set);
-    if (!own.texture.empty() && !own.missing && of_texture != part.texcoords.set) {
-        part.notes.push_back(fmt::format("{} is on texture coordinate set {}, tangents are of {}",
-                                         own.texture, of_texture, part.texcoords.set));
+    const int of_texture = usual.missing.value_or(usual.set);
+    if (!usual.texture.empty() && !usual.missing && of_texture != part.texcoords.set) {
+        part.notes.push_back(fmt::format("{} uses texture coordinate set {}, the tangents use {}",
+                                         usual.texture, of_texture, part.texcoords.set));
     }
-    if (own.is_turned) {
+    if (usual.is_turned) {
         part.notes.push_back(
-            fmt::format("KHR_texture_transform turns or mirrors {}: tangents are those of the "
-                        "coordinates as stored, renderers turn them with the texture",
-                        own.texture));
+            fmt::format("KHR_texture_transform rotates or mirrors {}: the tangents are those of "
+                        "the stored coordinates, and renderers rotate them with the texture",
+                        usual.texture));
     }
 }
 
-/// Given tangents that do not count: glTF says that without normals they must be ignored.
+/// Reports tangents without normals, which glTF requires to ignore.
 void report_ignored(const Mesh& mesh, std::size_t index, TangentMode tangents, Report& report) {
     if (!mesh.normals.empty() || mesh.tangents.empty() || tangents != TangentMode::keep) return;
-    if (mesh.texcoords.empty()) return;  // They are removed, which with_frames reports.
+    if (mesh.texcoords.empty()) return;  // with_frames() reports that they are removed.
     report.add("tangents without normals", "primitive", index,
-               "are ignored, as glTF asks, and computed anew");
+               "are ignored, as glTF requires, and recomputed");
 }
 
-/// What becomes of tangents that cannot be computed for want of texture coordinates: those that
-/// belong to normals that stay are no worse than none.
+/// Returns how to treat the tangents of a primitive without texture coordinates. Existing tangents
+/// are kept if their normals are kept.
 TangentMode without_texcoords(const Mesh& mesh, std::size_t index, const FrameOptions& options,
                               const char* what, Report& report) {
-    const bool stay =
+    const bool are_kept =
         !mesh.tangents.empty() && !mesh.normals.empty() && options.normals == NormalMode::keep;
-    report.add(what, "primitive", index,
-               stay ? "keeps the tangents that it has" : "gets no tangents");
-    return stay ? TangentMode::keep : TangentMode::none;
+    report.add(what, "primitive", index, are_kept ? "keeps its tangents" : "gets no tangents");
+    return are_kept ? TangentMode::keep : TangentMode::none;
 }
 
-/// Frames of one primitive and the record of how it got them.
-/// \param options  what to do; comes back as what can be done
-FramedMesh framed_part(Mesh mesh, FrameOptions& options, ProcessedPart& part, Report& report) {
+/// Computes the frames of a primitive and records the outcome in `part`.
+FramedMesh framed_part(Mesh mesh, const FrameOptions& options, ProcessedPart& part,
+                       Report& report) {
     const bool had_normals = !mesh.normals.empty();
     const bool had_tangents = !mesh.tangents.empty();
     part.triangles = mesh.triangles.size();
@@ -128,7 +128,7 @@ FramedMesh framed_part(Mesh mesh, FrameOptions& options, ProcessedPart& part, Re
                   "unwrap the model first, or leave --tangents out");
 }
 
-/// The texture coordinate sets that some primitive of a document has.
+/// Returns the texture coordinate sets of all primitives.
 std::set<int> all_sets(const GltfDocument& document) {
     std::set<int> all;
     for (const GltfPrimitiveId id : document.triangle_primitives()) {
@@ -138,17 +138,17 @@ std::set<int> all_sets(const GltfDocument& document) {
     return all;
 }
 
-/// Refuses what no primitive can do.
+/// Checks that some primitive has the texture coordinates for the request.
 void check_sets(const ProcessRequest& request, const GltfDocument& document) {
     const std::set<int> sets = all_sets(document);
     if (sets.empty() && computes_tangents(request.tangents)) no_texcoords(request.input);
     if (!request.uv_set || sets.count(*request.uv_set) != 0) return;
-    throw failure(
-        request.input, fmt::format("no primitive has texture coordinate set {}", *request.uv_set),
-        sets.empty() ? "there is none at all" : "there is " + in_words({sets.begin(), sets.end()}));
+    throw failure(request.input,
+                  fmt::format("no primitive has texture coordinate set {}", *request.uv_set),
+                  sets.empty() ? "the model has no texture coordinates"
+                               : "available: " + in_words({sets.begin(), sets.end()}));
 }
 
-/// One primitive, read, framed and put back.
 void process_primitive(GltfDocument& document, GltfPrimitiveId id, const ProcessRequest& request,
                        FrameOptions options, ProcessedPart& part, Report& report) {
     part.texcoords = choose_texcoords(document, id, request.uv_set);
@@ -156,12 +156,12 @@ void process_primitive(GltfDocument& document, GltfPrimitiveId id, const Process
     if (computes_tangents(options.tangents) && mesh.texcoords.empty()) {
         const char* what = document.texcoord_sets(id).empty()
                                ? "primitive without texture coordinates"
-                               : "primitive without the texture coordinate set asked for";
+                               : "primitive without the requested texture coordinate set";
         options.tangents = without_texcoords(mesh, id.primitive, options, what, report);
     }
     report_ignored(mesh, id.primitive, options.tangents, report);
     const FramedMesh framed = framed_part(std::move(mesh), options, part, report);
-    if (part.tangents == Fate::computed) remark_on_material(document, id, part, report);
+    if (part.tangents == Fate::computed) add_material_notes(document, id, part, report);
     part.vertices_written = document.set_frames(id, framed, options, report);
 }
 
@@ -189,7 +189,7 @@ void process_mesh(const ProcessRequest& request, MeshFile& contents, FrameOption
     if (computes_tangents(options.tangents) && contents.mesh.texcoords.empty())
         no_texcoords(request.input);
     ProcessedPart part;
-    part.texcoords.reason = request.uv_set ? "asked for" : "the first";
+    part.texcoords.reason = request.uv_set ? "requested" : "the first";
     Report report;
     FramedMesh framed = about(request.input, [&] {
         return framed_part(std::move(contents.mesh), options, part, report);
@@ -203,6 +203,23 @@ bool has_tangents(const Processed& done) {
     return std::any_of(done.parts.begin(), done.parts.end(), [](const ProcessedPart& part) {
         return part.tangents == Fate::kept || part.tangents == Fate::computed;
     });
+}
+
+namespace fs = std::filesystem;
+
+/// Returns the name of a model in an output folder.
+fs::path name_in_folder(const fs::path& input, std::optional<ModelFormat> format) {
+    const ModelFormat input_format = readable_format(input);
+    fs::path name = input.filename();
+    if (format) return name.replace_extension(extension_for(*format));
+    const bool is_writable = !name_of(input_format, writable_choices()).empty();
+    return is_writable ? name : name.replace_extension(extension_for(ModelFormat::glb));
+}
+
+void refuse_format(ModelFormat format, const fs::path& output) {
+    throw UsageError(fmt::format("--format {}: the name {} already has a format",
+                                 name_of(format, writable_choices()), output.string()),
+                     "omit --format, or give a folder: -o out/");
 }
 
 }  // namespace
@@ -225,11 +242,18 @@ Processed process(const ProcessRequest& request, Stages& stages) {
     });
     Report write_report;
     stages.run("write", [&] {
-        done.left_behind =
+        done.omitted =
             write_model(request.output, model, request.input, has_tangents(done), write_report);
     });
     done.findings.add("", write_report);
     return done;
+}
+
+JobList model_jobs_of(const FileWords& words, std::optional<ModelFormat> format) {
+    JobList list = jobs_of(words, "model",
+                           [&](const fs::path& input) { return name_in_folder(input, format); });
+    if (format && !list.folder) refuse_format(*format, list.jobs.front().output);
+    return list;
 }
 
 }  // namespace relief::tools
