@@ -7,7 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "report_json.h"
+#include "accuracy_report.h"
 #include "tools/refusal.h"
 #include "tools/report_sample.h"
 #include "tools/schema_page.h"
@@ -62,12 +62,12 @@ TEST(AccuracyCompare, OfTheSameFindsNothing) {
     EXPECT_EQ(result.exit_code, 0) << result.error;
     EXPECT_EQ(result.error, "");
     EXPECT_THAT(result.out, HasSubstr("methods   12 in both\n"));
-    EXPECT_THAT(result.out, HasSubstr("times     1.00 times as long on one thread (median of 12 "
-                                      "methods; half of them 1.00 to 1.00); a change of one method "
-                                      "is seen from 10 % on (the median method) to 10 % (the least "
-                                      "steady one)\n"));
+    EXPECT_THAT(result.out,
+                HasSubstr("times     1.00 times as long on one thread (median of 12 "
+                          "methods; half of them 1.00 to 1.00); the smallest detectable change of "
+                          "a method is 10 % (median) to 10 % (least steady)\n"));
     EXPECT_THAT(result.out, HasSubstr("errors    all the same\n"));
-    for (const char* word : {"slower ", "faster ", "gone", "added", "machine"})
+    for (const char* word : {"slower ", "faster ", "missing", "added", "machine"})
         EXPECT_THAT(result.out, Not(HasSubstr(word)));
 }
 
@@ -109,7 +109,7 @@ TEST(AccuracyCompare, AMachineThatIsSlowerAllInAllIsToldAsSuch) {
     EXPECT_THAT(
         other.out,
         HasSubstr("machine   processor: A processor, then Another processor\n"
-                  "          times are judged relative to the median of all methods only\n"));
+                  "          times are compared only relative to the median of all methods\n"));
 }
 
 TEST(AccuracyCompare, TimesThatCannotShowABoundDoNotKeepIt) {
@@ -122,10 +122,11 @@ TEST(AccuracyCompare, TimesThatCannotShowABoundDoNotKeepIt) {
     const ProgramResult result = compared(workplace, before, after, "--max-slower 10");
     EXPECT_EQ(result.exit_code, 1);
     EXPECT_THAT(result.error,
-                HasSubstr("new.json: cannot tell whether 1 of 12 times kept within 10 %: of "
-                          "storage/sample: method 3 on one thread only changes beyond "));
-    EXPECT_THAT(result.error, HasSubstr(" % are seen (measure both on a quieter machine, or with "
-                                        "more --repeats)\n"));
+                HasSubstr("new.json: cannot decide whether 1 of 12 times are within 10 %: for "
+                          "storage/sample: method 3 on one thread, only changes above "));
+    EXPECT_THAT(result.error,
+                HasSubstr(" % are detected (measure both on a quieter machine, or with "
+                          "more --repeats)\n"));
     const ProgramResult told = compared(workplace, before, after, "--max-slower 10 --json");
     EXPECT_EQ(json::parse(told.out)["times"][3]["verdict"], "cannot tell");
     EXPECT_EQ(compared(workplace, before, after).exit_code, 0) << "no bound, nothing to prove";
@@ -140,9 +141,9 @@ TEST(AccuracyCompare, RatiosThatScatterCannotShowABound) {
     EXPECT_EQ(result.exit_code, 1);
     // The quartiles are 0.98375 and 1.01125.
     EXPECT_EQ(result.error,
-              "relief-accuracy: error: new.json: all methods together: cannot tell whether they "
-              "kept within 10 % on one thread: the ratios of the methods scatter (only changes "
-              "beyond 34 % are seen), and 1 more beyond bounds\n");
+              "relief-accuracy: error: new.json: all methods together: cannot decide whether they "
+              "are within 10 % on one thread: the ratios of the methods vary (only changes above "
+              "34 % are detected), and 1 more above limits\n");
 }
 
 TEST(AccuracyCompare, FewMethodsCannotShowABound) {
@@ -153,9 +154,9 @@ TEST(AccuracyCompare, FewMethodsCannotShowABound) {
     slow_down(after, 3, 3.0);
     const ProgramResult result = compared(workplace, before, after, "--max-slower 50");
     EXPECT_EQ(result.exit_code, 1);
-    EXPECT_THAT(result.out, HasSubstr("too few methods to tell a change from chance\n"));
+    EXPECT_THAT(result.out, HasSubstr("too few methods to detect a change\n"));
     EXPECT_EQ(result.error,
-              "relief-accuracy: error: new.json: cannot tell whether 7 of 7 times kept within 50 "
+              "relief-accuracy: error: new.json: cannot decide whether 7 of 7 times are within 50 "
               "%: the reports have too few methods in common on one thread (measure more "
               "subjects)\n");
     const ProgramResult told = compared(workplace, before, after, "--json");
@@ -174,7 +175,7 @@ TEST(AccuracyCompare, OtherThreadsAreAnotherMachine) {
     EXPECT_THAT(
         result.out,
         HasSubstr("machine   threads: 2, then 1\n"
-                  "          times are judged relative to the median of all methods only\n"));
+                  "          times are compared only relative to the median of all methods\n"));
 }
 
 TEST(AccuracyCompare, AnotherRendererMayDrawOtherBits) {
@@ -183,7 +184,7 @@ TEST(AccuracyCompare, AnotherRendererMayDrawOtherBits) {
     after.machine.opengl = "Another renderer";
     const ProgramResult result = compared(workplace, steady_report(), after);
     EXPECT_THAT(result.out, HasSubstr("OpenGL: A renderer, then Another renderer\n"));
-    EXPECT_THAT(result.out, HasSubstr("pictures drawn by OpenGL may differ in their last bits"));
+    EXPECT_THAT(result.out, HasSubstr("pictures drawn by OpenGL may differ slightly"));
 }
 
 TEST(AccuracyCompare, MemoryThatHardlyDiffersIsTheSameMachine) {
@@ -222,11 +223,11 @@ TEST(AccuracyCompare, MemoryIsToldAndHeldAgainstItsBound) {
     const ProgramResult same = compared(workplace, before, before, "--max-memory-growth 0");
     EXPECT_EQ(same.exit_code, 0) << same.error;
     EXPECT_THAT(same.out,
-                HasSubstr("memory    the same within a tenth or a megabyte, of 12 methods\n"));
+                HasSubstr("memory    unchanged within 10 % or one megabyte, for 12 methods\n"));
     const ProgramResult within = compared(workplace, before, after, "--max-memory-growth 50");
     EXPECT_EQ(within.exit_code, 0) << within.error;
     EXPECT_THAT(within.out, HasSubstr("more      storage/sample: method 2: 20 MB then 30 MB\n"
-                                      "          memory at the most\n"));
+                                      "          (peak memory)\n"));
     const ProgramResult beyond = compared(workplace, before, after, "--max-memory-growth 49");
     EXPECT_EQ(beyond.exit_code, 1);
     EXPECT_EQ(beyond.error,
@@ -238,7 +239,7 @@ TEST(AccuracyCompare, MemoryIsToldAndHeldAgainstItsBound) {
         one.cost.peak_bytes.reset();
     const ProgramResult unknown = compared(workplace, before, after, "--max-memory-growth 49");
     EXPECT_EQ(unknown.exit_code, 1);
-    EXPECT_THAT(unknown.error, HasSubstr("so that --max-memory-growth says nothing"));
+    EXPECT_THAT(unknown.error, HasSubstr("so --max-memory-growth cannot be checked"));
 }
 
 TEST(AccuracyCompare, WhatIsGoneKeepsNoBound) {
@@ -248,14 +249,14 @@ TEST(AccuracyCompare, WhatIsGoneKeepsNoBound) {
     after.experiments[0].charts[0].curves[0].points.pop_back();
     const ProgramResult told = compared(workplace, steady_report(), after);
     EXPECT_EQ(told.exit_code, 0) << told.error;
-    EXPECT_THAT(told.out, HasSubstr("gone      storage/sample: method 11\n"
+    EXPECT_THAT(told.out, HasSubstr("missing   storage/sample: method 11\n"
                                     "          storage/sample, chart scale: near at 1\n"));
     for (const char* bound : {"--max-slower 50", "--max-error-growth 50"}) {
         const ProgramResult bounded = compared(workplace, steady_report(), after, bound);
         EXPECT_EQ(bounded.exit_code, 1);
         EXPECT_EQ(bounded.error,
-                  "relief-accuracy: error: new.json: storage/sample: method 11: is gone, and 1 "
-                  "more beyond bounds\n");
+                  "relief-accuracy: error: new.json: storage/sample: method 11: is missing, and 1 "
+                  "more above limits\n");
     }
 }
 
@@ -276,7 +277,7 @@ TEST(AccuracyCompare, ErrorsThatGrewAreHeldAgainstTheirBound) {
     EXPECT_EQ(beyond.exit_code, 1);
     EXPECT_EQ(beyond.error,
               "relief-accuracy: error: new.json: storage/sample, chart scale: near: at 1 0.25 then "
-              "no result (at most 1 % more), and 1 more beyond bounds\n");
+              "no result (at most 1 % more), and 1 more above limits\n");
 }
 
 TEST(AccuracyCompare, WhatHasNoPartnerIsListed) {
@@ -288,7 +289,7 @@ TEST(AccuracyCompare, WhatHasNoPartnerIsListed) {
     const ProgramResult result = compared(workplace, before, after);
     EXPECT_EQ(result.exit_code, 0);
     EXPECT_THAT(result.out, HasSubstr("methods   10 in both\n"
-                                      "gone      storage/sample: method 0\n"
+                                      "missing   storage/sample: method 0\n"
                                       "added     storage/sample: method 11\n"));
 }
 
@@ -334,23 +335,22 @@ TEST(AccuracyCompareRefusal, IsOneLine) {
         one.cost = {};
     workplace.write("untimed.json", json_of(untimed, true).dump());
     workplace.write("text.json", "hello");
-    expect_refusals(
-        workplace, "relief-accuracy", "old",
-        {{"relief-accuracy compare report.json", 2, "NEW is missing"},
-         {"relief-accuracy compare report.json none.json", 1, "none.json: "},
-         {"relief-accuracy compare report.json text.json", 1,
-          "text.json: is not JSON (relief-accuracy run SUBJECT --output DIR writes "
-          "DIR/accuracy.json)"},
-         {"relief-accuracy compare report.json other.json", 1,
-          "other.json: has no method on the same input as report.json (run the same "
-          "subjects, both with --quick or both without)"},
-         {"relief-accuracy compare untimed.json report.json --max-slower 5", 1,
-          "report.json: has no times in common with untimed.json, so that --max-slower says "
-          "nothing (run both without --no-times)"},
-         {"relief-accuracy compare report.json report.json --max-slower -1", 2,
-          "--max-slower -1: "},
-         {"relief-accuracy compare report.json report.json --json --quiet", 2,
-          "--json and --quiet contradict each other"}});
+    expect_refusals(workplace, "relief-accuracy", "old",
+                    {{"relief-accuracy compare report.json", 2, "NEW is missing"},
+                     {"relief-accuracy compare report.json none.json", 1, "none.json: "},
+                     {"relief-accuracy compare report.json text.json", 1,
+                      "text.json: is not JSON (relief-accuracy run SUBJECT --output DIR writes "
+                      "DIR/accuracy.json)"},
+                     {"relief-accuracy compare report.json other.json", 1,
+                      "other.json: has no method on the same input as report.json (run the same "
+                      "subjects, both with --quick or both without)"},
+                     {"relief-accuracy compare untimed.json report.json --max-slower 5", 1,
+                      "report.json: has no times in common with untimed.json, so --max-slower "
+                      "cannot be checked (run both without --no-times)"},
+                     {"relief-accuracy compare report.json report.json --max-slower -1", 2,
+                      "--max-slower -1: "},
+                     {"relief-accuracy compare report.json report.json --json --quiet", 2,
+                      "--json and --quiet contradict each other"}});
 }
 
 }  // namespace

@@ -64,7 +64,7 @@ TEST(AccuracyOwn, TellsHeightsFromNormalsAndSaysSo) {
         workplace.run("relief-accuracy own data/bricks-height.png --quick --no-times --strength 4");
     ASSERT_EQ(heights.exit_code, 0) << heights.error;
     EXPECT_THAT(heights.out, HasSubstr("data/bricks-height.png: a height map of "));
-    EXPECT_THAT(heights.out, HasSubstr("(else: --image normals)"));
+    EXPECT_THAT(heights.out, HasSubstr("(if not: --image normals)"));
     EXPECT_THAT(heights.out, HasSubstr("To do it: relief-bake bump data/bricks-height.png OUT."));
     ASSERT_EQ(workplace.run("relief-bake bump data/bricks-height.png out/normals.png --strength 4")
                   .exit_code,
@@ -72,11 +72,11 @@ TEST(AccuracyOwn, TellsHeightsFromNormalsAndSaysSo) {
     const ProgramResult normals =
         workplace.run("relief-accuracy own out/normals.png --quick --no-times");
     EXPECT_THAT(normals.out, HasSubstr("out/normals.png: a normal map of 16 bits"));
-    EXPECT_THAT(normals.out, HasSubstr("(else: --image heights)"));
+    EXPECT_THAT(normals.out, HasSubstr("(if not: --image heights)"));
     const ProgramResult told =
         workplace.run("relief-accuracy own out/normals.png --quick --no-times --image heights");
     EXPECT_THAT(told.out, HasSubstr("a height map of 16 bits"));
-    EXPECT_THAT(told.out, Not(HasSubstr("else:")));
+    EXPECT_THAT(told.out, Not(HasSubstr("if not:")));
 }
 
 TEST(AccuracyOwn, TakesAPairOnlyWhereItIsCalledOne) {
@@ -238,25 +238,25 @@ TEST(OwnRefusal, IsOneLine) {
     workplace.write("other.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
     expect_refusals(workplace, "relief-accuracy", "old",
                     {{"relief-accuracy own", 2,
-                      "nothing to measure on (name a mesh, a map, or --high and "
+                      "no input (name a mesh, a map, or --high and "
                       "--low)"},
                      {"relief-accuracy own --high square.obj", 2,
-                      "--high: needs the other mesh of the pair (give --low FILE)"},
+                      "--high: requires the other mesh of the pair (give --low FILE)"},
                      {"relief-accuracy own square.obj square.obj", 2, "square.obj: given twice"},
                      {"relief-accuracy own square.obj --strength 3", 2,
-                      "--strength: is for height maps, and there is none"},
+                      "--strength: applies only to height maps"},
                      {"relief-accuracy own square.obj --channel alpha", 2,
-                      "--channel: is for height maps, and there is none"},
+                      "--channel: applies only to height maps"},
                      {"relief-accuracy own square.obj --size 64", 2,
-                      "--size: is for a pair, --high and --low, and there is none"},
+                      "--size: applies only to a pair, --high and --low"},
                      {"relief-accuracy own square.obj --max-error-kind max", 2,
-                      "--max-error-kind: is for --max-error (give --max-error DEG)"},
+                      "--max-error-kind: requires --max-error (give --max-error DEG)"},
                      {"relief-accuracy own square.obj --no-times --max-time 3", 2,
                       "--no-times and --max-time contradict each other"},
                      {"relief-accuracy own other.obj --truth file --no-times", 1,
                       "other.obj: the mesh has no normals to compare with"},
                      {"relief-accuracy own --high square.obj --low other.obj --no-times", 1,
-                      "other.obj: no texture coordinates for a map to lie on"}});
+                      "other.obj: no texture coordinates for the map"}});
 }
 
 }  // namespace

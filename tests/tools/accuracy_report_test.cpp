@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// The forms of a report: JSON there and back, as its page describes it, CSV, tables, pictures.
+// The forms of a report: JSON, CSV, tables, pictures, and `relief-accuracy report`.
+#include "accuracy_report.h"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "relief/mesh/error.h"
 #include "relief/mesh/image_file.h"
-#include "report_csv.h"
-#include "report_files.h"
-#include "report_json.h"
-#include "report_table.h"
+#include "tools/refusal.h"
 #include "tools/report_sample.h"
 #include "tools/schema_page.h"
 #include "tools/workplace.h"
@@ -19,6 +19,8 @@ namespace relief::tools {
 namespace {
 
 using nlohmann::json;
+using test::expect_refusals;
+using test::ProgramResult;
 using test::sample_report;
 using test::Workplace;
 using testing::HasSubstr;
@@ -81,8 +83,8 @@ TEST(BrokenReport, IsRefusedWithThePlace) {
         {"/format", "glTF", "/format: is 'glTF', not 'relief-accuracy'"},
         {"/format", gone, "/format: is missing"},
         {"/version", 2,
-         "/version: is 2, but only 1 can be read (make the report anew with this "
-         "relief-accuracy, or compare with the one that made it)"},
+         "/version: is 2, but only 1 can be read (create the report again with this "
+         "relief-accuracy, or use the version that created it)"},
         {"/version", "1", "/version: is not a whole number of 0 or more"},
         {"/experiments", 5, "/experiments: is of type number, not array"},
         {"/experiments/0/id", gone, "/experiments/0/id: is missing"},
@@ -90,7 +92,7 @@ TEST(BrokenReport, IsRefusedWithThePlace) {
          "subject 'colour' is not one of normals, tangents, bump, storage, bake, shading, "
          "stability"},
         {"/experiments/0/measurements/1/method", "exact, slow",
-         "/experiments/0/measurements/1: is the second of method 'exact, slow'"},
+         "/experiments/0/measurements/1: repeats method 'exact, slow'"},
         {"/experiments/0/measurements/1/error/rms", "much",
          "/experiments/0/measurements/1/error/rms: is of type string, not number"},
         {"/experiments/0/measurements/1/error/count", -1,
@@ -148,8 +150,8 @@ TEST(AccuracyTable, MarksTheFrontierAndAlignsItsColumns) {
     EXPECT_THAT(
         table,
         HasSubstr(
-            "  expected: of the reference itself 0.6 and of the method, as the root of the sum of "
-            "squares\n"
+            "  expected: the root of the sum of squares of the reference error, 0.6, and the error "
+            "of the method\n"
             "                  RMS   mean  99 %   max  undefined  expected     PSNR  1 thread      "
             "     all        memory  stored\n"
             "  * exact, slow     0      0     0     0                  0.6            1.00 ms  ±8 %"
@@ -210,6 +212,66 @@ TEST(ThisMachine, IsKnown) {
     EXPECT_EQ(difference_of(machine, other), "build: " + machine.build + ", then Debug");
     other.cores += 1;
     EXPECT_FALSE(may_compare_times(machine, other));
+}
+
+TEST(AccuracyReportCommand, MakesThePageThatTheRunMade) {
+    const Workplace workplace;
+    write_report(workplace / "made", sample_report());
+    const std::string first = workplace.read("made/report.html");
+    std::filesystem::remove(workplace / "made/report.html");
+    const ProgramResult result = workplace.run("relief-accuracy report made/accuracy.json");
+    ASSERT_EQ(result.exit_code, 0) << result.error;
+    EXPECT_EQ(result.error, "");
+    EXPECT_THAT(result.out, HasSubstr("made/report.html: "));
+    EXPECT_EQ(workplace.read("made/report.html"), first);
+    const ProgramResult elsewhere =
+        workplace.run("relief-accuracy report made/accuracy.json --output page.html --quiet");
+    EXPECT_EQ(elsewhere.exit_code, 0) << elsewhere.error;
+    EXPECT_EQ(elsewhere.out, "");
+    EXPECT_EQ(workplace.read("page.html"), first);
+}
+
+TEST(AccuracyReportCommand, SaysWhereAReportHasNoPictures) {
+    const Workplace workplace;
+    workplace.write("printed.json", json_of(sample_report(), false).dump());
+    const ProgramResult result = workplace.run("relief-accuracy report printed.json");
+    ASSERT_EQ(result.exit_code, 0) << result.error;
+    const std::string page = workplace.read("report.html");
+    EXPECT_THAT(page, HasSubstr("<p class=\"absent\">Error map: Where, near: no picture was"));
+    EXPECT_THAT(page, HasSubstr("<p class=\"absent\">Seen: truth: no picture was written</p>"));
+    EXPECT_THAT(page, Not(HasSubstr("data:image/png")));
+}
+
+TEST(AccuracyReportCommand, LeavesFilesOutsideTheFolderAlone) {
+    const Workplace workplace;
+    write_report(workplace / "made", sample_report());
+    json report = json::parse(workplace.read("made/accuracy.json"));
+    for (const char* file : {"../secret.png", "/etc/passwd", "pictures/../../secret.png"}) {
+        report["experiments"][0]["heat_maps"][0]["file"] = file;
+        workplace.write("made/accuracy.json", report.dump());
+        const ProgramResult result = workplace.run("relief-accuracy report made/accuracy.json");
+        EXPECT_EQ(result.exit_code, 1);
+        EXPECT_EQ(result.error, std::string("relief-accuracy: error: made/accuracy.json: names the "
+                                            "picture ") +
+                                    file + ", which is outside its folder\n");
+    }
+}
+
+TEST(AccuracyReportRefusal, IsOneLine) {
+    const Workplace workplace;
+    workplace.write("report.json", json_of(sample_report(), true).dump());
+    workplace.write("words.json", "{\"format\": \"another\"}");
+    expect_refusals(workplace, "relief-accuracy", "page.html",
+                    {{"relief-accuracy report", 2, "REPORT is missing"},
+                     {"relief-accuracy report none.json --output out/page.html", 1, "none.json: "},
+                     {"relief-accuracy report words.json --output out/page.html", 1,
+                      "words.json: /format: is 'another', not 'relief-accuracy'"},
+                     {"relief-accuracy report report.json --output report.json", 2,
+                      "report.json: would replace the report"},
+                     {"relief-accuracy report report.json --output none/page.html", 1,
+                      "none/page.html: the folder none does not exist"},
+                     {"relief-accuracy report report.json --output out/page.html", 1,
+                      "pictures/storage-sample-"}});
 }
 
 }  // namespace

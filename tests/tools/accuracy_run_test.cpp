@@ -74,7 +74,7 @@ TEST(AccuracyRefusal, IsOneLine) {
         workplace, "relief-accuracy", "old",
         {{"relief-accuracy run", 2, "SUBJECT is missing"},
          {"relief-accuracy run colour", 2, "colour: not one of all, "},
-         {"relief-accuracy run storage all", 2, "all: the other subjects are in it"},
+         {"relief-accuracy run storage all", 2, "all: includes the other subjects"},
          {"relief-accuracy run storage storage", 2, "storage: given twice"},
          {"relief-accuracy run storage --repeats 2", 2, "--repeats 2: not between 3 and 1000"},
          {"relief-accuracy run storage --repeats 5 --no-times", 2,
@@ -82,7 +82,7 @@ TEST(AccuracyRefusal, IsOneLine) {
          {"relief-accuracy run storage --json --quiet", 2,
           "--json and --quiet contradict each other"},
          {"relief-accuracy run storage --quiet", 2,
-          "--quiet without --output would leave nothing of the results"},
+          "--quiet without --output would discard the results"},
          {"relief-accuracy run storage --output taken", 1, "taken: exists, but is no folder"}});
 }
 

@@ -10,38 +10,36 @@
 #include "common/text.h"
 #include "parallel.h"
 #include "relief/mesh/threads.h"
-#include "report_files.h"
-#include "report_json.h"
 
 namespace relief::tools {
 namespace {
 
-constexpr int most_repeats = 1000;
+constexpr int max_repeats = 1000;
 
 }  // namespace
 
 void add_experiment_options(CLI::App& app, ExperimentOptions& options) {
-    add_value(
-        app, "--output", "DIR",
-        "Folder to write to: report.html (plots to look into, in one file), accuracy.json, "
-        "accuracy.csv (a row for each measurement), accuracy-curves.csv (a row for each point of a "
-        "curve) and pictures/. It is made where it does not exist. Default: nothing is written.",
-        [&options](const std::string&, const std::string& text) { options.output = text; });
+    add_value(app, "--output", "DIR",
+              "Output folder for report.html (interactive plots in one file), accuracy.json, "
+              "accuracy.csv (a row per measurement), accuracy-curves.csv (a row per point of a "
+              "curve) and pictures/. It is created if necessary. Default: no files are written.",
+              [&options](const std::string&, const std::string& text) { options.output = text; });
     add_switch(app, "--json", options.json,
                "Print the report as JSON instead of tables; docs/accuracy-schema.md describes it.");
     const char* group = "Effort";
-    add_switch(app, "--quick", options.quick, "Small inputs: all subjects in a few minutes.")
+    add_switch(app, "--quick", options.quick, "Use small inputs: all subjects take a few minutes.")
         .group(group);
-    add_switch(app, "--no-times", options.no_times,
-               "Errors alone, which are the same in each run; of what OpenGL draws, with the same "
-               "renderer.")
+    add_switch(
+        app, "--no-times", options.no_times,
+        "Measure only errors, which are the same in each run (with OpenGL, on the same renderer).")
         .group(group);
-    add_value(app, "--repeats", "N",
-              "How often each time is taken, in turns with the other methods of its experiment, 3 "
-              "to 1000; more let `compare` see smaller changes. Default: 10.",
-              [&options](const std::string& subject, const std::string& text) {
-                  options.repeats = parse_integer(subject, text, 3, most_repeats);
-              })
+    add_value(
+        app, "--repeats", "N",
+        "The number of rounds of each time, interleaved with the other methods of the experiment, "
+        "3 to 1000. With more rounds, `compare` detects smaller changes. Default: 10.",
+        [&options](const std::string& subject, const std::string& text) {
+            options.repeats = parse_integer(subject, text, 3, max_repeats);
+        })
         .group(group);
     add_general_options(app, options.general);
 }
@@ -52,7 +50,7 @@ void check(const ExperimentOptions& options) {
     if (options.no_times && options.repeats)
         throw UsageError("--no-times and --repeats contradict each other");
     if (options.general.quiet && !options.output)
-        throw UsageError("--quiet without --output would leave nothing of the results");
+        throw UsageError("--quiet without --output would discard the results");
 }
 
 RunOptions run_options(const ExperimentOptions& options) {
@@ -64,13 +62,13 @@ RunOptions run_options(const ExperimentOptions& options) {
     return run;
 }
 
-std::string effort_words(const ExperimentOptions& options) {
-    std::string words;
-    if (options.quick) words += " --quick";
-    if (options.no_times) words += " --no-times";
-    if (options.repeats) words += fmt::format(" --repeats {}", *options.repeats);
-    if (options.general.threads > 0) words += fmt::format(" --threads {}", options.general.threads);
-    return words;
+std::string effort_options(const ExperimentOptions& options) {
+    std::string text;
+    if (options.quick) text += " --quick";
+    if (options.no_times) text += " --no-times";
+    if (options.repeats) text += fmt::format(" --repeats {}", *options.repeats);
+    if (options.general.threads > 0) text += fmt::format(" --threads {}", options.general.threads);
+    return text;
 }
 
 bool prints_tables(const ExperimentOptions& options) {
@@ -82,7 +80,7 @@ void prepare(const ExperimentOptions& options) {
     set_thread_limit(options.general.threads);
 }
 
-void hand_over(const ExperimentOptions& options, AccuracyReport report, bool draws) {
+void finish_report(const ExperimentOptions& options, AccuracyReport report, bool draws) {
     const RunOptions run = run_options(options);
     report.relief = version();
     report.machine = this_machine(draws);
@@ -101,7 +99,7 @@ void hand_over(const ExperimentOptions& options, AccuracyReport report, bool dra
     } else if (!options.general.quiet) {
         if (!options.no_times)
             fmt::print(out(),
-                       "* efficient: no other method here is both as accurate and faster\n"
+                       "* efficient: no other method is both faster and at least as accurate\n"
                        "± half of the range from the 10th to the 90th percentile of the rounds, in "
                        "percent of the median\n");
         print_entry("written", written);

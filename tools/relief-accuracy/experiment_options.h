@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// How experiments are run and what becomes of the report: what `run` and `own` have alike.
+/// The common options of `run` and `own`: how to run experiments, and the output of the report.
 /// Tests: tests/tools/accuracy_run_test.cpp, accuracy_own_test.cpp.
 #pragma once
 
@@ -23,26 +23,25 @@ struct ExperimentOptions {
     GeneralOptions general;
 };
 
-/// --output, --json, --quick, --no-times, --repeats, --threads, --quiet.
+/// Adds --output, --json, --quick, --no-times, --repeats, --threads and --quiet.
 void add_experiment_options(CLI::App& app, ExperimentOptions& options);
 
-/// \throws UsageError where options contradict each other, or have no effect
+/// \throws UsageError if options contradict each other or have no effect
 void check(const ExperimentOptions& options);
 
 RunOptions run_options(const ExperimentOptions& options);
 
-/// The options that a command needs to repeat the experiments: " --quick --repeats 3".
-std::string effort_words(const ExperimentOptions& options);
+/// Returns the options that repeat the experiments: " --quick --repeats 3".
+std::string effort_options(const ExperimentOptions& options);
 
-/// Whether tables are for people to read.
+/// Returns whether tables are printed.
 bool prints_tables(const ExperimentOptions& options);
 
-/// Makes the folder, and limits the threads.
+/// Creates the output folder and sets the number of threads.
 void prepare(const ExperimentOptions& options);
 
-/// Completes a report that has its experiments and command, writes it, and prints what is to be
-/// printed at the end.
-/// \param draws  something was drawn: the machine's OpenGL is told
-void hand_over(const ExperimentOptions& options, AccuracyReport report, bool draws);
+/// Completes a report that has its experiments and command, writes it, and prints the end of the
+/// output. \param draws  whether OpenGL was used; then the report names it
+void finish_report(const ExperimentOptions& options, AccuracyReport report, bool draws);
 
 }  // namespace relief::tools

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Facts from /proc, uname and the compiler. Tests: tests/tools/accuracy_report_test.cpp.
-#include "machine.h"
+// Describes the machine by /proc, uname and the compiler. Tests:
+// tests/tools/accuracy_report_test.cpp.
+#include "accuracy_report.h"
 
 #include <fmt/format.h>
 #include <sched.h>
@@ -19,7 +20,7 @@
 namespace relief::tools {
 namespace {
 
-/// What follows `separator` on the first line of a file that begins with `key`.
+/// Returns the text after `separator` in the first line of a file that begins with `key`.
 std::string value_in(const char* file, const std::string& key, char separator) {
     std::ifstream stream(file);
     for (std::string line; std::getline(stream, line);) {
@@ -49,10 +50,10 @@ std::uint64_t installed_memory() {
 std::string system_name() {
     utsname kernel{};
     uname(&kernel);
-    const std::string told =
+    const std::string kernel_name =
         fmt::format("{} {} {}", kernel.sysname, kernel.release, kernel.machine);
     const std::string distribution = value_in("/etc/os-release", "PRETTY_NAME", '=');
-    return distribution.empty() ? told : fmt::format("{}, {}", distribution, told);
+    return distribution.empty() ? kernel_name : fmt::format("{}, {}", distribution, kernel_name);
 }
 
 std::string compiler_name() {
@@ -71,7 +72,7 @@ std::optional<std::string> opengl_name() {
     }
 }
 
-/// What a system keeps for itself differs from start to start.
+/// The memory that the kernel reserves differs slightly between starts.
 bool have_same_memory(const Machine& a, const Machine& b) {
     const auto least = static_cast<double>(std::min(a.memory_bytes, b.memory_bytes));
     const auto most = static_cast<double>(std::max(a.memory_bytes, b.memory_bytes));

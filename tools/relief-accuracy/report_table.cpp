@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Columns of text. Tests: tests/tools/accuracy_report_test.cpp.
-#include "report_table.h"
+// Formats an experiment as text for a terminal. Tests: tests/tools/accuracy_report_test.cpp.
+#include "accuracy_report.h"
 
 #include <fmt/format.h>
 
@@ -14,7 +14,7 @@
 namespace relief::tools {
 namespace {
 
-/// A heading and a cell for each row; numbers stand at the right.
+/// A column of cells. Numbers are aligned to the right.
 struct TextColumn {
     std::string heading;
     std::vector<std::string> cells;
@@ -24,12 +24,12 @@ struct TextColumn {
         return std::all_of(cells.begin(), cells.end(),
                            [](const std::string& cell) { return cell.empty(); });
     }
-    /// In letters, as a terminal counts them: bytes but for those that continue one.
+    /// Returns the width in code points of UTF-8.
     [[nodiscard]] std::size_t width() const {
-        std::size_t most = letters_of(heading);
+        std::size_t width = letters_of(heading);
         for (const std::string& cell : cells)
-            most = std::max(most, letters_of(cell));
-        return most;
+            width = std::max(width, letters_of(cell));
+        return width;
     }
     static std::size_t letters_of(const std::string& text) {
         return static_cast<std::size_t>(std::count_if(
@@ -59,7 +59,7 @@ std::string table_number(double value) {
     return std::isfinite(value) ? fmt::format("{:.3g}", value) : "-";
 }
 
-/// "± 3 %": half of what lies between the 10th and the 90th of 100, of the median.
+/// Returns half of the range from the 10th to the 90th percentile, relative to the median: "±3 %".
 std::string spread_of(const std::optional<Timing>& timing) {
     if (!timing) return "";
     const Spread spread = timing->spread();
@@ -115,7 +115,7 @@ std::string rows_of(const Experiment& experiment) {
     return text;
 }
 
-/// Each note once, behind the methods that it is on; nothing before what is true of all.
+/// Returns each note once, after the names of its methods unless it applies to all.
 std::string notes_of(const Experiment& experiment) {
     std::vector<std::pair<std::string, std::vector<std::string>>> notes;
     for (const Measurement& one : experiment.measurements) {
@@ -155,12 +155,12 @@ std::string line_of(const Curve& curve) {
 std::string table_of(const Experiment& experiment) {
     std::string text =
         fmt::format("{}: {}\n  {}\n", experiment.id, experiment.title, experiment.question);
-    text += fmt::format("  input  {}\n  truth  {}\n  error  {}\n", experiment.input,
-                        experiment.truth, experiment.error_unit);
+    text += fmt::format("  input         {}\n  ground truth  {}\n  error         {}\n",
+                        experiment.input, experiment.truth, experiment.error_unit);
     if (experiment.reference_error) {
         text += fmt::format(
-            "  expected: of the reference itself {:.3g} and of the method, as the root of the sum "
-            "of squares\n",
+            "  expected: the root of the sum of squares of the reference error, {:.3g}, and the "
+            "error of the method\n",
             *experiment.reference_error);
     }
     text += rows_of(experiment);

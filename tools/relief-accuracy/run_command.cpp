@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// `relief-accuracy run SUBJECT...`: runs experiments, prints a table of each, and writes them as a
-// report. Tests: tests/tools/accuracy_run_test.cpp.
+// `relief-accuracy run SUBJECT...` runs experiments, prints a table of each, and writes a report.
+// Tests: tests/tools/accuracy_run_test.cpp.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -15,66 +15,64 @@
 #include "experiment_options.h"
 #include "relief/accuracy/passes.h"
 #include "relief/accuracy/subjects.h"
-#include "report_table.h"
 
 namespace relief::tools {
 namespace {
 
-constexpr int most_passes = 100;
+constexpr int max_passes = 100;
 
 struct RunCommandOptions {
     std::vector<std::string> words;
     std::optional<int> passes;
     ExperimentOptions how;
 
-    /// A third of a method's rounds may lie in a busy moment, and its median stays where it is.
-    [[nodiscard]] std::size_t passes_made() const {
+    /// The default is 3 passes: the median is robust if a third of the rounds is disturbed.
+    [[nodiscard]] std::size_t pass_count() const {
         return how.no_times ? 1 : static_cast<std::size_t>(passes.value_or(3));
     }
 };
 
-std::string known_words() {
+std::string subject_choices() {
     std::string words = "all";
     for (const Subject subject : subjects_with_experiments())
         words += ", " + std::string(word_of(subject));
     return words;
 }
 
-/// What the words ask for, in the order of reports. \throws UsageError
+/// Returns the requested subjects in the order of reports. \throws UsageError
 std::vector<Subject> subjects_of(const std::vector<std::string>& words) {
     const std::vector<Subject> known = subjects_with_experiments();
-    std::vector<Subject> asked;
+    std::vector<Subject> requested;
     for (const std::string& word : words) {
         if (word == "all") {
-            if (words.size() > 1) throw UsageError("all: the other subjects are in it");
+            if (words.size() > 1) throw UsageError("all: includes the other subjects");
             return known;
         }
         const auto found = std::find_if(known.begin(), known.end(),
                                         [&](Subject one) { return word_of(one) == word; });
         if (found == known.end())
-            throw UsageError(fmt::format("{}: not one of {}", word, known_words()));
-        if (std::find(asked.begin(), asked.end(), *found) != asked.end())
+            throw UsageError(fmt::format("{}: not one of {}", word, subject_choices()));
+        if (std::find(requested.begin(), requested.end(), *found) != requested.end())
             throw UsageError(fmt::format("{}: given twice", word));
-        asked.push_back(*found);
+        requested.push_back(*found);
     }
-    std::sort(asked.begin(), asked.end(), [&](Subject a, Subject b) {
+    std::sort(requested.begin(), requested.end(), [&](Subject a, Subject b) {
         return std::find(known.begin(), known.end(), a) < std::find(known.begin(), known.end(), b);
     });
-    return asked;
+    return requested;
 }
 
-/// What repeats these subjects as they were run.
+/// Returns the command that repeats the run.
 std::string command_for(const std::string& subjects, const RunCommandOptions& options) {
     const std::string passes = options.passes ? fmt::format(" --passes {}", *options.passes) : "";
-    return "relief-accuracy run " + subjects + effort_words(options.how) + passes;
+    return "relief-accuracy run " + subjects + effort_options(options.how) + passes;
 }
 
-/// Runs the subjects one after another; in the last pass each table is printed as soon as it is
-/// there.
+/// Runs all subjects. The last pass prints each table as soon as it is complete.
 std::vector<Experiment> run_pass(const std::vector<Subject>& subjects,
                                  const RunCommandOptions& options, RunOptions run, std::size_t pass,
                                  Stages& stages) {
-    const std::size_t passes = options.passes_made();
+    const std::size_t passes = options.pass_count();
     const bool prints = prints_tables(options.how) && pass + 1 == passes;
     std::vector<Experiment> all;
     for (std::size_t i = 0; i < subjects.size(); ++i) {
@@ -104,9 +102,9 @@ void check(const RunCommandOptions& options) {
     if (!options.passes) return;
     if (options.how.no_times) throw UsageError("--no-times and --passes contradict each other");
     const std::size_t rounds = run_options(options.how).repeats.counted;
-    if (options.passes_made() > rounds) {
-        throw UsageError(fmt::format("--passes {}: more than the {} that each time is taken",
-                                     *options.passes, counted(rounds, "round")),
+    if (options.pass_count() > rounds) {
+        throw UsageError(fmt::format("--passes {}: more than the {} of each time", *options.passes,
+                                     counted(rounds, "round")),
                          "give more --repeats");
     }
 }
@@ -117,14 +115,14 @@ ExitCode run(const RunCommandOptions& options) {
     prepare(options.how);
     Stages stages(options.how.general.quiet);
     AccuracyReport report;
-    report.experiments = run_in_passes(options.passes_made(), run_options(options.how),
+    report.experiments = run_in_passes(options.pass_count(), run_options(options.how),
                                        [&](const RunOptions& run, std::size_t pass) {
                                            return run_pass(subjects, options, run, pass, stages);
                                        });
-    report.settings.passes = options.passes_made();
+    report.settings.passes = options.pass_count();
     report.command = command_for(fmt::format("{}", fmt::join(options.words, " ")), options);
     const bool draws = std::any_of(subjects.begin(), subjects.end(), is_drawn);
-    hand_over(options.how, std::move(report), draws);
+    finish_report(options.how, std::move(report), draws);
     return ExitCode::done;
 }
 
@@ -132,18 +130,19 @@ ExitCode run(const RunCommandOptions& options) {
 
 Command add_run_command(CLI::App& tool) {
     CLI::App& app = add_subcommand(
-        tool, "run", "Measures methods on inputs whose truth is known, each with error and time.");
+        tool, "run", "Measures the error and time of methods on inputs with a known ground truth.");
     const auto options = std::make_shared<RunCommandOptions>();
     app.add_option("SUBJECT", options->words,
-                   fmt::format("What to measure, one or more of {}.", known_words()))
+                   fmt::format("The subjects to measure, one or more of {}.", subject_choices()))
         ->required();
     add_experiment_options(app, options->how);
-    add_value(app, "--passes", "N",
-              "How often to go through all experiments, their repeats shared out over the passes, "
-              "so that a busy moment of the machine is in one of them alone: 1 to 100. Default: 3.",
-              [options](const std::string& subject, const std::string& text) {
-                  options->passes = parse_integer(subject, text, 1, most_passes);
-              })
+    add_value(
+        app, "--passes", "N",
+        "The number of passes over all experiments, 1 to 100. The repeats are distributed over the "
+        "passes, so that a disturbance of the machine affects only one pass. Default: 3.",
+        [options](const std::string& subject, const std::string& text) {
+            options->passes = parse_integer(subject, text, 1, max_passes);
+        })
         .group("Effort");
     set_examples(app, {"relief-accuracy run storage --quick --output out/accuracy",
                        "relief-accuracy run storage --quick --no-times --json"});

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// The page as text: what it holds without a script, and that it needs nothing else.
-#include "report/report_html.h"
+// The HTML page of a report without its script, and the text of its numbers.
+#include "report_page.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <regex>
 
+#include "html_text.h"
 #include "relief/mesh/error.h"
 #include "support/message_of.h"
 #include "tools/accuracy_page/sample_report.h"
@@ -16,6 +18,52 @@ namespace {
 
 using testing::HasSubstr;
 using testing::Not;
+
+TEST(HtmlText, EscapesWhatWouldBeMarkup) {
+    EXPECT_EQ(html_escaped("a<b> & \"c\" 'd'"), "a&lt;b&gt; &amp; &quot;c&quot; &#39;d&#39;");
+    EXPECT_EQ(script_escaped(R"({"a":"</script><!--"})"), R"({"a":"\u003c/script>\u003c!--"})");
+}
+
+TEST(HtmlText, DataUrisHaveTheBase64OfRfc4648) {
+    const auto base64 = [](const char* text) {
+        return data_uri(text, "t").substr(std::string("data:t;base64,").size());
+    };
+    EXPECT_EQ(base64(""), "");
+    EXPECT_EQ(base64("f"), "Zg==");
+    EXPECT_EQ(base64("fo"), "Zm8=");
+    EXPECT_EQ(base64("foo"), "Zm9v");
+    EXPECT_EQ(base64("foobar"), "Zm9vYmFy");
+    EXPECT_EQ(base64("\xFF\xFE\xFB"), "//77");
+    EXPECT_EQ(data_uri("f", "image/png"), "data:image/png;base64,Zg==");
+}
+
+TEST(HtmlText, NumbersHaveThreeDigits) {
+    EXPECT_EQ(number_text(0.0), "0");
+    EXPECT_EQ(number_text(0.012345), "0.0123");
+    EXPECT_EQ(number_text(0.5), "0.500");
+    EXPECT_EQ(number_text(9.996), "10.0");
+    EXPECT_EQ(number_text(99.96), "100");
+    EXPECT_EQ(number_text(-45.678), "-45.7");
+    EXPECT_EQ(number_text(1234.5), "1230");
+    EXPECT_EQ(number_text(0.00099999), "0.00100");
+    EXPECT_EQ(number_text(0.00012345), "1.23e-04");
+    EXPECT_EQ(number_text(1.5e7 + 0.5), "1.50e+07");
+    EXPECT_EQ(number_text(8192.0), "8192") << "whole numbers stay whole";
+    EXPECT_EQ(number_text({}), "–");
+    EXPECT_EQ(number_text(NAN), "–");
+}
+
+TEST(HtmlText, RangesNameTheirUnitOnce) {
+    EXPECT_EQ(range_text(0.00119, 0.00128), "1.19–1.28 ms");
+    EXPECT_EQ(range_text(0.00099, 0.00102), "990 µs–1.02 ms");
+}
+
+TEST(HtmlText, BytesBelowAThousandAreNotRounded) {
+    EXPECT_EQ(bytes_text(1.25), "1.25 B");
+    EXPECT_EQ(bytes_text(4.0), "4 B");
+    EXPECT_EQ(bytes_text(2000000.0), "2.0 MB");
+    EXPECT_EQ(bytes_text({}), "–");
+}
 
 class ReportHtml : public testing::Test {
   protected:
@@ -87,7 +135,7 @@ TEST_F(ReportHtml, ANoteThatAllMethodsShareIsSaidOnce) {
 TEST_F(ReportHtml, UndefinedResultsStandInTheirRowWithTheirShare) {
     EXPECT_THAT(page_, HasSubstr(">undefined</th>"));
     EXPECT_THAT(page_, HasSubstr("<td>0.0500</td><td>2 (2 %)</td>"));
-    EXPECT_THAT(page_, HasSubstr("Undefined results are counted, and left out of the other"));
+    EXPECT_THAT(page_, HasSubstr("Undefined results are counted, and excluded from the other"));
 }
 
 TEST_F(ReportHtml, BothPartsOfAnErrorAndFindingsStandInTheSummary) {
@@ -137,7 +185,7 @@ TEST_F(ReportHtml, AMissingPictureIsNamed) {
 
 TEST_F(ReportHtml, AReportWithoutExperimentsIsAPage) {
     report_["experiments"] = nlohmann::ordered_json::array();
-    EXPECT_THAT(report_html(report_, folder_.path()), HasSubstr("<h1>What accuracy costs</h1>"));
+    EXPECT_THAT(report_html(report_, folder_.path()), HasSubstr("<h1>Accuracy report</h1>"));
 }
 
 }  // namespace

@@ -4,7 +4,7 @@
 
 #include <fstream>
 
-#include "report/report_html.h"
+#include "report_page.h"
 #include "tools/accuracy_page/sample_report.h"
 #include "tools/run_program.h"
 

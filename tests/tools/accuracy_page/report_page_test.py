@@ -169,7 +169,7 @@ class ReportPage(unittest.TestCase):
         self.assertEqual(self.efficient(), ["area, float32"])
         axes = self.run_script("""return [...document.querySelectorAll(arguments[0])]
             .map((text) => text.textContent)""", self.first_scatter(".axis-name"))
-        self.assertEqual(axes, ["memory at its peak →", "↑ max error, degrees"])
+        self.assertEqual(axes, ["peak memory →", "↑ max error, degrees"])
 
     def test_without_times_the_size_is_the_cost(self):
         names = self.run_script("""return [...document.querySelectorAll(

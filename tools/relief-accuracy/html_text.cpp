@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Escapes, base64 [RFC 4648], and numbers for reading. Tests:
-// tests/tools/accuracy_page/html_text_test.cpp.
-#include "report/html_text.h"
+// The base64 encoding is that of [RFC 4648]. Tests: tests/tools/accuracy_page/report_html_test.cpp.
+#include "html_text.h"
 
 #include <fmt/format.h>
 
@@ -10,7 +9,7 @@
 #include <cstdint>
 
 #include "common/text.h"
-#include "report_table.h"
+#include "relief/accuracy/words.h"
 
 namespace relief::tools {
 namespace {
@@ -33,7 +32,7 @@ std::string base64(std::string_view bytes) {
     return text;
 }
 
-/// Three digits and no exponent, for 0.001 to a million.
+/// Returns three digits without exponent, for values from 0.001 to a million.
 std::string plain(double value) {
     const int before_point = static_cast<int>(std::floor(std::log10(std::abs(value)))) + 1;
     if (before_point < 3) return fmt::format("{:.{}f}", value, 3 - before_point);
@@ -74,11 +73,10 @@ std::string script_escaped(std::string_view json) {
     std::string escaped;
     escaped.reserve(json.size());
     for (const char letter : json) {
-        if (letter == '<') {
+        if (letter == '<')
             escaped += "\\u003c";
-        } else {
+        else
             escaped += letter;
-        }
     }
     return escaped;
 }
@@ -93,7 +91,7 @@ std::string number_text(std::optional<double> value) {
     if (size == 0.0) return "0";
     if (size < 0.9995e-3 || size >= 0.9995e6) return fmt::format("{:.2e}", *value);
     if (*value == std::round(*value)) return fmt::format("{:.0f}", *value);
-    // Rounded first: 9.996 has two digits before the point, once it has three in all.
+    // Rounding first: 9.996 becomes 10.0.
     return plain(std::stod(fmt::format("{:.2e}", *value)));
 }
 

@@ -1,0 +1,531 @@
+// SPDX-License-Identifier: Apache-2.0
+// `relief-accuracy own FILE...` measures the methods on the user's meshes and maps, and
+// recommends one.
+// Tests: tests/tools/accuracy_own_test.cpp.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <glm/trigonometric.hpp>
+#include <memory>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "accuracy_report.h"
+#include "commands.h"
+#include "common/console.h"
+#include "common/findings.h"
+#include "common/map_choices.h"
+#include "common/map_models.h"
+#include "common/model_file.h"
+#include "common/normal_map_input.h"
+#include "common/quoted.h"
+#include "common/text.h"
+#include "common/wrap_option.h"
+#include "experiment_options.h"
+#include "relief/accuracy/own.h"
+#include "relief/mesh/bake.h"
+#include "relief/mesh/bump_file.h"
+#include "relief/mesh/height_map.h"
+#include "relief/mesh/image_file.h"
+#include "relief/mesh/image_tags.h"
+#include "relief/mesh/normal_map_check.h"
+
+namespace relief::tools {
+namespace {
+
+/// The content of an image.
+enum class ImageKind { heights, normals };
+
+struct OwnRequest {
+    std::vector<std::filesystem::path> files;
+    std::optional<std::filesystem::path> high, low;
+    std::optional<ImageKind> image_kind;  ///< Default: detected from the image.
+    std::optional<NormalTruth> truth;
+    std::optional<double> crease_degrees;
+    std::optional<double> strength;
+    std::optional<HeightChannel> channel;
+    std::optional<WrapsOrAuto> wrap;
+    std::optional<int> size;
+};
+
+/// An input: a file, or a pair of meshes.
+struct OwnInput {
+    std::filesystem::path file;
+    std::optional<std::filesystem::path> high;  ///< Of a pair; then `file` is the low mesh.
+    std::string name;                           ///< The name in titles.
+};
+
+constexpr int default_map_size = 256;
+constexpr std::size_t quick_triangles = std::size_t{1} << 17;
+constexpr std::int64_t quick_texels = std::int64_t{1} << 18;
+
+bool is_model(const std::filesystem::path& file) {
+    constexpr std::array extensions = {".gltf", ".glb", ".obj", ".ply", ".stl", ".off"};
+    const std::string own = extension_of(file);
+    return std::find(extensions.begin(), extensions.end(), own) != extensions.end();
+}
+
+/// Returns the triangles of a model with the stored normals and tangents, once per primitive.
+Mesh read_own_mesh(const std::filesystem::path& file) {
+    Report report;
+    Model model = read_model(file, report);
+    if (auto* mesh = std::get_if<MeshFile>(&model)) return std::move(mesh->mesh);
+    const auto& document = std::get<GltfDocument>(model);
+    std::vector<MapModelPart> parts;
+    for (const GltfPrimitiveId id : document.triangle_primitives()) {
+        MapModelPart part;
+        part.name = document.describe(id);
+        part.mesh = document.mesh(id, document.tangent_texcoords(id).set);
+        parts.push_back(std::move(part));
+    }
+    return joined(std::move(parts));
+}
+
+std::vector<OwnExperiment> measure_mesh(const OwnInput& input, const OwnRequest& request,
+                                        const OwnOptions& options, std::string& description) {
+    OwnMeshOptions how;
+    how.truth = request.truth.value_or(NormalTruth::surface);
+    if (request.crease_degrees) how.crease_angle = glm::radians(*request.crease_degrees);
+    if (options.run.is_quick) how.most_triangles = quick_triangles;
+    description = "a mesh";
+    return measure_own_mesh(read_own_mesh(input.file), how, options);
+}
+
+std::vector<OwnExperiment> measure_pair(const OwnInput& input, const OwnRequest& request,
+                                        const OwnOptions& options, std::string& description) {
+    Report report;
+    MapModel low = read_map_model(input.file, ModelSpace::world, report);
+    require_texcoords(input.file, low, "no texture coordinates for the map", "unwrap it first");
+    MapModel high =
+        about(*input.high, [&] { return read_map_model(*input.high, ModelSpace::world, report); });
+    move_to(high, low.origin);
+    const Mesh high_mesh = joined(std::move(high.parts));
+    const Mesh low_mesh = joined(std::move(low.parts));
+    const Baker baker(std::span(&high_mesh, 1), low_mesh, {}, report);
+    const int size = request.size.value_or(default_map_size);
+    description =
+        fmt::format("a pair: a map of {0} x {0} is baked from {1}", size, input.high->string());
+    return {measure_own_bake(baker, size, options)};
+}
+
+ImageKind kind_shown(const std::filesystem::path& file) {
+    const ImageInfo info = read_image_info(file);
+    if (info.channels < 3) return ImageKind::heights;
+    const MapContent content =
+        check_normal_map(read_image(file, ImageUse::data), info.metadata).content;
+    return content == MapContent::grey || content == MapContent::other ? ImageKind::heights
+                                                                       : ImageKind::normals;
+}
+
+/// Reports signs that an image is not a height map: different channels, or a varying alpha.
+void add_color_findings(const Image& image, Report& report) {
+    // The largest difference between channels of a gray JPEG.
+    constexpr float tolerance = 4.0F / 255.0F;
+    const Image floats = to_float(image);
+    const std::span<const float> samples = floats.as<float>();
+    const auto channels = static_cast<std::size_t>(image.channels);
+    for (std::size_t texel = 0; texel < samples.size() / channels; ++texel) {
+        const auto colors = samples.subspan(texel * channels, channels);
+        if (channels >= 3) {
+            const auto [least, greatest] = std::minmax({colors[0], colors[1], colors[2]});
+            if (greatest - least > tolerance) {
+                report.add("texel whose red, green and blue differ", "texel", texel,
+                           "the height is their mean, which is wrong for photographs and packed "
+                           "masks (--channel selects one of them)");
+            }
+        }
+        if (channels % 2 == 0 &&
+            std::abs(colors[channels - 1] - samples[channels - 1]) > tolerance) {
+            report.add("texel whose alpha differs from the first one's", "texel", texel,
+                       "alpha is ignored (--channel alpha selects it as the height)");
+        }
+    }
+}
+
+void add_non_finite(const Image& heights, Report& report) {
+    if (heights.bits() != 32) return;
+    const std::span<const float> all = heights.as<float>();
+    for (std::size_t texel = 0; texel < all.size(); ++texel) {
+        if (!std::isfinite(all[texel]))
+            report.add("non-finite height", "texel", texel,
+                       "read as the mean of the nearest finite heights");
+    }
+}
+
+/// Returns the findings on a height map, or none for a map that is too large for memory.
+std::vector<std::string> height_findings(const HeightMapFile& map, const OwnRequest& request) {
+    Report report;
+    if (!map.is_streamed()) {
+        if (!request.channel && map.info().channels > 1)
+            add_color_findings(read_image(map.path(), ImageUse::data), report);
+        add_non_finite(map.map().heights, report);
+    }
+    Findings findings;
+    findings.add("", report);
+    return findings.lines();
+}
+
+std::vector<OwnExperiment> measure_heights(const OwnInput& input, const OwnRequest& request,
+                                           OwnOptions options, std::string& description) {
+    const HeightMapFile map(input.file, {request.channel.value_or(HeightChannel::mean)});
+    const int width = map.info().width;
+    const int height = map.info().height;
+    const BumpSampleParts parts = {
+        parts_to_look_at(width, height),
+        parts_to_measure(width, height, options.run.is_quick ? quick_texels : texels_to_measure)};
+    const HeightMapFile::Survey survey = map.survey(parts.in_order());
+    BumpOptions bump;
+    bump.strength = request.strength.value_or(bump.strength);
+    bump.wrap = request.wrap.value_or(WrapsOrAuto{}).value_or(survey.tiling.wraps());
+    description += fmt::format("a height map of {} bits, {:g} texels high, {} at the border",
+                               map.info().bits, bump.strength, wrap_words(*bump.wrap));
+    if (request.channel) {
+        const std::string name = name_of(*request.channel, height_channel_choices());
+        description += fmt::format(", channel {}", name);
+        options.height_arguments = " --channel " + name;
+    }
+    std::vector<OwnExperiment> all = {
+        measure_own_heights(parts.sample(survey.parts), {width, height}, bump, options)};
+    all.front().experiment.input_findings = height_findings(map, request);
+    return all;
+}
+
+/// Returns the extension of a format that relief-bake writes without loss.
+std::string lossless_extension(const std::filesystem::path& file, int bits) {
+    const std::string own = extension_of(file);
+    if (bits == 32) return own == ".tif" || own == ".tiff" ? own : ".exr";
+    return own == ".tif" || own == ".tiff" ? own : ".png";
+}
+
+std::vector<OwnExperiment> measure_normals(const OwnInput& input, const OwnOptions& options,
+                                           std::string& description) {
+    const InputMap map = read_normal_map(input.file, {});
+    Report report;
+    const Image normals =
+        decode_normal_map(map.image, map.green.value_or(Green::up), map.flat, report);
+    description += fmt::format("a normal map of {} bits: {}", map.image.bits(), map.words);
+    const NormalMapOnFile stored = {map.image.bits(), map.image.channels,
+                                    lossless_extension(input.file, map.image.bits())};
+    std::vector<OwnExperiment> all = {measure_own_normals(
+        normals, stored, options, options.run.is_quick ? quick_texels : texels_to_measure)};
+    Findings findings;
+    findings.add("", report);
+    all.front().experiment.input_findings = findings.lines();
+    return all;
+}
+
+std::vector<OwnExperiment> measure_image(const OwnInput& input, const OwnRequest& request,
+                                         const OwnOptions& options, std::string& description) {
+    const bool is_given = request.image_kind || request.channel;
+    const ImageKind kind = request.image_kind ? *request.image_kind
+                           : request.channel  ? ImageKind::heights
+                                              : kind_shown(input.file);
+    std::vector<OwnExperiment> all = kind == ImageKind::heights
+                                         ? measure_heights(input, request, options, description)
+                                         : measure_normals(input, options, description);
+    if (!is_given)
+        description += kind == ImageKind::heights ? " (if not: --image normals)"
+                                                  : " (if not: --image heights)";
+    return all;
+}
+
+/// Refuses options without effect on the inputs.
+void check_effects(const OwnRequest& request, const std::vector<OwnInput>& inputs) {
+    const auto any = [&](const auto& is_one) {
+        return std::any_of(inputs.begin(), inputs.end(), is_one);
+    };
+    const bool meshes = any([](const OwnInput& one) { return !one.high && is_model(one.file); });
+    const bool pairs = any([](const OwnInput& one) { return one.high.has_value(); });
+    const bool images = any([](const OwnInput& one) { return !is_model(one.file); });
+    const bool heights = images && request.image_kind != ImageKind::normals;
+    const auto require = [](bool has_input, bool is_given, const char* option, const char* input) {
+        if (is_given && !has_input)
+            throw UsageError(fmt::format("{}: applies only to {}", option, input));
+    };
+    require(meshes, request.truth.has_value(), "--truth", "meshes");
+    require(meshes, request.crease_degrees.has_value(), "--crease", "meshes");
+    require(pairs, request.size.has_value(), "--size", "a pair, --high and --low");
+    require(images, request.image_kind.has_value(), "--image", "images");
+    require(heights, request.strength.has_value(), "--strength", "height maps");
+    require(heights, request.wrap.has_value(), "--wrap", "height maps");
+    require(heights, request.channel.has_value(), "--channel", "height maps");
+}
+
+/// \throws UsageError if options contradict each other or have no effect on these inputs
+std::vector<OwnInput> inputs_of(const OwnRequest& request) {
+    if (request.high.has_value() != request.low.has_value())
+        throw UsageError(request.high ? "--high: requires the other mesh of the pair"
+                                      : "--low: requires the other mesh of the pair",
+                         request.high ? "give --low FILE" : "give --high FILE");
+    std::vector<OwnInput> inputs;
+    std::set<std::string> names;
+    for (const std::filesystem::path& file : request.files) {
+        if (!names.insert(file.string()).second)
+            throw UsageError(fmt::format("{}: given twice", file.string()));
+        const bool is_shared =
+            std::count_if(request.files.begin(), request.files.end(), [&](const auto& other) {
+                return other.filename() == file.filename();
+            }) > 1;
+        inputs.push_back({file, {}, is_shared ? file.string() : file.filename().string()});
+    }
+    if (request.low) {
+        for (const auto& file : {*request.high, *request.low})
+            readable_format(file);
+        inputs.push_back({*request.low, request.high,
+                          fmt::format("{} for {}", request.high->filename().string(),
+                                      request.low->filename().string())});
+    }
+    if (inputs.empty()) throw UsageError("no input", "name a mesh, a map, or --high and --low");
+    check_effects(request, inputs);
+    return inputs;
+}
+
+/// Returns the options as typed: " --strength 8".
+std::string options_text(const OwnRequest& request) {
+    std::string words;
+    if (request.high) words += " --high " + quoted(*request.high);
+    if (request.low) words += " --low " + quoted(*request.low);
+    if (request.image_kind)
+        words +=
+            *request.image_kind == ImageKind::heights ? " --image heights" : " --image normals";
+    if (request.truth)
+        words += *request.truth == NormalTruth::file ? " --truth file" : " --truth surface";
+    if (request.crease_degrees) words += fmt::format(" --crease {:g}", *request.crease_degrees);
+    if (request.strength) words += fmt::format(" --strength {:g}", *request.strength);
+    if (request.channel)
+        words += " --channel " + name_of(*request.channel, height_channel_choices());
+    if (request.wrap && request.wrap->is_settled())
+        words += " --wrap " + wrap_words(request.wrap->value_or({}));
+    if (request.size) words += fmt::format(" --size {}", *request.size);
+    return words;
+}
+
+/// Measures an input.
+/// \param options      all but `file` and `arguments`
+/// \param description  receives the type of the input and how it was read
+/// \throws FileError
+std::vector<OwnExperiment> measure(const OwnInput& input, const OwnRequest& request,
+                                   OwnOptions options, std::string& description) {
+    options.file = input.name;
+    options.arguments =
+        input.high ? quoted(*input.high) + " " + quoted(input.file) : quoted(input.file);
+    return about(input.file, [&] {
+        if (input.high) return measure_pair(input, request, options, description);
+        if (is_model(input.file)) return measure_mesh(input, request, options, description);
+        return measure_image(input, request, options, description);
+    });
+}
+
+/// The error figure of --max-error.
+enum class BoundKind { rms, p99, max };
+
+struct OwnCommandOptions {
+    OwnRequest request;
+    std::optional<double> max_error;
+    std::optional<BoundKind> max_error_kind;
+    std::optional<double> max_milliseconds;
+    ExperimentOptions how;
+};
+
+/// Longer tables show only the efficient and the recommended methods.
+constexpr std::size_t max_rows = 24;
+
+double ErrorFigures::*figure_of(BoundKind kind) {
+    switch (kind) {
+        case BoundKind::p99:
+            return &ErrorFigures::p99;
+        case BoundKind::max:
+            return &ErrorFigures::max;
+        case BoundKind::rms:
+            break;
+    }
+    return &ErrorFigures::rms;
+}
+
+void check(const OwnCommandOptions& options) {
+    check(options.how);
+    if (options.max_error_kind && !options.max_error)
+        throw UsageError("--max-error-kind: requires --max-error", "give --max-error DEG");
+    if (options.how.no_times && options.max_milliseconds)
+        throw UsageError("--no-times and --max-time contradict each other");
+}
+
+std::string command_for(const OwnCommandOptions& options) {
+    std::string command = "relief-accuracy own";
+    for (const std::filesystem::path& file : options.request.files)
+        command += " " + quoted(file);
+    command += options_text(options.request);
+    if (options.max_error) command += fmt::format(" --max-error {:g}", *options.max_error);
+    if (options.max_error_kind) {
+        constexpr std::array words = {"rms", "p99", "max"};
+        command += fmt::format(" --max-error-kind {}",
+                               words.at(static_cast<std::size_t>(*options.max_error_kind)));
+    }
+    if (options.max_milliseconds)
+        command += fmt::format(" --max-time {:g}", *options.max_milliseconds);
+    return command + effort_options(options.how);
+}
+
+/// Returns the table of an experiment, shortened if it has many methods.
+std::string short_table(const OwnExperiment& own) {
+    Experiment shown = own.experiment;
+    const std::size_t all = shown.measurements.size();
+    if (all <= max_rows) return table_of(shown);
+    std::vector<Measurement> rows;
+    for (std::size_t i = 0; i < all; ++i) {
+        const bool is_recommended = own.recommendation.method == i || own.recommendation.next == i;
+        if (is_recommended || shown.measurements[i].is_efficient)
+            rows.push_back(std::move(shown.measurements[i]));
+    }
+    shown.input +=
+        fmt::format(" (only the efficient ones of {} methods; the report contains all)", all);
+    shown.measurements = std::move(rows);
+    return table_of(shown);
+}
+
+/// Returns the findings on an input, from its first experiment, because all share the input.
+std::vector<std::string> findings_of(const std::vector<OwnExperiment>& experiments) {
+    if (experiments.empty() || experiments.front().experiment.input_findings.empty())
+        return {"none"};
+    return experiments.front().experiment.input_findings;
+}
+
+OwnOptions own_options(const OwnCommandOptions& options, Stages& stages) {
+    OwnOptions own;
+    own.run = run_options(options.how);
+    own.run.tell = [&stages](const std::string& title, std::size_t, std::size_t) {
+        stages.show_progress(title, 0.0);
+    };
+    own.command = command_for(options);
+    own.wish.max_error = options.max_error;
+    own.wish.figure = figure_of(options.max_error_kind.value_or(BoundKind::rms));
+    if (options.max_milliseconds) own.wish.max_seconds = 1e-3 * *options.max_milliseconds;
+    return own;
+}
+
+ExitCode run(const OwnCommandOptions& options) {
+    check(options);
+    const std::vector<OwnInput> inputs = inputs_of(options.request);
+    prepare(options.how);
+    Stages stages(options.how.general.quiet);
+    const OwnOptions own = own_options(options, stages);
+    AccuracyReport report;
+    report.command = own.command;
+    bool is_within_limits = true;
+    for (const OwnInput& input : inputs) {
+        std::string description;
+        std::vector<OwnExperiment> experiments = measure(input, options.request, own, description);
+        stages.clear_progress();
+        if (prints_tables(options.how)) {
+            print_entry("input", input.file.string() + ": " + description);
+            print_entry("findings", findings_of(experiments));
+        }
+        for (OwnExperiment& one : experiments) {
+            if (prints_tables(options.how)) fmt::print(out(), "\n{}", short_table(one));
+            is_within_limits = is_within_limits && one.recommendation.method.has_value();
+            report.experiments.push_back(std::move(one.experiment));
+        }
+        if (prints_tables(options.how)) fmt::print(out(), "\n");
+        std::fflush(out());
+    }
+    finish_report(options.how, std::move(report), false);
+    const bool has_limits = options.max_error || options.max_milliseconds;
+    return has_limits && !is_within_limits ? ExitCode::failed : ExitCode::done;
+}
+
+void add_input_options(CLI::App& app, OwnRequest& request) {
+    add_files(app, "FILE...", request.files,
+              "Meshes (.glb .gltf .obj .ply .stl .off), height maps and normal maps. Two meshes "
+              "are separate inputs, not a pair.");
+    const char* pair = "Pair of meshes: the error of a map baked from one for the other";
+    add_path(app, "--high", request.high, "The detailed mesh.").group(pair);
+    add_path(app, "--low", request.low, "The simple mesh, with texture coordinates.").group(pair);
+    add_value(app, "--size", "N", "The width and height of the map in texels. Default: 256.",
+              [&](const std::string& subject, const std::string& text) {
+                  request.size = parse_integer(subject, text, 16, 16384);
+              })
+        .group(pair);
+    const char* mesh = "Meshes";
+    const Choices<NormalTruth> truths = {{"surface", NormalTruth::surface},
+                                         {"file", NormalTruth::file}};
+    add_choice(app, "--truth", request.truth, truths,
+               "The ground truth of normals: a smooth surface fitted through the vertices, or the "
+               "normals of the file. Default: surface.")
+        .group(mesh);
+    add_number(app, "--crease", "DEG", request.crease_degrees, {0.0, 180.0, "degrees"},
+               "Edges sharper than this angle are hard; 180: no hard edges. Default: the smoothing "
+               "groups of the file, or else the discontinuities of its normals, or else none.")
+        .group(mesh);
+    const char* image = "Maps";
+    const Choices<ImageKind> kinds = {{"heights", ImageKind::heights},
+                                      {"normals", ImageKind::normals}};
+    add_choice(app, "--image", request.image_kind, kinds,
+               "The content of images. Default: detected and reported for each image.")
+        .group(image);
+    add_number(app, "--strength", "S", request.strength, {-1e6, 1e6, "texels"},
+               "Height maps: the height of the value 1.0 in texels. Default: 16.")
+        .group(image);
+    add_choice(
+        app, "--channel", request.channel, height_channel_choices(),
+        "Height maps: the height channel of a color image, as for relief-bake bump; the image is "
+        "then read as a height map. Default: mean, with a finding if the channels differ.")
+        .group(image);
+    request.wrap.reset();
+    add_value(app, "--wrap", "WORD",
+              "Height maps: the continuation beyond the border: repeat, clamp, mirror, or auto "
+              "(repeat if the map tiles). Default: auto.",
+              [&](const std::string& subject, const std::string& text) {
+                  Choices<std::optional<Wrap>> words = {{"repeat", Wrap::repeat},
+                                                        {"clamp", Wrap::clamp},
+                                                        {"mirror", Wrap::mirror},
+                                                        {"auto", std::nullopt}};
+                  const std::optional<Wrap> wrap = parse_choice(subject, text, words);
+                  request.wrap = WrapsOrAuto{wrap, wrap};
+              })
+        .group(image);
+}
+
+void add_limit_options(CLI::App& app, OwnCommandOptions& options) {
+    const char* group = "Recommendation; by default the method beyond which more time gains little";
+    add_number(app, "--max-error", "DEG", options.max_error, {0.0, 180.0, "degrees"},
+               "Recommend the cheapest method whose expected error is within this limit. The "
+               "expected error includes the error of the map or model itself. Without times: the "
+               "method that stores the fewest bytes, then the one with the fewest operations. Exit "
+               "with 1 if an experiment has no such method.")
+        .group(group);
+    const Choices<BoundKind> kinds = {
+        {"rms", BoundKind::rms}, {"p99", BoundKind::p99}, {"max", BoundKind::max}};
+    add_choice(app, "--max-error-kind", options.max_error_kind, kinds,
+               "The error figure of --max-error: root mean square, 99th percentile, or maximum. "
+               "Default: rms.")
+        .group(group);
+    add_number(app, "--max-time", "MS", options.max_milliseconds, {0.0, 1e9, "milliseconds"},
+               "Recommend the most accurate method within this time.")
+        .group(group);
+}
+
+}  // namespace
+
+Command add_own_command(CLI::App& tool) {
+    CLI::App& app = add_subcommand(tool, "own",
+                                   "Measures methods on your meshes and maps, and recommends one.");
+    const auto options = std::make_shared<OwnCommandOptions>();
+    add_input_options(app, options->request);
+    add_limit_options(app, *options);
+    add_experiment_options(app, options->how);
+    set_examples(
+        app, {"relief-accuracy own data/vase.obj --quick",
+              "relief-accuracy own data/bricks-height.png --strength 12 --max-error 2 --quick",
+              "relief-mesh subdivide data/vase.obj out/high.obj --levels 2",
+              "relief-accuracy own --high out/high.obj --low data/vase.obj --size 64 --repeats 3",
+              "relief-accuracy own data/vase.obj --crease 40 --no-times --output out/vase"});
+    return {&app, [options] { return run(*options); }};
+}
+
+}  // namespace relief::tools
