@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Printing findings. Tests: tests/tools/findings_test.cpp.
+// Printing findings. Tests: tests/tools/text_test.cpp.
 #include "common/findings.h"
 
 #include <fmt/format.h>

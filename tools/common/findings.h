@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// The library's findings, each with the part of the input that it was found in, as text for people
-/// and as JSON. Tests: tests/tools/findings_test.cpp.
+/// and as JSON. Tests: tests/tools/text_test.cpp.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Laying out --help pages, at most 100 columns wide.
-// Tests: tests/tools/help_test.cpp.
+// Tests: tests/tools/command_test.cpp.
 #include "common/help_format.h"
 
 #include <fmt/format.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// How --help pages look: one sentence, usage, arguments, grouped options with the text wrapped
-/// beside the names, examples. Tests: tests/tools/help_test.cpp.
+/// beside the names, examples. Tests: tests/tools/command_test.cpp.
 #pragma once
 
 #include <CLI/CLI.hpp>
