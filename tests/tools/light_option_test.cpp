@@ -71,7 +71,7 @@ TEST(LightOption, RefusesWhatIsNotALight) {
     EXPECT_EQ(light_refusal("point:1,2,3,-1"),
               "--light point:1,2,3,-1: '-1': not between 0 and 1000000000");
     EXPECT_EQ(light_refusal("point:1,2,3,1,#fff"),
-              "--light point:1,2,3,1,#fff: '#fff': not a colour like #ff8000");
+              "--light point:1,2,3,1,#fff: '#fff': not a color like #ff8000");
     EXPECT_EQ(light_refusal("directional:0,0,1,#ffffff,9"),
               "--light directional:0,0,1,#ffffff,9: too many values");
     EXPECT_EQ(light_refusal("directional:0,91"),

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/linked_tools.h"
 
-#include "common/console.h"
+#include "common/command.h"
 #include "relief-accuracy/commands.h"
 #include "relief-bake/commands.h"
 #include "relief-mesh/commands.h"

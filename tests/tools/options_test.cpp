@@ -58,7 +58,7 @@ TEST(OptionColors, AreSrgbCodedAndBecomeLinear) {
     EXPECT_EQ(color.b, 0.0F);
     for (const char* text : {"ff8000", "#ff800", "#ff80000", "#gg0000", "red", "#-12345", ""}) {
         EXPECT_EQ(refusal_by([&] { parse_color("--background X", text); }),
-                  "--background X: not a colour like #ff8000")
+                  "--background X: not a color like #ff8000")
             << text;
     }
 }

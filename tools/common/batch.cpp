@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Many files, side by side; what is said about them comes in the order of the command line.
+// Jobs run in parallel. Their lines are printed in the order of the command line.
 // Tests: tests/tools/batch_test.cpp, process_batch_test.cpp.
 #include "common/batch.h"
 
@@ -10,21 +10,21 @@
 #include <mutex>
 #include <optional>
 
-#include "common/console.h"
+#include "common/command.h"
 #include "common/text.h"
 #include "parallel.h"
 
 namespace relief::tools {
 namespace {
 
-/// What became of one file.
+/// The outcome of a job.
 struct Outcome {
-    std::optional<FileOutcome> done;  ///< Absent where it failed.
+    std::optional<FileOutcome> done;  ///< Absent after an error.
     std::string error;
     bool is_finished = false;
 };
 
-/// "bad.obj: PROBLEM", of whatever was thrown.
+/// Returns the current exception as "bad.obj: PROBLEM".
 std::string error_text(const Job& job) {
     try {
         throw;
@@ -39,33 +39,33 @@ std::string error_text(const Job& job) {
     }
 }
 
-/// Says what became of the files, in their order, and on a terminal how many are done.
-class Spokesman {
+/// Prints the outcomes in order, and the progress on a terminal.
+class OutcomePrinter {
   public:
-    Spokesman(const CLI::App& app, std::vector<Outcome>& outcomes, bool quiet)
+    OutcomePrinter(const CLI::App& app, std::vector<Outcome>& outcomes, bool quiet)
         : app_(app),
           outcomes_(outcomes),
           quiet_(quiet),
           shows_progress_(!quiet && is_err_terminal()) {
         show_progress();
     }
-    ~Spokesman() { clear_progress(); }
-    Spokesman(const Spokesman&) = delete;
-    Spokesman& operator=(const Spokesman&) = delete;
+    ~OutcomePrinter() { clear_progress(); }
+    OutcomePrinter(const OutcomePrinter&) = delete;
+    OutcomePrinter& operator=(const OutcomePrinter&) = delete;
 
-    /// Called by any thread.
+    /// Any thread may call it.
     void finished(std::size_t index) {
         const std::lock_guard lock(mutex_);
         outcomes_[index].is_finished = true;
         ++finished_;
         clear_progress();
-        for (; told_ < outcomes_.size() && outcomes_[told_].is_finished; ++told_)
-            tell(outcomes_[told_]);
+        for (; printed_ < outcomes_.size() && outcomes_[printed_].is_finished; ++printed_)
+            print(outcomes_[printed_]);
         show_progress();
     }
 
   private:
-    void tell(const Outcome& outcome) const {
+    void print(const Outcome& outcome) const {
         if (!outcome.done)
             complain(app_, outcome.error);
         else if (!quiet_)
@@ -87,7 +87,7 @@ class Spokesman {
     bool shows_progress_;
     std::mutex mutex_;
     std::size_t finished_ = 0;
-    std::size_t told_ = 0;
+    std::size_t printed_ = 0;
 };
 
 nlohmann::ordered_json file_json(const Job& job, const Outcome& outcome) {
@@ -118,12 +118,12 @@ void run(const Batch& batch, std::size_t index, Outcome& outcome) {
 }
 
 void run_all(const CLI::App& app, const Batch& batch, std::vector<Outcome>& outcomes, bool quiet) {
-    Spokesman spokesman(app, outcomes, quiet);
+    OutcomePrinter printer(app, outcomes, quiet);
     const std::size_t count = outcomes.size();
     parallel_for(count, batch.one_by_one ? count : 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             run(batch, i, outcomes[i]);
-            spokesman.finished(i);
+            printer.finished(i);
         }
     });
 }

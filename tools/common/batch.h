@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// The same work on many files in one call: one that fails does not stop the others.
+/// Runs the same job on several files. An error in one file does not stop the others.
 /// Tests: tests/tools/batch_test.cpp, process_batch_test.cpp.
 #pragma once
 
@@ -13,32 +13,31 @@
 
 #include "common/command.h"
 #include "common/file_jobs.h"
+#include "common/findings.h"
 #include "common/options.h"
-#include "common/report_options.h"
 
 namespace relief::tools {
 
-/// What is said of one file that was done.
+/// The result of a file.
 struct FileOutcome {
-    std::string line;  ///< For stdout, without the end of the line.
+    std::string line;  ///< The line for stdout, without newline.
     Findings findings;
-    nlohmann::ordered_json json;  ///< For the report, beside "input" and "output".
+    nlohmann::ordered_json json;  ///< The entry in the report, besides "input" and "output".
 };
 
 struct Batch {
     std::vector<Job> jobs;
-    /// Does the one at `index`. Called from several threads.
+    /// Runs job `index`. Several threads call it.
     std::function<FileOutcome(std::size_t index)> work;
-    /// Whether two could get in each other's way: then they are done one after another.
+    /// Runs the jobs one after another, because two could write the same file.
     bool one_by_one = false;
-    nlohmann::ordered_json head;  ///< What begins the report: tool, version, options.
+    nlohmann::ordered_json head;  ///< The head of the report: tool, version, options.
 };
 
-/// Does all jobs, several at once, as many as there are threads. As each is done, in the order
-/// given, its line goes to stdout, or the error that it threw to stderr; then the report is
-/// written: the head, the number of those that "failed", and "files".
+/// Runs all jobs in parallel, one per thread. Prints the line or the error of each job in the given
+/// order, and then writes the report: the head, the number of failed jobs, and "files".
 ///
-/// \return failed if any failed; else fell_back if --strict was given and anything was found
+/// \return failed if a job failed; else fell_back if --strict was given and there are findings
 ExitCode run_batch(const CLI::App& app, const Batch& batch, const ReportOptions& report,
                    const GeneralOptions& general);
 

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Parsing, running and reporting, alike for all tools. Every problem ends as one line on stderr and
-// an exit code, CLI11's own among them. Tests: tests/tools/command_test.cpp.
+// Every error, also of CLI11, becomes one line on stderr and an exit code.
 #include "common/command.h"
 
 #include <fmt/format.h>
@@ -13,8 +12,6 @@
 #include <memory>
 #include <sstream>
 
-#include "common/console.h"
-#include "common/help_format.h"
 #include "file_replacement.h"
 #include "near_names.h"
 #include "relief/mesh/threads.h"
@@ -22,14 +19,14 @@
 namespace relief::tools {
 namespace {
 
-/// The streams of the tool that is running.
+/// The streams of the running tool.
 struct Console {
     std::FILE* out = stdout;
     std::FILE* err = stderr;
 };
 Console console;
 
-/// Prints to other streams for its lifetime.
+/// Replaces the streams for its lifetime.
 class ConsoleScope {
   public:
     ConsoleScope(std::FILE* out, std::FILE* err) : before_(console) { console = {out, err}; }
@@ -39,6 +36,95 @@ class ConsoleScope {
 
   private:
     Console before_;
+};
+
+constexpr std::size_t page_columns = 100;
+constexpr std::size_t text_column = 30;
+
+/// Returns a name with the text wrapped beside it.
+std::string help_entry(const std::string& name, const std::string& text) {
+    std::string page = "  " + name;
+    std::size_t column = page.size();
+    if (column + 2 > text_column) {
+        page += '\n';
+        column = 0;
+    }
+    std::istringstream words(text);
+    bool line_start = true;
+    for (std::string word; words >> word;) {
+        if (!line_start && column + 1 + word.size() > page_columns) {
+            page += '\n';
+            column = 0;
+            line_start = true;
+        }
+        if (line_start) {
+            page.append(text_column - column, ' ');
+            column = text_column;
+        } else {
+            page += ' ';
+            ++column;
+        }
+        page += word;
+        column += word.size();
+        line_start = false;
+    }
+    return page + '\n';
+}
+
+std::string help_usage(const CLI::App& app) {
+    std::string text = "\nUsage: ";
+    if (app.get_parent() != nullptr) text += app.get_parent()->get_name() + " ";
+    text += app.get_name();
+    if (!app.get_subcommands({}).empty()) return text + " COMMAND ...\n";
+    for (const CLI::Option* option : app.get_options()) {
+        if (option->get_positional()) text += " " + option->get_name(true, false);
+    }
+    return text + " [OPTIONS]\n";
+}
+
+std::string help_commands(const CLI::App& app) {
+    if (app.get_subcommands({}).empty()) return "";
+    std::string page = "\nCommands:\n";
+    for (const CLI::App* command : app.get_subcommands({}))
+        page += help_entry(command->get_name(), command->get_description());
+    return page + fmt::format("\n{} COMMAND --help describes a command.\n", app.get_name());
+}
+
+std::string help_arguments(const CLI::App& app) {
+    std::string page;
+    for (const CLI::Option* option : app.get_options()) {
+        if (option->get_positional())
+            page += help_entry(option->get_name(true, false), option->get_description());
+    }
+    return page.empty() ? "" : "\nArguments:\n" + page;
+}
+
+/// Returns the options of a group, or an empty text.
+std::string help_options(const CLI::App& app, const std::string& title, const std::string& group) {
+    std::string page;
+    for (const CLI::Option* option : app.get_options()) {
+        if (option->get_group() != group || option->get_positional()) continue;
+        const bool takes_value = option->get_expected_max() > 0;
+        const std::string value = takes_value ? " " + option->get_type_name() : "";
+        page += help_entry(option->get_name(false, true) + value, option->get_description());
+    }
+    return page.empty() ? "" : fmt::format("\n{}:\n{}", title, page);
+}
+
+/// The layout of help pages, at most 100 columns wide.
+class HelpFormat : public CLI::FormatterBase {
+  public:
+    std::string make_help(const CLI::App* app, std::string, CLI::AppFormatMode) const override {
+        const std::string general = "Options";  // CLI11's group of options without a group.
+        std::string page = app->get_description() + "\n" + help_usage(*app);
+        page += help_commands(*app) + help_arguments(*app);
+        for (const std::string& group : app->get_groups()) {
+            if (group != general) page += help_options(*app, group, group);
+        }
+        page += help_options(*app, "General", general);
+        if (!app->get_footer().empty()) page += "\n" + app->get_footer() + "\n";
+        return page;
+    }
 };
 
 std::vector<std::string> option_names(const CLI::App& app) {
@@ -57,8 +143,8 @@ std::vector<std::string> command_names(const CLI::App& app) {
     return names;
 }
 
-/// The command that the arguments chose, or the tool itself.
-const CLI::App& chosen(const CLI::App& root) {
+/// Returns the parsed command, or the tool itself.
+const CLI::App& parsed_command(const CLI::App& root) {
     const std::vector<CLI::App*> parsed = root.get_subcommands();
     return parsed.empty() ? root : *parsed.front();
 }
@@ -69,23 +155,23 @@ std::string full_name(const CLI::App& app) {
     return parent == nullptr ? app.get_name() : parent->get_name() + " " + app.get_name();
 }
 
-/// An argument that nothing takes: an unknown option, command or file too many.
+/// Returns the error of an unknown option or command, or an excess file.
 UsageError unexpected(const CLI::App& app, const std::string& argument) {
     const bool is_option = argument.size() > 1 && argument.front() == '-';
     const std::vector<std::string> commands = command_names(app);
     const std::string word = argument.substr(0, argument.find('='));
-    const std::vector<std::string> meant =
+    const std::vector<std::string> suggestions =
         near_names(word, is_option ? option_names(app) : commands);
     const std::string remedy =
-        meant.empty() ? "" : fmt::format("did you mean {}?", fmt::join(meant, " or "));
+        suggestions.empty() ? "" : fmt::format("did you mean {}?", fmt::join(suggestions, " or "));
     if (is_option) return UsageError(word + ": unknown option", remedy);
     if (!commands.empty()) return UsageError(word + ": unknown command", remedy);
     return UsageError(argument + ": one argument too many");
 }
 
-/// CLI11's complaint in relief's words.
+/// Converts an error of CLI11.
 UsageError usage_error(const CLI::App& root, const CLI::ParseError& error) {
-    const CLI::App& app = chosen(root);
+    const CLI::App& app = parsed_command(root);
     const std::vector<std::string> remaining = app.remaining();
     if (!remaining.empty()) return unexpected(app, remaining.front());
     if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::RequiredError)) {
@@ -102,7 +188,7 @@ UsageError usage_error(const CLI::App& root, const CLI::ParseError& error) {
     return UsageError(what);
 }
 
-/// "relief-mesh: error: TEXT", named after the tool whichever of its commands speaks.
+/// Prints "relief-mesh: error: TEXT" with the name of the tool, without the command.
 void print_message(const CLI::App& app, const std::string& severity, const std::string& text) {
     const CLI::App* parent = app.get_parent();
     std::fflush(out());
@@ -116,7 +202,7 @@ void print_error(const CLI::App& root, const std::string& text) {
 
 int report(const CLI::App& root, const UsageError& error) {
     const std::string remedy = error.remedy().empty()
-                                   ? fmt::format("see {} --help", full_name(chosen(root)))
+                                   ? fmt::format("see {} --help", full_name(parsed_command(root)))
                                    : error.remedy();
     print_error(root, fmt::format("{} ({})", error.what(), remedy));
     return static_cast<int>(ExitCode::wrong_usage);
@@ -127,7 +213,7 @@ int report_failure(const CLI::App& root, const std::string& text) {
     return static_cast<int>(ExitCode::failed);
 }
 
-/// Parses and runs; throws what there is to report.
+/// Parses the arguments and runs the command.
 int parse_and_run(CLI::App& root, const std::vector<Command>& commands,
                   const std::vector<std::string>& arguments) {
     try {
@@ -150,9 +236,9 @@ int parse_and_run(CLI::App& root, const std::vector<Command>& commands,
     throw UsageError("a command is missing");
 }
 
-/// What a tool makes of signals: those that end it leave no half file; a reader that went away and
-/// a file that got too large are errors, reported as such, and not the end.
-void take_signals() {
+/// Signals that end the process remove temporary files first. SIGPIPE and SIGXFSZ are ignored, so
+/// that they become errors of writing.
+void handle_signals() {
     remove_temporaries_on_signals();
     std::signal(SIGPIPE, SIG_IGN);
     std::signal(SIGXFSZ, SIG_IGN);
@@ -269,7 +355,7 @@ void complain(const CLI::App& app, const std::string& text) {
 }
 
 int run_tool(const Tool& tool, int argc, const char* const* argv) {
-    take_signals();
+    handle_signals();
     return run_tool(tool, std::vector<std::string>(argv + 1, argv + argc), stdout, stderr);
 }
 

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// What every tool of relief does alike: exit codes, the form of errors, --help, --version, stages
-/// with their times, and progress, which goes to stderr and only to a terminal.
+/// The common behavior of all tools: exit codes, error messages, --help, --version, and stages with
+/// their times. Progress is printed only if stderr is a terminal.
 ///
-/// Errors read "relief-bake: error: high.obj: no texture coordinates (remedy)", whether the file,
-/// the data or the command line is at fault. Tests: tests/tools/command_test.cpp.
+/// All errors have the form "relief-bake: error: high.obj: no texture coordinates (remedy)".
+/// Tests: tests/tools/command_test.cpp.
 #pragma once
 
+#include <cstdio>
 #include <filesystem>
 #include <functional>
 #include <stdexcept>
@@ -18,7 +19,7 @@
 #include "relief/mesh/error.h"
 #include "relief/mesh/timing.h"
 
-/// The parser of command lines: a heavy header, for the few files that call it.
+// <CLI/CLI.hpp> is a large header, so only few files include it.
 namespace CLI {
 class App;
 class Option;
@@ -30,13 +31,13 @@ enum class ExitCode : int {
     done = 0,
     failed = 1,
     wrong_usage = 2,
-    fell_back = 3,  ///< Done, but --strict was given and something is in the report.
+    fell_back = 3,  ///< Done, but --strict was given and there are findings.
 };
 
-/// A command line that contradicts itself or asks for what cannot be. Exit code 2.
+/// An error in the command line. Exit code 2.
 class UsageError : public std::runtime_error {
   public:
-    /// \param remedy  what to do instead; empty: the reader is sent to --help
+    /// \param remedy  the suggestion to the user; empty: the message refers to --help
     explicit UsageError(const std::string& problem, std::string remedy = "")
         : std::runtime_error(problem), remedy_(std::move(remedy)) {}
 
@@ -46,19 +47,17 @@ class UsageError : public std::runtime_error {
     std::string remedy_;
 };
 
-/// "FILE: PROBLEM (REMEDY)", for what is wrong in a file's contents. Exit code 1.
+/// Returns the error "FILE: PROBLEM (REMEDY)". Exit code 1.
 FileError failure(const std::filesystem::path& file, const std::string& problem,
                   const std::string& remedy);
 
-/// Checks, before any work is done, that the folder in which a file is to be written exists.
-/// \throws FileError if it does not
+/// Checks that the folder of an output file exists. \throws FileError
 void require_folder_of(const std::filesystem::path& file);
 
-/// Makes a folder to write to, with those above it; one that exists is as good.
-/// \throws FileError if it cannot be made
+/// Creates a folder with its parents if it does not exist. \throws FileError
 void make_folder(const std::filesystem::path& folder);
 
-/// Runs `work` and names `file` in whatever InvalidInput it throws.
+/// Runs `work`, and replaces InvalidInput by a FileError with the name of the file.
 template <typename Work>
 auto about(const std::filesystem::path& file, Work&& work) {
     try {
@@ -68,13 +67,13 @@ auto about(const std::filesystem::path& file, Work&& work) {
     }
 }
 
-/// A step of the work and the wall-clock time that it took.
+/// A step of a command and its wall-clock time.
 struct Stage {
     std::string name;
     double milliseconds = 0;
 };
 
-/// Times the steps of a command; on a terminal, says on stderr which one is going on.
+/// Measures the steps of a command, and shows the current one if stderr is a terminal.
 class Stages {
   public:
     explicit Stages(bool quiet);
@@ -85,20 +84,20 @@ class Stages {
         return std::forward<Work>(work)();
     }
 
-    /// The same, with other words on the terminal: "draw 3 of 24".
+    /// The same with another text on the terminal: "draw 3 of 24".
     template <typename Work>
     auto run(const std::string& name, const std::string& shown, Work&& work) {
         const Running running(*this, name, shown);
         return std::forward<Work>(work)();
     }
 
-    /// Adds to the time of a step what was measured elsewhere.
+    /// Adds time to a step that was measured elsewhere.
     void book(const std::string& name, double milliseconds);
 
-    /// Whether there is a terminal to say it on.
+    /// Whether progress is shown.
     [[nodiscard]] bool shows_progress() const { return show_; }
-    /// On a terminal, says how far something is, 0 to 1, wherever it is told anew in percent.
-    /// \param more  what else to say then: "3 s left"
+    /// Shows the completed fraction, 0 to 1, whenever the percentage changes.
+    /// \param more  additional text: "3 s left"
     void show_progress(const std::string& name, double part, const std::string& more = "");
     void clear_progress() const;
 
@@ -106,7 +105,7 @@ class Stages {
     [[nodiscard]] double milliseconds(std::string_view name) const;
 
   private:
-    /// Books the time of one step when it goes out of scope, by an exception too.
+    /// Adds the time of a step at the end of its scope, also after an exception.
     class Running {
       public:
         Running(Stages& stages, const std::string& name, const std::string& shown);
@@ -127,40 +126,61 @@ class Stages {
     std::vector<Stage> finished_;
 };
 
-/// One command of a tool: where its options stand, and what it does once they are parsed.
+/// A command of a tool, with its options and its function.
 struct Command {
     CLI::App* app = nullptr;
     std::function<ExitCode()> run;
 };
 
-/// A tool: its name, what it is for in one sentence, and its commands.
+/// A tool, described by one sentence, with its commands.
 struct Tool {
     std::string name;
     std::string sentence;
-    /// Each adds its options to the tool, or to a subcommand that it makes there.
+    /// Each function adds its options to the tool or to a new subcommand.
     std::vector<std::function<Command(CLI::App&)>> commands;
 };
 
-/// A subcommand with relief's help layout.
+/// Adds a subcommand with relief's help layout: one sentence, usage, arguments, grouped options,
+/// examples.
 CLI::App& add_subcommand(CLI::App& tool, const std::string& name, const std::string& sentence);
 
-/// Examples for the end of a --help page, one command a line. Each is run by a test.
+/// Sets the examples at the end of the help page. A test runs each of them.
 void set_examples(CLI::App& app, const std::vector<std::string>& commands);
 
 /// "process"
 std::string command_name(const CLI::App& app);
 
-/// Whether an option, "--cage", stood on the command line.
+/// Returns whether an option, "--cage", is on the command line.
 bool is_given(const CLI::App& app, const std::string& name);
 
 /// Prints a warning in the form of the errors: "relief-mesh: warning: TEXT".
 void warn(const CLI::App& app, const std::string& text);
 
-/// Prints an error in the form of those that end a command, for one that goes on.
+/// Prints an error without ending the command.
 void complain(const CLI::App& app, const std::string& text);
 
-/// All of main(): parses, runs the command, reports errors. \return the process's exit code
+/// Implements main(): handles signals, then runs the tool on the standard streams.
+/// \return the exit code
 int run_tool(const Tool& tool, int argc, const char* const* argv);
+
+/// Parses the arguments, runs the tool and reports errors. Only one tool runs at a time in a
+/// process.
+///
+/// \param arguments  without the program's name
+/// \param out  the stream for results
+/// \param err  the stream for errors, warnings and progress
+/// \return the exit code for the process
+int run_tool(const Tool& tool, const std::vector<std::string>& arguments, std::FILE* out,
+             std::FILE* err);
+
+/// The stream for results: standard output, unless a caller of run_tool() passed another.
+std::FILE* out();
+
+/// The stream for errors, warnings and progress, likewise.
+std::FILE* err();
+
+/// Returns whether err() is a terminal.
+bool is_err_terminal();
 
 /// "0.1.0"
 std::string version();

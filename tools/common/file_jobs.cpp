@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// From file arguments to pairs of input and output, all checks made before any file is opened.
+// All checks are made before a file is opened.
 // Tests: tests/tools/file_jobs_test.cpp.
 #include "common/file_jobs.h"
 
@@ -28,7 +28,7 @@ bool names_tiles(const fs::path& file) {
     return names_word(file, tile_word);
 }
 
-/// The four digits that stand for "<UDIM>" in a name, or nothing where the name is another.
+/// Returns the four digits in place of "<UDIM>", if the name matches the pattern.
 std::optional<std::string> tile_of(const std::string& pattern, const std::string& name) {
     const std::size_t place = pattern.find(tile_word);
     const std::string_view after = std::string_view(pattern).substr(place + tile_word.size());
@@ -42,7 +42,7 @@ std::optional<std::string> tile_of(const std::string& pattern, const std::string
     return tile;
 }
 
-/// The tiles of a name that exist, in ascending order.
+/// Returns the existing tiles in ascending order.
 std::vector<std::string> tiles_of(const fs::path& file) {
     const std::string pattern = file.filename().string();
     const fs::path folder = file.parent_path().empty() ? "." : file.parent_path();
@@ -58,7 +58,7 @@ std::vector<std::string> tiles_of(const fs::path& file) {
     return tiles;
 }
 
-/// A job for each tile, if the names have tiles.
+/// Returns a job per tile, or the given job without tiles.
 JobList in_tiles(const Job& job) {
     const bool has_tiles = names_tiles(job.input);
     if (has_tiles != names_tiles(job.output)) {
@@ -99,8 +99,8 @@ JobList single(const FileWords& words, const std::string& kind) {
     return in_tiles({words.files[0], output});
 }
 
-/// Refuses results that would replace each other. None can replace another's input: what keeps its
-/// name in the input's folder is the input's own result.
+/// Refuses jobs with the same input or the same output. An output cannot replace the input of
+/// another job, because outputs keep the names of their inputs.
 void check_clashes(const std::vector<Job>& jobs) {
     std::set<fs::path> inputs;
     for (const Job& job : jobs) {
@@ -135,8 +135,8 @@ fs::path identity_of(const fs::path& file) {
     const fs::path whole = fs::absolute(file);
     std::error_code error;
     fs::path canonical = fs::weakly_canonical(whole, error);
-    // What cannot be looked at, such as a name that is too long, is no other file's; whoever opens
-    // it says what is wrong with it.
+    // A path with an error, such as a name that is too long, differs from all others. Opening it
+    // reports the error.
     return error ? whole.lexically_normal() : canonical;
 }
 

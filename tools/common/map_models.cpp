@@ -31,7 +31,7 @@ MapModelPart part_of(const GltfDocument& document, GltfPrimitiveId id, Report& r
     return {document.describe(id), std::move(mesh), {}, {}, set};
 }
 
-/// By the rules of GltfDocument::from_mesh().
+/// Converts materials by the rules of GltfDocument::from_mesh().
 MapLooks looks_of(const std::vector<MtlMaterial>& materials) {
     MapLooks looks;
     const auto texture = [&](const std::optional<std::filesystem::path>& file) {
@@ -54,7 +54,7 @@ MapLooks looks_of(const std::vector<MtlMaterial>& materials) {
     return looks;
 }
 
-/// Where some parts have tangents, the others get what a renderer gives them.
+/// If some parts have tangents, the others get those of MikkTSpace.
 void add_missing_tangents(MapModel& model, Report& report) {
     const auto has_tangents = [](const MapModelPart& part) { return !part.mesh.tangents.empty(); };
     if (std::none_of(model.parts.begin(), model.parts.end(), has_tangents)) return;
@@ -89,7 +89,7 @@ MapModel model_of(const GltfDocument& document, ModelSpace space, Report& report
     return model;
 }
 
-/// Parts without colours are white, where others have some.
+/// Parts without colors are white if others have colors.
 std::vector<glm::vec4> joined_colors(const std::vector<MapModelPart>& parts) {
     const auto has_colors = [](const MapModelPart& part) { return !part.mesh.colors.empty(); };
     std::vector<glm::vec4> all;
@@ -101,7 +101,7 @@ std::vector<glm::vec4> joined_colors(const std::vector<MapModelPart>& parts) {
     return all;
 }
 
-/// One attribute of all parts, or nothing where one of them has none.
+/// Joins an attribute of all parts. The result is empty if a part lacks it.
 template <typename Value>
 std::vector<Value> joined(const std::vector<MapModelPart>& parts,
                           std::vector<Value> Mesh::*attribute) {
@@ -114,7 +114,7 @@ std::vector<Value> joined(const std::vector<MapModelPart>& parts,
     return all;
 }
 
-/// The material ranges of triangles that are about to be added.
+/// Appends the material ranges of a part, before its triangles are added.
 void append_ranges(Mesh& all, const Mesh& part) {
     const auto first = static_cast<std::uint32_t>(all.triangles.size());
     const auto count = static_cast<std::uint32_t>(part.triangles.size());

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// The models that maps are made of and for, from files. Tests: tests/tools/map_models_test.cpp.
+/// Reads the models of a bake: meshes, objects and materials.
+/// Tests: tests/tools/map_models_test.cpp.
 #pragma once
 
 #include <filesystem>
@@ -16,20 +17,20 @@
 
 namespace relief::tools {
 
-/// object: each primitive of a document once, in its own axes. world: as the scene places them.
+/// object: each primitive of a document once, in object space. world: each instance in the scene.
 enum class ModelSpace { object, world };
 
-/// A primitive of a document, or all of another file.
+/// A primitive of a document, or the mesh of another file.
 struct MapModelPart {
-    std::string name;  ///< "mesh 'Body' primitive 0"; empty where it is all of the file.
+    std::string name;  ///< "mesh 'Body' primitive 0"; empty for the mesh of another file.
     Mesh mesh;
-    /// The names of its objects: of OBJ files (MeshFile::objects), or the node that places it.
+    /// The names of its objects: those of an OBJ file (MeshFile::objects), or the node.
     std::vector<std::string> objects{};
-    std::vector<std::uint32_t> object_of{};  ///< By triangle; empty: all of the same.
-    int texcoord_set = 0;                    ///< Of a document: which the mesh has.
+    std::vector<std::uint32_t> object_of{};  ///< By triangle; empty for a single object.
+    int texcoord_set = 0;                    ///< The set in `mesh.texcoords` for a document.
 };
 
-/// What a scene's materials look like, as files have it: nothing is decoded.
+/// The materials and images of a scene, without decoded pixels.
 struct MapLooks {
     std::vector<GltfMaterial> materials;
     std::vector<GltfImage> images;
@@ -37,35 +38,34 @@ struct MapLooks {
 
 struct MapModel {
     std::vector<MapModelPart> parts;
-    MapLooks looks;  ///< By the same numbers as `materials`; only of models in world space.
-    std::vector<std::string> materials;  ///< Names, by the numbers in the parts' material ranges.
-    glm::dvec3 origin{0.0};              ///< Positions are relative to it (mesh_file.h).
-    /// How the only primitive of a scene is placed; absent where there are several. Mesh files: as
-    /// they are.
+    MapLooks looks;                      ///< In the order of `materials`; only in world space.
+    std::vector<std::string> materials;  ///< Names, by the indices in the material ranges.
+    glm::dvec3 origin{0.0};              ///< The origin of the positions (mesh_file.h).
+    /// The transform of the only primitive of a scene, or the identity for a mesh file; absent for
+    /// several primitives.
     std::optional<glm::dmat3> world_from_object;
 };
 
-/// All triangles of a model, with what a map on them depends on.
+/// Reads all triangles of a model with their attributes.
 ///
-/// Texture coordinates are those that glTF's tangents belong to: the set of a primitive's normal
-/// texture (GltfDocument::tangent_texcoords). Normals and tangents are the file's. Where a glTF
-/// primitive has no normals, they are flat, as glTF asks, and its tangents are left out; where some
-/// primitives of a scene have tangents, the others get MikkTSpace's, as a renderer gives them.
-/// Other files without normals have none here either. \throws FileError, UsageError if the file
-/// cannot be read
+/// Texture coordinates are the set of a primitive's normal texture
+/// (GltfDocument::tangent_texcoords). Normals and tangents are those of the file. A glTF primitive
+/// without normals gets flat ones, as glTF requires, and no tangents. If only some primitives of a
+/// scene have tangents, the others get those of MikkTSpace, as in a renderer. Other files without
+/// normals get none. \throws FileError, UsageError if the file cannot be read
 MapModel read_map_model(const std::filesystem::path& file, ModelSpace space, Report& report);
 
-/// Every part must have texture coordinates, without which no map lies on it.
-/// \throws FileError, naming the part that has none, with what is wrong and what to do
+/// Checks that every part has texture coordinates.
+/// \throws FileError with the part, the problem and the remedy
 void require_texcoords(const std::filesystem::path& file, const MapModel& model,
                        const std::string& problem, const std::string& remedy);
 
-/// The parts as one mesh, in their order, with those attributes that all of them have, and their
-/// material ranges. Colours also where only some have them: the others are white, as glTF says.
-/// \throws InvalidInput if there are more vertices than indices can name
+/// Joins the parts in their order to one mesh with their material ranges and the attributes that
+/// all of them have. Colors are kept if any part has them; the other parts are white, as in glTF.
+/// \throws InvalidInput if there are too many vertices for 32-bit indices
 Mesh joined(std::vector<MapModelPart> parts);
 
-/// Makes positions relative to another origin.
+/// Changes the origin of the positions.
 void move_to(MapModel& model, const glm::dvec3& origin);
 
 }  // namespace relief::tools

@@ -54,12 +54,12 @@ const FormatRow& row_of(ModelFormat format) {
 
 std::vector<std::string> write_as_mesh(const std::filesystem::path& file, const MeshFile& contents,
                                        bool has_tangents) {
-    std::vector<std::string> left_behind;
-    if (has_tangents) left_behind.emplace_back("tangents");
+    std::vector<std::string> omitted;
+    if (has_tangents) omitted.emplace_back("tangents");
     if (writable_format(file) == ModelFormat::ply && !contents.materials.empty())
-        left_behind.push_back(counted(contents.materials.size(), "material"));
+        omitted.push_back(counted(contents.materials.size(), "material"));
     write_mesh(file, contents);
-    return left_behind;
+    return omitted;
 }
 
 std::vector<std::string> write_document(const std::filesystem::path& file,
@@ -70,10 +70,10 @@ std::vector<std::string> write_document(const std::filesystem::path& file,
         return {};
     }
     const MeshFile flat = about(input, [&] { return flattened(document); });
-    std::vector<std::string> left_behind = document.beyond_a_mesh();
+    std::vector<std::string> omitted = document.beyond_a_mesh();
     for (std::string& more : write_as_mesh(file, flat, has_tangents))
-        left_behind.push_back(std::move(more));
-    return left_behind;
+        omitted.push_back(std::move(more));
+    return omitted;
 }
 
 }  // namespace

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reading a normal map with its conventions. Tests: tests/tools/convert_test.cpp.
 #include "common/normal_map_input.h"
 
 #include <fmt/format.h>
@@ -8,20 +7,20 @@
 #include <array>
 #include <string_view>
 
+#include "common/choices.h"
 #include "common/command.h"
-#include "common/map_choices.h"
 #include "relief/mesh/image_file.h"
 #include "relief/mesh/normal_map_check.h"
 
 namespace relief::tools {
 namespace {
 
-/// The green that the file itself names.
+/// Returns the green that the file states.
 std::optional<Green> named_green(const std::map<std::string, std::string>& metadata) {
-    const auto said = metadata.find("relief:green");
-    if (said == metadata.end()) return std::nullopt;
-    if (said->second == "up") return Green::up;
-    if (said->second == "down") return Green::down;
+    const auto entry = metadata.find("relief:green");
+    if (entry == metadata.end()) return std::nullopt;
+    if (entry->second == "up") return Green::up;
+    if (entry->second == "down") return Green::down;
     return std::nullopt;
 }
 
@@ -42,7 +41,7 @@ std::string zero_words(const MapInputOptions& options, const InputMap& map) {
     return fmt::format("zero is {} of 255 ({})", name_of(map.flat, zero_code_choices()), source);
 }
 
-/// Whether float samples are below 0 more often than overshoots of a filter are.
+/// Returns whether more float samples are negative than overshoots of a filter would be.
 bool shows_signs(const Image& image) {
     std::size_t below = 0;
     for (const float sample : image.as<float>())
@@ -50,8 +49,8 @@ bool shows_signs(const Image& image) {
     return below > image.sample_count() / 1000;
 }
 
-/// Brings float samples to (n + 1) / 2, or says that they should have been; alpha stays.
-void settle_signs(const std::filesystem::path& file, bool is_signed, Image& image) {
+/// Converts signed float samples to (n + 1) / 2, except alpha.
+void convert_signs(const std::filesystem::path& file, bool is_signed, Image& image) {
     if (image.bits() != 32) {
         if (is_signed)
             throw UsageError(fmt::format("--input-signed: {} is of {} bits, which have no sign",
@@ -70,7 +69,7 @@ void settle_signs(const std::filesystem::path& file, bool is_signed, Image& imag
     }
 }
 
-/// Which way green is bright by the slopes of a map, whatever its file says.
+/// Detects green by the slopes of a map, whatever its file states.
 Green found_green(const std::filesystem::path& file, const Image& image) {
     const std::optional<Green> green = check_normal_map(image).green.green;
     if (green) return *green;
@@ -91,7 +90,7 @@ InputMap read_normal_map(const std::filesystem::path& file, const MapInputOption
     ImageInfo info = read_image_info(file);
     check_channels(file, info.channels);
     map.image = read_image(file, ImageUse::data);
-    settle_signs(file, options.is_signed, map.image);
+    convert_signs(file, options.is_signed, map.image);
     map.metadata = std::move(info.metadata);
     map.green = options.green ? options.green : named_green(map.metadata);
     if (options.finds_green) map.green = found_green(file, map.image);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// A normal map as it comes: its texels, and what its numbers mean by the command line, by what its
-/// file says, or by what it shows. Tests: tests/tools/convert_test.cpp.
+/// Reads a normal map with its conventions, which are given by the command line or the file, or are
+/// detected. Tests: tests/tools/convert_test.cpp.
 #pragma once
 
 #include <filesystem>
@@ -14,27 +14,27 @@
 
 namespace relief::tools {
 
-/// What the command line says about a map.
+/// The conventions given on the command line.
 struct MapInputOptions {
     std::optional<Green> green;
-    bool finds_green = false;  ///< By the slopes of the map: `auto`.
+    bool finds_green = false;  ///< Detects green by the slopes of the map: `auto`.
     std::optional<FlatCode> flat;
-    bool is_signed = false;  ///< Float samples hold n itself, not (n + 1) / 2.
+    bool is_signed = false;  ///< Float samples are n instead of (n + 1) / 2.
 };
 
 struct InputMap {
-    Image image;  ///< Float samples hold (n + 1) / 2, however they were stored.
+    Image image;  ///< Float samples are converted to (n + 1) / 2.
     std::map<std::string, std::string> metadata;
-    std::optional<Green> green;  ///< Absent where nobody says, and nobody asks the map.
+    std::optional<Green> green;  ///< Absent if it is neither given nor detected.
     FlatCode flat = FlatCode::half;
     std::string words;  ///< "green down (as told), zero is 127.5 of 255 (as its file says)"
 };
 
-/// \throws FileError if it cannot be read, has too few channels to be a normal map, or cannot tell
-///         its green where that is asked of it
+/// \throws FileError if the file cannot be read, has too few channels for a normal map, or if
+/// detecting green fails
 InputMap read_normal_map(const std::filesystem::path& file, const MapInputOptions& options);
 
-/// The text entries that a converted map keeps: who made it and what it shows, and relief's own.
+/// Returns the text entries that a converted map keeps: author, description, and those of relief.
 std::map<std::string, std::string> kept_metadata(const std::map<std::string, std::string>& all);
 
 }  // namespace relief::tools

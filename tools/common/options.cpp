@@ -12,7 +12,7 @@
 namespace relief::tools {
 namespace {
 
-/// The whole text as a number, or nothing.
+/// Parses the whole text as a number.
 template <typename Number>
 std::optional<Number> whole(std::string_view text) {
     if (text.starts_with('+')) text.remove_prefix(1);
@@ -39,7 +39,7 @@ AddedOption add(CLI::App& app, const std::string& name, const std::string& value
     const auto callback = [name, take, repeatable](const CLI::results_t& values) {
         if (!repeatable && values.size() > 1) throw UsageError(name + ": given more than once");
         for (const std::string& value : values) {
-            // A forgotten value makes the next option look like one.
+            // If a value is missing, the next option is in its place.
             if (value.empty() || value.starts_with("--"))
                 throw UsageError(name + ": needs a value");
             take(name + " " + value, value);
@@ -78,7 +78,7 @@ glm::vec3 parse_color(const std::string& subject, std::string_view text) {
     const auto result = has_form ? std::from_chars(text.data() + 1, end, code, 16)
                                  : std::from_chars_result{text.data(), std::errc::invalid_argument};
     if (result.ec != std::errc{} || result.ptr != end)
-        throw UsageError(subject + ": not a colour like #ff8000");
+        throw UsageError(subject + ": not a color like #ff8000");
     const auto channel = [code](unsigned shift) {
         return linear_from_srgb(static_cast<float>((code >> shift) & 0xFFU) / 255.0F);
     };
@@ -120,8 +120,8 @@ AddedOption AddedOption::required() const {
     return *this;
 }
 
-AddedOption AddedOption::takes(int fewest, int most) const {
-    option_->expected(fewest, most);
+AddedOption AddedOption::takes(int min, int max) const {
+    option_->expected(min, max);
     return *this;
 }
 
@@ -161,13 +161,13 @@ AddedOption add_files(CLI::App& app, const std::string& name,
 void add_general_options(CLI::App& app, GeneralOptions& options) {
     constexpr int max_threads = 1024;
     add_value(app, "--threads", "N",
-              "Use at most N threads. The output does not depend on it. Default: all of the "
-              "machine's.",
+              "Use at most N threads. The output does not depend on N. Default: all of the "
+              "machine.",
               [&options](const std::string& subject, const std::string& text) {
                   options.threads =
                       static_cast<unsigned>(parse_integer(subject, text, 1, max_threads));
               });
-    add_switch(app, "--quiet", options.quiet, "Print nothing but warnings and errors.");
+    add_switch(app, "--quiet", options.quiet, "Print only warnings and errors.");
 }
 
 }  // namespace relief::tools

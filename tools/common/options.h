@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Options whose errors say what is wrong and what is allowed: "--strength abc: not a number",
+/// Options whose errors give the problem and the valid values: "--strength abc: not a number",
 /// "--kernel foo: not one of central3, sobel3", "--fov 200: not between 1 and 170 degrees".
 ///
-/// A bad value, a missing one and one given twice throw UsageError. Tests:
-/// tests/tools/options_test.cpp.
+/// Invalid, missing and repeated values throw UsageError.
+/// Tests: tests/tools/options_test.cpp.
 #pragma once
 
 #include <fmt/format.h>
@@ -23,36 +23,36 @@
 
 namespace relief::tools {
 
-/// Which numbers an option takes.
+/// The valid numbers of an option.
 struct Range {
     double min = -std::numeric_limits<double>::max();
     double max = std::numeric_limits<double>::max();
-    std::string unit;  ///< For the message: "degrees".
+    std::string unit;  ///< The unit in messages: "degrees".
 };
 
-/// The words that an option takes, and what each means.
+/// The words of an option with their values.
 template <typename Enum>
 using Choices = std::vector<std::pair<std::string_view, Enum>>;
 
-/// A finite number within a range. `subject` is what the error names: "--light point:1,x: x".
+/// Parses a finite number within a range. Errors begin with `subject`: "--light point:1,x: x".
 double parse_number(const std::string& subject, std::string_view text, const Range& range = {});
 
-/// A whole number within a range.
+/// Parses a whole number within a range.
 int parse_integer(const std::string& subject, std::string_view text, int min, int max);
 
-/// "#ff8000", sRGB-coded as everywhere on screens, as linear colour.
+/// Parses an sRGB color, "#ff8000", and returns it as linear color.
 glm::vec3 parse_color(const std::string& subject, std::string_view text);
 
-/// "1920x1080", each side from 1 to 16384.
+/// Parses "1920x1080", with sides from 1 to 16384.
 glm::ivec2 parse_size(const std::string& subject, std::string_view text);
 
-/// The parts between the separators; empty parts are kept.
+/// Returns the parts between separators, including empty ones.
 std::vector<std::string> split(std::string_view text, char separator);
 
-/// The pieces between commas as numbers.
+/// Parses numbers between commas.
 std::vector<double> parse_numbers(const std::string& subject, std::string_view text);
 
-/// The choice of that name.
+/// Returns the choice with a name.
 template <typename Enum>
 Enum parse_choice(const std::string& subject, std::string_view text, const Choices<Enum>& choices) {
     std::vector<std::string_view> names;
@@ -63,7 +63,7 @@ Enum parse_choice(const std::string& subject, std::string_view text, const Choic
     throw UsageError(fmt::format("{}: not one of {}", subject, fmt::join(names, ", ")));
 }
 
-/// The name of a choice; the opposite of parse_choice.
+/// Returns the name of a choice, the inverse of parse_choice().
 template <typename Enum>
 std::string name_of(Enum wanted, const Choices<Enum>& choices) {
     for (const auto& [name, value] : choices) {
@@ -72,47 +72,47 @@ std::string name_of(Enum wanted, const Choices<Enum>& choices) {
     return "";
 }
 
-/// An option that was added, to say more of it.
+/// An added option, for further settings.
 class AddedOption {
   public:
     explicit AddedOption(CLI::Option& option) : option_(&option) {}
 
-    /// The heading under which --help lists it.
+    /// Sets the heading in the help page.
     AddedOption group(const std::string& heading) const;
     AddedOption required() const;
-    /// How many values may follow it.
-    AddedOption takes(int fewest, int most) const;
+    /// Sets the number of values.
+    AddedOption takes(int min, int max) const;
 
   private:
     CLI::Option* option_;
 };
 
-/// An option with one value, given at most once. `take` gets "--name VALUE" for messages, and the
-/// value.
+/// Adds an option with one value, given at most once. `take` receives "--name VALUE" for messages,
+/// and the value.
 AddedOption add_value(
     CLI::App& app, const std::string& name, const std::string& value_name,
     const std::string& description,
     const std::function<void(const std::string& subject, const std::string& text)>& take);
 
-/// The same for an option that may be given many times.
+/// The same for an option that may be repeated.
 AddedOption add_repeatable(
     CLI::App& app, const std::string& name, const std::string& value_name,
     const std::string& description,
     const std::function<void(const std::string& subject, const std::string& text)>& take);
 
-/// A flag without a value.
+/// Adds a flag without a value.
 AddedOption add_switch(CLI::App& app, const std::string& name, bool& target,
                        const std::string& description);
 
-/// A required file argument.
+/// Adds a required file argument.
 AddedOption add_file(CLI::App& app, const std::string& name, std::filesystem::path& target,
                      const std::string& description);
 
-/// File arguments, any number of them; how many there must be is for the caller to say.
+/// Adds any number of file arguments. Callers check the number.
 AddedOption add_files(CLI::App& app, const std::string& name,
                       std::vector<std::filesystem::path>& target, const std::string& description);
 
-/// An option that takes a file. Target: std::filesystem::path or an optional of it.
+/// Adds an option with a file. Target: std::filesystem::path or an optional of it.
 template <typename Target>
 AddedOption add_path(CLI::App& app, const std::string& name, Target& target,
                      const std::string& description) {
@@ -122,7 +122,7 @@ AddedOption add_path(CLI::App& app, const std::string& name, Target& target,
                      });
 }
 
-/// An option that takes a number. Target: double, float, or an optional of one.
+/// Adds an option with a number. Target: double, float, or an optional of one.
 template <typename Target>
 AddedOption add_number(CLI::App& app, const std::string& name, const std::string& value_name,
                        Target& target, const Range& range, const std::string& description) {
@@ -138,18 +138,18 @@ AddedOption add_number(CLI::App& app, const std::string& name, const std::string
                      });
 }
 
-/// An option that takes one of several words. Target: the enumeration or an optional of it.
+/// Adds an option with one of several words. Target: the enumeration or an optional of it.
 template <typename Enum, typename Target>
 AddedOption add_choice(CLI::App& app, const std::string& name, Target& target,
                        const Choices<Enum>& choices, const std::string& description) {
     std::vector<std::string_view> names;
     for (const auto& choice : choices)
         names.push_back(choice.first);
-    // Many words would run out of the screen: those are told in the description.
-    constexpr std::size_t longest_list = 48;
+    // A long list of words is part of the description instead of the value name.
+    constexpr std::size_t max_list_length = 48;
     std::string value_name = fmt::format("{}", fmt::join(names, "|"));
     std::string details = description;
-    if (value_name.size() > longest_list) {
+    if (value_name.size() > max_list_length) {
         details = fmt::format("One of {}. {}", fmt::join(names, ", "), description);
         value_name = "WORD";
     }
@@ -159,10 +159,10 @@ AddedOption add_choice(CLI::App& app, const std::string& name, Target& target,
                      });
 }
 
-/// --threads and --quiet, which most commands have.
+/// --threads and --quiet.
 struct GeneralOptions {
     bool quiet = false;
-    unsigned threads = 0;  ///< 0: as many as the machine has.
+    unsigned threads = 0;  ///< 0: all of the machine.
 };
 
 void add_general_options(CLI::App& app, GeneralOptions& options);

@@ -1,21 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
-// Words for numbers, and the lines of a summary. Tests: tests/tools/text_test.cpp.
 #include "common/text.h"
-#include "common/console.h"
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cctype>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 #include <span>
+#include <string_view>
 
 #include "file_replacement.h"
 
 namespace relief::tools {
 namespace {
 
-/// JSON text that is valid UTF-8 whatever bytes the names in it hold.
+/// Returns JSON text with invalid UTF-8 replaced.
 std::string dumped(const nlohmann::ordered_json& json) {
     return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }
@@ -72,6 +72,20 @@ std::string extension_of(const std::filesystem::path& file) {
     for (char& letter : extension)
         letter = static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
     return extension;
+}
+
+std::string quoted(const std::filesystem::path& file) {
+    const std::string name = file.string();
+    const bool is_plain = std::all_of(name.begin(), name.end(), [](unsigned char letter) {
+        return std::isalnum(letter) != 0 || letter > 127 ||
+               std::string_view("/._-+=,:@%").find(static_cast<char>(letter)) !=
+                   std::string_view::npos;
+    });
+    if (is_plain) return name;
+    std::string result = "'";
+    for (const char letter : name)
+        result += letter == '\'' ? std::string("'\\''") : std::string(1, letter);
+    return result + "'";
 }
 
 void print_entry(const std::string& label, const std::string& text) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// How summaries say numbers, sizes and times, and print their lines.
+/// Formats numbers, sizes and times, and prints the lines of summaries.
 /// Tests: tests/tools/text_test.cpp.
 #pragma once
 
@@ -15,10 +15,10 @@
 
 namespace relief::tools {
 
-/// "1 triangle", "4510 triangles"; `plural` is for words that do not just add an s.
+/// "1 triangle", "4510 triangles". `plural` is for irregular plurals.
 std::string counted(std::size_t count, const std::string& thing, const std::string& plural = "");
 
-/// "812 B", "8.6 MB" (of 1000).
+/// "812 B", "8.6 MB" with decimal units.
 std::string byte_size(std::uintmax_t bytes);
 
 /// "0.4 ms", "12 ms", "1.23 s"
@@ -31,15 +31,17 @@ nlohmann::ordered_json durations_json(const std::vector<Stage>& stages);
 /// "out/vase.glb: 1.2 MB"
 std::string file_and_size(const std::filesystem::path& file);
 
-/// Lower-case extension with its dot.
+/// Returns the extension in lower case with its dot.
 std::string extension_of(const std::filesystem::path& file);
 
-/// Prints "label     text" lines on stdout, the text aligned; a label is not repeated for the lines
-/// that follow the first.
+/// Returns a file name as typed in a shell, with quotes if necessary.
+std::string quoted(const std::filesystem::path& file);
+
+/// Prints aligned "label     text" lines. Only the first of several lines has the label.
 void print_entry(const std::string& label, const std::string& text);
 void print_entry(const std::string& label, const std::vector<std::string>& lines);
 
-/// Prints JSON on stdout, indented, invalid UTF-8 in names replaced.
+/// Prints indented JSON, with invalid UTF-8 in names replaced.
 void print_json(const nlohmann::ordered_json& json);
 
 /// Replaces a file by indented JSON. \throws FileError

@@ -6,7 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "common/console.h"
+#include "common/command.h"
 #include "common/text.h"
 #include "parallel.h"
 #include "relief/mesh/threads.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Describes the machine by /proc, uname and the compiler. Tests:
-// tests/tools/accuracy_report_test.cpp.
+// Describes the machine by /proc, uname and the compiler.
+// Tests: tests/tools/accuracy_report_test.cpp.
 #include "accuracy_report.h"
 
 #include <fmt/format.h>

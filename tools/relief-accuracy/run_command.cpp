@@ -10,7 +10,7 @@
 
 #include "accuracy_report.h"
 #include "commands.h"
-#include "common/console.h"
+#include "common/command.h"
 #include "common/text.h"
 #include "experiment_options.h"
 #include "relief/accuracy/passes.h"

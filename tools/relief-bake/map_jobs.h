@@ -11,8 +11,8 @@
 
 #include "common/batch.h"
 #include "common/file_jobs.h"
+#include "common/findings.h"
 #include "common/options.h"
-#include "common/report_options.h"
 
 namespace relief::tools {
 

@@ -9,7 +9,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "common/map_choices.h"
+#include "common/choices.h"
 #include "common/options.h"
 #include "common/text.h"
 

@@ -14,10 +14,10 @@
 
 #include "commands.h"
 #include "common/batch.h"
+#include "common/choices.h"
 #include "common/command.h"
-#include "common/frame_choices.h"
+#include "common/findings.h"
 #include "common/options.h"
-#include "common/report_options.h"
 #include "common/text.h"
 #include "process.h"
 #include "relief/mesh/threads.h"

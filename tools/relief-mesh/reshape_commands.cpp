@@ -19,12 +19,11 @@
 #include <vector>
 
 #include "commands.h"
+#include "common/choices.h"
 #include "common/command.h"
 #include "common/findings.h"
-#include "common/frame_choices.h"
 #include "common/model_file.h"
 #include "common/options.h"
-#include "common/report_options.h"
 #include "common/text.h"
 #include "relief/mesh/decimate.h"
 #include "relief/mesh/frames.h"

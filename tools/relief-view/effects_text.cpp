@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "common/console.h"
+#include "common/command.h"
 #include "common/text.h"
 #include "relief/shade/planned_inputs.h"
 

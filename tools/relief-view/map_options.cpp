@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "map_options.h"
 
-#include "common/map_choices.h"
+#include "common/choices.h"
 #include "field_options.h"
 
 namespace relief::tools {

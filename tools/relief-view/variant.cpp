@@ -6,8 +6,7 @@
 
 #include <algorithm>
 
-#include "common/frame_choices.h"
-#include "common/map_choices.h"
+#include "common/choices.h"
 #include "field_options.h"
 
 namespace relief::tools {

@@ -8,7 +8,7 @@
 #include <functional>
 #include <map>
 
-#include "common/map_choices.h"
+#include "common/choices.h"
 #include "material_overrides.h"
 #include "relief/mesh/error.h"
 #include "relief/mesh/height_map.h"

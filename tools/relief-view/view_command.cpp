@@ -9,9 +9,8 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "common/console.h"
+#include "common/command.h"
 #include "common/findings.h"
-#include "common/report_options.h"
 #include "common/text.h"
 #include "compare_options.h"
 #include "debug_options.h"

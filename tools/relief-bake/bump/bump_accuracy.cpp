@@ -10,7 +10,7 @@
 #include <cmath>
 
 #include "bump/bump_accuracy_summary.h"
-#include "common/map_choices.h"
+#include "common/choices.h"
 #include "relief/mesh/destaircase.h"
 #include "relief/mesh/error.h"
 

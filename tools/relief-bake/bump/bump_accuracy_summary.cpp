@@ -8,7 +8,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "common/map_choices.h"
+#include "common/choices.h"
 #include "common/text.h"
 
 namespace relief::tools {

@@ -3,7 +3,7 @@
 // Tests: tests/tools/relief_bake_test.cpp.
 #include "bump/bump_options.h"
 
-#include "common/map_choices.h"
+#include "common/choices.h"
 
 namespace relief::tools {
 namespace {

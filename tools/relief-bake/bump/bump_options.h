@@ -8,8 +8,8 @@
 #include <optional>
 
 #include "bump/bump_accuracy.h"
+#include "common/choices.h"
 #include "common/options.h"
-#include "common/wrap_option.h"
 #include "map_output.h"
 #include "relief/mesh/bump_file.h"
 

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "bump/bump_accuracy_summary.h"
-#include "common/map_choices.h"
+#include "common/choices.h"
 #include "common/text.h"
 
 namespace relief::tools {

@@ -10,7 +10,7 @@
 #include "check/map_check.h"
 #include "check/surface_check.h"
 #include "commands.h"
-#include "common/map_choices.h"
+#include "common/choices.h"
 #include "common/options.h"
 #include "common/text.h"
 #include "relief/mesh/threads.h"

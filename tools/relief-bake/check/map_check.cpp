@@ -6,9 +6,9 @@
 #include <nlohmann/json.hpp>
 
 #include "check/map_remedies.h"
+#include "common/choices.h"
 #include "common/command.h"
 #include "common/findings.h"
-#include "common/map_choices.h"
 #include "common/text.h"
 #include "relief/mesh/image_file.h"
 #include "relief/mesh/image_tags.h"

@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "common/quoted.h"
+#include "common/text.h"
 
 namespace relief::tools {
 

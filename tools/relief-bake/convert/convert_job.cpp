@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "common/map_choices.h"
+#include "common/choices.h"
 #include "convert/convert_levels.h"
 #include "convert/convert_steps.h"
 #include "relief/mesh/image_channels.h"

@@ -5,9 +5,8 @@
 
 #include <fmt/format.h>
 
-#include "common/map_choices.h"
+#include "common/choices.h"
 #include "common/options.h"
-#include "common/wrap_option.h"
 #include "convert/convert_words.h"
 
 namespace relief::tools {

@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "common/frame_choices.h"
+#include "common/choices.h"
 #include "common/map_models.h"
 #include "common/options.h"
 #include "convert/convert_steps.h"

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/map_choices.h"
+#include "common/choices.h"
 #include "convert/convert_words.h"
 
 namespace relief::tools {

@@ -9,7 +9,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "common/map_choices.h"
+#include "common/choices.h"
 #include "common/text.h"
 #include "relief/mesh/image_channels.h"
 #include "relief/mesh/image_file.h"

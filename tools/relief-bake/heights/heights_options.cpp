@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "common/map_choices.h"
+#include "common/choices.h"
 #include "common/options.h"
 #include "common/text.h"
 

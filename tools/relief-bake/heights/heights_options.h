@@ -6,9 +6,9 @@
 #include <filesystem>
 #include <optional>
 
+#include "common/choices.h"
 #include "common/command.h"
 #include "common/normal_map_input.h"
-#include "common/wrap_option.h"
 #include "relief/mesh/heights_from_normals.h"
 
 namespace relief::tools {

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "common/map_choices.h"
+#include "common/choices.h"
 #include "common/options.h"
 #include "common/text.h"
 #include "mesh/mesh_verify.h"

@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "common/quoted.h"
+#include "common/text.h"
 
 namespace relief::tools {
 namespace {

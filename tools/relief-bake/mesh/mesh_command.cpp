@@ -8,8 +8,8 @@
 #include <nlohmann/json.hpp>
 
 #include "commands.h"
+#include "common/findings.h"
 #include "common/options.h"
-#include "common/report_options.h"
 #include "mesh/mesh_summary.h"
 #include "mesh/model_fit.h"
 #include "relief/mesh/threads.h"

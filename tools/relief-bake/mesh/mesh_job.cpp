@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <memory>
 
-#include "common/map_choices.h"
+#include "common/choices.h"
 #include "mesh/bake_models.h"
 #include "mesh/bake_words.h"
 #include "mesh/mesh_preview.h"

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "common/command.h"
-#include "common/report_options.h"
+#include "common/findings.h"
 #include "map_output.h"
 #include "mesh/error_bound.h"
 #include "mesh/high_looks.h"

@@ -9,7 +9,7 @@
 #include <chrono>
 #include <cstdio>
 
-#include "common/console.h"
+#include "common/command.h"
 #include "file_replacement.h"
 #include "window/comparison.h"
 #include "window/dropped_files.h"

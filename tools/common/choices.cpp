@@ -1,12 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// One word is for both axes. Tests: tests/tools/relief_bake_test.cpp, relief_bake_heights_test.cpp,
-// convert_test.cpp.
-#include "common/wrap_option.h"
+#include "common/choices.h"
 
 #include <utility>
 #include <vector>
-
-#include "common/map_choices.h"
 
 namespace relief::tools {
 namespace {
@@ -19,7 +15,7 @@ Choices<std::optional<Wrap>> wrap_or_auto_choices() {
     return choices;
 }
 
-/// What the words stand for along x and along y.
+/// Returns the choices along x and y. A single word applies to both axes.
 template <typename Choice>
 std::pair<Choice, Choice> parse_axes(const std::string& subject, const std::string& text,
                                      const Choices<Choice>& choices) {
