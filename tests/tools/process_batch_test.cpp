@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Processing several models by `relief-mesh process`: the names of outputs, failures, reports.
-#include "process.h"
+#include "common/model_file.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -12,6 +12,8 @@
 namespace relief::tools {
 namespace {
 
+namespace fs = std::filesystem;
+
 struct FormatRow {
     ModelFormat format;
     const char* extension;
@@ -76,6 +78,21 @@ std::vector<std::string> write_document(const std::filesystem::path& file,
     return omitted;
 }
 
+/// Returns the name of a model in an output folder.
+fs::path name_in_folder(const fs::path& input, std::optional<ModelFormat> format) {
+    const ModelFormat input_format = readable_format(input);
+    fs::path name = input.filename();
+    if (format) return name.replace_extension(extension_for(*format));
+    const bool is_writable = !name_of(input_format, writable_choices()).empty();
+    return is_writable ? name : name.replace_extension(extension_for(ModelFormat::glb));
+}
+
+void refuse_format(ModelFormat format, const fs::path& output) {
+    throw UsageError(fmt::format("--format {}: the name {} already has a format",
+                                 name_of(format, writable_choices()), output.string()),
+                     "omit --format, or give a folder: -o out/");
+}
+
 }  // namespace
 
 ModelFormat readable_format(const std::filesystem::path& file) {
@@ -127,6 +144,13 @@ std::vector<std::string> compression_in_words(const GltfDocument& document, bool
         }
     }
     return words;
+}
+
+JobList model_jobs_of(const FileWords& words, std::optional<ModelFormat> format) {
+    JobList list = jobs_of(words, "model",
+                           [&](const fs::path& input) { return name_in_folder(input, format); });
+    if (format && !list.folder) refuse_format(*format, list.jobs.front().output);
+    return list;
 }
 
 std::vector<std::string> write_model(const std::filesystem::path& file, const Model& model,

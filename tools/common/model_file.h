@@ -5,14 +5,13 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
-#include <variant>
 #include <vector>
 
+#include "common/file_jobs.h"
 #include "common/options.h"
-#include "relief/mesh/gltf_document.h"
-#include "relief/mesh/mesh_file.h"
-#include "relief/mesh/report.h"
+#include "relief/mesh/model.h"
 
 namespace relief::tools {
 
@@ -34,14 +33,19 @@ bool is_document(ModelFormat format);
 /// "glTF", "Wavefront OBJ", ...
 std::string format_name(ModelFormat format);
 
-/// The contents of a file: a glTF document, or a mesh with its materials.
-using Model = std::variant<GltfDocument, MeshFile>;
-
 Model read_model(const std::filesystem::path& file, Report& report);
 
 /// Describes the compression of a document: "KHR_draco_mesh_compression of 2 primitives".
 /// \param only_decoded  omits content that stays compressed
 std::vector<std::string> compression_in_words(const GltfDocument& document, bool only_decoded);
+
+/// Returns the input and output files of a command line. In an output folder, a model keeps its
+/// name. STL and OFF, which cannot be written, become .glb unless `format` is given.
+///
+/// \param format  the format of files in an output folder; default: that of the input
+/// \throws UsageError as jobs_of(), for a `format` beside an output file name, and for an input of
+///         unknown format
+JobList model_jobs_of(const FileWords& words, std::optional<ModelFormat> format);
 
 /// Writes a model in the format of the file.
 ///

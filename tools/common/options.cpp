@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Parsing of option values. Every value is taken whole or refused: nothing is clamped, and no
-// trailing text is ignored. Tests: tests/tools/options_test.cpp.
+// Values are never clamped, and trailing characters are errors.
 #include "common/options.h"
 
 #include <CLI/CLI.hpp>

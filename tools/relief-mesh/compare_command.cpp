@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <iterator>
 #include <limits>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -19,8 +18,7 @@
 #include "common/model_file.h"
 #include "common/options.h"
 #include "common/text.h"
-#include "relief/mesh/compare.h"
-#include "relief/mesh/placed.h"
+#include "relief/mesh/compare_models.h"
 #include "relief/mesh/threads.h"
 
 namespace relief::tools {
@@ -35,256 +33,25 @@ struct CompareRequest {
     bool in_world_space = false;  ///< Also if both files are glTF.
 };
 
-/// A primitive of the joined mesh.
-struct ComparedPart {
-    std::string name;  ///< Empty for a file with one mesh.
-    std::size_t first_triangle = 0;
-    std::size_t triangle_count = 0;
-    bool has_normals = false;
-    bool has_tangents = false;
-    std::size_t unmatched = 0;   ///< The number of triangles without partner.
-    FrameComparison comparison;  ///< Only for parts of the first file.
-};
-
-/// The primitives of a file, joined to one mesh with a range per primitive.
-struct ComparedModel {
-    std::filesystem::path file;
-    std::string format;
-    Mesh mesh;
-    std::vector<ComparedPart> parts;
-};
-
-struct ComparedModels {
-    ComparedModel a;
-    ComparedModel b;
-    MatchOptions options;  ///< The tolerances in use.
-    bool in_world_space = false;
-    CornerMatch match;
-    FrameComparison all;
-    /// Matched corners with normals, or tangents, in only one of the files.
-    std::size_t normals_in_one = 0;
-    std::size_t tangents_in_one = 0;
-
-    /// Whether no matched corner differs by more than `degrees` or in its sign.
-    [[nodiscard]] bool is_within(double degrees) const;
-    /// Whether each triangle has exactly one possible partner, and all directions could be
-    /// compared.
-    [[nodiscard]] bool is_complete() const;
-    /// Whether the files have normals or tangents in common.
-    [[nodiscard]] bool has_directions() const;
-};
-
-bool ComparedModels::is_within(double degrees) const {
-    return all.normals.max <= degrees && all.tangents.max <= degrees && all.sign_differences == 0 &&
-           all.normals.undefined + all.tangents.undefined == 0;
-}
-
-bool ComparedModels::is_complete() const {
-    return match.only_a.empty() && match.only_b.empty() && match.ambiguous == 0 &&
-           all.normals.undefined + all.tangents.undefined == 0 &&
-           normals_in_one + tangents_in_one == 0;
-}
-
-bool ComparedModels::has_directions() const {
-    return all.normals.count + all.normals.undefined + all.tangents.count +
-               all.tangents.undefined !=
-           0;
-}
-
-/// The rounding error of text files with six digits, relative to the size of model and texture.
-constexpr double default_tolerance = 1e-5;
-constexpr double default_uv_tolerance = 1e-6;
-
 constexpr std::size_t max_parts = 24;
-constexpr std::size_t max_worst = 24;
-
-/// Appends a primitive. Missing attributes become zeros.
-void append(ComparedModel& model, Mesh mesh, std::string name) {
-    Mesh& all = model.mesh;
-    ComparedPart part;
-    part.name = std::move(name);
-    part.first_triangle = all.triangles.size();
-    part.triangle_count = mesh.triangles.size();
-    part.has_normals = !mesh.normals.empty();
-    part.has_tangents = !mesh.tangents.empty();
-    const auto first = static_cast<std::uint32_t>(all.positions.size());
-    const std::size_t count = all.positions.size() + mesh.positions.size();
-    const auto add = [&](auto& values, auto& more) {
-        if (more.empty() && values.empty()) return;
-        values.resize(first);
-        std::move(more.begin(), more.end(), std::back_inserter(values));
-        values.resize(count);
-    };
-    add(all.positions, mesh.positions);
-    add(all.normals, mesh.normals);
-    add(all.texcoords, mesh.texcoords);
-    add(all.tangents, mesh.tangents);
-    for (const glm::uvec3& triangle : mesh.triangles)
-        all.triangles.push_back(triangle + first);
-    all.material_ranges.push_back({static_cast<std::uint32_t>(part.first_triangle),
-                                   static_cast<std::uint32_t>(part.triangle_count), std::nullopt});
-    model.parts.push_back(std::move(part));
-}
-
-/// A file's contents, and the origin of its positions.
-struct ReadModel {
-    Model model;
-    glm::dvec3 origin{0.0};
-
-    explicit ReadModel(const std::filesystem::path& file, Report& report)
-        : model(read_model(file, report)) {
-        if (const auto* mesh = std::get_if<MeshFile>(&model)) origin = mesh->origin;
-    }
-    [[nodiscard]] bool is_document() const { return std::holds_alternative<GltfDocument>(model); }
-};
-
-void append_primitives(ComparedModel& model, const GltfDocument& document, bool in_world_space) {
-    if (!in_world_space) {
-        for (const GltfPrimitiveId id : document.triangle_primitives())
-            append(model, document.mesh(id), document.describe(id));
-        return;
-    }
-    for (const auto& primitive : document.view().primitives) {
-        append(model, placed(document.mesh(primitive.what), primitive.world_from_object),
-               document.describe(primitive.what));
-    }
-}
-
-ComparedModel joined(const std::filesystem::path& file, ReadModel read, bool in_world_space,
-                     const glm::dvec3& origin) {
-    ComparedModel result;
-    result.file = file;
-    result.format = format_name(readable_format(file));
-    about(file, [&] {
-        if (auto* contents = std::get_if<MeshFile>(&read.model)) {
-            append(result, std::move(contents->mesh), "");
-        } else {
-            append_primitives(result, std::get<GltfDocument>(read.model), in_world_space);
-        }
-    });
-    if (result.mesh.triangles.empty()) throw FileError(file, "holds no triangles");
-    const glm::dvec3 shift = read.origin - origin;
-    if (shift != glm::dvec3(0.0)) {
-        for (glm::vec3& position : result.mesh.positions)
-            position = glm::vec3(glm::dvec3(position) + shift);
-    }
-    return result;
-}
-
-/// The largest absolute coordinate and the longest side of the bounds of the finite positions.
-struct Extent {
-    double largest = 0.0;
-    double size = 0.0;
-};
-
-Extent extent_of(const Mesh& mesh) {
-    const Bounds bounds = bounds_of(mesh);
-    Extent extent;
-    if (bounds.empty()) return extent;
-    for (int i = 0; i < 3; ++i) {
-        extent.size = std::max(
-            extent.size, static_cast<double>(bounds.max[i]) - static_cast<double>(bounds.min[i]));
-        extent.largest = std::max({extent.largest, std::abs(static_cast<double>(bounds.max[i])),
-                                   std::abs(static_cast<double>(bounds.min[i]))});
-    }
-    return extent;
-}
-
-double largest_texcoord(const Mesh& mesh) {
-    double largest = 1.0;
-    for (const glm::vec2& texcoord : mesh.texcoords) {
-        for (int i = 0; i < 2; ++i) {
-            const double value = std::abs(static_cast<double>(texcoord[i]));
-            if (std::isfinite(value)) largest = std::max(largest, value);
-        }
-    }
-    return largest;
-}
-
-/// The tolerance is at least the spacing of floats at the coordinates of the models.
-MatchOptions match_options(const CompareRequest& request, const ComparedModels& models,
-                           double farthest_origin) {
-    MatchOptions options;
-    const Extent a = extent_of(models.a.mesh);
-    const Extent b = extent_of(models.b.mesh);
-    constexpr double float_spacing = 1.2e-7;
-    options.position_tolerance = request.tolerance.value_or(
-        std::max(default_tolerance * std::max(a.size, b.size),
-                 2.0 * float_spacing * std::max({a.largest, b.largest, farthest_origin})));
-    options.texcoord_tolerance = request.uv_tolerance.value_or(
-        default_uv_tolerance *
-        std::max(largest_texcoord(models.a.mesh), largest_texcoord(models.b.mesh)));
-    options.by_texcoord = !request.ignore_uv;
-    return options;
-}
-
-/// Returns the part of each triangle.
-std::vector<const ComparedPart*> parts_of(const ComparedModel& model) {
-    std::vector<const ComparedPart*> parts(model.mesh.triangles.size());
-    for (const ComparedPart& part : model.parts)
-        std::fill_n(parts.begin() + static_cast<std::ptrdiff_t>(part.first_triangle),
-                    part.triangle_count, &part);
-    return parts;
-}
-
-/// Excludes corners of primitives that lack an attribute, and counts those that lack it in one
-/// file.
-void exclude_missing(ComparedModels& models, CornerDifferences& differences) {
-    constexpr float not_compared = -1.0F;
-    const auto of_a = parts_of(models.a);
-    const auto of_b = parts_of(models.b);
-    for (std::size_t corner = 0; corner < models.match.corners.size(); ++corner) {
-        const std::uint32_t partner = models.match.corners[corner];
-        if (partner == no_corner_matched) continue;
-        const ComparedPart& a = *of_a[corner / 3];
-        const ComparedPart& b = *of_b[partner / 3];
-        models.normals_in_one += a.has_normals != b.has_normals ? 1 : 0;
-        models.tangents_in_one += a.has_tangents != b.has_tangents ? 1 : 0;
-        if (!differences.normals.empty() && !(a.has_normals && b.has_normals))
-            differences.normals[corner] = not_compared;
-        if (!differences.tangents.empty() && !(a.has_tangents && b.has_tangents)) {
-            differences.tangents[corner] = not_compared;
-            differences.sign_differs[corner] = 0;
-        }
-    }
-}
-
-void count_unmatched(std::vector<ComparedPart>& parts, const std::vector<std::uint32_t>& only) {
-    for (ComparedPart& part : parts) {
-        const auto begin = std::lower_bound(only.begin(), only.end(), part.first_triangle);
-        const auto end =
-            std::lower_bound(begin, only.end(), part.first_triangle + part.triangle_count);
-        part.unmatched = static_cast<std::size_t>(end - begin);
-    }
-}
 
 /// Two glTF files are compared in the object space of each primitive, or with `in_world_space` once
 /// per instance in world space. A glTF file and a file of another format are always compared in
 /// world space, because other formats store world space.
 ///
 /// \throws FileError if a file cannot be read or holds no triangles
-ComparedModels compare_models(const CompareRequest& request) {
+ModelComparison compare_files(const CompareRequest& request) {
     Report ignored;  // `relief-mesh check` reports the findings of a file.
-    ReadModel a(request.a, ignored);
-    ReadModel b(request.b, ignored);
-    ComparedModels result;
-    result.in_world_space = request.in_world_space || a.is_document() != b.is_document();
-    const glm::dvec3 origin = a.origin != glm::dvec3(0.0) ? a.origin : b.origin;
-    const bool moves = a.origin != b.origin;
-    result.a = joined(request.a, std::move(a), result.in_world_space, origin);
-    result.b = joined(request.b, std::move(b), result.in_world_space, origin);
-    result.options = match_options(request, result, moves ? glm::length(origin) : 0.0);
-    result.match = match_corners(result.a.mesh, result.b.mesh, result.options);
-    CornerDifferences differences = corner_differences(result.a.mesh, result.b.mesh, result.match);
-    exclude_missing(result, differences);
-    count_unmatched(result.a.parts, result.match.only_a);
-    count_unmatched(result.b.parts, result.match.only_b);
-    result.all = compared(differences, result.match, 0, result.a.mesh.triangles.size(), max_worst);
-    for (ComparedPart& part : result.a.parts) {
-        part.comparison = compared(differences, result.match, part.first_triangle,
-                                   part.triangle_count, max_worst);
-    }
-    return result;
+    Model a = read_model(request.a, ignored);
+    Model b = read_model(request.b, ignored);
+    const bool in_world_space = request.in_world_space || a.index() != b.index();
+    const auto joined = [&](const std::filesystem::path& file, Model model) {
+        return about(file, [&] { return joined_model(std::move(model), in_world_space); });
+    };
+    JoinedModel joined_a = joined(request.a, std::move(a));
+    JoinedModel joined_b = joined(request.b, std::move(b));
+    return compare_models(std::move(joined_a), std::move(joined_b),
+                          {request.tolerance, request.uv_tolerance, !request.ignore_uv});
 }
 
 std::string degrees_in_words(const AngleDistribution& angles) {
@@ -323,17 +90,17 @@ std::vector<std::string> attribute_lines(const AngleDistribution& angles, bool i
     return lines;
 }
 
-const ComparedPart& part_of(const ComparedModel& model, std::size_t triangle) {
+const ComparedPart& part_of(const JoinedModel& model, std::size_t triangle) {
     return *std::find_if(model.parts.rbegin(), model.parts.rend(), [&](const ComparedPart& part) {
         return part.first_triangle <= triangle && part.triangle_count != 0;
     });
 }
 
-glm::vec3 place_of(const ComparedModel& model, std::uint32_t corner) {
+glm::vec3 place_of(const JoinedModel& model, std::uint32_t corner) {
     return model.mesh.positions[model.mesh.triangles[corner / 3][static_cast<int>(corner % 3)]];
 }
 
-std::string in_words(const ComparedModels& compared, const WorstCorner& worst,
+std::string in_words(const ModelComparison& compared, const WorstCorner& worst,
                      const std::string& what) {
     const ComparedPart& part = part_of(compared.a, worst.corner_a / 3);
     const glm::vec3 at = place_of(compared.a, worst.corner_a);
@@ -345,7 +112,7 @@ std::string in_words(const ComparedModels& compared, const WorstCorner& worst,
 }
 
 /// Returns the places with the largest differences of both attributes.
-std::vector<std::string> worst_lines(const ComparedModels& compared) {
+std::vector<std::string> worst_lines(const ModelComparison& compared) {
     constexpr std::size_t shown = 3;
     std::vector<std::string> lines;
     const auto add = [&](const std::vector<WorstCorner>& corners, const std::string& what) {
@@ -363,7 +130,7 @@ std::vector<std::string> worst_lines(const ComparedModels& compared) {
     return lines;
 }
 
-std::string matched_in_words(const ComparedModels& compared) {
+std::string matched_in_words(const ModelComparison& compared) {
     const CornerMatch& match = compared.match;
     std::string text =
         fmt::format("{} by position{}", counted(match.exact + match.near, "triangle"),
@@ -374,12 +141,12 @@ std::string matched_in_words(const ComparedModels& compared) {
             match.by_texcoord ? fmt::format(" and {:.3g}", compared.options.texcoord_tolerance)
                               : "");
     }
-    if (compared.in_world_space) text += ", in world space";
+    if (compared.a.in_world_space) text += ", in world space";
     return text;
 }
 
 /// Returns a line per file about its triangles without partner.
-std::vector<std::string> unmatched_lines(const ComparedModels& compared) {
+std::vector<std::string> unmatched_lines(const ModelComparison& compared) {
     const auto line = [](const char* where, const std::vector<ComparedPart>& parts,
                          const std::vector<std::uint32_t>& only) {
         std::string text = fmt::format("{} only in {}", counted(only.size(), "triangle"), where);
@@ -401,7 +168,7 @@ std::vector<std::string> unmatched_lines(const ComparedModels& compared) {
 }
 
 /// Returns a line per primitive of A if there are several.
-std::vector<std::string> part_lines(const ComparedModels& compared) {
+std::vector<std::string> part_lines(const ModelComparison& compared) {
     if (compared.a.parts.size() < 2) return {};
     std::vector<std::string> lines;
     for (const ComparedPart& part : compared.a.parts) {
@@ -425,20 +192,20 @@ std::vector<std::string> part_lines(const ComparedModels& compared) {
     return lines;
 }
 
-std::string in_words(const ComparedModel& model) {
-    return fmt::format("{}: {}, {}, {}", model.file.string(), model.format,
+std::string in_words(const std::filesystem::path& file, const JoinedModel& model) {
+    return fmt::format("{}: {}, {}, {}", file.string(), format_name(readable_format(file)),
                        counted(model.parts.size(), "primitive"),
                        counted(model.mesh.triangles.size(), "triangle"));
 }
 
-bool any_has(const ComparedModel& model, bool ComparedPart::*attribute) {
+bool any_has(const JoinedModel& model, bool ComparedPart::*attribute) {
     return std::any_of(model.parts.begin(), model.parts.end(),
                        [&](const ComparedPart& part) { return part.*attribute; });
 }
 
-void print_text(const ComparedModels& compared) {
-    print_entry("A", in_words(compared.a));
-    print_entry("B", in_words(compared.b));
+void print_text(const CompareRequest& request, const ModelComparison& compared) {
+    print_entry("A", in_words(request.a, compared.a));
+    print_entry("B", in_words(request.b, compared.b));
     print_entry("matched", matched_in_words(compared));
     print_entry("unmatched", unmatched_lines(compared));
     if (compared.match.ambiguous != 0) {
@@ -475,7 +242,7 @@ nlohmann::ordered_json json_of(const AngleDistribution& angles) {
             {"histogram", std::move(histogram)}};
 }
 
-nlohmann::ordered_json worst_json(const ComparedModels& compared,
+nlohmann::ordered_json worst_json(const ModelComparison& compared,
                                   const std::vector<WorstCorner>& corners) {
     nlohmann::ordered_json list = nlohmann::ordered_json::array();
     for (const WorstCorner& worst : corners) {
@@ -496,7 +263,7 @@ nlohmann::ordered_json worst_json(const ComparedModels& compared,
     return list;
 }
 
-nlohmann::ordered_json json_of(const ComparedModels& compared, const FrameComparison& own) {
+nlohmann::ordered_json json_of(const ModelComparison& compared, const FrameComparison& own) {
     return {{"corners", own.corners},
             {"normals", json_of(own.normals)},
             {"tangents", json_of(own.tangents)},
@@ -505,7 +272,7 @@ nlohmann::ordered_json json_of(const ComparedModels& compared, const FrameCompar
             {"worst_tangents", worst_json(compared, own.worst_tangents)}};
 }
 
-nlohmann::ordered_json json_of(const ComparedModels& compared) {
+nlohmann::ordered_json json_of(const CompareRequest& request, const ModelComparison& compared) {
     nlohmann::ordered_json parts = nlohmann::ordered_json::array();
     for (const ComparedPart& part : compared.a.parts) {
         nlohmann::ordered_json json = {
@@ -515,9 +282,9 @@ nlohmann::ordered_json json_of(const ComparedModels& compared) {
     }
     const CornerMatch& match = compared.match;
     nlohmann::ordered_json result = {
-        {"a", compared.a.file.string()},
-        {"b", compared.b.file.string()},
-        {"world_space", compared.in_world_space},
+        {"a", request.a.string()},
+        {"b", request.b.string()},
+        {"world_space", compared.a.in_world_space},
         {"by_texture_coordinate", match.by_texcoord},
         {"tolerance", compared.options.position_tolerance},
         {"uv_tolerance", compared.options.texcoord_tolerance},
@@ -556,7 +323,8 @@ std::string above_limit(const FrameComparison& all, double max_angle) {
     return fmt::format("{}", fmt::join(words, ", "));
 }
 
-ExitCode judge(const CLI::App& app, const CompareOptions& options, const ComparedModels& compared) {
+ExitCode judge(const CLI::App& app, const CompareOptions& options,
+               const ModelComparison& compared) {
     const auto fail = [&](const std::string& problem) {
         complain(app, fmt::format("{}: {}", options.request.b.string(), problem));
         return ExitCode::failed;
@@ -594,11 +362,11 @@ ExitCode run(const CLI::App& app, const CompareOptions& options) {
     readable_format(options.request.b);
     set_thread_limit(options.general.threads);
     Stages stages(options.general.quiet);
-    const ComparedModels compared =
-        stages.run("compare", [&] { return compare_models(options.request); });
+    const ModelComparison compared =
+        stages.run("compare", [&] { return compare_files(options.request); });
     if (options.json) {
         nlohmann::ordered_json json = {{"tool", "relief-mesh compare"}, {"version", version()}};
-        json.update(json_of(compared));
+        json.update(json_of(options.request, compared));
         json["max_angle"] = options.max_angle ? nlohmann::ordered_json(*options.max_angle)
                                               : nlohmann::ordered_json();
         json["within"] = options.max_angle
@@ -607,7 +375,7 @@ ExitCode run(const CLI::App& app, const CompareOptions& options) {
         json["complete"] = compared.is_complete();
         print_json(json);
     } else if (!options.general.quiet) {
-        print_text(compared);
+        print_text(options.request, compared);
     }
     return judge(app, options, compared);
 }

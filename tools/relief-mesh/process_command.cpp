@@ -10,6 +10,9 @@
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <numbers>
+#include <optional>
+#include <set>
 #include <vector>
 
 #include "commands.h"
@@ -17,13 +20,107 @@
 #include "common/choices.h"
 #include "common/command.h"
 #include "common/findings.h"
+#include "common/model_file.h"
 #include "common/options.h"
 #include "common/text.h"
-#include "process.h"
+#include "relief/mesh/model.h"
 #include "relief/mesh/threads.h"
 
 namespace relief::tools {
 namespace {
+
+struct ProcessRequest {
+    std::filesystem::path input;
+    std::filesystem::path output;
+    NormalMode normals = NormalMode::keep;
+    TangentMode tangents = TangentMode::keep;
+    std::optional<int> uv_set;  ///< For computed tangents. Default: the set of the normal texture.
+    std::optional<double> crease_degrees;  ///< For averaged normals, see frames.h.
+    double weld_tolerance = 0.0;           ///< For averaged or repaired normals, see frames.h.
+    bool ignore_smoothing_groups = false;
+    bool repair_normals = false;  ///< Replaces invalid normals among those that are kept.
+};
+
+/// The result for a model.
+struct Processed {
+    std::vector<FramedPart> parts;
+    std::vector<std::string> decompressed;  ///< Compressed content that is written uncompressed.
+    std::vector<std::string> omitted;       ///< Content that the output format cannot store.
+    Findings findings;
+};
+
+FrameOptions frame_options(const ProcessRequest& request) {
+    FrameOptions options{.normals = request.normals,
+                         .tangents = request.tangents,
+                         .weld_tolerance = request.weld_tolerance,
+                         .smoothing_groups = !request.ignore_smoothing_groups,
+                         .repair = request.repair_normals};
+    if (request.crease_degrees)
+        options.crease_angle = *request.crease_degrees * std::numbers::pi / 180.0;
+    return options;
+}
+
+/// Returns the texture coordinate sets of all primitives.
+std::set<int> texcoord_sets(const Model& model) {
+    const auto* document = std::get_if<GltfDocument>(&model);
+    if (document == nullptr) {
+        const bool has_set = !std::get<MeshFile>(model).mesh.texcoords.empty();
+        return has_set ? std::set<int>{0} : std::set<int>{};
+    }
+    std::set<int> all;
+    for (const GltfPrimitiveId id : document->triangle_primitives()) {
+        const std::vector<int> sets = document->texcoord_sets(id);
+        all.insert(sets.begin(), sets.end());
+    }
+    return all;
+}
+
+/// Checks that some primitive has the texture coordinates for the request. \throws FileError
+void check_texcoords(const ProcessRequest& request, const Model& model) {
+    const auto* document = std::get_if<GltfDocument>(&model);
+    if (document != nullptr && document->triangle_primitives().empty()) return;
+    const std::set<int> sets = texcoord_sets(model);
+    if (sets.empty() && computes_tangents(request.tangents)) {
+        throw failure(request.input, "no texture coordinates, so there can be no tangents",
+                      "unwrap the model first, or leave --tangents out");
+    }
+    if (document == nullptr || !request.uv_set || sets.contains(*request.uv_set)) return;
+    throw failure(request.input,
+                  fmt::format("no primitive has texture coordinate set {}", *request.uv_set),
+                  sets.empty() ? "the model has no texture coordinates"
+                               : fmt::format("available: {}", fmt::join(sets, ", ")));
+}
+
+/// Reads a model, computes normals and tangents, and writes it.
+/// \throws FileError; then no file is written
+Processed process(const ProcessRequest& request, Stages& stages) {
+    Processed done;
+    Report read_report;
+    Model model = stages.run("read", [&] { return read_model(request.input, read_report); });
+    done.findings.add("", read_report);
+    if (const auto* document = std::get_if<GltfDocument>(&model))
+        done.decompressed = compression_in_words(*document, true);
+    stages.run("frames", [&] {
+        check_texcoords(request, model);
+        done.parts = about(request.input, [&] {
+            return compute_frames(model, frame_options(request), request.uv_set);
+        });
+    });
+    for (const FramedPart& part : done.parts)
+        done.findings.add(part.name, part.report);
+    const bool has_tangents =
+        std::any_of(done.parts.begin(), done.parts.end(), [](const FramedPart& part) {
+            return part.tangents == AttributeOutcome::kept ||
+                   part.tangents == AttributeOutcome::computed;
+        });
+    Report write_report;
+    stages.run("write", [&] {
+        done.omitted =
+            write_model(request.output, model, request.input, has_tangents, write_report);
+    });
+    done.findings.add("", write_report);
+    return done;
+}
 
 std::string normal_name(NormalMode mode) {
     return name_of(mode, normal_choices());
@@ -41,7 +138,7 @@ struct Totals {
 
 Totals totals_of(const Processed& done) {
     Totals totals;
-    for (const ProcessedPart& part : done.parts) {
+    for (const FramedPart& part : done.parts) {
         totals.triangles += part.triangles;
         totals.vertices_read += part.vertices_read;
         totals.vertices_written += part.vertices_written;
@@ -49,15 +146,15 @@ Totals totals_of(const Processed& done) {
     return totals;
 }
 
-std::string part_normals_in_words(const ProcessedPart& part) {
+std::string part_normals_in_words(const FramedPart& part) {
     switch (part.normals) {
-        case Fate::kept:
+        case AttributeOutcome::kept:
             return "kept";
-        case Fate::removed:
+        case AttributeOutcome::removed:
             return "removed";
-        case Fate::absent:
+        case AttributeOutcome::absent:
             return "none";
-        case Fate::computed:
+        case AttributeOutcome::computed:
             break;
     }
     if (part.normal_mode == NormalMode::flat) return "computed, one per triangle";
@@ -77,29 +174,29 @@ std::string method_in_words(TangentMode mode) {
     return mode == TangentMode::mikktspace ? "MikkTSpace" : tangent_name(mode);
 }
 
-std::string part_tangents_in_words(const ProcessedPart& part) {
+std::string part_tangents_in_words(const FramedPart& part) {
     switch (part.tangents) {
-        case Fate::kept:
+        case AttributeOutcome::kept:
             return "kept";
-        case Fate::computed: {
+        case AttributeOutcome::computed: {
             const std::string method = "computed, " + method_in_words(part.tangent_mode);
             if (part.texcoords.is_only && part.texcoords.set == 0) return method;
             return fmt::format("{}, from texture coordinate set {} ({})", method,
                                part.texcoords.set, part.texcoords.reason);
         }
-        case Fate::removed:
+        case AttributeOutcome::removed:
             return "removed";
-        case Fate::absent:
+        case AttributeOutcome::absent:
             break;
     }
     return "none";
 }
 
 /// "kept", or for different primitives: "kept in 3 primitives; computed in 1 primitive".
-std::string summary_of(const std::vector<ProcessedPart>& parts,
-                       const std::function<std::string(const ProcessedPart&)>& words) {
+std::string summary_of(const std::vector<FramedPart>& parts,
+                       const std::function<std::string(const FramedPart&)>& words) {
     std::map<std::string, std::size_t> counts;
-    for (const ProcessedPart& part : parts)
+    for (const FramedPart& part : parts)
         ++counts[words(part)];
     if (counts.size() == 1) return counts.begin()->first;
     std::string text;
@@ -115,15 +212,15 @@ std::string splits_in_words(const Totals& totals) {
     return fmt::format("{} -> {} vertices", totals.vertices_read, totals.vertices_written);
 }
 
-std::string fate_name(Fate fate) {
-    switch (fate) {
-        case Fate::kept:
+std::string outcome_name(AttributeOutcome outcome) {
+    switch (outcome) {
+        case AttributeOutcome::kept:
             return "kept";
-        case Fate::computed:
+        case AttributeOutcome::computed:
             return "computed";
-        case Fate::removed:
+        case AttributeOutcome::removed:
             return "removed";
-        case Fate::absent:
+        case AttributeOutcome::absent:
             break;
     }
     return "none";
@@ -132,7 +229,7 @@ std::string fate_name(Fate fate) {
 /// Returns the notes of all primitives. Equal notes share a line.
 std::vector<std::string> notes_in_words(const Processed& done) {
     std::vector<std::pair<std::string, std::vector<std::string>>> places;
-    for (const ProcessedPart& part : done.parts) {
+    for (const FramedPart& part : done.parts) {
         for (const std::string& note : part.notes) {
             auto place = std::find_if(places.begin(), places.end(),
                                       [&](const auto& other) { return other.first == note; });
@@ -151,20 +248,20 @@ std::vector<std::string> notes_in_words(const Processed& done) {
 
 nlohmann::ordered_json parts_json(const Processed& done) {
     nlohmann::ordered_json parts = nlohmann::ordered_json::array();
-    for (const ProcessedPart& part : done.parts) {
+    for (const FramedPart& part : done.parts) {
         nlohmann::ordered_json json = {{"name", part.name},
                                        {"triangles", part.triangles},
                                        {"vertices_read", part.vertices_read},
                                        {"vertices_written", part.vertices_written},
-                                       {"normals", fate_name(part.normals)}};
-        if (part.normals == Fate::computed) {
+                                       {"normals", outcome_name(part.normals)}};
+        if (part.normals == AttributeOutcome::computed) {
             json["normal_method"] = normal_name(part.normal_mode);
             if (part.normal_mode == NormalMode::automatic)
                 json["vertices_by_area"] = part.normals_by_area;
             json["smoothing_groups"] = part.smoothing_groups;
         }
-        json["tangents"] = fate_name(part.tangents);
-        if (part.tangents == Fate::computed) {
+        json["tangents"] = outcome_name(part.tangents);
+        if (part.tangents == AttributeOutcome::computed) {
             json["tangent_method"] = tangent_name(part.tangent_mode);
             json["texcoord_set"] = part.texcoords.set;
             json["texcoord_set_reason"] = part.texcoords.reason;

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// Operations on all meshes of a model: normals and tangents, and new triangles.
+/// Tests: tests/tools/relief_mesh_test.cpp, process_tangents_test.cpp, reshaping_test.cpp.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "relief/mesh/frames.h"
+#include "relief/mesh/gltf_document.h"
+#include "relief/mesh/mesh_file.h"
+#include "relief/mesh/report.h"
+
+namespace relief {
+
+/// The contents of a model file: a glTF document, or a mesh with its materials.
+using Model = std::variant<GltfDocument, MeshFile>;
+
+/// The outcome for an attribute of a primitive.
+enum class AttributeOutcome { kept, computed, removed, absent };
+
+/// The texture coordinates from which tangents were computed.
+struct TangentTexcoords {
+    int set = 0;
+    bool is_only = true;  ///< The primitive has no other set.
+    std::string reason;   ///< "requested", "of normalTexture", ..., "the first".
+};
+
+/// A primitive after compute_frames().
+struct FramedPart {
+    std::string name;  ///< "mesh 'Body' primitive 0"; empty for a file with one mesh.
+    std::size_t triangles = 0;
+    std::size_t vertices_read = 0;
+    std::size_t vertices_written = 0;  ///< Larger than `vertices_read` if vertices were split.
+    AttributeOutcome normals = AttributeOutcome::absent;
+    NormalMode normal_mode = NormalMode::keep;  ///< The method of computed normals.
+    std::size_t normals_by_area = 0;  ///< Vertices for which the automatic mode used area weights.
+    bool smoothing_groups = false;    ///< The normals followed the smoothing groups of the file.
+    AttributeOutcome tangents = AttributeOutcome::absent;
+    TangentMode tangent_mode = TangentMode::keep;  ///< The method of computed tangents.
+    TangentTexcoords texcoords;
+    std::vector<std::string> notes;  ///< Notes that do not concern a defect of the input.
+    Report report;
+};
+
+/// Computes the normals and tangents of each triangle primitive by with_frames().
+///
+/// Tangents of a glTF primitive belong to the texture coordinates of its normal texture, or to
+/// `texcoord_set`. A primitive without them gets no new tangents, which its report counts.
+///
+/// \param options  `if_missing` is ignored: glTF requires flat normals, other formats get `angle`
+/// \throws InvalidInput if there are no triangles, or as with_frames() does
+std::vector<FramedPart> compute_frames(Model& model, FrameOptions options,
+                                       std::optional<int> texcoord_set = std::nullopt);
+
+/// Returns a mesh with other triangles. `source_vertex` of the result is empty if its vertices are
+/// not copies of the given ones. `all_triangles` is the number of triangles of the whole model.
+using TriangleChange =
+    std::function<FramedMesh(const Mesh& mesh, std::size_t all_triangles, Report& report)>;
+
+/// A report on a part of a model.
+struct PartReport {
+    std::string part;  ///< "mesh 'Body' primitive 0"; empty for a file with one mesh.
+    Report report;
+};
+
+/// The result of change_triangles().
+struct ChangedModel {
+    std::size_t triangles_read = 0;
+    std::size_t triangles_written = 0;
+    std::size_t vertices_read = 0;
+    std::size_t vertices_written = 0;
+    bool has_tangents = false;
+    std::vector<PartReport> reports;
+};
+
+/// Replaces the triangles of each mesh.
+///
+/// The primitives of a glTF mesh are joined, with a material range each, so that no gap opens
+/// between materials; they are changed together and separated again. Their tangents are recomputed.
+///
+/// \param normals  the mode of the change: with `keep`, primitives without normals get none
+/// \throws InvalidInput if there are no triangles, or if none of a mesh file is left
+ChangedModel change_triangles(Model& model, NormalMode normals, const TriangleChange& change);
+
+}  // namespace relief

@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cassert>
+#include <utility>
+
+#include "relief/mesh/error.h"
+#include "relief/mesh/model.h"
+#include "relief/mesh/split.h"
+
+namespace relief {
+namespace {
+
+/// The primitives of one glTF mesh as one mesh.
+class JoinedPrimitives {
+  public:
+    JoinedPrimitives(const GltfDocument& document, std::vector<GltfPrimitiveId> ids);
+
+    [[nodiscard]] const Mesh& mesh() const { return joined_; }
+    [[nodiscard]] const std::vector<GltfPrimitiveId>& ids() const { return ids_; }
+
+    /// Returns primitive `i` of the changed mesh, with indices into its own vertices.
+    [[nodiscard]] FramedMesh part(const FramedMesh& changed, std::size_t i, NormalMode normals,
+                                  Report& report) const;
+
+  private:
+    void add(Mesh primitive);
+    FramedMesh with_new_tangents(FramedMesh part, const FramedMesh& changed, std::size_t i,
+                                 Report& report) const;
+
+    std::vector<GltfPrimitiveId> ids_;
+    std::vector<Mesh> primitives_;
+    /// By primitive: the texture coordinates of its tangents, or none.
+    std::vector<std::vector<glm::vec2>> tangent_texcoords_;
+    std::vector<std::uint32_t> first_vertex_;
+    Mesh joined_;
+};
+
+/// Appends values. If only some primitives have values, `filler` completes the others.
+template <typename T>
+void append(std::vector<T>& values, const std::vector<T>& more, std::size_t before,
+            std::size_t count, const T& filler) {
+    if (values.empty() && more.empty()) return;
+    values.resize(before, filler);
+    values.insert(values.end(), more.begin(), more.end());
+    values.resize(before + count, filler);
+}
+
+void JoinedPrimitives::add(Mesh primitive) {
+    const std::size_t before = joined_.positions.size();
+    const std::size_t count = primitive.positions.size();
+    append(joined_.normals, primitive.normals, before, count, glm::vec3(0.0F));
+    append(joined_.texcoords, primitive.texcoords, before, count, glm::vec2(0.0F));
+    append(joined_.colors, primitive.colors, before, count, glm::vec4(1.0F));
+    joined_.positions.insert(joined_.positions.end(), primitive.positions.begin(),
+                             primitive.positions.end());
+    const auto first = static_cast<std::uint32_t>(before);
+    joined_.material_ranges.push_back({static_cast<std::uint32_t>(joined_.triangles.size()),
+                                       static_cast<std::uint32_t>(primitive.triangles.size()),
+                                       std::nullopt});
+    for (const glm::uvec3& triangle : primitive.triangles)
+        joined_.triangles.push_back(triangle + first);
+    first_vertex_.push_back(first);
+    primitives_.push_back(std::move(primitive));
+}
+
+JoinedPrimitives::JoinedPrimitives(const GltfDocument& document, std::vector<GltfPrimitiveId> ids)
+    : ids_(std::move(ids)) {
+    for (const GltfPrimitiveId id : ids_) {
+        Mesh mesh = document.mesh(id);
+        const int set = document.tangent_texcoords(id).set;
+        const bool differs = !mesh.tangents.empty() && set != 0;
+        tangent_texcoords_.push_back(differs ? document.mesh(id, set).texcoords : mesh.texcoords);
+        add(std::move(mesh));
+    }
+    joined_.name = primitives_.front().name;
+}
+
+/// Returns the triangles of a range with the vertices that they use.
+FramedMesh range_of(const Mesh& mesh, const MaterialRange& range) {
+    VertexSplit used;
+    const auto begin = mesh.triangles.begin() + range.first_triangle;
+    used.triangles.assign(begin, begin + range.triangle_count);
+    std::vector<bool> is_used(mesh.positions.size(), false);
+    for (const glm::uvec3& triangle : used.triangles) {
+        for (int k = 0; k < 3; ++k)
+            is_used[triangle[k]] = true;
+    }
+    std::vector<std::uint32_t> place(mesh.positions.size(), 0);
+    for (std::uint32_t v = 0; v < is_used.size(); ++v) {
+        if (!is_used[v]) continue;
+        place[v] = static_cast<std::uint32_t>(used.source_vertex.size());
+        used.source_vertex.push_back(v);
+    }
+    for (glm::uvec3& triangle : used.triangles)
+        triangle = {place[triangle.x], place[triangle.y], place[triangle.z]};
+    FramedMesh part;
+    part.mesh = carried(mesh, used);
+    part.mesh.tangents.clear();  // They belong to the old triangles.
+    part.mesh.material_ranges.clear();
+    part.source_vertex = std::move(used.source_vertex);
+    return part;
+}
+
+/// Computes new tangents from the texture coordinates of the old ones. Further texture coordinate
+/// sets are kept for copied vertices; if there are new vertices, no primitive has further sets.
+FramedMesh JoinedPrimitives::with_new_tangents(FramedMesh part, const FramedMesh& changed,
+                                               std::size_t i, Report& report) const {
+    if (!changed.source_vertex.empty()) {
+        part.mesh.texcoords.clear();
+        for (const std::uint32_t v : part.source_vertex) {
+            part.mesh.texcoords.push_back(
+                tangent_texcoords_[i][changed.source_vertex[v] - first_vertex_[i]]);
+        }
+    }
+    FramedMesh framed =
+        with_frames(std::move(part.mesh), {.tangents = TangentMode::mikktspace}, report);
+    for (std::uint32_t& source : framed.source_vertex)
+        source = part.source_vertex[source];
+    return framed;
+}
+
+FramedMesh JoinedPrimitives::part(const FramedMesh& changed, std::size_t i, NormalMode normals,
+                                  Report& report) const {
+    const Mesh& before = primitives_[i];
+    FramedMesh part = range_of(changed.mesh, changed.mesh.material_ranges[i]);
+    if (before.normals.empty() && normals == NormalMode::keep) part.mesh.normals.clear();
+    if (before.texcoords.empty()) part.mesh.texcoords.clear();
+    if (before.colors.empty()) part.mesh.colors.clear();
+    if (!before.tangents.empty()) {
+        // glTF ignores tangents without normals.
+        const bool possible = !tangent_texcoords_[i].empty() && !part.mesh.normals.empty();
+        report.add("tangents of other triangles", "primitive", ids_[i].primitive,
+                   possible ? "are recomputed" : "are removed");
+        if (possible) part = with_new_tangents(std::move(part), changed, i, report);
+    }
+    for (std::uint32_t& source : part.source_vertex) {
+        if (changed.source_vertex.empty()) break;
+        source = changed.source_vertex[source] - first_vertex_[i];
+        assert(source < before.positions.size());
+    }
+    return part;
+}
+
+/// Returns the primitives of a document by mesh.
+std::vector<std::vector<GltfPrimitiveId>> primitives_by_mesh(const GltfDocument& document) {
+    std::vector<std::vector<GltfPrimitiveId>> meshes;
+    for (const GltfPrimitiveId id : document.triangle_primitives()) {
+        if (meshes.empty() || meshes.back().front().mesh != id.mesh) meshes.emplace_back();
+        meshes.back().push_back(id);
+    }
+    return meshes;
+}
+
+void change_joined(GltfDocument& document, const JoinedPrimitives& joined,
+                   const TriangleChange& change, NormalMode normals, std::size_t all_triangles,
+                   ChangedModel& done) {
+    Report report;
+    const FramedMesh changed = change(joined.mesh(), all_triangles, report);
+    for (std::size_t i = 0; i < joined.ids().size(); ++i) {
+        const GltfPrimitiveId id = joined.ids()[i];
+        if (changed.mesh.material_ranges[i].triangle_count == 0) {
+            report.add("primitive without area", "primitive", id.primitive, "is unchanged");
+            continue;
+        }
+        const FramedMesh part = joined.part(changed, i, normals, report);
+        done.triangles_written += part.mesh.triangles.size();
+        done.vertices_written += part.mesh.positions.size();
+        done.has_tangents = done.has_tangents || !part.mesh.tangents.empty();
+        if (changed.source_vertex.empty())
+            document.set_geometry(id, part.mesh);
+        else
+            document.set_frames(id, part);
+    }
+    done.reports.push_back({document.describe(joined.ids().front()), std::move(report)});
+}
+
+void change_document(GltfDocument& document, NormalMode normals, const TriangleChange& change,
+                     ChangedModel& done) {
+    std::vector<JoinedPrimitives> meshes;
+    for (auto& ids : primitives_by_mesh(document))
+        meshes.emplace_back(document, std::move(ids));
+    if (meshes.empty()) throw InvalidInput("holds no triangles");
+    for (const JoinedPrimitives& joined : meshes) {
+        done.triangles_read += joined.mesh().triangles.size();
+        done.vertices_read += joined.mesh().positions.size();
+    }
+    for (const JoinedPrimitives& joined : meshes)
+        change_joined(document, joined, change, normals, done.triangles_read, done);
+}
+
+void change_mesh(Mesh& mesh, const TriangleChange& change, ChangedModel& done) {
+    Report report;
+    done.triangles_read = mesh.triangles.size();
+    done.vertices_read = mesh.positions.size();
+    mesh = change(mesh, mesh.triangles.size(), report).mesh;
+    if (mesh.triangles.empty()) throw InvalidInput("none of its triangles has an area");
+    done.triangles_written = mesh.triangles.size();
+    done.vertices_written = mesh.positions.size();
+    done.has_tangents = !mesh.tangents.empty();
+    done.reports.push_back({"", std::move(report)});
+}
+
+}  // namespace
+
+ChangedModel change_triangles(Model& model, NormalMode normals, const TriangleChange& change) {
+    ChangedModel done;
+    if (auto* document = std::get_if<GltfDocument>(&model))
+        change_document(*document, normals, change, done);
+    else
+        change_mesh(std::get<MeshFile>(model).mesh, change, done);
+    return done;
+}
+
+}  // namespace relief
