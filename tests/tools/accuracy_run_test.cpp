@@ -83,7 +83,7 @@ TEST(AccuracyRefusal, IsOneLine) {
           "--json and --quiet contradict each other"},
          {"relief-accuracy run storage --quiet", 2,
           "--quiet without --output would discard the results"},
-         {"relief-accuracy run storage --output taken", 1, "taken: exists, but is no folder"}});
+         {"relief-accuracy run storage --output taken", 1, "taken: exists, but is not a folder"}});
 }
 
 }  // namespace

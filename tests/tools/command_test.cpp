@@ -44,8 +44,8 @@ TEST(AllTools, ExplainWrongUsageInOneLineAndExitWith2) {
         {"relief-mesh process a.obj",
          "relief-mesh: error: OUT is missing (see relief-mesh process --help)"},
         {"relief-mesh process a.obj b.obj c.obj",
-         "relief-mesh: error: 3 files: which are to be read, and which to be written? "
-         "(read all and write to a folder: -o out/)"},
+         "relief-mesh: error: 3 files: inputs and output are ambiguous "
+         "(for several inputs, give a folder: -o out/)"},
         {"relief-mesh process a.obj b.obj --normal flat",
          "relief-mesh: error: --normal: unknown option (did you mean --normals?)"},
         {"relief-mesh process a.obj b.obj -x",

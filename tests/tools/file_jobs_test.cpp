@@ -77,7 +77,7 @@ TEST(FileJobs, AFileMayReplaceItselfButNoOther) {
     EXPECT_EQ(refusal({{here + "a.png", here + "x/../a.png"}, here}),
               here + "x/../a.png: named twice");
     EXPECT_EQ(refusal({{here + "x/a.png", here + "a.png"}, here + "x/"}),
-              here + "x/a.png and " + here + "a.png: would both become " + here + "x/a.png");
+              here + "x/a.png and " + here + "a.png: have the same output " + here + "x/a.png");
 }
 
 TEST(FileJobs, RefusesWhatCouldBeReadInTwoWays) {
@@ -85,13 +85,12 @@ TEST(FileJobs, RefusesWhatCouldBeReadInTwoWays) {
     EXPECT_EQ(refusal({{}, "out/"}), "IN is missing");
     EXPECT_EQ(refusal({{"a.png"}, {}}), "OUT is missing");
     EXPECT_EQ(refusal({{"a.png", "b.png", "c.png"}, {}}),
-              "3 files: which are to be read, and which to be written?");
-    EXPECT_EQ(refusal({{"a.png", "b.png"}, "c.exr"}),
-              "-o c.exr: is one file for 2 maps, and no folder");
-    EXPECT_EQ(refusal({{"a.png"}, "nothing"}), "-o nothing: no extension says what format this is");
+              "3 files: inputs and output are ambiguous");
+    EXPECT_EQ(refusal({{"a.png", "b.png"}, "c.exr"}), "-o c.exr: is a file, but there are 2 maps");
+    EXPECT_EQ(refusal({{"a.png"}, "nothing"}), "-o nothing: has no extension");
     EXPECT_EQ(refusal({{"a.png", "x/../a.png"}, "out/"}), "x/../a.png: named twice");
     EXPECT_EQ(refusal({{"a.png", "x/a.png"}, "out/"}),
-              "a.png and x/a.png: would both become out/a.png");
+              "a.png and x/a.png: have the same output out/a.png");
 }
 
 TEST(FileJobs, AUdimNameStandsForItsTilesInOrder) {

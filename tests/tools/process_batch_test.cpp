@@ -42,12 +42,12 @@ TEST(ProcessJobs, TwoModelsThatGetOneNameByTheirFormatAreRefused) {
     const TemporaryDirectory folder;
     const std::string here = folder.path().string() + "/";
     EXPECT_EQ(model_refusal({{here + "a.glb", here + "a.obj"}, here}, ModelFormat::obj),
-              here + "a.glb and " + here + "a.obj: would both become " + here + "a.obj");
+              here + "a.glb and " + here + "a.obj: have the same output " + here + "a.obj");
 }
 
 TEST(ProcessJobs, RefusesFormatsThatDoNotServe) {
     EXPECT_EQ(model_refusal({{"a.obj", "b.obj", "c.obj"}, "d.glb"}),
-              "-o d.glb: is one file for 3 models, and no folder");
+              "-o d.glb: is a file, but there are 3 models");
     EXPECT_EQ(model_refusal({{"a.obj", "b.glb"}, {}}, ModelFormat::obj),
               "--format obj: the name b.glb already has a format");
     EXPECT_EQ(model_refusal({{"a.txt"}, "out/"}), "a.txt: .txt is not a format that can be read");
@@ -143,7 +143,7 @@ TEST(ProcessBatch, AFileInTheFoldersPlaceIsToldAsSuch) {
     workplace.write("out/taken", "old");
     const ProgramResult result = workplace.run("relief-mesh process a.obj -o out/taken/");
     EXPECT_EQ(result.exit_code, 1);
-    EXPECT_EQ(result.error, "relief-mesh: error: out/taken/: exists, but is no folder\n");
+    EXPECT_EQ(result.error, "relief-mesh: error: out/taken/: exists, but is not a folder\n");
     EXPECT_EQ(workplace.read("out/taken"), "old");
 }
 

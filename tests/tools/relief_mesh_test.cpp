@@ -395,7 +395,7 @@ TEST(MeshRefusal, SaysWhyAndLeavesNothingBehind) {
           "out/square.stl: .stl is not a format that can be written (use one of .glb, .gltf, "
           ".obj, .ply)"},
          {"relief-mesh process square.obj out/square", 2,
-          "out/square: no extension says what format this is (use one of .glb, "},
+          "out/square: has no extension (use one of .glb, "},
          {"relief-mesh process square.obj out/square.obj --tangents mikktspace", 2,
           "--tangents mikktspace: .obj cannot store tangents (write .glb or .gltf)"},
          {"relief-mesh process square.obj out/old.glb --crease 30", 2,

@@ -275,8 +275,8 @@ void make_folder(const std::filesystem::path& folder) {
     std::filesystem::create_directories(folder, error);
     if (!error || std::filesystem::is_directory(folder)) return;
     const std::filesystem::path name = folder.has_filename() ? folder : folder.parent_path();
-    throw FileError(folder,
-                    std::filesystem::exists(name) ? "exists, but is no folder" : error.message());
+    throw FileError(
+        folder, std::filesystem::exists(name) ? "exists, but is not a folder" : error.message());
 }
 
 Stages::Stages(bool quiet) : show_(!quiet && is_err_terminal()) {}

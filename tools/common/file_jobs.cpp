@@ -78,9 +78,9 @@ JobList pair_of(const FileWords& words) {
     if (words.files.empty()) throw UsageError("IN is missing");
     if (words.files.size() == 1) throw UsageError("OUT is missing");
     if (words.files.size() > 2) {
-        throw UsageError(fmt::format("{} files: which are to be read, and which to be written?",
-                                     words.files.size()),
-                         "read all and write to a folder: -o out/");
+        throw UsageError(
+            fmt::format("{} files: inputs and output are ambiguous", words.files.size()),
+            "for several inputs, give a folder: -o out/");
     }
     return in_tiles({words.files[0], words.files[1]});
 }
@@ -89,12 +89,12 @@ JobList pair_of(const FileWords& words) {
 JobList single(const FileWords& words, const std::string& kind) {
     const fs::path output = *words.output;
     if (words.files.size() > 1) {
-        throw UsageError(fmt::format("-o {}: is one file for {} {}s, and no folder",
-                                     output.string(), words.files.size(), kind),
+        throw UsageError(fmt::format("-o {}: is a file, but there are {} {}s", output.string(),
+                                     words.files.size(), kind),
                          "the name of a folder ends in /");
     }
     if (output.extension().empty())
-        throw UsageError(fmt::format("-o {}: no extension says what format this is", *words.output),
+        throw UsageError(fmt::format("-o {}: has no extension", *words.output),
                          "the name of a folder ends in /");
     return in_tiles({words.files[0], output});
 }
@@ -111,7 +111,7 @@ void check_clashes(const std::vector<Job>& jobs) {
     for (const Job& job : jobs) {
         const auto [known, is_new] = input_of.emplace(identity_of(job.output), job.input);
         if (is_new) continue;
-        throw UsageError(fmt::format("{} and {}: would both become {}", known->second.string(),
+        throw UsageError(fmt::format("{} and {}: have the same output {}", known->second.string(),
                                      job.input.string(), job.output.string()),
                          "process them by separate calls, to different folders");
     }

@@ -43,7 +43,7 @@ ModelFormat format_of(const std::filesystem::path& file, bool to_write) {
         known += std::string(known.empty() ? "" : ", ") + row.extension;
     }
     const std::string problem = extension.empty()
-                                    ? "no extension says what format this is"
+                                    ? "has no extension"
                                     : fmt::format("{} is not a format that can be {}", extension,
                                                   to_write ? "written" : "read");
     throw UsageError(fmt::format("{}: {}", file.string(), problem), "use one of " + known);
