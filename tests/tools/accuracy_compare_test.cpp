@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// relief-accuracy compare as users run it, on reports made up here: no time is measured.
+// The command `relief-accuracy compare` on invented reports.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -25,7 +25,7 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
 
-/// A report of 12 methods, each with 9 rounds around its time.
+/// Returns a report of 12 methods with 9 rounds each.
 AccuracyReport steady_report() {
     AccuracyReport report = sample_report();
     Experiment& one = report.experiments[0];
@@ -218,8 +218,10 @@ TEST(AccuracyCompare, MemoryIsToldAndHeldAgainstItsBound) {
     before.experiments[0].measurements[5].cost.peak_bytes = 20'000'000;
     AccuracyReport after = before;
     after.experiments[0].measurements[2].cost.peak_bytes = 30'000'000;
-    after.experiments[0].measurements[5].cost.peak_bytes = 21'900'000;  // Less than a tenth.
-    after.experiments[0].measurements[7].cost.peak_bytes = 900'000;     // Less than a megabyte.
+    after.experiments[0].measurements[5].cost.peak_bytes =
+        21'900'000;  // The change is less than 10 %.
+    after.experiments[0].measurements[7].cost.peak_bytes =
+        900'000;  // The change is less than a megabyte.
     const ProgramResult same = compared(workplace, before, before, "--max-memory-growth 0");
     EXPECT_EQ(same.exit_code, 0) << same.error;
     EXPECT_THAT(same.out,
@@ -316,7 +318,7 @@ TEST(AccuracyCompare, ItsJsonIsWhatThePageDescribes) {
         return fault.starts_with("all_threads.") && fault.ends_with("never occurs");
     });
     EXPECT_THAT(faults, IsEmpty());
-    EXPECT_EQ(found["beyond"].size(), 3U);  // Slower, more of an error, and a method that is gone.
+    EXPECT_EQ(found["beyond"].size(), 3U);  // One time, one error, and a missing method.
     EXPECT_EQ(found["times"][3]["verdict"], "slower");
     EXPECT_NEAR(found["times"][3]["counted"].get<double>(), 1.2, 1e-6);
     EXPECT_EQ(found["times"][2]["verdict"], "unchanged");

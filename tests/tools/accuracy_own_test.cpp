@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// relief-accuracy own as users run it: on meshes, maps and pairs, and what it refuses.
+// The command `relief-accuracy own` on meshes, maps and pairs, and its errors.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -123,7 +123,7 @@ TEST(AccuracyOwn, ABoundIsHeldAgainstTheErrorOfTheMapToo) {
                     std::hypot(map_error, one["error"]["rms"].get<double>()), 1e-9);
         least_added = std::min(least_added, one["error"]["rms"].get<double>());
     }
-    // A method that adds less than half a degree does not make the map better than it is.
+    // The limit includes the error of the map, also for methods that add less than half a degree.
     ASSERT_LT(least_added, 0.5);
     const ProgramResult bounded = workplace.run(line + "0.5");
     EXPECT_EQ(bounded.exit_code, 1);
@@ -132,7 +132,7 @@ TEST(AccuracyOwn, ABoundIsHeldAgainstTheErrorOfTheMapToo) {
     EXPECT_THAT(finding, HasSubstr("(the map itself "));
 }
 
-/// Texels of smooth bumps, 0 to 1.
+/// Returns heights of smooth bumps, 0 to 1.
 double bump_at(int x, int y) {
     return 0.5 + 0.2 * std::sin(0.2 * x) + 0.2 * std::sin(0.15 * y + 0.1 * x);
 }
@@ -190,7 +190,7 @@ TEST(AccuracyOwn, MeasuresHeightsInAlpha) {
     EXPECT_EQ(packed["command"],
               "relief-accuracy own packed.png --image heights --channel alpha --quick --no-times");
     EXPECT_TRUE(in_packed["input_findings"].empty());
-    // The heights of a packed map are floats, so that arithmetic rounds in other places.
+    // The heights of a packed map are floats, so rounding differs.
     EXPECT_NEAR(measurement(in_packed, "sobel3, float64, 16 bit")["error"]["rms"].get<double>(),
                 measurement(alone, "sobel3, float64, 16 bit")["error"]["rms"].get<double>(), 1e-4);
     EXPECT_GT(measurement(alone, "sobel3, float64, 16 bit")["error"]["rms"].get<double>(), 1e-3);

@@ -32,7 +32,7 @@ TEST(AccuracyJson, IsWhatItsPageDescribes) {
     const std::vector<test::SchemaRow> rows = test::schema_rows("## accuracy.json");
     ASSERT_GT(rows.size(), 50U);
     EXPECT_THAT(test::schema_faults(json_of(sample_report(), true), rows, true), IsEmpty());
-    // The walk finds what is missing, new, or of another kind.
+    // The check finds missing, new and wrong values.
     json broken = json_of(sample_report(), true);
     broken["machine"]["host"] = "somewhere";
     broken["settings"]["quick"] = 1;
@@ -48,7 +48,7 @@ TEST(AccuracyJson, ReadsBackAsTheSame) {
     const AccuracyReport report = sample_report();
     write_report(workplace / "out", report);
     const AccuracyReport again = read_report(workplace / "out/accuracy.json");
-    // The pictures' samples stay in their files.
+    // The pixels of pictures are not read.
     EXPECT_EQ(json_of(again, true).dump(), json_of(report, true).dump());
     EXPECT_EQ(again.machine, report.machine);
     const Experiment& was = report.experiments[0];
@@ -70,7 +70,7 @@ TEST(AccuracyJson, HasNoFileNamesWhereThereAreNoFiles) {
     EXPECT_TRUE(report["experiments"][0]["pictures"][0]["before"].is_null());
 }
 
-/// How a report is broken, and what reading it says.
+/// A broken report with its error message.
 struct Broken {
     const char* pointer;
     json value;  ///< Discarded: erased.
@@ -191,7 +191,7 @@ TEST(AccuracyFiles, PicturesStandWhereTheJsonSays) {
         EXPECT_EQ(image.width, 2);
         EXPECT_EQ(image.height, 1);
     }
-    // Nothing is black and the brightest error is bright.
+    // An error of 0 is black, and the largest error is bright.
     const Image heat =
         read_image(workplace / "out/pictures/storage-sample-heat-1.png", ImageUse::color);
     EXPECT_EQ(heat.as<std::uint8_t>()[0], 0);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// relief-accuracy run as users run it: tables, files, and what it refuses.
+// The command `relief-accuracy run`: tables, files and errors.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -57,7 +57,7 @@ TEST(AccuracyRun, ErrorsAloneAreTheSameEachTimeAndForAnyThreads) {
 
 TEST(AccuracyRun, InterruptedWhileItMeasuresLeavesNoHalfReport) {
     const Workplace workplace;
-    // Far too many rounds to be done before the signal comes; the folder is made first of all.
+    // The rounds take longer than the time to the signal, and the folder is created first.
     const ProgramResult result = test::run_program_until(
         {"relief-accuracy", "run", "storage", "--repeats", "1000", "--output", "out/report",
          "--quiet"},

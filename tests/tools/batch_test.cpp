@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The same work on many files: their order, failures and reports. How it looks from outside:
-// process_batch_test.cpp.
+// Jobs on many files: order, failures and reports. process_batch_test.cpp tests the command line.
 #include "common/batch.h"
 
 #include <gmock/gmock.h>
@@ -20,7 +19,7 @@ namespace {
 using nlohmann::json;
 using test::TemporaryDirectory;
 
-/// Six files of which the fourth fails; the first takes longest.
+/// Returns six jobs. The fourth fails, and the first takes longest.
 Batch six_files() {
     Batch batch;
     for (const char* name : {"a", "b", "c", "d", "e", "f"})

@@ -137,7 +137,7 @@ void expect_form(const std::string& command, const std::vector<std::string>& lin
         EXPECT_LE(line->size(), 100U) << *line;
 }
 
-/// The text of an option begins in column 30, on the same line or on the next.
+/// Expects that the text of each option begins in column 30, on the same line or on the next.
 void expect_described_options(const std::vector<std::string>& lines) {
     std::size_t options = 0;
     for (std::size_t i = 0; i + 1 < lines.size(); ++i) {

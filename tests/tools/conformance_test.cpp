@@ -30,7 +30,7 @@ using test::Twist;
 using test::Workplace;
 using testing::HasSubstr;
 
-/// A square of two triangles, the image upright on it.
+/// Returns a square of two triangles with an upright image.
 KitMesh square(KitGroup group = KitGroup::conformance) {
     KitMesh kit;
     kit.name = "square";
@@ -43,7 +43,7 @@ KitMesh square(KitGroup group = KitGroup::conformance) {
     return kit;
 }
 
-/// What a sound program makes of it.
+/// Returns the mesh with the expected tangents.
 Mesh answer_to(const KitMesh& kit) {
     Mesh mesh = kit.mesh;
     mesh.tangents.assign(mesh.positions.size(), {1, 0, 0, 1});
@@ -115,7 +115,7 @@ TEST(ConformanceJudge, CountsEveryFault) {
     const KitMesh kit = square();
     const auto judged = [&](const glm::vec4& tangent) {
         Mesh theirs = answer_to(kit);
-        theirs.tangents[1] = tangent;  // One corner of six.
+        theirs.tangents[1] = tangent;  // This changes one of six corners.
         const Judgment judgment = judge(kit, theirs);
         EXPECT_FALSE(judgment.passes(kit.group));
         return judgment;
@@ -281,7 +281,7 @@ std::string bytes_of(const fs::path& file) {
     return {std::istreambuf_iterator<char>(stream), {}};
 }
 
-/// Three vertices for every triangle, with a tangent each.
+/// Returns a mesh with three vertices and tangents per triangle.
 Mesh loose(const Mesh& mesh, const std::vector<glm::vec4>& tangents) {
     Mesh result = test::soup(mesh);
     result.tangents = tangents;
@@ -294,7 +294,7 @@ std::vector<glm::vec4> relief_tangents(const Mesh& mesh) {
                                ignored);
 }
 
-/// The plain definition does not cover these (tangent_definition.h).
+/// Meshes outside of the plain definition (tangent_definition.h).
 bool is_beyond_the_definition(const KitMesh& mesh) {
     return mesh.name == "degenerate" || mesh.name == "non-manifold" || mesh.name == "folded-back" ||
            mesh.name == "folded-over";
@@ -332,7 +332,7 @@ TEST(ConformanceKit, JudgesNearlyAllCornersOfItsMeshes) {
         }
     }
     EXPECT_EQ(judged, 8853U);
-    // Only where the reference contradicts itself.
+    // The excluded corners are those on which the reference contradicts itself.
     EXPECT_THAT(not_judged, testing::ElementsAre(testing::Pair("degenerate", 40),
                                                  testing::Pair("non-manifold", 90),
                                                  testing::Pair("scrambled", 2)));
@@ -373,7 +373,7 @@ TEST(ConformanceKit, FindsHandednessOfTheOtherConvention) {
     }
 }
 
-/// The meshes that a twisted basis does not pass.
+/// Returns the meshes that a twisted basis fails.
 std::set<std::string> failed_by(Twist twist) {
     std::set<std::string> failed;
     for (const KitMesh& mesh : kit()) {
@@ -396,7 +396,7 @@ TEST(ConformanceKit, FindsWeightsOfArea) {
     EXPECT_EQ(failed.count("facets"), 0U) << "where nothing is averaged";
 }
 
-/// One tangent for each stored vertex: that of its last corner.
+/// Returns a tangent per stored vertex, that of its last corner.
 TEST(ConformanceKit, FindsCornersPutBackOnTheirOldVertices) {
     for (const KitMesh& mesh : kit()) {
         if (mesh.name != "torus-mirrored") continue;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which files a command line names: what every form comes to, and what is refused.
+// The file arguments of command lines: their jobs and errors.
 #include "common/file_jobs.h"
 
 #include <gtest/gtest.h>
@@ -36,7 +36,7 @@ TEST(FileJobs, AFileIsTheSameByAnyPath) {
     EXPECT_EQ(identity_of(folder / "b.png"), identity_of(folder / "a.png"));
     EXPECT_EQ(identity_of("none.png"), identity_of(std::filesystem::absolute("./none.png")));
     EXPECT_NE(identity_of(folder / "c.png"), identity_of(folder / "a.png"));
-    // No file has such a name, but to say so is not this function's business.
+    // No file has such a name, but the function accepts it.
     const std::string endless(300, 'x');
     EXPECT_EQ(identity_of("./" + endless), identity_of(endless));
     EXPECT_NE(identity_of(endless + "y"), identity_of(endless));
@@ -72,7 +72,7 @@ TEST(FileJobs, AFileMayReplaceItselfButNoOther) {
     const TemporaryDirectory folder;
     const std::string here = folder.path().string() + "/";
     EXPECT_EQ(jobs({{here + "a.png", here + "b.png"}, here}).jobs.size(), 2U);
-    // The same folder by two names.
+    // Both names are the same folder.
     std::filesystem::create_directory(folder / "x");
     EXPECT_EQ(refusal({{here + "a.png", here + "x/../a.png"}, here}),
               here + "x/../a.png: named twice");
@@ -95,7 +95,7 @@ TEST(FileJobs, RefusesWhatCouldBeReadInTwoWays) {
 
 TEST(FileJobs, AUdimNameStandsForItsTilesInOrder) {
     const TemporaryDirectory folder;
-    // The last three are no tiles: a number too small, a letter, five digits.
+    // The last three are not tiles: a small number, a letter, five digits.
     for (const char* name : {"w.1012.png", "w.1001.png", "w.1002.exr", "v.1003.png", "w.1000.png",
                              "w.10x1.png", "w.10011.png"})
         touch(folder / name);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Lists of jobs as text, for tests to compare.
+/// Lists of jobs as text.
 #pragma once
 
 #include <filesystem>
@@ -20,7 +20,7 @@ inline std::string jobs_in_words(const tools::JobList& list) {
     return text;
 }
 
-/// An empty file.
+/// Writes an empty file.
 inline void touch(const std::filesystem::path& file) {
     std::ofstream{file};
 }

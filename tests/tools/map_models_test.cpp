@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a map's model comes to: which texture coordinates, which normals, in which space; and that
-// relief-bake mesh and convert go by the same.
+// The models of a bake: texture coordinates, normals and space, also in `relief-bake mesh` and
+// `convert`.
 #include "common/map_models.h"
 
 #include <gmock/gmock.h>
@@ -23,9 +23,9 @@ using testing::Field;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-/// Two triangles that meet at a right angle, one facing +z and one -x, without normals; the map
-/// lies on them by set 1, where they halve the middle of the image, while set 0 is one point.
-/// Placed twice: enlarged by 2, and moved by 10 along x.
+/// Two triangles at a right angle without normals, one facing +z and one -x. The normal texture
+/// uses set 1, in which they divide the middle of the image; set 0 is one point. The scene has two
+/// instances: scaled by 2, and moved by 10 along x.
 class MapModels : public testing::Test {
   protected:
     MapModels() {
@@ -69,7 +69,7 @@ class MapModels : public testing::Test {
              {{{"mesh", 0}, {"scale", {2, 2, 2}}}, {{"mesh", 0}, {"translation", {10, 0, 0}}}}},
             {"scenes", {{{"nodes", {0, 1}}}}},
             {"scene", 0}};
-        // As min and max, which positions must have.
+        // Accessors of positions must have min and max.
         document_["accessors"][0]["min"] = {0, -1, -1};
         document_["accessors"][0]["max"] = {1, 1, 0};
         write();
@@ -151,7 +151,7 @@ TEST_F(MapModels, BakedAndConvertedByTheSameRules) {
     write();
     const std::string bake =
         "relief-bake mesh fold.gltf fold.gltf out/map.exr --size 8 --space object --quiet";
-    // Its normal map would go on top, if it were there.
+    // The normal map would be applied if it existed.
     const auto refused = workplace_.run(bake);
     EXPECT_EQ(refused.exit_code, 1);
     EXPECT_THAT(refused.error,
@@ -163,10 +163,10 @@ TEST_F(MapModels, BakedAndConvertedByTheSameRules) {
         return std::vector<float>{samples[3 * index], samples[3 * index + 1],
                                   samples[3 * index + 2]};
     };
-    // Row 4, left and right of the edge.
+    // The texels are in row 4, left and right of the edge.
     EXPECT_THAT(texel(baked, 34), ElementsAre(0.0F, 0.5F, 0.5F));
     EXPECT_THAT(texel(baked, 37), ElementsAre(0.5F, 0.5F, 1.0F));
-    // A bake's object space is convert's: its tangent space is flat, all over.
+    // The object space of a bake is that of convert, so the tangent-space map is flat.
     ASSERT_EQ(workplace_
                   .run("relief-bake convert out/map.exr out/tangent.exr --to-tangent fold.gltf "
                        "--quiet")

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What values options take, and the words in which they refuse others.
+// The values of options and their error messages.
 #include "common/options.h"
 
 #include <gmock/gmock.h>
@@ -12,7 +12,7 @@ namespace {
 
 using testing::ElementsAre;
 
-/// The message of the UsageError that this throws.
+/// Returns the message of the thrown UsageError.
 template <typename Call>
 std::string refusal_by(Call&& call) {
     try {
@@ -85,7 +85,7 @@ TEST(OptionText, SplitsAtEverySeparator) {
     EXPECT_THAT(split("", ','), ElementsAre(""));
 }
 
-/// Parses words by CLI11 with one option of each kind.
+/// Parses arguments by CLI11 with one option of each kind.
 struct Parsed {
     double number = 0;
     std::vector<std::string> list;

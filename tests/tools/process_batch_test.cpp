@@ -68,7 +68,7 @@ TEST(ProcessBatch, WritesEveryModelUnderItsNameInAFolderThatItMakes) {
                              "averaged by angle, tangents none, no findings, [^\n]*\n"
                              "out/new/models/b.glb: 2 triangles, [^\n]*\n"
                              "in all    2 files\n"));
-    // The very bytes of a call for each.
+    // Separate calls write the same bytes.
     ASSERT_EQ(workplace.run("relief-mesh process b.obj out/alone.glb").exit_code, 0);
     EXPECT_EQ(workplace.read("out/new/models/b.glb"), workplace.read("out/alone.glb"));
 }
@@ -116,7 +116,7 @@ TEST(ProcessBatch, StrictNamesEveryModelWithFindings) {
                 MatchesRegex("relief-mesh: warning: a.obj: [0-9]+ findings? [^\n]*\n"
                              "relief-mesh: warning: c.obj: [0-9]+ findings? [^\n]*\n"));
     EXPECT_EQ(workplace.outputs(), "a.obj b.obj c.obj");
-    // A failure outweighs a finding.
+    // A failure takes precedence over a finding.
     EXPECT_EQ(workplace.run("relief-mesh process a.obj gone.obj -o out/ --normals area --strict")
                   .exit_code,
               1);

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tangents that relief-mesh process computes: from which texture coordinates, and what glTF's rules
-// make of what a file brings.
+// The tangents of `relief-mesh process`: their texture coordinates, and the rules of glTF.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -27,14 +26,14 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
 
-/// Of float tangents read back from a file.
+/// The tolerance of float tangents that are read from a file.
 constexpr double tangent_tolerance = 1e-4;
 
-/// Numbers of the file below: where each attribute's begin.
+/// The offsets of the attributes in the file below.
 enum Accessor { position, normal, tangent, set_0, set_1, lift };
 
-/// A glTF file with a triangle in the xy plane whose texture coordinates of set 0 grow with x, and
-/// of set 1 with y; a morph target that lifts nothing; tangents along (0,0,1), which no set makes.
+/// A glTF file with a triangle in the xy plane. The texture coordinates of set 0 grow with x, those
+/// of set 1 with y. It has a morph target, and tangents along (0,0,1), which match no set.
 class ProcessTangents : public testing::Test {
   protected:
     void write(json attributes, const json& material = {}, const json& targets = {}) {
@@ -87,7 +86,7 @@ class ProcessTangents : public testing::Test {
         Report report;
         return GltfDocument::read(workplace_ / "out/model.glb", report);
     }
-    /// The first tangent of what was written.
+    /// Returns the first tangent of the output.
     [[nodiscard]] glm::vec4 first_tangent() const {
         const Mesh mesh = written().mesh({0, 0});
         return mesh.tangents.empty() ? glm::vec4(0.0F) : mesh.tangents.front();
@@ -113,7 +112,7 @@ TEST_F(ProcessTangents, ComeFromTheSetAskedFor) {
     const ProgramResult second = process("--tangents mikktspace --uv-set 1");
     ASSERT_EQ(second.exit_code, 0) << second.error;
     EXPECT_THAT(second.out, HasSubstr("from texture coordinate set 1 (requested)\n"));
-    // u grows with y, and v, downwards, with x: as seen from the front the image is turned.
+    // u grows with y and v with x, so the image is rotated.
     expect_along(first_tangent(), {0, 1, 0}, 1);
     EXPECT_EQ(report()["options"]["uv_set"], 1);
     EXPECT_EQ(report()["primitives"][0]["texcoord_set"], 1);
@@ -166,7 +165,7 @@ TEST_F(ProcessTangents, AreMadeByTheMethodNamed) {
         contents.insert(workplace_.read("out/vase.glb"));
     }
     EXPECT_EQ(contents.size(), 3U) << "each gives others";
-    // Kept tangents of new normals are MikkTSpace's, however they were made before.
+    // With new normals, kept tangents are recomputed by MikkTSpace.
     ASSERT_EQ(workplace_
                   .run("relief-mesh process out/vase.glb out/new.glb --normals area --report "
                        "out/r.json")
@@ -199,7 +198,7 @@ TEST_F(ProcessTangents, BelongToTheCoordinatesAsStoredWhateverTheTransform) {
 TEST_F(ProcessTangents, OfMorphTargetsComeFromTheSameSet) {
     write(both_, {{"normalTexture", {{"index", 0}, {"texCoord", 1}}}},
           json::array({{{"POSITION", lift}}}));
-    // The third corner rises to (0,1,1): the displaced triangle's tangent along y rises with it.
+    // The third corner moves to (0,1,1), and the tangent along y with it.
     ASSERT_EQ(process("--normals flat --tangents mikktspace").exit_code, 0);
     const std::string glb = workplace_.read("out/model.glb");
     EXPECT_THAT(glb, HasSubstr("TANGENT"));
@@ -252,7 +251,7 @@ TEST_F(ProcessTangents, AreKeptWhereNothingBetterCanBeHad) {
     EXPECT_EQ(findings[0]["kind"], "primitive without texture coordinates");
     EXPECT_EQ(findings[0]["outcome"], "keeps its tangents");
     EXPECT_EQ(findings[1]["outcome"], "gets no tangents");
-    // New normals leave nothing to keep.
+    // With new normals, old tangents cannot be kept.
     ASSERT_EQ(process("--tangents mikktspace --normals flat").exit_code, 0);
     EXPECT_TRUE(written().mesh({0, 0}).tangents.empty());
 }

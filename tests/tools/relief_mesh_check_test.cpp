@@ -19,7 +19,7 @@ using test::Workplace;
 using testing::HasSubstr;
 using testing::Not;
 
-/// A square with a triangle whose corners are on a line.
+/// Writes a square and a collinear triangle.
 void write_bad(const Workplace& workplace, const std::string& name) {
     workplace.write(name,
                     "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nv 2 0 0\nf 1 2 3\nf 2 4 3\nf 1 5 2\n");
@@ -163,7 +163,7 @@ TEST(CheckCommand, RefusesWhatCannotBe) {
     EXPECT_EQ(workplace.run("relief-mesh check square.obj --json --quiet").exit_code, 2);
 }
 
-// Khronos' own samples are what sound models look like; what they have is remarked, not trouble.
+// The samples of Khronos are sound models, so their findings are only remarks.
 TEST(CheckCommand, RealModelsThatAreFineAreSaidToBe) {
     RELIEF_NEEDS_SHARED(models, "data/models/gltf");
     const Workplace workplace;
@@ -198,7 +198,7 @@ TEST(CheckCommand, RealModelsWithTroubleAreNamed) {
         HasSubstr("sound\nremarks   1 x bow-tie vertex\n"));
 }
 
-/// The vase with tangents by a method.
+/// Writes the vase with tangents by a method.
 void write_vase(const Workplace& workplace, const std::string& method) {
     const ProgramResult result =
         workplace.run("relief-mesh process data/vase.obj out/vase.gltf --tangents " + method);
@@ -211,7 +211,7 @@ json tangents_of(const Workplace& workplace, const std::string& file) {
     return json::parse(result.out)["files"][0]["primitives"][0]["tangents"];
 }
 
-/// Negates the w of the first so many vertices of out/vase.gltf; 0: of all.
+/// Negates the w of the first `count` vertices of out/vase.gltf, or of all for 0.
 void negate_signs(const Workplace& workplace, std::size_t count) {
     const json root = json::parse(workplace.read("out/vase.gltf"));
     const std::size_t index = root["meshes"][0]["primitives"][0]["attributes"]["TANGENT"];

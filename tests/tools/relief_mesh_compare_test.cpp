@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// relief-mesh compare as users run it: files of any format against each other, what it says and how
-// it exits.
+// The command `relief-mesh compare`: files of all formats, output and exit codes.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -26,8 +25,8 @@ json compared(const Workplace& workplace, const std::string& files_and_options) 
     return json::parse(result.out);
 }
 
-/// The square of write_square() with its triangles in another order and begun elsewhere, with a
-/// normal of its own at one corner.
+/// Writes the square of write_square() with another order of triangles and corners, and another
+/// normal at one corner.
 void write_other_square(const Workplace& workplace) {
     workplace.write("other.obj",
                     "v 1 1 0\nv -1 1 0\nv -1 -1 0\nv 1 -1 0\n"
@@ -67,7 +66,7 @@ TEST(CompareCommand, WhatOneFileLacksDoesNotPassUnnoticed) {
     ASSERT_EQ(
         workplace.run("relief-mesh process out/vase.glb out/lost.glb --tangents none").exit_code,
         0);
-    // Tangents were lost on the way: the normals are within any angle.
+    // The tangents are lost, and the normals are equal.
     EXPECT_EQ(
         workplace.run("relief-mesh compare out/vase.glb out/lost.glb --max-angle 0").exit_code, 0);
     const ProgramResult strict =
@@ -226,7 +225,7 @@ TEST(CompareCommand, QuantisedModelsAreComparedInWorldSpace) {
     const json result = compared(workplace, files + " --world --ignore-uv --tolerance 0.001");
     EXPECT_EQ(result["triangles"]["only_in_a"], 0);
     EXPECT_TRUE(result["world_space"].get<bool>());
-    // Normals of 8 bits.
+    // The file stores normals in 8 bits.
     EXPECT_GT(result["normals"]["mean"].get<double>(), 0.05);
     EXPECT_LT(result["normals"]["max"].get<double>(), 1.0);
 }

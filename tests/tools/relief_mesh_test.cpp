@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// relief-mesh as users run it: what it writes, what it says, and how it refuses.
+// The commands `relief-mesh process` and `info`: output files, printed text, and errors.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -25,11 +25,11 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::Not;
 
-/// Of float normals read back from a file.
+/// The tolerance of float normals that are read from a file.
 constexpr double normal_tolerance = 1e-4;
 
-/// A glTF file with one primitive that has texture coordinates and one that has none; both are the
-/// same triangle, without normals.
+/// Writes a glTF file with two primitives of the same triangle without normals. Only the first has
+/// texture coordinates.
 void write_two_primitives(const Workplace& workplace, const std::string& name) {
     // Three positions (0,0,0) (1,0,0) (0,1,0), then three texture coordinates (0,0) (1,0) (0,1).
     const std::vector<float> numbers = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 1};
@@ -95,17 +95,17 @@ TEST(ProcessCommand, FlatNormalsSplitTheCornersOfACube) {
     const ProgramResult result =
         workplace.run("relief-mesh process cube.obj out/cube.ply --normals flat");
     ASSERT_EQ(result.exit_code, 0) << result.error;
-    // Eight corners of three faces each.
+    // Each of the eight corners is in three faces.
     EXPECT_THAT(result.out, HasSubstr("normals   computed, one per triangle\n"));
     EXPECT_THAT(result.out, HasSubstr("splits    8 -> 24 vertices\n"));
 }
 
-/// A cube whose corners are shared, with or without smoothing groups.
+/// Returns a cube with shared corners, with or without smoothing groups.
 std::string cube_text(bool with_groups) {
     std::string text = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n";
     const char* faces[] = {"4 3 2 1", "5 6 7 8", "1 2 6 5", "2 3 7 6", "3 4 8 7", "4 1 5 8"};
     for (int i = 0; i < 6; ++i) {
-        // Top and bottom apart, the sides one smooth ring.
+        // Top and bottom have no group, and the sides share one.
         if (with_groups) text += i < 2 ? "s off\n" : "s 1\n";
         text += std::string("f ") + faces[i] + "\n";
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// relief-mesh decimate and subdivide as users run them.
+// The commands `relief-mesh decimate` and `subdivide`.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -22,7 +22,7 @@ using test::read_document;
 using test::Workplace;
 using testing::HasSubstr;
 
-/// A wavy sheet of cells x cells in two materials, left and right of x = 0.
+/// Writes a wavy grid of cells x cells with two materials, left and right of x = 0.
 void write_sheet(const Workplace& workplace, const std::string& name, int cells) {
     std::string vertices;
     std::string left = "usemtl left\n";
@@ -50,7 +50,7 @@ std::set<std::tuple<float, float, float>> places_near_the_border(const Mesh& mes
     return places;
 }
 
-/// The vase with a second texture coordinate set, its x and y, which its normal texture is on.
+/// Writes the vase with x and y as a second texture coordinate set, which its normal texture uses.
 void write_vase_of_two_sets(const Workplace& workplace) {
     ASSERT_EQ(workplace.run("relief-mesh process data/vase.obj out/vase.gltf").exit_code, 0);
     json root = json::parse(workplace.read("out/vase.gltf"));
@@ -109,7 +109,7 @@ TEST(DecimateCommand, MeetsANumberARatioAndReports) {
     ASSERT_EQ(result.exit_code, 0) << result.error;
     EXPECT_THAT(result.out, HasSubstr("result    1440 triangles, "));
     EXPECT_THAT(result.out, HasSubstr("omitted   1 material (cannot be stored in .ply)\n"));
-    // The same command, the same bytes.
+    // The same command writes the same bytes.
     ASSERT_EQ(workplace.run("relief-mesh decimate data/vase.obj out/c.ply --ratio 0.25 --threads 1")
                   .exit_code,
               0);

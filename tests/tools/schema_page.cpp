@@ -24,7 +24,7 @@ bool is_of_kind(const json& value, const std::string& kind) {
     return value.is_number() && allows("number") && (is_whole || !allows("whole number"));
 }
 
-/// Walks a document and notes what it sees.
+/// Walks a document and records its values.
 class Walk {
   public:
     explicit Walk(const std::vector<SchemaRow>& rows) : rows_(rows) {}
@@ -72,7 +72,7 @@ class Walk {
         if (!is_absent_object) faults_.insert(place + ": is not documented");
     }
 
-    /// The rows right below `place` that are not optional.
+    /// Returns the required rows below `place`.
     void require_members(const json& object, const std::string& place) {
         const std::string begin = place.empty() ? "" : place + ".";
         for (const SchemaRow& row : rows_) {

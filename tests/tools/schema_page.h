@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// docs/accuracy-schema.md as something to hold JSON against.
+/// Checks JSON against docs/accuracy-schema.md.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -15,13 +15,13 @@ struct SchemaRow {
     std::string kind;
 };
 
-/// The rows below a heading of the page, "## compare --json".
+/// Returns the rows below a heading of the page, "## compare --json".
 std::vector<SchemaRow> schema_rows(const std::string& heading);
 
-/// What stands in the JSON and not in the rows, or is of another kind; and what must stand in each
-/// object that is there and does not. One line each.
+/// Returns a line for each value that is not in the rows or has another type, and for each missing
+/// value.
 ///
-/// \param is_complete  what is optional must occur somewhere too
+/// \param is_complete  whether optional values must occur, too
 std::vector<std::string> schema_faults(const nlohmann::json& json,
                                        const std::vector<SchemaRow>& rows, bool is_complete);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// docs/accuracy.md says what is measured, not what once was: its errors are held to those of the
-// same experiments on the same inputs. Shading's are left out: another driver draws other bits.
+// Checks the errors in docs/accuracy.md against the same experiments. Shading is excluded, because
+// its errors depend on the driver.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -22,7 +22,7 @@ struct PageRow {
     std::string rms;
     std::string line;  ///< All of it.
 };
-/// Of each experiment, as "`normals/torus-jittered`, torus, ... 8192 triangles": rows by method.
+/// The rows by method of each experiment, "`normals/torus-jittered`, torus, ... 8192 triangles".
 using Page = std::map<std::string, std::map<std::string, PageRow>>;
 
 std::string without_bold(std::string text) {
@@ -48,8 +48,8 @@ Page numbers_of_the_page() {
     return page;
 }
 
-/// Half of the last digit of a number that the page shows, which is what rounding leaves, and a
-/// little: other C libraries have other last bits of sines, and a number may lie between two.
+/// Returns half of the last digit of a printed number, the rounding error, with a margin for the
+/// last bits of other C libraries.
 double tolerance_of(const std::string& shown) {
     const std::size_t exponent = shown.find_first_of("eE");
     const std::string digits = shown.substr(0, exponent);
@@ -95,7 +95,7 @@ INSTANTIATE_TEST_SUITE_P(All, AccuracyDocumentOf,
                              return std::string(word_of(tested.param));
                          });
 
-/// The commands of which the page says that they recommend something.
+/// Returns the commands with a recommendation in the page.
 std::vector<std::string> commands_of_the_page() {
     std::ifstream file(test::source_directory() / "docs/accuracy.md");
     std::vector<std::string> commands;

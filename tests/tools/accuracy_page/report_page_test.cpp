@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The page in a real browser: report_page_test.py looks at the sample report as a reader would.
+// Runs report_page_test.py, which tests the sample report in a browser.
 #include <gtest/gtest.h>
 
 #include <fstream>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// A small report with everything that is awkward: errors that are zero or no number, methods that
-/// were not timed, names that look like HTML; and its pictures.
+/// A small report with special cases: errors of zero or NaN, methods without times, names that look
+/// like HTML, pictures.
 #pragma once
 
 #include <algorithm>
@@ -15,7 +15,7 @@
 
 namespace relief::tools {
 
-/// sample_report.json, with its pictures written below `folder`.
+/// Returns sample_report.json, and writes its pictures below `folder`.
 inline nlohmann::ordered_json sample_report(const std::filesystem::path& folder) {
     std::filesystem::create_directory(folder / "pictures");
     for (const char* name : {"heat", "before", "after"}) {
