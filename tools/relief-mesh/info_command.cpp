@@ -3,7 +3,6 @@
 // materials, and the parts of a scene that are not meshes. Tests: tests/tools/relief_mesh_test.cpp.
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
