@@ -365,8 +365,8 @@ int run_tool(const Tool& tool, const std::vector<std::string>& arguments, std::F
     set_thread_limit(0);
     CLI::App root(tool.sentence, tool.name);
     root.formatter(std::make_shared<HelpFormat>());
-    root.set_version_flag("--version", tool.name + " " + version(), "Print the version and leave.");
-    root.set_help_flag("-h,--help", "Print this help and leave.");
+    root.set_version_flag("--version", tool.name + " " + version(), "Print the version and exit.");
+    root.set_help_flag("-h,--help", "Print this help and exit.");
     std::vector<Command> commands;
     for (const auto& add : tool.commands)
         commands.push_back(add(root));

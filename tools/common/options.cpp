@@ -160,8 +160,7 @@ AddedOption add_files(CLI::App& app, const std::string& name,
 void add_general_options(CLI::App& app, GeneralOptions& options) {
     constexpr int max_threads = 1024;
     add_value(app, "--threads", "N",
-              "Use at most N threads. The output does not depend on N. Default: all of the "
-              "machine.",
+              "Use at most N threads. The output does not depend on N. Default: all processors.",
               [&options](const std::string& subject, const std::string& text) {
                   options.threads =
                       static_cast<unsigned>(parse_integer(subject, text, 1, max_threads));
