@@ -119,7 +119,7 @@ class HelpFormat : public CLI::FormatterBase {
         std::string page = app->get_description() + "\n" + help_usage(*app);
         page += help_commands(*app) + help_arguments(*app);
         for (const std::string& group : app->get_groups()) {
-            if (group != general) page += help_options(*app, group, group);
+            if (group != general && !group.empty()) page += help_options(*app, group, group);
         }
         page += help_options(*app, "General", general);
         if (!app->get_footer().empty()) page += "\n" + app->get_footer() + "\n";
