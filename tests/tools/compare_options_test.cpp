@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // relief-view --compare: which half shows what, the numbers, and what is refused.
-#include "compare_options.h"
+#include "picture_comparison.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -80,17 +80,17 @@ TEST(CompareRefuses, WhatCouldShowNothing) {
     test::expect_refusals(
         workplace, "relief-view", "picture.png",
         {{"relief-view data/vase.obj --split 0.5 --output out/picture.png", 2,
-          "--split: says where --compare splits"},
+          "--split: needs --compare or --compare-to"},
          {"relief-view data/vase.obj --compare kernel=central3 --compare-to data/vase.obj "
           "--output out/picture.png",
           2, "--compare: contradicts --compare-to"},
          {"relief-view data/vase.obj --compare interpolation=flat --turntable 3 --output "
           "out/picture.png",
-          2, "--compare: shows one picture, not many"},
+          2, "--compare: compares one picture, not a sequence"},
          {"relief-view data/vase.obj --compare interpolation=flat --explain-effects", 2,
           "--compare: there is no --output"},
          {"relief-view data/vase.obj --compare kernel=central3 --output out/picture.png", 2,
-          "--compare kernel=central3: there are no heights"},
+          "--compare kernel=central3: there is no height map"},
          {"relief-view data/vase.obj --compare interpolation=flat --difference-map out/m.png "
           "--output out/m.png",
           2, "--difference-map: would overwrite"},

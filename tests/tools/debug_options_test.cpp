@@ -92,7 +92,7 @@ TEST_F(DebugOptions, ThatShowNothingAreRefused) {
     refused("--frame-length 0.1 --output x.png", "--frame-length");
     refused("--wireframe --explain-effects", "--wireframe: there is no --output");
     refused("--show tangent --explain-effects --output x.png", "--explain-effects");
-    refused("--show tangent --exposure 1 --output x.png", "--exposure: belongs to light");
+    refused("--show tangent --exposure 1 --output x.png", "--exposure: does not apply to data");
     refused("--show diffuse --budget 5 --output x.png", "--budget");
     refused("--show tangents --output x.png", "not one of picture, geometric-normal");
     refused("--vertex-frames --frame-length 0 --output x.png", "--frame-length");

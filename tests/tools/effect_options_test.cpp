@@ -51,15 +51,15 @@ class EffectOptions : public testing::Test {
 TEST(ParseEffects, ReadsABaseAndNames) {
     EXPECT_EQ(parse_effects("--effects", "auto").base, EffectBase::planned);
     EXPECT_EQ(parse_effects("--effects", "all").base, EffectBase::all_neutral);
-    const EffectWishes wishes = parse_effects("--effects", "none,+diffuse,-normal map");
-    EXPECT_EQ(wishes.base, EffectBase::nothing);
-    ASSERT_EQ(wishes.forced.size(), 2U);
-    EXPECT_EQ(wishes.forced[0].name, "diffuse");
-    EXPECT_TRUE(wishes.forced[0].on);
-    EXPECT_EQ(wishes.forced[1].name, "normal map");
-    EXPECT_FALSE(wishes.forced[1].on);
+    const EffectWishes requests = parse_effects("--effects", "none,+diffuse,-normal map");
+    EXPECT_EQ(requests.base, EffectBase::nothing);
+    ASSERT_EQ(requests.forced.size(), 2U);
+    EXPECT_EQ(requests.forced[0].name, "diffuse");
+    EXPECT_TRUE(requests.forced[0].on);
+    EXPECT_EQ(requests.forced[1].name, "normal map");
+    EXPECT_FALSE(requests.forced[1].on);
     EXPECT_EQ(test::message_of<UsageError>([] { parse_effects("--effects", "+"); }),
-              "--effects: '+' forces nothing");
+              "--effects: '+' does not force an effect");
 }
 
 TEST_F(EffectOptions, ForceNeutralEffectsWithoutAChangeAndTakeOutOthersWithOne) {
@@ -82,7 +82,7 @@ TEST_F(EffectOptions, ForceNeutralEffectsWithoutAChangeAndTakeOutOthersWithOne) 
 TEST_F(EffectOptions, RefuseWhatIsUnknownOrImpossible) {
     EXPECT_EQ(run("--effects +emision --explain-effects").error,
               "relief-view: error: --effects: 'emision' is no effect; did you mean 'emission'? "
-              "(--explain-effects lists them with their reasons)\n");
+              "(--explain-effects lists the effects and their reasons)\n");
     const ProgramResult flat = run("--effects +flat --explain-effects");
     EXPECT_EQ(flat.exit_code, 2);
     EXPECT_THAT(flat.error, HasSubstr("effect 'flat' cannot be forced on: material"));
@@ -121,7 +121,7 @@ TEST_F(EffectOptions, ExplainedWithABenchmarkArePriced) {
 }
 
 TEST_F(EffectOptions, BudgetThatIsKeptDropsNothingAndOneThatCannotBeIsAnError) {
-    EXPECT_THAT(run("--budget 100000").out, HasSubstr(": nothing is dropped"));
+    EXPECT_THAT(run("--budget 100000").out, HasSubstr(": no effect is dropped"));
     EXPECT_TRUE(summary("--budget 100000").at("budget").at("dropped").empty());
     const ProgramResult impossible = run("--budget 0.001 --output p.png");
     EXPECT_EQ(impossible.exit_code, 1);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Lights as text: hand-computed directions and intensities, and every way to get them wrong.
-#include "light_option.h"
+#include "view_options.h"
 
 #include <gtest/gtest.h>
 
@@ -76,8 +76,9 @@ TEST(LightOption, RefusesWhatIsNotALight) {
               "--light directional:0,0,1,#ffffff,9: too many values");
     EXPECT_EQ(light_refusal("directional:0,91"),
               "--light directional:0,91: '91': not between -90 and 90 degrees");
-    EXPECT_EQ(light_refusal("spot:1,1,1,1,1,1"),
-              "--light spot:1,1,1,1,1,1: the spot light shines at its own place");
+    EXPECT_EQ(
+        light_refusal("spot:1,1,1,1,1,1"),
+        "--light spot:1,1,1,1,1,1: the position and the target of the spotlight are the same");
 }
 
 }  // namespace

@@ -150,12 +150,12 @@ TEST(ReferenceRefusal, SaysWhyAndLeavesNothingBehind) {
          {"square.obj --reference small.png --difference-map small.png", 2,
           "--difference-map: would overwrite the model or a picture"},
          {"square.obj --reference small.png --difference-map out/map.jpg", 2,
-          "--difference-map out/map.jpg: no format to write a map in"},
+          "--difference-map out/map.jpg: unsupported format"},
          {"square.obj --reference linear.exr --output out/old.png", 2,
-          "--reference linear.exr: sRGB and linear light cannot be compared"},
+          "--reference linear.exr: sRGB and linear colors cannot be compared"},
          {"square.obj --reference missing.png", 1, "missing.png: "},
          {"square.obj --reference small.png --output out/old.png", 1,
-          "small.png: has 8 x 4 pixels, but 1024 x 1024 would be drawn (add "
+          "small.png: has 8 x 4 pixels, but the picture has 1024 x 1024 (add "
           "--size 8x4)"},
          {"square.obj --reference words.png --size 8x4", 1,
           "words.png: images cannot be compared: "},

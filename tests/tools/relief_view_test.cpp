@@ -81,11 +81,10 @@ TEST(ViewCommand, LightsAreAddedWhereThereAreNoneAndItSaysSo) {
         workplace.run("relief-view square.obj --output out/p.png --size 33x33 --camera 0,0");
     ASSERT_EQ(result.exit_code, 0) << result.error;
     EXPECT_EQ(result.error, "") << "progress is for terminals";
-    EXPECT_THAT(result.out, HasSubstr("read      square.obj: 1 mesh, 2 triangles\n"
-                                      "light     2 directional lights and ambient light\n"
-                                      "notes     neither the model nor --light gives a light: a "
-                                      "key and a fill light were added\n"
-                                      "findings  none\n"));
+    EXPECT_THAT(result.out,
+                HasSubstr("read      square.obj: 1 mesh, 2 triangles\nlight     2 directional "
+                          "lights and ambient light\nnotes     the model and --light contain no "
+                          "light, so a key light and a fill light were added\nfindings  none\n"));
     EXPECT_THAT(result.out, HasSubstr("wrote     out/p.png: "));
     EXPECT_GT(pixel(picture_in(workplace / "out/p.png"), 16, 16)[0], 100);
 }
@@ -429,20 +428,17 @@ TEST(ViewRefusal, SaysWhyAndLeavesNothingBehind) {
          {"square.obj --normal-map gone.png --output out/old.png", 1, "gone.png: no such file"},
          {"square.obj --diffuse-map gone.png --output out/old.png", 1, "gone.png: no such file"},
          {"square.obj --strict", 2,
-          "--strict: is about the exit code of a picture, and a window shows its findings "
-          "(name a picture with --output)"},
-         {"square.obj --json", 2,
-          "--json: is a summary, and a window has none (name a picture with --output)"},
+          "--strict: the window shows the findings and has no exit code for them (add --output)"},
+         {"square.obj --json", 2, "--json: the window prints no summary (add --output)"},
          {"square.obj --output out/old.png --dump-state out/state.json", 2,
-          "--dump-state: is what a window shows, and none is opened (leave --output and the "
-          "like out)"},
+          "--dump-state: no window is opened (leave --output out)"},
          {"square.obj --output out/old.png --ui-scale 2", 2,
-          "--ui-scale: is of a window, and none is opened (leave it out)"},
+          "--ui-scale: no window is opened (leave it out)"},
          {"square.obj --ui-scale 5", 2, "--ui-scale 5: not between 0.5 and 4"},
          {"square.obj --output out/old.png --no-state", 2,
-          "--no-state: is of a window, and none is opened (leave it out)"},
+          "--no-state: no window is opened (leave it out)"},
          {"square.obj --output out/p.jpg", 2,
-          "--output out/p.jpg: no format to write a picture in (use .png, .exr or .apng)"},
+          "--output out/p.jpg: unsupported format (use .png, .exr or .apng)"},
          {"square.obj --output out/old.png --size 5", 2, "--size 5: not a size like 1920x1080"},
          {"square.obj --output out/old.png --samples 2", 2, "--samples 2: not one of 1, 4"},
          {"square.obj --output out/old.png --fov 180", 2,
@@ -453,28 +449,25 @@ TEST(ViewRefusal, SaysWhyAndLeavesNothingBehind) {
          {"square.obj --output out/old.png --camera 0,0,0", 2,
           "--camera 0,0,0: '0': not between 0.01 and 1000"},
          {"square.obj --output out/old.png --light sun", 2,
-          "--light sun: not a light (begin with directional:, point: or spot:, or say none)"},
+          "--light sun: not a light (start with directional:, point: or spot:, or use none)"},
          {"square.obj --output out/old.png --light none --light point:0,0,1", 2,
           "--light none: contradicts the other lights"},
          {"square.obj --output out/old.png --normal-map map.png --height-map map.png", 2,
           "--height-map: contradicts --normal-map"},
-         {"square.obj --output out/old.png --green up", 2,
-          "--green: says how to read a --normal-map"},
-         {"square.obj --output out/old.png --strength 2", 2,
-          "--strength: says how to read a --height-map"},
-         {"square.obj --output out/old.png --kernel sobel3", 2,
-          "--kernel: says how to read a --height-map"},
+         {"square.obj --output out/old.png --green up", 2, "--green: needs --normal-map"},
+         {"square.obj --output out/old.png --strength 2", 2, "--strength: needs --height-map"},
+         {"square.obj --output out/old.png --kernel sobel3", 2, "--kernel: needs --height-map"},
          {"square.obj --output out/old.png --normal-scale 2", 2,
           "--normal-scale: the model has no normal map to scale (give one with --normal-map "
           "or --height-map)"},
          {"square.obj --output out/old.png --no-skybox", 2,
-          "--no-skybox: there is no --environment to hide"},
+          "--no-skybox: there is no --environment"},
          {"square.obj --output out/old.png --reflectivity 0.5", 2,
-          "--reflectivity: there is no --environment to reflect"},
+          "--reflectivity: there is no --environment"},
          {"square.obj --output out/old.png --environment sky --background '#000000'", 2,
           "--background: the environment hides it"},
          {"square.obj --output out/old.png --environment sky --no-skybox", 2,
-          "--environment: would show nowhere"},
+          "--environment: has no effect"},
          {"square.obj --output out/old.png --environment sky map.png", 2,
           "--environment: takes one file, six files or a folder, not 2 files"},
          {"square.obj --output out/old.png --backend vulkan", 2,
@@ -483,8 +476,8 @@ TEST(ViewRefusal, SaysWhyAndLeavesNothingBehind) {
          {"map.png --output out/old.png", 1, "map.png: "},
          {"square.obj --output nowhere/p.png", 1, "nowhere/p.png: "},
          {"plain.obj --output out/old.png --normal-map map.png", 1,
-          "plain.obj: no texture coordinates, which --normal-map needs (unwrap the model "
-          "first, or leave --normal-map out)"},
+          "plain.obj: no texture coordinates for --normal-map (unwrap the model first, or "
+          "leave --normal-map out)"},
          {"square.obj --output out/old.png --normal-map missing.png", 1, "missing.png: "},
          {"square.obj --output out/old.png --height-map noise.png", 1, "noise.png: "},
          {"square.obj --output out/old.png --diffuse-map noise.png", 1, "noise.png: "},

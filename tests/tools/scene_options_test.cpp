@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Scenes as composed from a model and options, without drawing them.
 #include "scene_options.h"
-#include "environment_options.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

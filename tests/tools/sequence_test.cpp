@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Sequences of pictures: names of numbered files, turntables, animations, and what is refused.
-#include "sequence.h"
+#include "view_output.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,10 +9,10 @@
 #include <fstream>
 
 #include "relief/mesh/image_file.h"
-#include "sequence_options.h"
 #include "tools/read_files.h"
 #include "tools/refusal.h"
 #include "tools/workplace.h"
+#include "view_output.h"
 
 namespace relief::tools {
 namespace {
@@ -125,36 +125,36 @@ TEST(SequenceRefusal, SaysWhyAndLeavesNothingBehind) {
         {{"square.obj --output out/old.png --turntable 0", 2, "--turntable 0: not between"},
          {"square.obj --output out/old.png --turntable 4 --frames 4", 2,
           "--turntable: contradicts --frames"},
-         {"square.obj --output out/old.png --seconds 4", 2,
-          "--seconds: says how much --frames shows"},
+         {"square.obj --output out/old.png --seconds 4", 2, "--seconds: needs --frames"},
          {"square.obj --output out/old.png --turntable 4 --fps 10", 2,
-          "--fps: is said of an animation"},
-         {"square.obj --output out/a.apng", 2, "--output out/a.apng: an animation of one"},
+          "--fps: applies to .apng animations"},
+         {"square.obj --output out/a.apng", 2,
+          "--output out/a.apng: an animation needs several pictures"},
          {"square.obj --output out/old.png --frames 4", 2,
-          "--frames: nothing moves in this scene (use --turntable)"},
+          "--frames: the scene has no animation (use --turntable)"},
          {"square.obj --explain-effects --turntable 4", 2, "--turntable: there is no --output"},
          {"square.obj --output out/old.png --light-markers 0.1", 2,
           "--light-markers: there is no point or spot light to show"},
          {"square.obj --output out/old.png --material golt", 2,
-          "--material golt: there is no such material; did you mean 'gold'?"},
+          "--material golt: unknown material; did you mean 'gold'?"},
          {"square.obj --output out/old.png --metallic-roughness 1", 2,
           "--metallic-roughness 1: not metallic,roughness"},
          {"square.obj --output out/old.png --metallic-roughness 1,2", 2,
-          "--metallic-roughness 1,2: both must be within 0 and 1"},
+          "--metallic-roughness 1,2: both numbers must be between 0 and 1"},
          {"square.obj --output out/old.png --metallic-roughness 1,0 --shininess 4", 2,
-          "--metallic-roughness: is glTF's model, and --shininess asks for Phong's"},
+          "--metallic-roughness: needs the glTF model, and --shininess needs the Phong model"},
          {"square.obj --output out/old.png --shading as_authored --interpolation gouraud", 2,
-          "--interpolation gouraud: asks for Phong's model"},
+          "--interpolation gouraud: needs the Phong model"},
          {"square.obj --output out/old.png --height-as bump_map", 2,
-          "--height-as: says what a --height-map becomes"},
+          "--height-as: needs --height-map"},
          {"square.obj --output out/old.png --normal-space object", 2,
-          "--normal-space: says how to read a --normal-map"},
+          "--normal-space: needs --normal-map"},
          {"square.obj --output out/old.png --fresnel conductor", 2,
-          "--fresnel: there is no --environment to reflect"},
+          "--fresnel: there is no --environment"},
          {"square.obj --output out/old.png --environment-light on", 2,
           "--environment-light: there is no --environment"},
          {"square.obj --output out/old.exr --exposure 1", 2,
-          "--exposure: belongs to display colours"}});
+          "--exposure: applies to display colors"}});
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Scenes with one change, without drawing them.
-#include "variant_scene.h"
+#include "variant.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -37,7 +37,7 @@ class VariantScene : public testing::Test {
         return prepare(parse_variant("", text), scene, options_, report);
     }
     Scene changed(const Scene& scene, const std::string& text) const {
-        return with(scene, prepared(scene, text));
+        return with_variant(scene, prepared(scene, text));
     }
     std::string refusal(const Scene& scene, const std::string& text) const {
         try {
@@ -67,7 +67,7 @@ TEST_F(VariantScene, InterpolationIsThatOfAllMaterialsAndSharesTheMeshes) {
     EXPECT_EQ(flat.materials[0].interpolation, Interpolation::flat);
     EXPECT_EQ(before.materials[0].interpolation, Interpolation::per_pixel);
     EXPECT_EQ(&*flat.meshes[0], &*before.meshes[0]);
-    EXPECT_THAT(refusal(before, "interpolation=per_pixel"), HasSubstr("already"));
+    EXPECT_THAT(refusal(before, "interpolation=per_pixel"), HasSubstr("current setting"));
 }
 
 TEST_F(VariantScene, GouraudDrawsMetallicRoughnessByPhongsModel) {
@@ -84,7 +84,7 @@ TEST_F(VariantScene, AKernelGivesTheMapThatTheOptionGives) {
     options().kernel = Kernel::central5;
     EXPECT_EQ(map_of(other).samples, map_of(scene()).samples);
     EXPECT_NE(map_of(other).samples, map_of(before).samples);
-    EXPECT_THAT(refusal(before, "kernel=central5"), HasSubstr("already"));
+    EXPECT_THAT(refusal(before, "kernel=central5"), HasSubstr("current setting"));
     // Without the option, by the kernel and the borders that relief-bake bump takes for the map.
     options().kernel.reset();
     Report report;
@@ -159,11 +159,11 @@ TEST_F(VariantScene, FramesAreThoseOfTheMode) {
 
 TEST_F(VariantScene, WhatCouldShowNothingIsRefusedWithTheReason) {
     const Scene plain = scene();
-    EXPECT_THAT(refusal(plain, "kernel=central3"), HasSubstr("no heights"));
-    EXPECT_THAT(refusal(plain, "tangents=lengyel"), HasSubstr("no map whose frame"));
+    EXPECT_THAT(refusal(plain, "kernel=central3"), HasSubstr("no height map"));
+    EXPECT_THAT(refusal(plain, "tangents=lengyel"), HasSubstr("that needs tangents"));
     EXPECT_THAT(refusal(plain, "bits=8"), HasSubstr("no normal map"));
-    EXPECT_THAT(refusal(plain, "map=none"), HasSubstr("no map to leave out"));
-    EXPECT_THAT(refusal(plain, "map=bump_map"), HasSubstr("made of heights"));
+    EXPECT_THAT(refusal(plain, "map=none"), HasSubstr("no normal map or bump map to remove"));
+    EXPECT_THAT(refusal(plain, "map=bump_map"), HasSubstr("converted from heights"));
 }
 
 TEST_F(VariantScene, EditsAfterwardsComeAlong) {
@@ -175,11 +175,11 @@ TEST_F(VariantScene, EditsAfterwardsComeAlong) {
     edited.materials[0].diffuse = glm::vec3(0.25F);
     edited.materials[0].normal_map->scale = 0.5F;
     edited.images.push_back({"another", workplace() / "data/bricks-height.png"});
-    const Scene other = with(edited, variant);
+    const Scene other = with_variant(edited, variant);
     EXPECT_EQ(other.exposure, 3.0F);
     EXPECT_EQ(other.materials[0].diffuse, glm::vec3(0.25F));
     EXPECT_EQ(other.materials[0].normal_map->scale, 0.5F);
-    EXPECT_EQ(map_of(other).samples, map_of(with(before, variant)).samples);
+    EXPECT_EQ(map_of(other).samples, map_of(with_variant(before, variant)).samples);
     EXPECT_NO_THROW(validate(other));
 }
 
@@ -189,7 +189,7 @@ TEST_F(VariantScene, AnotherModelStandsInTheSameLight) {
     before.exposure = 2.0F;
     Scene other = scene();
     other.materials[0].diffuse = glm::vec3(0.125F);
-    const Scene lit = in_light_of(before, other);
+    const Scene lit = with_lighting_of(before, other);
     EXPECT_EQ(lit.directional_lights.size(), 1U);
     EXPECT_EQ(lit.exposure, 2.0F);
     EXPECT_EQ(lit.materials[0].diffuse, glm::vec3(0.125F));

@@ -11,14 +11,14 @@
 namespace relief::tools {
 namespace {
 
-Choices<DebugView> view_words() {
+Choices<DebugView> view_choices() {
     Choices<DebugView> words;
     for (const DebugViewInfo& info : debug_views())
         words.emplace_back(info.name, info.view);
     return words;
 }
 
-const Choices<HealthChoice>& health_words() {
+const Choices<HealthChoice>& health_choices() {
     static const Choices<HealthChoice> words = {{"trouble", HealthChoice::trouble},
                                                 {"all", HealthChoice::all}};
     return words;
@@ -50,29 +50,32 @@ std::string remedy_for(DebugView view) {
 void add_debug_options(CLI::App& app, ViewOptions& options) {
     const std::string group = "Debug views";
     DebugChoices& choices = options.debug;
-    add_choice(app, "--show", choices.view, view_words(),
-               "What to show of the surfaces instead of the picture: directions in world space as "
-               "0.5 v + 0.5, or one term of the light alone. docs/debug-views.md says how each is "
-               "coded. Default: picture.")
+    add_choice(app, "--show", choices.view, view_choices(),
+               "Show a property of the surfaces instead of the picture: directions in world space "
+               "as 0.5 v + 0.5, or one term of the lighting. docs/debug-views.md describes the "
+               "coding. Default: picture.")
         .group(group);
-    add_switch(app, "--wireframe", choices.wireframe, "Draw the edges of all triangles over it.")
+    add_switch(app, "--wireframe", choices.wireframe,
+               "Draw the edges of all triangles over the picture.")
         .group(group);
     add_switch(app, "--vertex-frames", choices.vertex_frames,
-               "Draw every vertex's tangent (red), bitangent (green) and normal (blue) over it.")
+               "Draw the tangent (red), bitangent (green) and normal (blue) of each vertex over "
+               "the picture.")
         .group(group);
-    add_number(app, "--frame-length", "R", choices.frame_length, {1e-6, 10, ""},
-               "Length of the lines of --vertex-frames, times the scene's size. Default: 0.01.")
+    add_number(
+        app, "--frame-length", "R", choices.frame_length, {1e-6, 10, ""},
+        "Set the length of the lines of --vertex-frames, times the scene's size. Default: 0.01.")
         .group(group);
-    add_choice(app, "--health-markers", choices.health_markers, health_words(),
-               "Mark with coloured discs where relief-mesh check finds trouble, or all that it "
-               "finds; the summary says what the colours mean.")
+    add_choice(app, "--health-markers", choices.health_markers, health_choices(),
+               "Mark the problems that relief-mesh check finds with colored discs, or all its "
+               "findings. The summary lists the colors.")
         .group(group);
 }
 
 void check_debug_options(ViewOptions& options) {
     const DebugChoices& choices = options.debug;
     refuse(choices.frame_length && !choices.vertex_frames, "--frame-length",
-           "says how long the lines of --vertex-frames are", "give --vertex-frames too");
+           "needs --vertex-frames", "add --vertex-frames, or leave it out");
     const bool overlaid = choices.wireframe || choices.vertex_frames || choices.health_markers;
     const bool draws =
         options.output || options.reference || options.effects.measures() || options.wants_window();
@@ -80,16 +83,16 @@ void check_debug_options(ViewOptions& options) {
            choices.wireframe       ? "--wireframe"
            : choices.vertex_frames ? "--vertex-frames"
                                    : "--health-markers",
-           "there is no --output to draw it into", "name one");
+           "there is no --output", "add one");
     if (choices.view == DebugView::picture) return;
-    refuse(options.explain_effects, "--show", "shows not all that --explain-effects explains",
-           "leave one of them out");
+    refuse(options.explain_effects, "--show",
+           "contradicts --explain-effects, which needs all effects", "leave one of them out");
     refuse(options.effects.budget.has_value(), "--show",
-           "is no picture whose effects --budget could drop", "leave one of them out");
+           "contradicts --budget, which drops effects of the picture", "leave one of them out");
     if (!is_data(choices.view)) return;
     refuse(options.exposure || options.tone_mapping,
            options.exposure ? "--exposure" : "--tone-mapping",
-           fmt::format("belongs to light, and --show {} shows data",
+           fmt::format("does not apply to data, which --show {} shows",
                        debug_view_info(choices.view).name),
            "leave it out");
     if (!options.wants_window()) options.samples = 1;
@@ -144,10 +147,10 @@ nlohmann::ordered_json legend_json(const HealthMarkers& markers) {
 }
 
 nlohmann::ordered_json overlays_json(const DebugChoices& choices, const HealthMarkers& markers) {
-    using Json = nlohmann::ordered_json;
     return {{"wireframe", choices.wireframe},
             {"vertex_frames", choices.vertex_frames},
-            {"health_markers", choices.health_markers ? legend_json(markers) : Json(nullptr)}};
+            {"health_markers",
+             choices.health_markers ? legend_json(markers) : nlohmann::ordered_json(nullptr)}};
 }
 
 std::string command_line_of(const DebugChoices& choices) {
@@ -159,7 +162,7 @@ std::string command_line_of(const DebugChoices& choices) {
     if (choices.vertex_frames && choices.frame_length)
         text += fmt::format(" --frame-length {}", *choices.frame_length);
     if (choices.health_markers)
-        text += " --health-markers " + name_of(*choices.health_markers, health_words());
+        text += " --health-markers " + name_of(*choices.health_markers, health_choices());
     return text;
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Debug views and overlays by option.
+/// Options for debug views and overlays.
 ///
 ///     --show VIEW --wireframe --vertex-frames [--frame-length R] --health-markers trouble|all
 ///
@@ -19,31 +19,31 @@ namespace relief::tools {
 
 void add_debug_options(CLI::App& app, ViewOptions& options);
 
-/// Refuses what could show nothing, and settles what a view of data is drawn with.
+/// Rejects options without an effect, and sets the options that data views need.
 /// \throws UsageError
 void check_debug_options(ViewOptions& options);
 
-/// Markers of what the scene's meshes suffer from, where they are asked for.
+/// Finds the mesh problems that the options select.
 HealthMarkers chosen_markers(const DebugChoices& choices, const Scene& scene);
 
-/// \param markers  as chosen_markers() made them
+/// \param markers  the result of chosen_markers()
 Overlays overlays_of(const DebugChoices& choices, const HealthMarkers& markers);
 
-/// The plan turned to the view that is asked for. \throws FileError, naming the model, where it has
-/// nothing to show
+/// Changes the plan to the selected debug view.
+/// \throws FileError with the name of the model, if the view has nothing to show
 FramePlan viewed_plan(const ViewOptions& options, const Scene& scene, const FrameSettings& settings,
                       FramePlan plan, Report& report);
 
-/// What the markers' colours mean, a line each: "#ff0000: 3 collapsed triangles".
+/// Describes each marker color, for example "#ff0000 collapsed triangles: 3".
 std::vector<std::string> legend(const HealthMarkers& markers);
 
 /// [{"kind", "count", "marked", "color"}]
 nlohmann::ordered_json legend_json(const HealthMarkers& markers);
 
-/// {"wireframe", "vertex_frames", "health_markers": what legend_json() says, or null}
+/// {"wireframe", "vertex_frames", "health_markers": legend_json() or null}
 nlohmann::ordered_json overlays_json(const DebugChoices& choices, const HealthMarkers& markers);
 
-/// The options that ask for the same, each with a space before it; "" for the plain picture.
+/// The options that select this view, each after a space; "" for the picture.
 std::string command_line_of(const DebugChoices& choices);
 
 }  // namespace relief::tools

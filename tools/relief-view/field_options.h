@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Names and limits of options that set a field of a scene, from the description of the field
+/// Names and limits of options for scene fields, derived from the description of the fields
 /// (relief/shade/scene_fields.h).
 #pragma once
 
@@ -9,7 +9,7 @@
 
 namespace relief::tools {
 
-/// The names of an enumeration in scene files are those of its option.
+/// Options use the same enumeration names as scene files.
 template <typename Enum>
 Choices<Enum> enum_choices() {
     Choices<Enum> choices;

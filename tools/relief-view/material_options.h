@@ -1,20 +1,52 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Which model materials follow, where light is computed, and highlights, for all materials.
-/// Tests: tests/tools/relief_view_test.cpp.
+/// Maps, materials, highlights and reflection by option, and their application to all materials of
+/// a scene. Tests: tests/tools/scene_options_test.cpp.
 #pragma once
 
+#include <string>
+#include <vector>
+
+#include "common/command.h"
+#include "relief/mesh/report.h"
+#include "relief/shade/scene.h"
 #include "view_options.h"
 
 namespace relief::tools {
 
+void add_map_options(CLI::App& app, ViewOptions& options);
+
+/// \throws UsageError if an option needs another one
+void check_maps(const ViewOptions& options);
+
 void add_material_options(CLI::App& app, ViewOptions& options);
 
-/// \throws UsageError if one contradicts another
+/// \throws UsageError if options contradict each other
 void check_materials(const ViewOptions& options);
 
-/// Why glTF's materials are to be shown as Phong's: the first option that only Phong's model has,
-/// or --shading phong; empty if none was given.
+/// The option that requires the Phong model for glTF materials: --shading phong, or the first
+/// option that only the Phong model has. Empty if there is none.
 std::string reason_for_phong(const ViewOptions& options);
+
+/// Applies the options to all materials. Meshes without a material get the default material first.
+///
+/// \param notes  receives messages for the user, such as meshes without texture coordinates
+/// \throws UsageError if an option would have no effect
+/// \throws FileError if no mesh has texture coordinates for a map, or if the height map is invalid
+void override_materials(Scene& scene, const ViewOptions& options, Stages& stages, Report& report,
+                        std::vector<std::string>& notes);
+
+/// Converts heights to a normal map with this number of bits. Green is up, and flat decodes to
+/// exactly flat.
+Image converted_heights(const Image& image, const BumpOptions& bump, int bits, Report& report);
+
+/// The kernel that converts the height map of the options.
+///
+/// \return empty for an automatic Gaussian, which has its own radius
+/// \throws FileError if the height map cannot be read
+std::optional<Kernel> displayed_kernel(const ViewOptions& options);
+
+/// The decoding parameters of a converted height map.
+NormalMap converted_map(const Texture& texture);
 
 }  // namespace relief::tools

@@ -4,13 +4,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
+#include "common/command.h"
 #include "common/text.h"
-#include "environment_options.h"
+#include "field_options.h"
 #include "material_options.h"
-#include "material_overrides.h"
+#include "relief/mesh/image_file.h"
 #include "relief/shade/default_view.h"
+#include "relief/shade/environment_files.h"
 #include "relief/shade/framing.h"
 #include "relief/shade/scene_file.h"
 #include "window/orbit_camera.h"
@@ -18,20 +21,208 @@
 namespace relief::tools {
 namespace {
 
+constexpr const char* environment_group = "Environment";
+
+ImageSource image_file(const std::filesystem::path& file) {
+    return {file.string(), file};
+}
+
+void add_image_options(CLI::App& app, ViewOptions& options) {
+    add_repeatable(
+        app, "--environment", "FILE...",
+        "Use an environment: one image, six square images in the order +x -x +y -y +z -z, or a "
+        "folder with six images whose names end in posx, negx, posy, negy, posz, negz.",
+        [&](const std::string&, const std::string& text) {
+            options.environment.emplace_back(text);
+        })
+        .group(environment_group)
+        .takes(1, 7);
+    add_choice(app, "--environment-layout", options.environment_layout,
+               Choices<EnvironmentLayout>{{"auto", EnvironmentLayout::automatic},
+                                          {"panorama", EnvironmentLayout::panorama},
+                                          {"cross", EnvironmentLayout::cross},
+                                          {"probe", EnvironmentLayout::probe}},
+               "Set the layout of one image: a latitude-longitude panorama, a cross of six faces, "
+               "or an angular light probe. Default: auto, by aspect ratio (2:1, 4:3 or 3:4, 1:1).")
+        .group(environment_group);
+    add_switch(app, "--left-handed", options.left_handed_environment,
+               "Convert six images that were made for a left-handed coordinate system.")
+        .group(environment_group);
+    add_number(app, "--environment-intensity", "I", options.environment_intensity, {0, 1e6, ""},
+               "Multiply the environment's light. Default: 1.")
+        .group(environment_group);
+    add_choice(
+        app, "--environment-light", options.environment_light,
+        Choices<bool>{{"on", true}, {"off", false}},
+        "Light surfaces with the environment. Default: on if a material is metallic-roughness.")
+        .group(environment_group);
+    add_switch(app, "--no-skybox", options.no_skybox,
+               "Do not show the environment behind the model.")
+        .group(environment_group);
+}
+
+void add_reflection_options(CLI::App& app, ViewOptions& options) {
+    add_number(
+        app, "--reflectivity", "R", options.reflectivity, field_limits(&Material::reflectivity),
+        "Set the reflectivity of materials at normal incidence. It increases at grazing angles. "
+        "With an exact --fresnel model, it is a factor. Default: the model's value, else 0.")
+        .group(environment_group);
+    add_number(app, "--reflection-roughness", "R", options.reflection_roughness,
+               field_limits(&Material::reflection_roughness),
+               "Blur reflections: 0 is a mirror, 1 is the maximum. Default: the model's value.")
+        .group(environment_group);
+    add_value(app, "--fresnel", "none|schlick|dielectric|conductor",
+              "Choose the increase of reflections at grazing angles: none, Schlick's "
+              "approximation, or the exact formula for a dielectric (glass) or a conductor (gold, "
+              "without diffuse reflection). Default: schlick.",
+              [&](const std::string& subject, const std::string& text) {
+                  const Choices<int> names = {
+                      {"none", -1}, {"schlick", 0}, {"dielectric", 1}, {"conductor", 2}};
+                  const int chosen = parse_choice(subject, text, names);
+                  options.no_fresnel = chosen < 0;
+                  if (chosen >= 0) options.fresnel = static_cast<FresnelModel>(chosen);
+              })
+        .group(environment_group);
+    add_number(app, "--refractive-index", "N", options.refractive_index,
+               field_limits(&Material::refractive_index),
+               "Set the refractive index for --fresnel dielectric and --transmission. Default: "
+               "1.5, glass.")
+        .group(environment_group);
+    add_number(app, "--transmission", "T", options.transmission,
+               field_limits(&Material::transmission),
+               "Set the share of the light that is not reflected and passes through the surface "
+               "with one refraction. Default: the model's value, else 0.")
+        .group(environment_group);
+}
+
+EnvironmentLayout layout_of(const std::filesystem::path& file) {
+    const ImageInfo info = read_image_info(file);
+    const double shape = static_cast<double>(info.width) / info.height;
+    const auto is = [&](double expected) { return std::abs(shape / expected - 1.0) < 0.01; };
+    if (is(2.0)) return EnvironmentLayout::panorama;
+    if (is(4.0 / 3.0) || is(3.0 / 4.0)) return EnvironmentLayout::cross;
+    if (is(1.0)) return EnvironmentLayout::probe;
+    throw failure(file,
+                  fmt::format("the aspect ratio of {} x {} fits no environment layout", info.width,
+                              info.height),
+                  "set --environment-layout");
+}
+
+decltype(Environment::source) one_image(const ViewOptions& options) {
+    const std::filesystem::path& file = options.environment.front();
+    EnvironmentLayout layout = options.environment_layout.value_or(EnvironmentLayout::automatic);
+    if (layout == EnvironmentLayout::automatic) layout = layout_of(file);
+    if (layout == EnvironmentLayout::cross) return CubeCross{image_file(file)};
+    if (layout == EnvironmentLayout::probe) return AngularMap{image_file(file)};
+    return Equirectangular{image_file(file)};
+}
+
+}  // namespace
+
+void add_environment_options(CLI::App& app, ViewOptions& options) {
+    add_image_options(app, options);
+    add_reflection_options(app, options);
+}
+
+void check_environment(const ViewOptions& options) {
+    const std::size_t files = options.environment.size();
+    const char* const give = "give one, or leave it out";
+    refuse(files != 0 && files != 1 && files != 6, "--environment",
+           fmt::format("takes one file, six files or a folder, not {} files", files), "");
+    // A scene file may have its own environment, which is not known yet.
+    const bool none = files == 0 && extension_of(options.model) != ".json";
+    refuse(options.no_skybox && none, "--no-skybox", "there is no --environment", "");
+    const auto need_environment = [&](bool given, const char* option) {
+        refuse(given && none, option, "there is no --environment", give);
+    };
+    need_environment(options.reflectivity.has_value(), "--reflectivity");
+    need_environment(options.reflection_roughness.has_value(), "--reflection-roughness");
+    need_environment(options.fresnel.has_value() || options.no_fresnel, "--fresnel");
+    need_environment(options.transmission.has_value(), "--transmission");
+    const auto describe_environment = [&](bool given, const char* option) {
+        refuse(given && none, option, "there is no --environment", give);
+    };
+    describe_environment(options.environment_light.has_value(), "--environment-light");
+    describe_environment(options.environment_intensity.has_value(), "--environment-intensity");
+    const auto describe_images = [&](bool given, const char* option) {
+        refuse(given && files == 0, option, "there is no --environment", give);
+    };
+    describe_images(options.environment_layout.has_value(), "--environment-layout");
+    describe_images(options.left_handed_environment, "--left-handed");
+    refuse(options.refractive_index && options.fresnel != FresnelModel::dielectric &&
+               !options.transmission,
+           "--refractive-index", "neither --fresnel dielectric nor --transmission uses it",
+           "give one of them, or leave it out");
+    const bool one = files == 1 && !std::filesystem::is_directory(options.environment.front());
+    refuse(options.environment_layout && !one, "--environment-layout",
+           "applies to one image, not to six", "leave it out");
+    refuse(options.left_handed_environment && one, "--left-handed", "applies to six images",
+           "leave it out");
+    refuse(options.background && files != 0 && !options.no_skybox, "--background",
+           "the environment hides it", "add --no-skybox, or leave one of them out");
+}
+
+Environment environment_of(const ViewOptions& options) {
+    const std::vector<std::filesystem::path>& files = options.environment;
+    Environment environment;
+    if (files.size() == 6) {
+        CubeFaces faces;
+        std::transform(files.begin(), files.end(), faces.faces.begin(), image_file);
+        environment.source = std::move(faces);
+    } else if (std::filesystem::is_directory(files.front())) {
+        environment.source = cube_faces_in(files.front());
+    } else {
+        environment.source = one_image(options);
+    }
+    if (auto* faces = std::get_if<CubeFaces>(&environment.source))
+        faces->left_handed = options.left_handed_environment;
+    environment.intensity = options.environment_intensity.value_or(1.0F);
+    environment.skybox = !options.no_skybox;
+    return environment;
+}
+
+void set_reflection(Material& material, const ViewOptions& options) {
+    if (options.reflectivity) {
+        material.reflectivity = glm::vec3(*options.reflectivity);
+        material.grazing_reflectivity = glm::vec3(1.0F);
+    }
+    if (options.no_fresnel) material.grazing_reflectivity = material.reflectivity;
+    if (options.fresnel) {
+        material.fresnel = *options.fresnel;
+        // Gold at 611, 549 and 466 nm [Johnson and Christy 1972].
+        material.conductor_index = {0.21F, 0.42F, 1.35F};
+        material.conductor_absorption = {3.27F, 2.35F, 1.77F};
+        // Metals do not scatter light.
+        if (*options.fresnel == FresnelModel::conductor)
+            material.diffuse = material.ambient = glm::vec3(0.0F);
+        const bool exact = *options.fresnel != FresnelModel::schlick;
+        if (exact && !options.reflectivity) material.reflectivity = glm::vec3(1.0F);
+    }
+    if (options.reflection_roughness) material.reflection_roughness = *options.reflection_roughness;
+    if (options.refractive_index) material.refractive_index = *options.refractive_index;
+    if (options.transmission) {
+        material.transmission = *options.transmission;
+        // Transmission needs a reflectivity. The default is that of glass.
+        if (material.reflectivity == glm::vec3(0.0F)) material.reflectivity = glm::vec3(0.04F);
+    }
+}
+
+namespace {
+
 bool is_physical(const Material& material) {
     return material.metallic_roughness.has_value() && !material.unlit;
 }
 
-/// What the options say of the surroundings that a scene file brings.
-void change_own_environment(Scene& scene, const ViewOptions& options) {
+/// Applies options to the environment of a scene file.
+void override_scene_environment(Scene& scene, const ViewOptions& options) {
     if (!scene.environment) {
-        const bool asked = options.no_skybox || options.environment_light ||
-                           options.environment_intensity || options.reflectivity ||
-                           options.reflection_roughness || options.fresnel || options.no_fresnel ||
-                           options.transmission;
-        if (!asked) return;
-        throw UsageError("the scene has no environment, which one of the options is about",
-                         "give one with --environment, or leave the option out");
+        const bool has_options = options.no_skybox || options.environment_light ||
+                                 options.environment_intensity || options.reflectivity ||
+                                 options.reflection_roughness || options.fresnel ||
+                                 options.no_fresnel || options.transmission;
+        if (!has_options) return;
+        throw UsageError("the scene has no environment for these options",
+                         "add --environment, or leave the options out");
     }
     if (options.no_skybox) scene.environment->skybox = false;
     scene.environment->lights = options.environment_light.value_or(scene.environment->lights);
@@ -41,7 +232,7 @@ void change_own_environment(Scene& scene, const ViewOptions& options) {
 
 void set_environment(Scene& scene, const ViewOptions& options) {
     if (options.environment.empty()) {
-        change_own_environment(scene, options);
+        override_scene_environment(scene, options);
         return;
     }
     scene.environment = environment_of(options);
@@ -52,8 +243,8 @@ void set_environment(Scene& scene, const ViewOptions& options) {
         [](const Material& material) { return material.reflectivity != glm::vec3(0.0F); });
     if (!reflected && !physical && !scene.environment->lights && options.no_skybox) {
         throw UsageError(
-            "--environment: would show nowhere, as no material reflects it and "
-            "--no-skybox hides it",
+            "--environment: has no effect, because no material reflects it and --no-skybox hides "
+            "it",
             "add --reflectivity or --environment-light on, or leave --no-skybox out");
     }
 }
@@ -62,18 +253,18 @@ bool has_place(const ViewOptions& options) {
     return options.camera && options.camera->place;
 }
 
-/// The view for which lamps are set up: what an option says of its place moves no lamp, so that a
-/// view that was copied from the window shows the same light.
-Camera usual_camera(const Scene& scene, const ViewOptions& options) {
-    const bool is_told = options.camera && !has_place(options);
-    if (scene.camera && !is_told) {
+/// The camera for which the default lights are placed. An explicit camera position does not affect
+/// it, so that a view that was copied from the window has the same lighting.
+Camera default_camera(const Scene& scene, const ViewOptions& options) {
+    const bool has_direction = options.camera && !has_place(options);
+    if (scene.camera && !has_direction) {
         Camera camera = *scene.camera;
         camera.vertical_fov = options.vertical_fov.value_or(camera.vertical_fov);
         return camera;
     }
     const CameraOption view =
-        is_told ? *options.camera
-                : CameraOption{.azimuth = default_azimuth, .elevation = default_elevation};
+        has_direction ? *options.camera
+                      : CameraOption{.azimuth = default_azimuth, .elevation = default_elevation};
     const float aspect = static_cast<float>(options.size.x) / static_cast<float>(options.size.y);
     return framed(scene, view.azimuth, view.elevation,
                   options.vertical_fov.value_or(default_vertical_fov), aspect,
@@ -110,12 +301,11 @@ void set_lights(ComposedScene& composed, const ViewOptions& options) {
         replace_lights(scene, options.lights, composed.notes);
     } else if (light_count(scene) == 0 && scene.environment && scene.environment->lights) {
         composed.notes.emplace_back(
-            "neither the model nor --light gives a light: the environment "
-            "is the only one");
+            "the model and --light contain no light, so only the environment lights the scene");
     } else if (light_count(scene) == 0) {
         add_default_lights(scene, composed.camera);
         composed.notes.emplace_back(
-            "neither the model nor --light gives a light: a key and a fill light were added");
+            "the model and --light contain no light, so a key light and a fill light were added");
     }
     if (options.ambient) scene.ambient = glm::vec3(*options.ambient);
 }
@@ -125,12 +315,12 @@ SceneOptions scene_options(const ViewOptions& options) {
     return {reason_for_phong(options).empty() ? Model::as_authored : Model::phong};
 }
 
-/// Scene files say what is behind the model; model files cannot.
-bool has_own_background(const ViewOptions& options) {
+/// Only scene files have a background.
+bool has_background(const ViewOptions& options) {
     return extension_of(options.model) == ".json";
 }
 
-/// Shows lamps that have a place, of a size that follows the scene's.
+/// Shows point lights and spotlights as spheres, relative to the size of the scene.
 void mark_lights(ComposedScene& composed, float share) {
     const Bounds bounds = world_bounds(composed.scene());
     const float size = bounds.empty() ? 1.0F : glm::length(bounds.max - bounds.min);
@@ -153,18 +343,17 @@ ComposedScene compose_scene(ViewOptions& options, Stages& stages, Report& report
     if (!options.size_given) options.size = composed.graph.picture_size.value_or(options.size);
     if (options.time) pose(composed.graph, *options.time);
     Scene& scene = composed.scene();
-    if (scene.instances.empty())
-        throw FileError(options.model, "holds no triangles, so there is nothing to draw");
+    if (scene.instances.empty()) throw FileError(options.model, "contains no triangles");
     if (options.frames && duration(composed.graph) == 0.0 && !options.seconds)
-        throw UsageError("--frames: nothing moves in this scene", "use --turntable");
+        throw UsageError("--frames: the scene has no animation", "use --turntable");
     override_materials(scene, options, stages, report, composed.notes);
     set_environment(scene, options);
-    scene.background = options.background.value_or(
-        has_own_background(options) ? scene.background : default_background);
+    scene.background = options.background.value_or(has_background(options) ? scene.background
+                                                                           : default_background);
     scene.exposure = options.exposure.value_or(scene.exposure);
     scene.tone_mapping = options.tone_mapping.value_or(scene.tone_mapping);
     composed.camera_follows_scene = scene.camera && !options.camera;
-    composed.camera = usual_camera(scene, options);
+    composed.camera = default_camera(scene, options);
     set_lights(composed, options);
     const Bounds bounds = world_bounds(scene);
     if (!bounds.empty()) composed.middle = 0.5F * (bounds.min + bounds.max);
@@ -174,7 +363,7 @@ ComposedScene compose_scene(ViewOptions& options, Stages& stages, Report& report
     if (has_place(options)) {
         const OrbitCamera orbit =
             orbit_of(*options.camera, *options.camera->place, composed.camera.vertical_fov);
-        composed.camera = camera_of(orbit, ball_around(world_bounds(scene)));
+        composed.camera = camera_of(orbit, bounding_sphere(world_bounds(scene)));
     }
     return composed;
 }

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// From a model file and options to a scene and a camera that sees it.
+/// Composes a scene and a camera from a model file and options.
 ///
-/// What the options do not say comes from the model; what the model does not say either gets a
-/// pleasant default, of which the notes tell. Tests: tests/tools/scene_options_test.cpp.
+/// Missing options come from the model. Properties that the model lacks too get a default, which
+/// the notes report. Tests: tests/tools/scene_options_test.cpp.
 #pragma once
 
 #include <string>
@@ -16,13 +16,27 @@
 
 namespace relief::tools {
 
+void add_environment_options(CLI::App& app, ViewOptions& options);
+
+/// \throws UsageError if an option needs another one
+void check_environment(const ViewOptions& options);
+
+/// The environment of the options.
+/// \throws FileError if a folder does not have six images, or if the layout of an image is unclear
+Environment environment_of(const ViewOptions& options);
+
+/// Applies the reflection options to a material.
+void set_reflection(Material& material, const ViewOptions& options);
+
+/// A scene with its camera, ready to be drawn.
+/// A scene with its camera, ready to be drawn.
 struct ComposedScene {
     SceneGraph graph;
     Camera camera;
-    bool camera_follows_scene = false;  ///< The scene's own camera, which may move.
-    std::vector<std::string> notes;     ///< What was added or could not be done, for the summary.
+    bool camera_follows_scene = false;  ///< The camera belongs to the scene and may move.
+    std::vector<std::string> notes;     ///< Messages for the summary.
 
-    // For turntables: what turns, where it stands, and about what.
+    // The transformations of all instances and the rotation center, for turntables.
     std::vector<glm::mat4> at_rest;
     glm::vec3 middle{0.0F};
 
@@ -30,9 +44,12 @@ struct ComposedScene {
     [[nodiscard]] const Scene& scene() const { return graph.scene; }
 };
 
-/// \param options  settled (view_options.h); a size that was not given becomes the scene file's
-/// \throws FileError if a file cannot be read, holds no triangles, or lacks what an option needs;
-///         UsageError if an option could show nowhere in this scene
+/// Reads the model and applies the options.
+///
+/// \param options  settled (view_options.h); without --size, the size becomes that of the scene
+///                 file
+/// \throws FileError if a file cannot be read, has no triangles, or lacks data that an option needs
+/// \throws UsageError if an option would have no effect in this scene
 ComposedScene compose_scene(ViewOptions& options, Stages& stages, Report& report);
 
 }  // namespace relief::tools

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// `relief-view MODEL`: composes the scene, draws it, writes the picture, says what was done. Asked
-// only to explain the effects, it plans and needs no OpenGL. Tests:
-// tests/tools/relief_view_test.cpp.
+// The command `relief-view MODEL`: composes the scene, draws it, writes the output and prints a
+// summary. Without pictures it needs no OpenGL. Tests: tests/tools/relief_view_test.cpp.
 #include "view_command.h"
 
 #include <fmt/format.h>
@@ -12,25 +11,127 @@
 #include "common/command.h"
 #include "common/findings.h"
 #include "common/text.h"
-#include "compare_options.h"
 #include "debug_options.h"
 #include "effect_options.h"
-#include "effects_text.h"
-#include "picture_reference.h"
+#include "picture_comparison.h"
 #include "relief/mesh/image_channels.h"
 #include "relief/mesh/image_file.h"
 #include "relief/mesh/threads.h"
+#include "relief/mesh/timing.h"
 #include "relief/shade/renderer.h"
-#include "save_files.h"
 #include "scene_options.h"
-#include "sequence.h"
 #include "view_options.h"
-#include "view_summary.h"
-#include "window/bindings.h"
-#include "window/window_loop.h"
+#include "view_output.h"
+#include "window/shortcuts.h"
 
 namespace relief::tools {
 namespace {
+
+/// The last picture with its measurements.
+struct Drawn {
+    Frame frame;  ///< The last frame.
+    SequenceTimes times;
+    std::string backend;
+    std::string renderer;
+    std::optional<ReferenceComparison> comparison;
+    std::optional<PictureComparison> sides;  ///< The result of --compare.
+    FrameMeasures measures;
+};
+
+std::string lights_text(const Scene& scene) {
+    std::string text;
+    const auto add = [&](std::size_t count, const std::string& kind) {
+        if (count != 0) text += (text.empty() ? "" : ", ") + counted(count, kind + " light");
+    };
+    add(scene.directional_lights.size(), "directional");
+    add(scene.point_lights.size(), "point");
+    add(scene.spot_lights.size(), "spot");
+    if (text.empty()) text = "no light";
+    if (scene.ambient != glm::vec3(0.0F)) text += " and ambient light";
+    return text;
+}
+
+std::size_t triangle_count(const Scene& scene) {
+    std::size_t count = 0;
+    for (const Instance& instance : scene.instances)
+        count += scene.meshes[instance.mesh]->triangles.size();
+    return count;
+}
+
+/// For example "24, each 12.3 ms to draw and 0.9 ms to read back (median)".
+std::string frames_text(const SequenceTimes& times) {
+    return fmt::format("{}, each {:.3g} ms to draw and {:.3g} ms to read back (median)",
+                       times.draw.size(), spread_of(times.draw).median,
+                       spread_of(times.read_back).median);
+}
+
+/// For example "out/spin-0001.png to out/spin-0024.png", or one file with its size.
+std::string written(const ViewOptions& options) {
+    const std::filesystem::path& output = *options.output;
+    const bool numbered = (options.turntable || options.frames) && extension_of(output) != ".apng";
+    if (!numbered) return file_and_size(output);
+    return fmt::format("{} to {}", numbered_file(output, 1).string(),
+                       numbered_file(output, picture_count(options)).string());
+}
+
+void print_summary(const ViewOptions& options, const ComposedScene& composed, const Drawn& drawn,
+                   const Findings& findings, const Stages& stages) {
+    const Scene& scene = composed.scene();
+    print_entry("read", fmt::format("{}: {}, {}", options.model.string(),
+                                    counted(scene.instances.size(), "mesh", "meshes"),
+                                    counted(triangle_count(scene), "triangle")));
+    print_entry("light", lights_text(scene));
+    print_entry("notes", composed.notes);
+    print_entry("findings", findings.empty() ? std::vector<std::string>{"none"} : findings.lines());
+    print_entry(
+        "drew",
+        fmt::format("{} x {}, {}, {}, {}, by {}: {}", options.size.x, options.size.y,
+                    counted(static_cast<std::size_t>(options.samples), "sample"),
+                    counted(drawn.frame.programs, "program"),
+                    counted(drawn.frame.textures, "texture"), drawn.backend, drawn.renderer));
+    print_entry("time", durations(stages.finished()));
+    if (drawn.times.draw.size() > 1) print_entry("frames", frames_text(drawn.times));
+    if (options.output) print_entry("wrote", written(options));
+    if (drawn.comparison) print_entry("compared", difference_text(*drawn.comparison));
+    if (drawn.sides)
+        print_entry("compared", fmt::format("with {}: {}", side_name(options.compare),
+                                            difference_text(*drawn.sides)));
+}
+
+nlohmann::ordered_json summary_json(const ViewOptions& options, const ComposedScene& composed,
+                                    const Findings& findings, const Stages& stages) {
+    return {{"tool", "relief-view"},
+            {"version", version()},
+            {"model", options.model.string()},
+            {"instances", composed.scene().instances.size()},
+            {"triangles", triangle_count(composed.scene())},
+            {"notes", composed.notes},
+            {"findings", findings.json()},
+            {"milliseconds", durations_json(stages.finished())}};
+}
+
+nlohmann::ordered_json picture_json(const ViewOptions& options, const Drawn& drawn) {
+    const FrameTimes& times = drawn.frame.times;
+    return {{"output", options.output ? nlohmann::ordered_json(options.output->string())
+                                      : nlohmann::ordered_json(nullptr)},
+            {"width", options.size.x},
+            {"height", options.size.y},
+            {"samples", options.samples},
+            {"backend", drawn.backend},
+            {"renderer", drawn.renderer},
+            {"programs", drawn.frame.programs},
+            {"textures", drawn.frame.textures},
+            {"frame_milliseconds",
+             {{"decode_images", times.decode_images},
+              {"prepare", times.prepare},
+              {"link", times.link},
+              {"draw", times.draw},
+              {"read_back", times.read_back}}},
+            {"frames",
+             {{"count", drawn.times.draw.size()},
+              {"median_draw_milliseconds", spread_of(drawn.times.draw).median},
+              {"median_read_back_milliseconds", spread_of(drawn.times.read_back).median}}}};
+}
 
 OutputCoding coding_of(const ViewOptions& options) {
     return is_linear_output(options) ? OutputCoding::linear : OutputCoding::srgb;
@@ -45,30 +146,30 @@ FrameSettings settings_of(const ViewOptions& options, const HealthMarkers& marke
             .overlays = overlays_of(options.debug, markers)};
 }
 
-/// Alpha is kept only where it was asked for, since viewers disagree about what to show behind it.
+/// Keeps alpha only if it was requested, because viewers show different colors behind it.
 Image picture_of(const Frame& frame, const Scene& scene) {
     Image picture = frame.image;
     if (scene.background.a == 1.0F) drop_alpha(picture);
     return picture;
 }
 
-/// The picture of the other side.
+/// Draws the other side of a comparison.
 Image draw_other(const ViewOptions& options, const Context& context, const ComposedScene& composed,
                  Stages& stages) {
-    Report told;  // What the first side reports is most of it.
-    const OtherSide other = other_side(options, composed, stages, told);
+    Report unused;  // Most of these findings belong to both sides.
+    const OtherSide other = other_side(options, composed, stages, unused);
     const FrameSettings settings = settings_of(options, chosen_markers(options.debug, other.scene));
     const FramePlan plan = viewed_plan(options, other.scene, settings,
-                                       chosen_plan(options, other.scene, settings), told);
+                                       chosen_plan(options, other.scene, settings), unused);
     return stages.run("draw other side", [&] {
-        Renderer renderer(context, other.scene, plan, settings, told);
+        Renderer renderer(context, other.scene, plan, settings, unused);
         return picture_of(renderer.draw(other.camera), composed.scene());
     });
 }
 
-/// Draws every picture that is asked for, writes them where they are to go, and compares.
+/// Draws, writes and compares the pictures.
 ///
-/// \param plan  becomes the plan that was drawn: within the budget, and without unreadable textures
+/// \param plan  becomes the plan that was drawn: within the budget and without unreadable textures
 Drawn draw(const ViewOptions& options, const FrameSettings& settings, ComposedScene& composed,
            FramePlan& plan, Stages& stages, Report& report) {
     const Image reference = options.reference ? read_reference(options) : Image{};
@@ -92,7 +193,7 @@ Drawn draw(const ViewOptions& options, const FrameSettings& settings, ComposedSc
         if (has_sides) {
             drawn.sides = compare_pictures(picture, other);
             write_difference_map(options, *drawn.sides);
-            const float split = options.compare.split.value_or(usual_split);
+            const float split = options.compare.split.value_or(default_split);
             picture = split_picture(picture, other, split);
         }
         if (sink) sink->take(picture);
@@ -107,7 +208,7 @@ Drawn draw(const ViewOptions& options, const FrameSettings& settings, ComposedSc
 ExitCode run(const CLI::App& app, ViewOptions& options) {
     settle(options);
     if (options.list_bindings) {
-        fmt::print(out(), "{}", bindings_text());
+        fmt::print(out(), "{}", shortcuts_text());
         return ExitCode::done;
     }
     set_thread_limit(options.general.threads);
@@ -180,6 +281,13 @@ Command add_view_command(CLI::App& tool) {
          "out/golden.json",
          "relief-view data/vase.obj --diffuse-map data/bricks-diffuse.png --explain-effects"});
     return {&tool, [&tool, options] { return run(tool, *options); }};
+}
+
+Tool relief_view() {
+    return {"relief-view",
+            "Show a model with normal, height, diffuse and environment maps in a window, or draw "
+            "it to a file.",
+            {add_view_command}};
 }
 
 }  // namespace relief::tools

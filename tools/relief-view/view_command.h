@@ -1,14 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// The one command of relief-view.
+/// The command of relief-view.
 #pragma once
 
 #include "common/command.h"
 
 namespace relief::tools {
 
-/// The whole tool, for main() and for tests that run it in their own process.
+struct ViewOptions;
+
+/// The tool for main(), and for tests that run it in their own process.
 Tool relief_view();
+
+/// Opens the window and returns when it is closed.
+/// \param options  settled; without a model, the window waits for one to be dropped
+/// \throws WindowError
+ExitCode run_window(const ViewOptions& options);
 
 Command add_view_command(CLI::App& tool);
 

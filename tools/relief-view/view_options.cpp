@@ -5,47 +5,144 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
+#include <vector>
 
+#include "common/options.h"
 #include "common/text.h"
-#include "compare_options.h"
 #include "debug_options.h"
 #include "effect_options.h"
-#include "environment_options.h"
 #include "field_options.h"
-#include "map_options.h"
 #include "material_options.h"
-#include "picture_reference.h"
-#include "save_files.h"
-#include "sequence_options.h"
-#include "window/interface_scale.h"
+#include "picture_comparison.h"
+#include "scene_options.h"
+#include "view_output.h"
+#include "window/window_system.h"
 
 namespace relief::tools {
 namespace {
 
-/// In double, so that what degrees_text() says (orbit_camera.h) comes back bit for bit.
+const Range intensities{0, 1e9, ""};
+
+/// The values after the colon of a light.
+class Fields {
+  public:
+    Fields(std::string subject, std::string form, std::string_view text)
+        : subject_(std::move(subject)), form_(std::move(form)), fields_(split(text, ',')) {}
+
+    /// The next value, which is required.
+    float number(const Range& range) {
+        if (done()) throw UsageError(subject_ + ": too few values", form_);
+        const std::string& field = fields_[used_++];
+        return static_cast<float>(parse_number(subject_ + ": '" + field + "'", field, range));
+    }
+
+    /// The next value, or a default at the end of the text.
+    float number_or(float otherwise, const Range& range) {
+        return done() ? otherwise : number(range);
+    }
+
+    glm::vec3 position() {
+        const float x = number({});
+        const float y = number({});
+        const float z = number({});
+        return {x, y, z};
+    }
+
+    /// The common end of all lights: INTENSITY[,#RRGGBB].
+    glm::vec3 light() {
+        const float intensity = number_or(1.0F, intensities);
+        if (done()) return glm::vec3(intensity);
+        const std::string& field = fields_[used_++];
+        if (!done()) throw UsageError(subject_ + ": too many values", form_);
+        return intensity * parse_color(subject_ + ": '" + field + "'", field);
+    }
+
+  private:
+    [[nodiscard]] bool done() const { return used_ == fields_.size(); }
+
+    std::string subject_;
+    std::string form_;
+    std::vector<std::string> fields_;
+    std::size_t used_ = 0;
+};
+
+DirectionalLight directional(const std::string& subject, std::string_view text) {
+    Fields fields(subject, "directional:azimuth,elevation[,intensity[,#rrggbb]]", text);
+    const float azimuth = glm::radians(fields.number({-360, 360, "degrees"}));
+    const float elevation = glm::radians(fields.number({-90, 90, "degrees"}));
+    return {.direction_world = -towards(azimuth, elevation), .irradiance = fields.light()};
+}
+
+PointLight point(const std::string& subject, std::string_view text) {
+    Fields fields(subject, "point:x,y,z[,intensity[,#rrggbb]]", text);
+    PointLight light;
+    light.position_world = fields.position();
+    light.intensity = fields.light();
+    return light;
+}
+
+SpotLight spot(const std::string& subject, std::string_view text) {
+    Fields fields(subject, "spot:x,y,z,tx,ty,tz[,angle[,intensity[,#rrggbb]]]", text);
+    // The ratio of the inner to the outer cone.
+    constexpr float full_share = 0.75F;
+    SpotLight light;
+    light.point.position_world = fields.position();
+    light.direction_world = fields.position() - light.point.position_world;
+    if (light.direction_world == glm::vec3(0.0F))
+        throw UsageError(subject + ": the position and the target of the spotlight are the same");
+    light.outer_cone = glm::radians(fields.number_or(30.0F, {0.1, 90, "degrees"}));
+    light.inner_cone = full_share * light.outer_cone;
+    light.point.intensity = fields.light();
+    return light;
+}
+
+}  // namespace
+
+glm::vec3 towards(float azimuth, float elevation) {
+    return {std::cos(elevation) * std::sin(azimuth), std::sin(elevation),
+            std::cos(elevation) * std::cos(azimuth)};
+}
+
+LightOption parse_light(const std::string& subject, const std::string& text) {
+    if (text == "none") return NoLight{};
+    const std::size_t colon = text.find(':');
+    const std::string kind = text.substr(0, colon);
+    const std::string_view rest =
+        colon == std::string::npos ? "" : std::string_view(text).substr(colon + 1);
+    if (kind == "directional") return directional(subject, rest);
+    if (kind == "point") return point(subject, rest);
+    if (kind == "spot") return spot(subject, rest);
+    throw UsageError(subject + ": not a light",
+                     "start with directional:, point: or spot:, or use none");
+}
+
+namespace {
+
+/// Computes in double precision, so that degrees_text() (orbit_camera.h) is inverted exactly.
 float radians_from(double degrees) {
     return static_cast<float>(glm::radians(degrees));
 }
 
 void add_output_options(CLI::App& app, ViewOptions& options) {
     const std::string group = "Output";
-    add_path(app, "--output", options.output,
-             "Picture to write: .png (8 bit, sRGB), .exr (linear float) or .apng (animated).")
+    add_path(
+        app, "--output", options.output,
+        "Write the picture to FILE: .png (8 bit, sRGB), .exr (linear float) or .apng (animated).")
         .group(group);
-    add_value(
-        app, "--size", "WxH",
-        "Width and height in pixels; of the view, where a window opens. Default: as the scene "
-        "says, else 1024x1024.",
-        [&](const std::string& subject, const std::string& text) {
-            options.size = parse_size(subject, text);
-            options.size_given = true;
-        })
+    add_value(app, "--size", "WxH",
+              "Set the width and height in pixels; in a window, those of the view. Default: the "
+              "size in the scene file, else 1024x1024.",
+              [&](const std::string& subject, const std::string& text) {
+                  options.size = parse_size(subject, text);
+                  options.size_given = true;
+              })
         .group(group);
     add_choice(app, "--samples", options.samples, Choices<int>{{"1", 1}, {"4", 4}},
-               "Samples per pixel; 4 smooth the edges of triangles. Default: 4.")
+               "Set the number of samples per pixel; 4 smooth the edges of triangles. Default: 4.")
         .group(group);
     add_value(app, "--background", "#RRGGBB|transparent",
-              "Colour behind the model where no environment shows. Default: #1e2126.",
+              "Set the color behind the model where no environment is visible. Default: #1e2126.",
               [&](const std::string& subject, const std::string& text) {
                   options.background = text == "transparent"
                                            ? glm::vec4(0.0F)
@@ -53,8 +150,8 @@ void add_output_options(CLI::App& app, ViewOptions& options) {
               })
         .group(group);
     add_value(app, "--exposure", "STOPS",
-              "Doubles the light for every stop, halves it for every stop below 0. Default: as the "
-              "scene says, else 0.",
+              "Double the brightness for each stop; negative stops halve it. Default: the value in "
+              "the scene file, else 0.",
               [&](const std::string& subject, const std::string& text) {
                   const Range range{-30, 30, "stops"};
                   options.exposure =
@@ -62,74 +159,73 @@ void add_output_options(CLI::App& app, ViewOptions& options) {
               })
         .group(group);
     add_choice(app, "--tone-mapping", options.tone_mapping, enum_choices<ToneMapping>(),
-               "How light brighter than white is shown: as white, or brought down by a curve. "
-               "Default: as the scene says, else none.")
+               "Choose the curve for light brighter than white; none clips it. Default: the curve "
+               "in the scene file, else none.")
         .group(group);
-    add_switch(
-        app, "--explain-effects", options.explain_effects,
-        "Print which effects the scene calls for and which not, with the reason, and with an "
-        "--output or --benchmark also what each costs and what the picture would lose. "
-        "Alone, it needs no OpenGL.")
+    add_switch(app, "--explain-effects", options.explain_effects,
+               "Print which effects the scene needs, which it does not need, and why. With "
+               "--output or --benchmark, also print the cost of each effect and the change of the "
+               "picture without it. Alone, this option needs no OpenGL.")
         .group(group);
     add_switch(app, "--json", options.json, "Print the summary as one JSON object.").group(group);
-    add_switch(
-        app, "--strict", options.strict,
-        "Exit with 3 if anything was found wrong in the model, such as a missing texture; the "
-        "picture is written all the same.")
+    add_switch(app, "--strict", options.strict,
+               "Exit with 3 if the model has a problem, such as a missing texture. The picture is "
+               "still written.")
         .group(group);
 }
 
 void add_window_options(CLI::App& app, ViewOptions& options) {
     const std::string group = "Window";
     add_switch(app, "--list-bindings", options.list_bindings,
-               "Print what keys and the mouse do in the window.")
+               "Print the keyboard shortcuts and mouse gestures of the window.")
         .group(group);
-    add_number(app, "--ui-scale", "S", options.ui_scale,
-               {least_interface_scale, most_interface_scale, ""},
-               "How large letters and panels are: 1 as on an ordinary screen, 2 twice as large. "
-               "Default: as chosen in the window the last time (Ctrl++, Ctrl+-), else as the "
-               "screen says.")
+    add_number(app, "--ui-scale", "S", options.ui_scale, {min_ui_scale, max_ui_scale, ""},
+               "Scale the text and panels of the window: 1 is the normal size, 2 is twice as "
+               "large. Default: the last scale that was set in the window (Ctrl++, Ctrl+-), else "
+               "the scale of the screen.")
         .group(group);
     add_switch(app, "--no-state", options.no_state,
-               "Neither read nor write where the window was and which panels were open "
+               "Do not read or write the position of the window and its open panels "
                "($XDG_STATE_HOME/relief, else ~/.local/state/relief).")
         .group(group);
+    // A hook for tests and scripts, which --help does not list.
     add_path(app, "--dump-state", options.dump_state,
-             "Keep what the window shows in FILE, as JSON, for tests and scripts.")
-        .group(group);
+             "Write the state of the window to FILE as JSON.")
+        .group("");
 }
 
 void add_light_options(CLI::App& app, ViewOptions& options) {
-    const std::string group = "Light and camera";
+    const std::string group = "Lights and camera";
     add_repeatable(app, "--light", "LIGHT",
-                   "A light, instead of the model's own; may be given many times. "
-                   "directional:azimuth,elevation[,intensity[,#rrggbb]] comes from there, in "
-                   "degrees; point:x,y,z[,intensity[,#rrggbb]] stands in the model's space; "
-                   "spot:x,y,z,tx,ty,tz[,angle[,intensity[,#rrggbb]]] shines from x,y,z towards "
-                   "tx,ty,tz in a cone of 30 or angle degrees from its axis; none means no light. "
-                   "Intensity 1 makes a white surface white, at distance 1 for point and spot. "
-                   "Default: the model's lights, else a key and a fill light.",
+                   "Replace the model's lights; may be given several times. "
+                   "directional:azimuth,elevation[,intensity[,#rrggbb]] shines from this "
+                   "direction, in degrees; point:x,y,z[,intensity[,#rrggbb]] is in the model's "
+                   "space; spot:x,y,z,tx,ty,tz[,angle[,intensity[,#rrggbb]]] shines from x,y,z "
+                   "towards tx,ty,tz in a cone of 30 or angle degrees from its axis; none removes "
+                   "all lights. Intensity 1 makes a white surface white, at distance 1 for point "
+                   "and spot. Default: the model's lights, else a key light and a fill light.",
                    [&](const std::string& subject, const std::string& text) {
                        options.lights.push_back(parse_light(subject, text));
                    })
         .group(group);
     add_number(app, "--ambient", "A", options.ambient, {0, 1000, ""},
-               "Light from everywhere. Default: 0, or 0.08 with the key and fill light.")
+               "Set the ambient light. Default: 0, or 0.08 with the key light and fill light.")
         .group(group);
-    add_number(app, "--light-markers", "R", options.light_markers, {1e-6, 1, ""},
-               "Show point and spot lights as small spheres, of R times the scene's size.")
+    add_number(
+        app, "--light-markers", "R", options.light_markers, {1e-6, 1, ""},
+        "Show point lights and spotlights as spheres with a radius of R times the scene's size.")
         .group(group);
     add_value(app, "--camera", "AZIMUTH,ELEVATION[,FACTOR|@X,Y,Z,DISTANCE]",
-              "From where the camera looks, in degrees from +z towards +x and above the horizon, "
-              "and how far away it is as a factor of the distance that shows all; or, as the "
-              "window copies it, what it looks at and how far away that is, which moves no light. "
-              "Default: the model's camera, else 30,20,1.",
+              "Set the direction of the camera in degrees, from +z towards +x and above the "
+              "horizon, and its distance as a factor of the distance that shows the whole model. "
+              "Alternatively, set the target and the distance from it, as the window copies them; "
+              "then the default lights do not move. Default: the model's camera, else 30,20,1.",
               [&](const std::string& subject, const std::string& text) {
                   options.camera = parse_camera(subject, text);
               })
         .group(group);
     add_value(app, "--fov", "DEGREES",
-              "Vertical field of view. Default: the model's camera's, else 35.",
+              "Set the vertical field of view. Default: that of the model's camera, else 35.",
               [&](const std::string& subject, const std::string& text) {
                   options.vertical_fov = parse_fov(subject, text);
               })
@@ -137,29 +233,26 @@ void add_light_options(CLI::App& app, ViewOptions& options) {
 }
 
 void check_output(const ViewOptions& options) {
-    refuse(options.dump_state && !options.wants_window(), "--dump-state",
-           "is what a window shows, and none is opened", "leave --output and the like out");
+    refuse(options.dump_state && !options.wants_window(), "--dump-state", "no window is opened",
+           "leave --output out");
     refuse(options.wants_window() && options.backend != Backend::automatic, "--backend",
-           "is for pictures without a window, which brings its own OpenGL",
-           "name a picture with --output, or leave it out");
-    refuse(options.ui_scale && !options.wants_window(), "--ui-scale",
-           "is of a window, and none is opened", "leave it out");
-    refuse(options.no_state && !options.wants_window(), "--no-state",
-           "is of a window, and none is opened", "leave it out");
-    refuse(options.wants_window() && options.json, "--json", "is a summary, and a window has none",
-           "name a picture with --output");
+           "applies to pictures; the window uses the OpenGL of its display",
+           "add --output, or leave it out");
+    refuse(options.ui_scale && !options.wants_window(), "--ui-scale", "no window is opened",
+           "leave it out");
+    refuse(options.no_state && !options.wants_window(), "--no-state", "no window is opened",
+           "leave it out");
+    refuse(options.wants_window() && options.json, "--json", "the window prints no summary",
+           "add --output");
     refuse(options.wants_window() && options.strict, "--strict",
-           "is about the exit code of a picture, and a window shows its findings",
-           "name a picture with --output");
+           "the window shows the findings and has no exit code for them", "add --output");
     refuse(is_linear_output(options) && (options.exposure || options.tone_mapping),
            options.exposure ? "--exposure" : "--tone-mapping",
-           "belongs to display colours, and this picture holds linear radiance",
-           "write a .png, or leave it out");
+           "applies to display colors, not to linear radiance", "write a .png, or leave it out");
     if (!options.output) return;
     const std::string extension = extension_of(*options.output);
     refuse(extension != ".png" && extension != ".exr" && extension != ".apng",
-           "--output " + options.output->string(), "no format to write a picture in",
-           "use .png, .exr or .apng");
+           "--output " + options.output->string(), "unsupported format", "use .png, .exr or .apng");
     refuse(*options.output == options.model, "--output", "would overwrite the model", "");
     require_folder_of(*options.output);
 }
@@ -172,8 +265,8 @@ void check_lights(const ViewOptions& options) {
            "");
 }
 
-/// The environment takes one or six files, so it may have eaten the model that follows it.
-void give_back_model(ViewOptions& options) {
+/// --environment takes one or six files, so it may have taken the model that follows it.
+void recover_model(ViewOptions& options) {
     if (!options.model.empty()) return;
     if (options.environment.size() != 2 && options.environment.size() != 7) return;
     options.model = options.environment.back();
@@ -206,8 +299,7 @@ CameraOption parse_camera(const std::string& subject, const std::string& text) {
         camera.distance_factor = static_cast<float>(number(2, {0.01, 1000, ""}));
     if (!has_place) return camera;
     fields = split(text.substr(at + 1), ',');
-    if (fields.size() != 4)
-        throw UsageError(subject + ": what follows the @ is not x,y,z,distance");
+    if (fields.size() != 4) throw UsageError(subject + ": expected x,y,z,distance after the @");
     const auto coordinate = [&](std::size_t i) {
         return static_cast<float>(number(i, {-1e30, 1e30, ""}));
     };
@@ -221,11 +313,10 @@ float parse_fov(const std::string& subject, const std::string& text) {
 }
 
 void add_view_options(CLI::App& app, ViewOptions& options) {
-    // Not required in CLI11's eyes: settle() looks for it behind --environment.
-    add_path(
-        app, "MODEL", options.model,
-        "Model to show: .glb .gltf .obj .ply .stl .off, or a scene: .json. Without --output, in "
-        "a window");
+    // Not marked as required, because settle() may find the model after --environment.
+    add_path(app, "MODEL", options.model,
+             "The model to show: .glb .gltf .obj .ply .stl .off, or a scene: .json. Without "
+             "--output, a window opens.");
     add_output_options(app, options);
     add_save_options(app, options);
     add_window_options(app, options);
@@ -241,14 +332,13 @@ void add_view_options(CLI::App& app, ViewOptions& options) {
     const Choices<Backend> backends = {
         {"auto", Backend::automatic}, {"osmesa", Backend::osmesa}, {"egl", Backend::egl}};
     add_choice(app, "--backend", options.backend, backends,
-               "What gives the OpenGL context of pictures; neither needs a display. Default: auto, "
-               "which takes "
-               "a GPU through EGL where there is one, else OSMesa, else EGL in software.");
+               "Choose the OpenGL context for pictures. No backend needs a display. auto prefers a "
+               "GPU with EGL, then OSMesa, then EGL in software. Default: auto.");
     add_general_options(app, options.general);
 }
 
 void settle(ViewOptions& options) {
-    give_back_model(options);
+    recover_model(options);
     if (options.model.empty() && !options.wants_window() && !options.list_bindings)
         throw UsageError("MODEL is missing");
     check_output(options);

@@ -1,73 +1,130 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// What relief-view can be asked for, and which requests contradict each other or could show
-/// nothing. Angles are radians here, degrees on the command line.
-/// Tests: tests/tools/relief_view_test.cpp.
+/// The options of relief-view: parsing and validation. Angles are radians here and degrees on the
+/// command line. Lights have the following form:
+///
+///     directional:AZIMUTH,ELEVATION[,INTENSITY[,#RRGGBB]]    the direction of the light, in
+///     degrees point:X,Y,Z[,INTENSITY[,#RRGGBB]]                      in world space
+///     spot:X,Y,Z,TX,TY,TZ[,ANGLE[,INTENSITY[,#RRGGBB]]]      from (X,Y,Z) towards (TX,TY,TZ)
+///     none                                                   no lights
+///
+/// The intensity is irradiance over pi (at distance 1 for point and spot), so a white surface that
+/// faces a directional light of intensity 1 is white. Tests: tests/tools/relief_view_test.cpp,
+/// tests/tools/light_option_test.cpp.
 #pragma once
 
 #include <filesystem>
 #include <glm/glm.hpp>
 #include <optional>
+#include <string>
+#include <variant>
 #include <vector>
 
 #include "common/options.h"
-#include "compare_choices.h"
-#include "debug_choices.h"
-#include "effect_choices.h"
-#include "light_option.h"
 #include "relief/mesh/bump.h"
 #include "relief/mesh/normal_map.h"
 #include "relief/shade/context.h"
+#include "relief/shade/debug_views.h"
+#include "relief/shade/effect_forcing.h"
 #include "relief/shade/scene.h"
 #include "relief/shade/scene_file.h"
+#include "variant.h"
 
 namespace relief::tools {
 
-/// What the camera looks at, in world space, and from how far away.
+/// "none": the scene has no lights.
+struct NoLight {};
+
+using LightOption = std::variant<NoLight, DirectionalLight, PointLight, SpotLight>;
+
+/// \param subject  the option for messages, for example "--light point:1,2"
+LightOption parse_light(const std::string& subject, const std::string& text);
+
+/// The unit vector of a direction.
+///
+/// \param azimuth  radians from +z towards +x
+/// \param elevation  radians above the horizon
+glm::vec3 towards(float azimuth, float elevation);
+
+inline constexpr float default_split = 0.5F;
+
+/// The options --compare, --compare-to and --split.
+struct CompareChoices {
+    std::optional<Variant> variant;
+    std::optional<std::filesystem::path> file;  ///< Another model or scene.
+    std::optional<float> split;                 ///< The position of the split, from 0 to 1.
+
+    [[nodiscard]] bool compares() const { return variant || file; }
+};
+
+/// The findings of the health check that are marked.
+enum class HealthChoice { trouble, all };
+
+/// The options --show, --wireframe, --vertex-frames, --frame-length and --health-markers.
+struct DebugChoices {
+    DebugView view = DebugView::picture;
+    bool wireframe = false;
+    bool vertex_frames = false;
+    std::optional<float> frame_length;  ///< Relative to the size of the scene.
+    std::optional<HealthChoice> health_markers;
+};
+
+/// The options --effects, --benchmark, --budget and --print-shaders.
+struct EffectChoices {
+    EffectWishes requests;         ///< --effects
+    std::optional<int> benchmark;  ///< Number of frames to time.
+    std::optional<double> budget;  ///< Maximum milliseconds per frame.
+    bool print_shaders = false;
+
+    /// Whether frames are drawn even without a picture.
+    [[nodiscard]] bool measures() const { return benchmark || budget; }
+};
+
+/// The target of the camera in world space, and its distance.
 struct CameraPlace {
     glm::vec3 target{0.0F};
     float distance = 1.0F;
 };
 
-/// From where the camera looks at the model.
+/// The direction and distance of the camera.
 struct CameraOption {
     float azimuth = 0;          ///< Radians from +z towards +x.
     float elevation = 0;        ///< Radians above the horizon.
-    float distance_factor = 1;  ///< Of the distance from which all of the model is seen.
-    std::optional<CameraPlace> place = std::nullopt;  ///< Else the model is framed.
+    float distance_factor = 1;  ///< Relative to the distance that shows the whole model.
+    std::optional<CameraPlace> place = std::nullopt;  ///< If absent, the model is framed.
 };
 
-/// What a height map becomes.
+/// The use of a height map.
 enum class HeightUse { normal_map, bump_map };
 
-/// How one environment image is laid out.
+/// The layout of an environment image.
 enum class EnvironmentLayout {
-    automatic,  ///< Told by its shape: 2:1 a panorama, 4:3 or 3:4 a cross, 1:1 a probe.
+    automatic,  ///< By aspect ratio: 2:1 panorama, 4:3 or 3:4 cross, 1:1 probe.
     panorama,
     cross,
     probe,
 };
 
-/// Metallic and roughness that all materials take on.
+/// The values of --metallic-roughness.
 struct MetallicOption {
     float metallic = 0;
     float roughness = 1;
 };
 
-/// Everything on the command line. What was not given is absent.
+/// All options of the command line. Options that were not given are empty.
 struct ViewOptions {
     std::filesystem::path model;
     std::optional<std::filesystem::path> output;
     std::optional<std::filesystem::path> save_scene;
     std::optional<std::filesystem::path> save_model;
     glm::ivec2 size{1024, 1024};
-    bool size_given = false;  ///< Else a scene file may say it.
+    bool size_given = false;  ///< Otherwise a scene file may set the size.
     int samples = 4;
-    std::optional<float> exposure;  ///< The factor, not the stops.
+    std::optional<float> exposure;  ///< As a factor, not in stops.
     std::optional<ToneMapping> tone_mapping;
 
     std::optional<std::filesystem::path> reference;
-    std::optional<double> max_difference;  ///< From the reference; absent: 0.
+    std::optional<double> max_difference;  ///< From the reference. If absent, it is 0.
     std::optional<std::filesystem::path> difference_map;
 
     std::optional<std::filesystem::path> normal_map;
@@ -84,14 +141,14 @@ struct ViewOptions {
 
     std::optional<SceneOptions::MaterialModel> shading;
     std::optional<Interpolation> interpolation;
-    std::optional<std::string> material;  ///< A name of the classic table.
+    std::optional<std::string> material;  ///< A name of the table of classic materials.
     std::optional<MetallicOption> metallic_roughness;
     std::optional<float> shininess;
     std::optional<SpecularModel> specular;
 
-    std::vector<std::filesystem::path> environment;  ///< One image, a folder, or six files.
+    std::vector<std::filesystem::path> environment;  ///< One image, one folder or six files.
     std::optional<EnvironmentLayout> environment_layout;
-    std::optional<bool> environment_light;  ///< Absent: where materials are metallic-roughness.
+    std::optional<bool> environment_light;  ///< If absent, metallic-roughness materials decide.
     std::optional<float> environment_intensity;
     bool left_handed_environment = false;
     bool no_skybox = false;
@@ -104,23 +161,23 @@ struct ViewOptions {
 
     std::vector<LightOption> lights;
     std::optional<float> ambient;
-    std::optional<float> light_markers;  ///< Radius in units of the scene's size.
+    std::optional<float> light_markers;  ///< Radius relative to the size of the scene.
     std::optional<CameraOption> camera;
     std::optional<float> vertical_fov;
-    std::optional<glm::vec4> background;  ///< Linear RGB and coverage.
+    std::optional<glm::vec4> background;  ///< Linear RGB and alpha.
 
-    std::optional<int> turntable;  ///< Pictures of one turn.
-    std::optional<int> frames;     ///< Pictures of the scene's animation.
+    std::optional<int> turntable;  ///< Pictures per turn.
+    std::optional<int> frames;     ///< Pictures of the animation.
     std::optional<double> seconds;
     std::optional<double> frames_per_second;
     std::optional<double> time;
 
-    std::optional<std::filesystem::path> dump_state;  ///< Of the window, as JSON.
-    std::optional<float> ui_scale;                    ///< Of the window's letters and panels.
-    bool no_state = false;  ///< The window is not remembered, and comes as usual.
+    std::optional<std::filesystem::path> dump_state;  ///< JSON file for the state of the window.
+    std::optional<float> ui_scale;                    ///< Scale of the user interface.
+    bool no_state = false;  ///< The layout of the window is neither read nor written.
     bool list_bindings = false;
 
-    /// Neither a picture nor words are asked for: a window it is.
+    /// True if no option asks for output.
     [[nodiscard]] bool wants_window() const {
         return !output && !save_scene && !save_model && !reference && !explain_effects &&
                !effects.print_shaders && !effects.measures();
@@ -136,24 +193,24 @@ struct ViewOptions {
     GeneralOptions general;
 };
 
-/// "azimuth,elevation[,factor]" or "azimuth,elevation@x,y,z,distance", in degrees.
+/// Parses "azimuth,elevation[,factor]" or "azimuth,elevation@x,y,z,distance", in degrees.
 /// \throws UsageError
 CameraOption parse_camera(const std::string& subject, const std::string& text);
 
-/// Degrees, 1 to 170, as radians. \throws UsageError
+/// Parses 1 to 170 degrees. Returns radians. \throws UsageError
 float parse_fov(const std::string& subject, const std::string& text);
 
 void add_view_options(CLI::App& app, ViewOptions& options);
 
-/// Refuses an option that could show nothing, or that contradicts another.
-/// \throws UsageError "OPTION: BECAUSE (REMEDY)" if useless
+/// Rejects an option without effect or with a contradiction.
+/// \throws UsageError "OPTION: PROBLEM (REMEDY)" if useless
 void refuse(bool useless, const std::string& option, const std::string& because,
             const std::string& remedy);
 
-/// Settles what parsing left open and refuses what contradicts itself. \throws UsageError
+/// Completes the options after parsing, and rejects contradictions. \throws UsageError
 void settle(ViewOptions& options);
 
-/// Float radiance (.exr), not display colour (.png): as the output is, or else the reference.
+/// Whether the output, or else the reference, stores linear radiance (.exr, .hdr).
 bool is_linear_output(const ViewOptions& options);
 
 }  // namespace relief::tools

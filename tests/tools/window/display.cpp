@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Xvfb writes its screen to a file in XWD's format (X11/XWDFile.h): a header of big-endian words,
-// colour maps, and rows of pixels.
+// Xvfb writes its screen to a file in the XWD format (X11/XWDFile.h): a header of big-endian words,
+// color maps, and rows of pixels.
 #include "tools/window/display.h"
 
 #include <fcntl.h>
@@ -88,23 +88,23 @@ std::unique_ptr<Display> Display::open() {
     if (!is_installed("Xvfb") || !is_installed("xdotool")) return nullptr;
     std::unique_ptr<Display> display(new Display);
     std::filesystem::create_directory(display->folder_ / "streams");
-    // It says on standard output which number it took.
+    // Xvfb writes the number of the display to standard output.
     display->server_ = std::make_unique<ChildProcess>(
         std::vector<std::string>{"Xvfb", "-displayfd", "1", "-screen", "0", "1280x800x24",
                                  "-nolisten", "tcp", "-noreset", "-fbdir",
                                  display->folder_.path().string()},
         display->folder_ / "streams");
-    const auto said = [&] { return contents_of(display->folder_ / "streams" / "out"); };
-    if (!eventually([&] { return said().ends_with('\n'); }))
+    const auto output = [&] { return contents_of(display->folder_ / "streams" / "out"); };
+    if (!eventually([&] { return output().ends_with('\n'); }))
         throw std::runtime_error("Xvfb does not start");
-    const std::string number = said();
+    const std::string number = output();
     display->name_ = fmt::format(":{}", number.substr(0, number.find('\n')));
     return display;
 }
 
 Image Display::picture() const {
     const std::string bytes = contents_of(folder_ / "Xvfb_screen0");
-    const std::size_t begin = word(bytes, 0) + 12 * word(bytes, 19);  // Header, colour map.
+    const std::size_t begin = word(bytes, 0) + 12 * word(bytes, 19);  // Header and color map.
     const int width = static_cast<int>(word(bytes, 4));
     const int height = static_cast<int>(word(bytes, 5));
     const std::size_t stride = word(bytes, 12);
@@ -114,7 +114,7 @@ Image Display::picture() const {
     std::size_t next = 0;
     for (std::size_t y = 0; y < static_cast<std::size_t>(height); ++y) {
         for (std::size_t x = 0; x < static_cast<std::size_t>(width); ++x) {
-            const std::size_t pixel = begin + y * stride + 4 * x;  // Blue, green, red, nothing.
+            const std::size_t pixel = begin + y * stride + 4 * x;  // Blue, green, red, unused.
             for (const std::size_t channel : {2U, 1U, 0U})
                 samples[next++] = static_cast<std::uint8_t>(bytes.at(pixel + channel));
         }

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// A screen without a screen: Xvfb, which keeps its pixels in a file that can be read.
-/// 1280 x 800 pixels of 24 bits.
+/// A virtual display of 1280 x 800 pixels: Xvfb, whose pixels are in a file, and xdotool.
 #pragma once
 
 #include <sys/types.h>
@@ -9,13 +8,14 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "relief/mesh/image.h"
 #include "support/shared_data.h"
 
 namespace relief::test {
 
-/// A child process; ended with the object.
+/// A child process, which ends with the object.
 class ChildProcess {
   public:
     ChildProcess(const std::vector<std::string>& words, const std::filesystem::path& streams);
@@ -24,7 +24,8 @@ class ChildProcess {
     ChildProcess& operator=(const ChildProcess&) = delete;
 
     [[nodiscard]] pid_t pid() const { return pid_; }
-    /// Waits for its own end. \return the exit code; -1 if it goes on for longer than so long
+    /// Waits until the process ends.
+    /// \return the exit code, or -1 after the timeout
     int wait_for_end(double seconds);
     [[nodiscard]] bool has_ended();
 
@@ -36,18 +37,19 @@ class ChildProcess {
 
 class Display {
   public:
-    /// The one of this process, with the pointer in its lower left corner. Null if Xvfb or xdotool
-    /// is not installed.
+    /// The display of this process, with the pointer in the lower left corner. Null if Xvfb or
+    /// xdotool is not installed.
     static const Display* of_process();
 
-    [[nodiscard]] const std::string& name() const { return name_; }  ///< ":1234"
+    [[nodiscard]] const std::string& name() const { return name_; }  ///< For example ":1234".
 
-    /// What is on the screen now, 8-bit RGB: half of a frame, where one is just being put there.
+    /// The current screen as 8-bit RGB. It may contain a part of the next frame.
     [[nodiscard]] Image picture() const;
-    /// The same once it stays as it is: a window tells its state before its frame is on the screen.
+    /// The screen as soon as it is stable. The window reports its state before the frame is
+    /// visible.
     [[nodiscard]] Image resting_picture() const;
 
-    /// Runs xdotool there. \throws std::runtime_error if it fails
+    /// Runs xdotool on the display. \throws std::runtime_error if it fails
     void act(const std::string& words) const;
 
   private:
@@ -59,11 +61,11 @@ class Display {
     std::string name_;
 };
 
-/// Waits until something holds, looking often. \return whether it did within so many seconds
+/// Waits until a condition holds. \return whether it held before the timeout
 template <typename Condition>
 bool eventually(const Condition& holds, double seconds = 100.0);
 
-/// Sleeps a little, between two looks.
+/// Sleeps for the polling interval.
 void pause_a_little();
 void wait_seconds(double seconds);
 double seconds_now();
@@ -80,9 +82,15 @@ bool eventually(const Condition& holds, double seconds) {
 
 std::string contents_of(const std::filesystem::path& file);
 
+/// Drops files on the only window that accepts drops, at a position on the screen. The function
+/// implements the source side of the XDND protocol, version 5 (freedesktop.org).
+/// \return whether the window accepted the files
+bool drop_files(const std::string& display, const std::vector<std::filesystem::path>& files, int x,
+                int y);
+
 }  // namespace relief::test
 
-/// The display of the process as `variable`; the test is skipped if there is none.
+/// Defines `variable` as the display of the process. Without a display, the test is skipped.
 #define RELIEF_NEEDS_DISPLAY(variable)                                                 \
     const relief::test::Display* const variable = relief::test::Display::of_process(); \
     if (variable == nullptr) GTEST_SKIP() << "needs Xvfb and xdotool"

@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/window/drag_and_drop.h"
-
 #include <array>
 #include <memory>
 
 #include "tools/window/display.h"
 
-// Last: it defines None and other words that are names elsewhere.
+// This header must be the last one, because it defines macros such as None.
 #include <X11/Xlib.h>
 
 namespace relief::test {
@@ -51,7 +49,7 @@ class Source {
         return type != None && attributes.map_state == IsViewable;
     }
 
-    /// Without a window manager, windows are the root's own children.
+    /// Without a window manager, windows are children of the root window.
     [[nodiscard]] Window find_target() const {
         Window root = None, parent = None, found = None;
         Window* children = nullptr;
@@ -77,7 +75,7 @@ class Source {
         XFlush(x());
     }
 
-    /// Gives the list where it is asked for.
+    /// Answers a request for the list of files.
     void give(const XSelectionRequestEvent& request) const {
         XChangeProperty(x(), request.requestor, request.property, request.target, 8,
                         PropModeReplace, reinterpret_cast<const unsigned char*>(list_.data()),
@@ -93,7 +91,7 @@ class Source {
         XFlush(x());
     }
 
-    /// Serves the target until it says this.
+    /// Serves the target until it sends this message.
     bool answers(const char* type) const {
         const Atom awaited = atom(type);
         return eventually([&] {

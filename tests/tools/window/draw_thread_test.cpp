@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The drawing thread in a context of its own, without a window.
+// The drawing thread with its own context, without a window.
 #include "window/draw_thread.h"
 
 #include <gmock/gmock.h>
@@ -20,7 +20,42 @@ namespace {
 using test::eventually;
 using testing::HasSubstr;
 
-/// OSMesa's functions, for who must have a plain pointer to their loader.
+const FrameSettings whole{1200, 800, 4};
+
+TEST(AdaptiveResolution, FastPicturesKeepTheirResolution) {
+    AdaptiveResolution resolution;
+    resolution.note_motion(5.0);
+    EXPECT_EQ(resolution.settings_for(whole, 5.0).width, 1200) << "nothing is known yet";
+    resolution.set_full_time(60.0);
+    EXPECT_EQ(resolution.settings_for(whole, 5.0).width, 1200);
+    EXPECT_EQ(resolution.settings_for(whole, 5.0).samples, 4);
+}
+
+TEST(AdaptiveResolution, SlowPicturesReduceSamplesThenPixels) {
+    AdaptiveResolution resolution;
+    resolution.note_motion(5.0);
+    resolution.set_full_time(100.0);
+    EXPECT_EQ(resolution.settings_for(whole, 5.0).samples, 1);
+    EXPECT_EQ(resolution.settings_for(whole, 5.0).width, 1200);
+    // This is 167 ms with one sample, and a quarter of that is below 60 ms.
+    resolution.set_full_time(400.0);
+    EXPECT_EQ(resolution.settings_for(whole, 5.0).width, 600);
+    EXPECT_EQ(resolution.settings_for(whole, 5.0).height, 400);
+    resolution.set_full_time(1e6);
+    EXPECT_EQ(resolution.settings_for(whole, 5.0).width, 300) << "never coarser than that";
+    EXPECT_EQ(resolution.settings_for({2, 1, 1}, 5.0).height, 1);
+}
+
+TEST(AdaptiveResolution, FullResolutionReturnsAfterMotion) {
+    AdaptiveResolution resolution;
+    resolution.set_full_time(400.0);
+    EXPECT_EQ(resolution.settings_for(whole, 5.0).width, 1200) << "nothing has moved yet";
+    resolution.note_motion(5.0);
+    EXPECT_EQ(resolution.settings_for(whole, 5.1).width, 600);
+    EXPECT_EQ(resolution.settings_for(whole, 5.2).width, 1200);
+}
+
+/// The loader must be a plain function pointer.
 gl::Api::Loader loader_of_thread = nullptr;
 
 class Drawing : public testing::Test {
@@ -36,19 +71,19 @@ class Drawing : public testing::Test {
     }
     [[nodiscard]] int woken() const { return woken_; }
 
-    static DrawWish wish_of(std::uint64_t revision, float distance = 3.0F) {
+    static DrawRequest request_of(std::uint64_t revision, float distance = 3.0F) {
         auto scene = std::make_shared<Scene>();
         scene->meshes.push_back(test::cube());
         scene->instances.push_back({});
-        DrawWish wish;
-        wish.scene = scene;
-        wish.revision = revision;
-        wish.settings = {32, 24, 1};
-        wish.camera.world_from_view[3] = {0, 0, distance, 1};
-        return wish;
+        DrawRequest request;
+        request.scene = scene;
+        request.revision = revision;
+        request.settings = {32, 24, 1};
+        request.camera.world_from_view[3] = {0, 0, distance, 1};
+        return request;
     }
 
-    /// Waits until nothing is to be drawn.
+    /// Waits until the thread is idle.
     static DrawnPicture rest(DrawThread& thread) {
         EXPECT_TRUE(eventually([&] { return !thread.is_busy(); }));
         return thread.drawn();
@@ -59,11 +94,11 @@ class Drawing : public testing::Test {
     std::atomic<int> woken_ = 0;
 };
 
-TEST_F(Drawing, DrawsWhatIsWishedAndWakes) {
+TEST_F(Drawing, DrawsTheRequestAndWakes) {
     DrawThread thread(context());
     EXPECT_NE(thread.renderer_name(), "");
     EXPECT_EQ(thread.shown().texture, 0U);
-    thread.wish(wish_of(7));
+    thread.request(request_of(7));
     const DrawnPicture drawn = rest(thread);
     EXPECT_EQ(drawn.error, "");
     EXPECT_EQ(drawn.revision, 7U);
@@ -73,56 +108,56 @@ TEST_F(Drawing, DrawsWhatIsWishedAndWakes) {
     EXPECT_TRUE(eventually([&] { return woken() == 1; }));
 }
 
-TEST_F(Drawing, AnotherCameraMakesNoRenderer) {
+TEST_F(Drawing, AnotherCameraNeedsNoRenderer) {
     DrawThread thread(context());
-    thread.wish(wish_of(1));
+    thread.request(request_of(1));
     rest(thread);
-    thread.wish(wish_of(1, 4.0F));
+    thread.request(request_of(1, 4.0F));
     DrawnPicture drawn = rest(thread);
     EXPECT_EQ(drawn.frames, 2U);
     EXPECT_EQ(drawn.renderers, 1U);
-    thread.wish(wish_of(2, 4.0F));
+    thread.request(request_of(2, 4.0F));
     drawn = rest(thread);
     EXPECT_EQ(drawn.renderers, 2U);
 }
 
-TEST_F(Drawing, OfManyWishesTheLastIsDrawnAndTheOthersCostNothing) {
+TEST_F(Drawing, OnlyTheLastOfManyRequestsMustBeDrawn) {
     DrawThread thread(context());
     for (std::uint64_t i = 1; i <= 200; ++i)
-        thread.wish(wish_of(i));
+        thread.request(request_of(i));
     const DrawnPicture drawn = rest(thread);
     EXPECT_EQ(drawn.revision, 200U);
     EXPECT_LT(drawn.frames, 200U);
 }
 
-TEST_F(Drawing, WhatCannotBeDrawnLeavesThePictureAndSaysWhy) {
+TEST_F(Drawing, DrawingErrorKeepsThePicture) {
     DrawThread thread(context());
-    thread.wish(wish_of(1));
+    thread.request(request_of(1));
     rest(thread);
     const unsigned shown = thread.shown().texture;
-    DrawWish impossible = wish_of(2);
+    DrawRequest impossible = request_of(2);
     impossible.effects.forced.push_back({"no such effect", true});
-    thread.wish(impossible);
+    thread.request(impossible);
     DrawnPicture drawn = rest(thread);
     EXPECT_THAT(drawn.error, HasSubstr("no such effect"));
     EXPECT_EQ(drawn.revision, 1U);
     EXPECT_EQ(thread.shown().texture, shown);
-    thread.wish(wish_of(3));
+    thread.request(request_of(3));
     drawn = rest(thread);
     EXPECT_EQ(drawn.error, "");
     EXPECT_EQ(drawn.revision, 3U);
 }
 
-TEST_F(Drawing, WhatCannotBeDrawnIsTriedOnceAndTheOldSceneCanBeLookedAt) {
+TEST_F(Drawing, DrawingErrorIsTriedOnceAndTheOldSceneFollowsTheCamera) {
     DrawThread thread(context());
-    thread.wish(wish_of(1));
+    thread.request(request_of(1));
     rest(thread);
-    DrawWish impossible = wish_of(2);
+    DrawRequest impossible = request_of(2);
     impossible.effects.forced.push_back({"no such effect", true});
-    thread.wish(impossible);
+    thread.request(impossible);
     const std::uint64_t frames = rest(thread).frames;
     impossible.camera.world_from_view[3].z = 5.0F;
-    thread.wish(impossible);
+    thread.request(impossible);
     const DrawnPicture drawn = rest(thread);
     EXPECT_EQ(drawn.frames, frames + 1);
     EXPECT_EQ(drawn.revision, 1U);
@@ -130,7 +165,7 @@ TEST_F(Drawing, WhatCannotBeDrawnIsTriedOnceAndTheOldSceneCanBeLookedAt) {
     EXPECT_THAT(drawn.error, HasSubstr("no such effect"));
 }
 
-TEST_F(Drawing, AContextOfNoUseIsSaidAtOnce) {
+TEST_F(Drawing, UnusableContextThrows) {
     DrawContext none = context();
     none.loader = [](const char*) -> void (*)() { return nullptr; };
     EXPECT_THROW(DrawThread{none}, relief::Error);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Without a display: a window says what is missing, and pictures never ask for one. A socket where
-// a display would listen hears whoever looks for it, and connecting is the first thing that GLFW
-// does.
+// Without a display: a window reports what is missing, and pictures never connect to a display. The
+// tests listen on the socket of a display, to which GLFW would connect first.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -25,12 +24,12 @@ using test::ProgramResult;
 using test::Workplace;
 using testing::HasSubstr;
 
-/// Listens as display `name()`, and hangs up on who comes.
+/// Listens as display `name()`, and closes each connection.
 class ListeningDisplay {
   public:
     ListeningDisplay() {
         socket_ = ::socket(AF_UNIX, SOCK_STREAM, 0);
-        // Numbers that no display has; the first that is free.
+        // The first free number that no display uses.
         for (number_ = 5000; number_ < 5100 && !is_listening_; ++number_)
             is_listening_ = listens_at(fmt::format("/{}/.X11-unix/X{}", "tmp", number_));
         --number_;
@@ -47,11 +46,11 @@ class ListeningDisplay {
     [[nodiscard]] bool is_listening() const { return is_listening_; }
     [[nodiscard]] std::string name() const { return fmt::format(":{}", number_); }
 
-    /// Whether anyone has called so far.
+    /// Whether any program has connected.
     [[nodiscard]] bool was_called() const { return was_called_; }
 
   private:
-    /// At an abstract address, which has no file and is where clients look first.
+    /// Uses an abstract address, which has no file. Clients try it first.
     [[nodiscard]] bool listens_at(const std::string& path) const {
         sockaddr_un address{};
         address.sun_family = AF_UNIX;
@@ -79,7 +78,7 @@ class ListeningDisplay {
     bool is_listening_ = false;
 };
 
-TEST(NoWindow, PicturesAskForNoDisplay) {
+TEST(NoWindow, PicturesNeedNoDisplay) {
     const Workplace workplace;
     const ListeningDisplay display;
     ASSERT_TRUE(display.is_listening());
@@ -94,7 +93,7 @@ TEST(NoWindow, PicturesAskForNoDisplay) {
     EXPECT_EQ(workplace.outputs(), "vase.png");
 }
 
-TEST(NoWindow, AWindowAsksForOneAndSaysThatItIsNotThere) {
+TEST(NoWindow, WindowReportsAMissingDisplay) {
     const Workplace workplace;
     const ListeningDisplay display;
     ASSERT_TRUE(display.is_listening());
@@ -107,16 +106,16 @@ TEST(NoWindow, AWindowAsksForOneAndSaysThatItIsNotThere) {
     EXPECT_THAT(result.error, HasSubstr("--output FILE.png"));
 }
 
-TEST(NoWindow, ABackendIsOfNoUseInAWindow) {
+TEST(NoWindow, BackendIsRejectedForAWindow) {
     const Workplace workplace;
     const ProgramResult result = workplace.run("relief-view data/vase.obj --backend osmesa");
     EXPECT_EQ(result.exit_code, 2);
     EXPECT_EQ(result.first_error_line(),
-              "relief-view: error: --backend: is for pictures without a window, which brings its "
-              "own OpenGL (name a picture with --output, or leave it out)");
+              "relief-view: error: --backend: applies to pictures; the window uses the OpenGL of "
+              "its display (add --output, or leave it out)");
 }
 
-TEST(NoWindow, WithoutADisplayTheHeadlessWayIsNamed) {
+TEST(NoWindow, WithoutADisplayTheMessageNamesOutput) {
     const Workplace workplace;
     const ProgramResult result =
         workplace.run("env -u DISPLAY -u WAYLAND_DISPLAY relief-view data/vase.obj");

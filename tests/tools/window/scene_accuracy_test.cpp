@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is measured on a scene, what a choice does to it, and when both are forgotten.
+// Measurements on a scene, applying a method, and discarding both.
 #include "window/scene_accuracy.h"
 
 #include <gmock/gmock.h>
@@ -18,7 +18,7 @@ using test::eventually;
 using testing::Contains;
 using testing::SizeIs;
 
-/// A jittered torus whose normals are the true ones.
+/// A jittered torus with exact normals.
 Loaded torus(const std::string& name) {
     AnalyticMesh truth = analytic_mesh(AnalyticSurface::torus, Triangulation::jittered, 24, 1);
     truth.mesh.normals.assign(truth.normals.begin(), truth.normals.end());
@@ -37,7 +37,7 @@ ViewerState state_of(const std::string& name) {
     return state;
 }
 
-/// How far the first mesh's normals have moved, largest, in degrees.
+/// The largest angle in degrees between the normals of the first meshes.
 double moved(const ViewerState& before, const ViewerState& after) {
     double most = 0.0;
     const Mesh& a = *before.scene().meshes[0];
@@ -55,16 +55,16 @@ void wait_for(SceneAccuracy& accuracy, ViewerState& state) {
     }));
 }
 
-TEST(SceneAccuracy, MeasuresEveryWeightingAndOffersIt) {
+TEST(SceneAccuracy, MeasuresAndOffersEveryWeighting) {
     ViewerState state = state_of("torus.obj");
     SceneAccuracy accuracy([] {});
     accuracy.follow(state);
     accuracy.measure(state);
     EXPECT_TRUE(accuracy.is_measuring());
     wait_for(accuracy, state);
-    ASSERT_EQ(accuracy.found().error, "");
-    ASSERT_FALSE(accuracy.found().topics.empty());
-    const AccuracyTopic& normals = accuracy.found().topics.front();
+    ASSERT_EQ(accuracy.result().error, "");
+    ASSERT_FALSE(accuracy.result().topics.empty());
+    const AccuracyTopic& normals = accuracy.result().topics.front();
     EXPECT_EQ(normals.own.experiment.subject, Subject::normals);
     std::vector<std::string> uses;
     for (const std::size_t row : normals.rows) {
@@ -79,7 +79,7 @@ TEST(SceneAccuracy, MeasuresEveryWeightingAndOffersIt) {
     }
 }
 
-TEST(SceneAccuracy, WhatIsChosenIsPutIntoTheScene) {
+TEST(SceneAccuracy, ChosenMethodIsAppliedToTheScene) {
     ViewerState state = state_of("torus.obj");
     const ViewerState before = state;
     SceneAccuracy accuracy([] {});
@@ -87,13 +87,13 @@ TEST(SceneAccuracy, WhatIsChosenIsPutIntoTheScene) {
     accuracy.use(Variant(NormalMode::area));
     accuracy.follow(state);
     wait_for(accuracy, state);
-    EXPECT_EQ(accuracy.found().error, "");
+    EXPECT_EQ(accuracy.result().error, "");
     EXPECT_GT(moved(before, state), 0.5);
     EXPECT_TRUE(accuracy.is_used(Variant(NormalMode::area), state.options()));
     EXPECT_FALSE(accuracy.is_used(Variant(NormalMode::max), state.options()));
 }
 
-TEST(SceneAccuracy, ASceneReadAnewGetsTheMethodAgainAndNoOldFigures) {
+TEST(SceneAccuracy, ReloadedSceneGetsTheMethodAndNoOldResults) {
     ViewerState state = state_of("torus.obj");
     const ViewerState before = state;
     SceneAccuracy accuracy([] {});
@@ -107,12 +107,12 @@ TEST(SceneAccuracy, ASceneReadAnewGetsTheMethodAgainAndNoOldFigures) {
     state.take(torus("torus.obj"));
     EXPECT_EQ(moved(before, state), 0.0);
     accuracy.follow(state);
-    EXPECT_THAT(accuracy.found().topics, SizeIs(0));
+    EXPECT_THAT(accuracy.result().topics, SizeIs(0));
     wait_for(accuracy, state);
     EXPECT_EQ(moved(chosen, state), 0.0);
 }
 
-TEST(SceneAccuracy, AStoppedMeasurementLeavesNothing) {
+TEST(SceneAccuracy, StoppedMeasurementHasNoResult) {
     ViewerState state = state_of("torus.obj");
     SceneAccuracy accuracy([] {});
     accuracy.follow(state);
@@ -120,17 +120,17 @@ TEST(SceneAccuracy, AStoppedMeasurementLeavesNothing) {
     accuracy.stop();
     EXPECT_FALSE(accuracy.is_measuring());
     accuracy.follow(state);
-    EXPECT_THAT(accuracy.found().topics, SizeIs(0));
+    EXPECT_THAT(accuracy.result().topics, SizeIs(0));
 }
 
-TEST(SceneAccuracy, WhatCannotBeDoneIsAnErrorAndNotChosen) {
+TEST(SceneAccuracy, InapplicableMethodIsAnErrorAndNotChosen) {
     ViewerState state = state_of("torus.obj");
     SceneAccuracy accuracy([] {});
     accuracy.follow(state);
-    accuracy.use(Variant(TangentBasis::lengyel));  // No map needs tangents.
+    accuracy.use(Variant(TangentBasis::lengyel));  // No map of the scene needs tangents.
     accuracy.follow(state);
     wait_for(accuracy, state);
-    EXPECT_NE(accuracy.found().error, "");
+    EXPECT_NE(accuracy.result().error, "");
     EXPECT_FALSE(accuracy.is_used(Variant(TangentBasis::lengyel), state.options()));
 }
 

@@ -11,6 +11,53 @@ namespace relief::tools {
 namespace {
 
 using test::Workplace;
+using testing::ElementsAre;
+using testing::IsEmpty;
+using testing::UnorderedElementsAre;
+
+/// A cart with two wheels, one of which carries a light, and a stone without a node.
+SceneGraph cart() {
+    SceneGraph graph;
+    graph.nodes.resize(3);
+    graph.nodes[0].name = "cart";
+    graph.nodes[1].parent = 0;
+    graph.nodes[2].parent = 0;
+    graph.nodes[2].name = "wheel";
+    graph.scene.instances.resize(4);
+    graph.instances.resize(3);
+    graph.instances[0].node = 0;
+    graph.instances[1].node = 1;
+    graph.instances[2].node = 2;
+    graph.scene.point_lights.resize(2);
+    graph.point_lights.resize(2);
+    graph.point_lights[1].node = 2;
+    graph.scene.camera.emplace();
+    graph.camera.node = 0;
+    return graph;
+}
+
+TEST(SceneTreeTest, ListsTheNodeHierarchy) {
+    const SceneTree tree = tree_of(cart());
+    ASSERT_EQ(tree.nodes.size(), 3U);
+    EXPECT_EQ(tree.nodes[0].name, "cart");
+    EXPECT_EQ(tree.nodes[1].name, "node 1") << "it has none";
+    EXPECT_THAT(tree.world.children, ElementsAre(0));
+    EXPECT_THAT(tree.nodes[0].children, ElementsAre(1, 2));
+    EXPECT_THAT(tree.nodes[0].instances, ElementsAre(0));
+    EXPECT_THAT(tree.nodes[0].carried, ElementsAre("camera"));
+    EXPECT_THAT(tree.nodes[2].instances, ElementsAre(2));
+    EXPECT_THAT(tree.nodes[2].carried, ElementsAre("point light 2"));
+    EXPECT_THAT(tree.world.instances, ElementsAre(3)) << "the list of what is carried is shorter";
+    EXPECT_THAT(tree.world.carried, ElementsAre("point light 1"));
+}
+
+TEST(SceneTreeTest, FindsAllInstancesBelowANode) {
+    const SceneTree tree = tree_of(cart());
+    EXPECT_THAT(instances_below(tree, tree.nodes[0]), UnorderedElementsAre(0, 1, 2));
+    EXPECT_THAT(instances_below(tree, tree.nodes[2]), ElementsAre(2));
+    EXPECT_THAT(instances_below(tree, tree.world), UnorderedElementsAre(0, 1, 2, 3));
+    EXPECT_THAT(instances_below(tree_of({}), tree_of({}).world), IsEmpty());
+}
 
 class State : public testing::Test {
   protected:
@@ -35,32 +82,32 @@ class State : public testing::Test {
     ViewerState state_{ViewOptions{}};
 };
 
-TEST_F(State, WishesNothingWithoutASceneOrAView) {
-    EXPECT_FALSE(state().wish());
+TEST_F(State, HasNoRequestWithoutASceneOrAView) {
+    EXPECT_FALSE(state().request());
     show("square.obj");
-    ASSERT_TRUE(state().wish());
-    EXPECT_EQ(state().wish()->settings.width, 400);
-    EXPECT_EQ(state().wish()->settings.height, 300);
+    ASSERT_TRUE(state().request());
+    EXPECT_EQ(state().request()->settings.width, 400);
+    EXPECT_EQ(state().request()->settings.height, 300);
     state().set_view({0, 300});
-    EXPECT_FALSE(state().wish());
+    EXPECT_FALSE(state().request());
 }
 
-TEST_F(State, AnotherModelIsShownWholeTheSameKeepsTheView) {
+TEST_F(State, AnotherModelResetsTheViewAndTheSameModelKeepsIt) {
     show("square.obj");
     EXPECT_NEAR(glm::length(state().camera().target), 0.0F, 1e-5F);
     state().act(Action::top);
-    state().act(Action::nearer);
+    state().act(Action::zoom_in);
     const OrbitCamera before = state().camera();
-    const std::uint64_t revision = state().wish()->revision;
+    const std::uint64_t revision = state().request()->revision;
     show("square.obj");
     EXPECT_EQ(state().camera().elevation, before.elevation);
     EXPECT_EQ(state().camera().distance, before.distance);
-    EXPECT_GT(state().wish()->revision, revision);
+    EXPECT_GT(state().request()->revision, revision);
     show("far.obj");
     EXPECT_NEAR(state().camera().target.x, 90.5F, 0.2F);
 }
 
-TEST_F(State, EditsStayWhenTheFileIsReadAgainAndAgain) {
+TEST_F(State, EditsStayWhenTheFileIsReadAgain) {
     show("square.obj");
     state().edit([](Scene& scene) { scene.exposure = 4.0F; });
     for (int i = 0; i < 2; ++i) {
@@ -73,14 +120,14 @@ TEST_F(State, EditsStayWhenTheFileIsReadAgainAndAgain) {
     EXPECT_EQ(state().json(DrawnPicture{})["edits"]["kept"], 0) << "as the file says";
 }
 
-TEST_F(State, AnErrorLeavesTheSceneAndGoesWithTheNext) {
+TEST_F(State, AnErrorKeepsTheSceneAndEndsWithTheNextScene) {
     show("square.obj");
-    const std::shared_ptr<const Scene> scene = state().wish()->scene;
+    const std::shared_ptr<const Scene> scene = state().request()->scene;
     Loaded broken;
     broken.options.model = "broken.obj";
     broken.error = "broken.obj: no triangles";
     state().take(std::move(broken));
-    EXPECT_EQ(state().wish()->scene, scene);
+    EXPECT_EQ(state().request()->scene, scene);
     EXPECT_EQ(state().error(), "broken.obj: no triangles");
     EXPECT_EQ(state().options().model.filename(), "square.obj");
     show("far.obj");
@@ -89,28 +136,28 @@ TEST_F(State, AnErrorLeavesTheSceneAndGoesWithTheNext) {
 
 TEST_F(State, EditsCopyTheSceneAndShareItsMeshes) {
     show("square.obj");
-    const std::shared_ptr<const Scene> before = state().wish()->scene;
-    const std::uint64_t revision = state().wish()->revision;
+    const std::shared_ptr<const Scene> before = state().request()->scene;
+    const std::uint64_t revision = state().request()->revision;
     state().edit([](Scene& scene) { scene.exposure = 4.0F; });
     EXPECT_EQ(before->exposure, 1.0F);
     EXPECT_EQ(state().scene().exposure, 4.0F);
     EXPECT_EQ(&*state().scene().meshes[0], &*before->meshes[0]);
-    EXPECT_EQ(state().wish()->revision, revision + 1);
+    EXPECT_EQ(state().request()->revision, revision + 1);
 }
 
 TEST_F(State, MovingTheCameraIsNoRevision) {
     show("square.obj");
-    const DrawWish before = *state().wish();
+    const DrawRequest before = *state().request();
     state().act(Action::orbit_left);
-    EXPECT_EQ(state().wish()->revision, before.revision);
-    EXPECT_NE(state().wish()->camera.world_from_view, before.camera.world_from_view);
+    EXPECT_EQ(state().request()->revision, before.revision);
+    EXPECT_NE(state().request()->camera.world_from_view, before.camera.world_from_view);
 }
 
 TEST_F(State, AxisKeysLookAlongAxes) {
     show("square.obj");
     const auto looks_from = [&](Action action) {
         state().act(action);
-        return glm::vec3(state().wish()->camera.world_from_view[2]);
+        return glm::vec3(state().request()->camera.world_from_view[2]);
     };
     EXPECT_NEAR(glm::distance(looks_from(Action::front), {0, 0, 1}), 0.0F, 1e-6F);
     EXPECT_NEAR(glm::distance(looks_from(Action::back), {0, 0, -1}), 0.0F, 1e-6F);
@@ -123,30 +170,31 @@ TEST_F(State, AxisKeysLookAlongAxes) {
 TEST_F(State, TheFieldOfViewStaysWithinItsLimits) {
     show("square.obj");
     for (int i = 0; i < 100; ++i)
-        state().act(Action::wider);
+        state().act(Action::widen_fov);
     EXPECT_NEAR(glm::degrees(state().camera().vertical_fov), 150.0F, 1e-3F);
     for (int i = 0; i < 200; ++i)
-        state().act(Action::narrower);
+        state().act(Action::narrow_fov);
     EXPECT_NEAR(glm::degrees(state().camera().vertical_fov), 2.0F, 1e-3F);
 }
 
-TEST_F(State, TheTurntableTurnsByTimeAndStops) {
+TEST_F(State, TurntableRotatesByTimeAndStops) {
     show("square.obj");
-    EXPECT_FALSE(state().pass(1.0));
+    EXPECT_FALSE(state().advance(1.0));
     const float begin = state().camera().azimuth;
     state().act(Action::turntable);
-    EXPECT_TRUE(state().pass(0.25));
-    EXPECT_TRUE(state().pass(0.25));
+    EXPECT_TRUE(state().advance(0.25));
+    EXPECT_TRUE(state().advance(0.25));
     EXPECT_NEAR(state().camera().azimuth, begin - 0.25F, 1e-6F);
     state().act(Action::turntable);
-    EXPECT_FALSE(state().pass(1.0));
+    EXPECT_FALSE(state().advance(1.0));
 }
 
-TEST_F(State, LightsTurnRoundTheModelAndKeepTheirStrength) {
+TEST_F(State, LightsRotateAndKeepTheirIntensity) {
     show("square.obj");
     ASSERT_FALSE(state().scene().directional_lights.empty());
     const DirectionalLight before = state().scene().directional_lights[0];
-    state().orbit_lights({300.0F, 0.0F});  // As far as the view is high: half a turn.
+    // Half a turn, because the distance is the height of the view.
+    state().orbit_lights({300.0F, 0.0F});
     const DirectionalLight after = state().scene().directional_lights[0];
     EXPECT_NEAR(after.direction_world.y, before.direction_world.y, 1e-5F);
     EXPECT_NEAR(after.direction_world.x, -before.direction_world.x, 1e-5F);
@@ -156,50 +204,50 @@ TEST_F(State, LightsTurnRoundTheModelAndKeepTheirStrength) {
 
 TEST_F(State, ShowsDebugViewsByKeyAndKeepsThemForAnotherModel) {
     show("square.obj");
-    const std::uint64_t revision = state().wish()->revision;
+    const std::uint64_t revision = state().request()->revision;
     state().act(Action::next_view);
     state().act(Action::wireframe);
     state().act(Action::health_markers);
-    EXPECT_FALSE(state().wish()->settings.overlays.markers) << "they are looked for elsewhere";
-    const HealthWish sought = state().take_health_wish().value();
+    EXPECT_FALSE(state().request()->settings.overlays.markers) << "they are looked for elsewhere";
+    const HealthRequest sought = state().take_health_request().value();
     EXPECT_EQ(sought.choice, HealthChoice::trouble);
-    EXPECT_FALSE(state().take_health_wish()) << "only once";
-    state().take(FoundHealth{health_markers(*sought.scene), ""});
-    const DrawWish wish = *state().wish();
-    EXPECT_NE(wish.revision, revision);
-    EXPECT_EQ(wish.settings.view, DebugView::geometric_normal);
-    EXPECT_TRUE(wish.settings.overlays.wireframe);
-    EXPECT_TRUE(wish.settings.overlays.markers);
+    EXPECT_FALSE(state().take_health_request()) << "only once";
+    state().take(HealthResult{health_markers(*sought.scene), ""});
+    const DrawRequest request = *state().request();
+    EXPECT_NE(request.revision, revision);
+    EXPECT_EQ(request.settings.view, DebugView::geometric_normal);
+    EXPECT_TRUE(request.settings.overlays.wireframe);
+    EXPECT_TRUE(request.settings.overlays.markers);
     EXPECT_THAT(state().command_line(), testing::HasSubstr(" --show geometric-normal --wireframe "
                                                            "--health-markers trouble"));
     show("far.obj");
-    EXPECT_TRUE(state().take_health_wish()->choice) << "of the new model too";
+    EXPECT_TRUE(state().take_health_request()->choice) << "of the new model too";
     EXPECT_EQ(state().json(DrawnPicture{})["show"], "geometric-normal");
     EXPECT_EQ(state().json(DrawnPicture{})["overlays"]["wireframe"], true);
     state().act(Action::previous_view);
     state().act(Action::previous_view);
-    EXPECT_EQ(state().wish()->settings.view, DebugView::overdraw);
-    state().act(Action::plain_view);
-    EXPECT_EQ(state().wish()->settings, (FrameSettings{.width = 400, .height = 300}));
+    EXPECT_EQ(state().request()->settings.view, DebugView::overdraw);
+    state().act(Action::picture_view);
+    EXPECT_EQ(state().request()->settings, (FrameSettings{.width = 400, .height = 300}));
 }
 
-TEST_F(State, ItsCommandLineBringsTheSameViewBack) {
+TEST_F(State, CommandLineRestoresTheView) {
     show("square.obj");
-    state().act(Action::nearer);
+    state().act(Action::zoom_in);
     state().act(Action::orbit_left);
-    state().act(Action::wider);
+    state().act(Action::widen_fov);
     pan_by(state().camera(), {12.0F, 7.0F}, 300);
     const std::string text = state().command_line();
-    const Camera before = state().wish()->camera;
+    const Camera before = state().request()->camera;
     state().act(Action::top);
     state().act(Action::fit);
-    state().look_as(text);
-    EXPECT_EQ(state().wish()->camera.world_from_view, before.world_from_view);
-    EXPECT_EQ(state().wish()->camera.vertical_fov, before.vertical_fov);
-    state().look_as("nonsense and more");
-    EXPECT_THAT(state().error(), testing::HasSubstr("says nothing of a camera"));
-    EXPECT_EQ(state().wish()->camera.world_from_view, before.world_from_view);
-    state().look_as("0,0");  // The same place from the front.
+    state().apply_view_text(text);
+    EXPECT_EQ(state().request()->camera.world_from_view, before.world_from_view);
+    EXPECT_EQ(state().request()->camera.vertical_fov, before.vertical_fov);
+    state().apply_view_text("nonsense and more");
+    EXPECT_THAT(state().error(), testing::HasSubstr("contains no camera"));
+    EXPECT_EQ(state().request()->camera.world_from_view, before.world_from_view);
+    state().apply_view_text("0,0");  // The same place from the front.
     EXPECT_EQ(state().error(), "");
     EXPECT_EQ(state().camera().azimuth, 0.0F);
     EXPECT_GT(glm::length(state().camera().target), 0.0F);
@@ -207,52 +255,52 @@ TEST_F(State, ItsCommandLineBringsTheSameViewBack) {
 
 TEST_F(State, HidesInstancesFromThePictureAndNotFromTheScene) {
     show("square.obj");
-    const std::uint64_t revision = state().wish()->revision;
+    const std::uint64_t revision = state().request()->revision;
     state().show({0}, false);
     EXPECT_FALSE(state().is_shown(0));
-    EXPECT_EQ(state().wish()->scene->instances.size(), 0U);
+    EXPECT_EQ(state().request()->scene->instances.size(), 0U);
     EXPECT_EQ(state().scene().instances.size(), 1U);
-    EXPECT_GT(state().wish()->revision, revision);
+    EXPECT_GT(state().request()->revision, revision);
     state().edit([](Scene& scene) { scene.exposure = 2.0F; });
-    EXPECT_EQ(state().wish()->scene->instances.size(), 0U) << "an edit shows nothing";
+    EXPECT_EQ(state().request()->scene->instances.size(), 0U) << "an edit shows nothing";
     show("square.obj");
     EXPECT_FALSE(state().is_shown(0)) << "the same model read again";
     show("far.obj");
     EXPECT_TRUE(state().is_shown(0));
-    EXPECT_EQ(state().wish()->scene->instances.size(), 1U);
+    EXPECT_EQ(state().request()->scene->instances.size(), 1U);
 }
 
-TEST_F(State, LampsGoRoundByThemselvesUntilTheirSpeedIsTakenAway) {
+TEST_F(State, LightsRotateUntilTheirSpeedIsZero) {
     show("square.obj");
     EXPECT_FALSE(state().is_turning());
-    std::vector<LampRow> rows = state().lamps();
+    std::vector<LightRow> rows = state().light_rows();
     ASSERT_FALSE(rows.empty());
     const glm::vec3 before = state().scene().directional_lights[0].direction_world;
     rows[0].speed = 1.0F;
-    state().set_lamps(rows);
+    state().set_light_rows(rows);
     EXPECT_TRUE(state().is_turning());
-    const std::uint64_t revision = state().wish()->revision;
-    EXPECT_TRUE(state().pass(0.5));
-    EXPECT_GT(state().wish()->revision, revision);
+    const std::uint64_t revision = state().request()->revision;
+    EXPECT_TRUE(state().advance(0.5));
+    EXPECT_GT(state().request()->revision, revision);
     const glm::vec3 after = state().scene().directional_lights[0].direction_world;
     EXPECT_NEAR(after.y, before.y, 1e-5F);
     EXPECT_NEAR(glm::length(after), glm::length(before), 1e-5F);
     EXPECT_GT(glm::distance(after, before), 0.1F);
     show("square.obj");
-    EXPECT_EQ(state().lamps()[0].speed, 1.0F) << "the same model read again";
-    rows = state().lamps();
+    EXPECT_EQ(state().light_rows()[0].speed, 1.0F) << "the same model read again";
+    rows = state().light_rows();
     rows[0].speed = 0.0F;
-    state().set_lamps(rows);
+    state().set_light_rows(rows);
     EXPECT_FALSE(state().is_turning());
-    EXPECT_FALSE(state().pass(0.5));
+    EXPECT_FALSE(state().advance(0.5));
 }
 
-TEST_F(State, AnEditThatFailsChangesNothingAndSaysWhy) {
+TEST_F(State, FailedEditChangesNothingAndReportsTheError) {
     show("square.obj");
-    const std::shared_ptr<const Scene> scene = state().wish()->scene;
+    const std::shared_ptr<const Scene> scene = state().request()->scene;
     state().set_environment("nothing.hdr");
     EXPECT_THAT(state().error(), testing::HasSubstr("nothing.hdr"));
-    EXPECT_EQ(state().wish()->scene, scene);
+    EXPECT_EQ(state().request()->scene, scene);
     state().try_edit([](Scene& edited) { edited.exposure = 2.0F; });
     EXPECT_EQ(state().error(), "");
 }
@@ -273,15 +321,15 @@ TEST_F(State, EditsOfTheDefaultMaterialSurviveReadingAgain) {
     EXPECT_EQ(state().scene().materials[0].shininess, 99.0F);
 }
 
-TEST_F(State, SaysItselfAsJson) {
+TEST_F(State, IsWrittenAsJson) {
     show("square.obj");
     state().camera().azimuth = glm::radians(40.0F);
-    const nlohmann::ordered_json said = state().json(DrawnPicture{});
-    EXPECT_NEAR(said["camera"]["azimuth"].get<double>(), 40.0, 1e-5);
-    EXPECT_EQ(said["view"], nlohmann::json({400, 300}));
-    EXPECT_EQ(said["triangles"], 2);
-    EXPECT_EQ(said["drawn"]["frames"], 0);
-    EXPECT_EQ(said["error"], "");
+    const nlohmann::ordered_json json = state().json(DrawnPicture{});
+    EXPECT_NEAR(json["camera"]["azimuth"].get<double>(), 40.0, 1e-5);
+    EXPECT_EQ(json["view"], nlohmann::json({400, 300}));
+    EXPECT_EQ(json["triangles"], 2);
+    EXPECT_EQ(json["drawn"]["frames"], 0);
+    EXPECT_EQ(json["error"], "");
 }
 
 }  // namespace

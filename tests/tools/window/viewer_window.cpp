@@ -15,8 +15,8 @@ namespace relief::test {
 ViewerWindow::ViewerWindow(const Display& display, const Workplace& workplace,
                            const std::string& words, const std::string& environment)
     : display_(display) {
-    // The shell becomes the program: one process, whose time can be counted. LeakSanitizer has no
-    // name for what Mesa's driver leaves behind, which is unloaded when it looks: it does not look.
+    // exec replaces the shell, so that the processor time of the program can be measured.
+    // LeakSanitizer is off, because Mesa's driver is unloaded before its leaks can be symbolized.
     const std::string line = fmt::format(
         "cd {} && DISPLAY={} XDG_STATE_HOME={} ASAN_OPTIONS=detect_leaks=0 {} exec "
         "build/release/bin/relief-view {} "
@@ -28,8 +28,8 @@ ViewerWindow::ViewerWindow(const Display& display, const Workplace& workplace,
     const auto has_begun = [&] {
         return std::filesystem::exists(streams_ / "state.json") || process_->has_ended();
     };
-    EXPECT_TRUE(eventually(has_begun)) << said();
-    EXPECT_FALSE(process_->has_ended()) << said();
+    EXPECT_TRUE(eventually(has_begun)) << error_output();
+    EXPECT_FALSE(process_->has_ended()) << error_output();
 }
 
 nlohmann::json ViewerWindow::state() const {
@@ -44,8 +44,8 @@ nlohmann::json ViewerWindow::wait_for(const std::string& what, const Condition& 
         now = state();
         return !now.value("loading", true) && !now.value("busy", true) && holds(now);
     };
-    EXPECT_TRUE(eventually(is_so)) << "never: " << what << "\n" << now.dump(2) << said();
-    EXPECT_FALSE(process_->has_ended()) << what << "\n" << said();
+    EXPECT_TRUE(eventually(is_so)) << "never: " << what << "\n" << now.dump(2) << error_output();
+    EXPECT_FALSE(process_->has_ended()) << what << "\n" << error_output();
     return now;
 }
 
@@ -79,7 +79,7 @@ void ViewerWindow::click(int x, int y) const {
 
 void ViewerWindow::click_on(const std::string& name) const {
     const auto place = [&] { return state()["places"].value(name, nlohmann::json()); };
-    const auto is_pointed_at = [&] {  // What is above it may still come and move it.
+    const auto is_pointed_at = [&] {  // Items above may still appear and move it.
         const nlohmann::json before = place();
         if (before.is_null()) return false;
         point_at(before[0].get<int>(), before[1].get<int>());

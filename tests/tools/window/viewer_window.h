@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// relief-view's window on a display, driven by xdotool, seen through --dump-state and the screen.
+/// The window of relief-view on a virtual display. Tests read its --dump-state file and the screen.
 #pragma once
 
 #include <functional>
@@ -14,33 +14,33 @@ namespace relief::test {
 
 class ViewerWindow {
   public:
-    /// Opens it as `relief-view WORDS --dump-state FILE` in that folder, and waits for its first
-    /// words about itself.
+    /// Runs `relief-view WORDS --dump-state FILE` in that folder, and waits for the first state.
     ///
-    /// \param environment  "NAME=VALUE ..." beside the display
+    /// \param environment  additional variables, "NAME=VALUE ..."
     ViewerWindow(const Display& display, const Workplace& workplace, const std::string& words,
                  const std::string& environment = "");
 
-    /// What it says of itself now.
+    /// The last state that the program has written.
     [[nodiscard]] nlohmann::json state() const;
 
     using Condition = std::function<bool(const nlohmann::json&)>;
-    /// Waits until it says so and rests. \return what it then says; fails the test if it never does
+    /// Waits until the program is idle and the condition holds. The test fails after a timeout.
+    /// \return the state
     nlohmann::json wait_for(const std::string& what, const Condition& holds);
-    /// Waits until nothing is read or drawn any more.
+    /// Waits until nothing is being read or drawn.
     nlohmann::json wait_for_rest();
 
     void key(const std::string& name) const { display_.act("key " + name); }
-    /// Presses a button at a place, moves on by so much in small steps, lets go.
+    /// Drags the pointer in small steps.
     void drag(int x, int y, int dx, int dy, int button = 1) const;
-    /// Moves the pointer there, and waits until the program has noticed.
+    /// Moves the pointer, and waits until the program has noticed.
     void point_at(int x, int y) const;
     void click(int x, int y) const;
-    /// Clicks on what the state's "places" names, once it is there and stays.
+    /// Clicks on an item of the state's "places" as soon as its position is stable.
     void click_on(const std::string& name) const;
 
     ChildProcess& process() { return *process_; }
-    [[nodiscard]] std::string said() const { return contents_of(streams_ / "error"); }
+    [[nodiscard]] std::string error_output() const { return contents_of(streams_ / "error"); }
 
   private:
     const Display& display_;
@@ -48,22 +48,20 @@ class ViewerWindow {
     std::unique_ptr<ChildProcess> process_;
 };
 
-/// Whether a state lists this effect.
+/// Whether a state contains this effect.
 bool has_effect(const nlohmann::json& state, const char* effect);
 
-/// The view on a screen, which ends at its right and begins at its top. \param view  "view" of the
-/// state
+/// The part of the screen that shows the view, at the upper right. \param view  "view" of the state
 Image view_on(const Image& screen, const nlohmann::json& view);
 
-/// The parts of two pictures of one size that differ by more than so many codes, from 0 to 1,
-/// within a rectangle.
+/// The share of the pixels in a rectangle that differ by more than this many codes, from 0 to 1.
 double changed_share(const Image& before, const Image& after, int x, int y, int width, int height,
                      int codes = 8);
 
-/// The same of the part of the screen that is surely picture, in the middle of the view.
+/// changed_share() of a rectangle in the center of the view.
 double changed_picture(const Image& before, const Image& after);
 
-/// Seconds of processor time that a process has used.
+/// Processor time of a process in seconds.
 double processor_seconds(pid_t pid);
 
 }  // namespace relief::test

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "window/window_layout.h"
+#include "window/window_system.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
+#include <limits>
 
 #include "support/shared_data.h"
 
@@ -16,7 +17,35 @@ namespace {
 
 using testing::HasSubstr;
 
-/// An environment variable that is as it was afterwards.
+TEST(UiScaleTest, FollowsTheScreenUnlessItIsSet) {
+    EXPECT_EQ(ui_scale_for({}, 1.0F, 1.0F), (UiScale{1.0F, 1.0F}));
+    EXPECT_EQ(ui_scale_for({}, 1.5F, 1.0F), (UiScale{1.5F, 1.5F}));
+    EXPECT_EQ(ui_scale_for(2.0F, 1.5F, 1.0F), (UiScale{2.0F, 2.0F}));
+}
+
+TEST(UiScaleTest, HighDensityScreensScaleOnlyGlyphs) {
+    EXPECT_EQ(ui_scale_for({}, 2.0F, 2.0F), (UiScale{1.0F, 2.0F}));
+    EXPECT_EQ(ui_scale_for(1.0F, 2.0F, 2.0F), (UiScale{0.5F, 1.0F}));
+}
+
+TEST(UiScaleTest, IsLimitedAndIgnoresInvalidValues) {
+    EXPECT_EQ(ui_scale_for(100.0F, 1.0F, 1.0F).glyphs, 4.0F);
+    EXPECT_EQ(ui_scale_for({}, 0.01F, 1.0F).glyphs, 0.5F);
+    EXPECT_EQ(ui_scale_for({}, 0.0F, 0.0F), (UiScale{1.0F, 1.0F}));
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    EXPECT_EQ(ui_scale_for({}, nan, nan), (UiScale{1.0F, 1.0F}));
+}
+
+TEST(UiScaleTest, ChangesByStepsWithinItsLimits) {
+    EXPECT_EQ(next_ui_scale(1.0F, true), 1.25F);
+    EXPECT_EQ(next_ui_scale(1.0F, false), 0.75F);
+    EXPECT_EQ(next_ui_scale(1.1F, true), 1.25F) << "a screen's own";
+    EXPECT_EQ(next_ui_scale(1.1F, false), 1.0F);
+    EXPECT_EQ(next_ui_scale(4.0F, true), 4.0F);
+    EXPECT_EQ(next_ui_scale(0.5F, false), 0.5F);
+}
+
+/// Sets an environment variable and restores it.
 class Variable {
   public:
     Variable(const char* name, const char* value) : name_(name) {
@@ -59,106 +88,105 @@ class Layout : public testing::Test {
     test::TemporaryDirectory folder_;
 };
 
-TEST_F(Layout, IsReadAsItWasWritten) {
+TEST_F(Layout, IsReadBack) {
     const WindowLayout layout{.size = glm::ivec2(1000, 700),
                               .position = glm::ivec2(-20, 30),
                               .is_maximized = true,
                               .has_panels = false,
                               .open_panels = {{"Lights", true}, {"Scene", false}},
                               .ui_scale = 1.25F};
-    RememberedLayout first(file());
+    SavedLayout first(file());
     EXPECT_EQ(first.note(), "");
     EXPECT_EQ(first.layout(), WindowLayout());
-    EXPECT_EQ(first.remember(layout), "");
-    const RememberedLayout again(file());
+    EXPECT_EQ(first.save(layout), "");
+    const SavedLayout again(file());
     EXPECT_EQ(again.note(), "");
     EXPECT_EQ(again.layout(), layout);
 }
 
-TEST_F(Layout, IsWrittenOnlyIfItBecameAnotherOne) {
-    RememberedLayout nothing(file());
-    EXPECT_EQ(nothing.remember({}), "");
+TEST_F(Layout, IsWrittenOnlyIfItChanged) {
+    SavedLayout nothing(file());
+    EXPECT_EQ(nothing.save({}), "");
     EXPECT_FALSE(std::filesystem::exists(file())) << "as usual: there is nothing to remember";
-    // Read, so that writing it again would tidy it.
+    // A layout that is unchanged must not be written again.
     const std::string untidy = R"({"version":1,    "panels":{"shown":false}})";
     write(untidy);
-    RememberedLayout read(file());
+    SavedLayout read(file());
     EXPECT_FALSE(read.layout().has_panels);
-    EXPECT_EQ(read.remember(read.layout()), "");
+    EXPECT_EQ(read.save(read.layout()), "");
     EXPECT_EQ(text(), untidy);
-    EXPECT_EQ(read.remember({}), "");
+    EXPECT_EQ(read.save({}), "");
     EXPECT_NE(text(), untidy);
 }
 
-TEST_F(Layout, ABrokenFileIsSaidAndReplaced) {
+TEST_F(Layout, InvalidFileIsReportedAndReplaced) {
     for (const char* broken :
          {"", "{", "[]", R"({"version": "one"})", R"({"version": 1, "scale": "big"})",
           R"({"version": 1, "window": {"size": [1]}})"}) {
         write(broken);
-        RememberedLayout read(file());
+        SavedLayout read(file());
         EXPECT_EQ(read.layout(), WindowLayout()) << broken;
         EXPECT_THAT(read.note(), HasSubstr("view.json: ")) << broken;
-        EXPECT_THAT(read.note(), HasSubstr("the window is as usual")) << broken;
-        EXPECT_EQ(read.remember({.has_panels = false}), "");
-        EXPECT_FALSE(RememberedLayout(file()).layout().has_panels) << broken;
+        EXPECT_THAT(read.note(), HasSubstr("the default layout is used")) << broken;
+        EXPECT_EQ(read.save({.has_panels = false}), "");
+        EXPECT_FALSE(SavedLayout(file()).layout().has_panels) << broken;
     }
 }
 
-TEST_F(Layout, AFileOfALaterVersionIsLeftAlone) {
+TEST_F(Layout, FileOfANewerVersionIsKept) {
     const std::string later = R"({"version": 2, "window": {"size": [1, 1]}})";
     write(later);
-    RememberedLayout read(file());
+    SavedLayout read(file());
     EXPECT_EQ(read.layout(), WindowLayout());
-    EXPECT_THAT(read.note(), HasSubstr("of version 2, later than this program's 1"));
-    EXPECT_EQ(read.remember({.has_panels = false}), "");
+    EXPECT_THAT(read.note(), HasSubstr("of version 2, and this program supports 1"));
+    EXPECT_EQ(read.save({.has_panels = false}), "");
     EXPECT_EQ(text(), later);
 }
 
-TEST_F(Layout, WhatCannotBeWrittenIsSaid) {
+TEST_F(Layout, WriteErrorIsReported) {
     std::filesystem::create_directories(file().parent_path().parent_path());
     std::ofstream(file().parent_path()) << "a file where the folder should be";
-    RememberedLayout remembered(file());
+    SavedLayout remembered(file());
     EXPECT_EQ(remembered.layout(), WindowLayout());
-    EXPECT_THAT(remembered.remember({.has_panels = false}),
-                HasSubstr("the window is not remembered"));
+    EXPECT_THAT(remembered.save({.has_panels = false}), HasSubstr("the layout is not saved"));
 }
 
 TEST_F(Layout, WithoutAFileNothingIsWritten) {
-    RememberedLayout none;
-    EXPECT_EQ(none.remember({.has_panels = false}), "");
+    SavedLayout none;
+    EXPECT_EQ(none.save({.has_panels = false}), "");
     EXPECT_EQ(none.note(), "");
 }
 
-TEST_F(Layout, SizesAndScalesThatCannotBeAreBroughtWithinTheirLimits) {
+TEST_F(Layout, SizesAndScalesAreLimited) {
     write(R"({"version": 1, "window": {"size": [-5, 99999999]}, "scale": 77})");
-    const RememberedLayout read(file());
+    const SavedLayout read(file());
     EXPECT_EQ(read.layout().size, glm::ivec2(320, 16384));
     EXPECT_EQ(read.layout().ui_scale, 4.0F);
 }
 
-TEST(LayoutOnScreen, IsNoLargerThanTheScreenAndOnIt) {
+TEST(LayoutOnScreen, FitsTheScreen) {
     const ScreenArea screen{{100, 50}, {1000, 600}};
     WindowLayout layout{.size = glm::ivec2(1280, 400), .position = glm::ivec2(900, 3000)};
-    EXPECT_EQ(within(layout, screen).size, glm::ivec2(1000, 400));
-    EXPECT_EQ(within(layout, screen).position, glm::ivec2(100, 250));
+    EXPECT_EQ(fitted_to_screen(layout, screen).size, glm::ivec2(1000, 400));
+    EXPECT_EQ(fitted_to_screen(layout, screen).position, glm::ivec2(100, 250));
     layout = {.size = glm::ivec2(500, 300), .position = glm::ivec2(300, 200)};
-    EXPECT_EQ(within(layout, screen), layout) << "it fits";
+    EXPECT_EQ(fitted_to_screen(layout, screen), layout) << "it fits";
     layout.position = glm::ivec2(-500, -500);
-    EXPECT_EQ(within(layout, screen).position, glm::ivec2(100, 50));
-    EXPECT_EQ(within(layout, ScreenArea{}), layout) << "no screen says how large it is";
+    EXPECT_EQ(fitted_to_screen(layout, screen).position, glm::ivec2(100, 50));
+    EXPECT_EQ(fitted_to_screen(layout, ScreenArea{}), layout) << "no screen says how large it is";
 }
 
-TEST(LayoutFile, StandsWhereXdgPutsState) {
+TEST(LayoutFile, FollowsTheXdgSpecification) {
     const Variable home("HOME", "/home/somebody");
     {
         const Variable state("XDG_STATE_HOME", "/elsewhere");
-        EXPECT_EQ(usual_layout_file(), "/elsewhere/relief/relief-view.json");
+        EXPECT_EQ(default_layout_file(), "/elsewhere/relief/relief-view.json");
     }
     for (const char* unset : {static_cast<const char*>(nullptr), "", "relative"}) {
         const Variable state("XDG_STATE_HOME", unset);
-        EXPECT_EQ(usual_layout_file(), "/home/somebody/.local/state/relief/relief-view.json");
+        EXPECT_EQ(default_layout_file(), "/home/somebody/.local/state/relief/relief-view.json");
         const Variable homeless("HOME", nullptr);
-        EXPECT_EQ(usual_layout_file(), std::nullopt);
+        EXPECT_EQ(default_layout_file(), std::nullopt);
     }
 }
 

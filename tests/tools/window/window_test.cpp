@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The real window on a virtual display, driven by xdotool. It is judged by the pixels of the screen
-// and by the state that it reports.
+// The real window on a virtual display, controlled by xdotool. The tests check the pixels of the
+// screen and the state that the window reports.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -8,7 +8,6 @@
 
 #include "relief/mesh/image_file.h"
 #include "relief/shade/image_compare.h"
-#include "tools/window/drag_and_drop.h"
 #include "tools/window/viewer_window.h"
 
 namespace relief::tools {
@@ -26,10 +25,10 @@ using test::Workplace;
 using testing::HasSubstr;
 using testing::Not;
 
-/// One viewer on the display of the process. The steps of a test are its methods.
+/// A viewer on the display of the process. The steps of a test are its methods.
 class Window : public testing::Test {
   protected:
-    /// \return false if there is no display and the test is to be skipped
+    /// \return false if there is no display; then the test is skipped
     bool open(const std::string& words, const std::string& environment = "") {
         display_ = Display::of_process();
         if (display_ == nullptr) return false;
@@ -47,8 +46,8 @@ class Window : public testing::Test {
     }
     void quit() {
         window().key("ctrl+q");
-        EXPECT_EQ(window().process().wait_for_end(100.0), 0) << window().said();
-        EXPECT_THAT(window().said(), Not(HasSubstr("relief-view:")));
+        EXPECT_EQ(window().process().wait_for_end(100.0), 0) << window().error_output();
+        EXPECT_THAT(window().error_output(), Not(HasSubstr("relief-view:")));
     }
 
     const Display& display() { return *display_; }
@@ -66,7 +65,7 @@ class Window : public testing::Test {
 
 class MovedWindow : public Window {
   protected:
-    /// A drag over the height of the view is half a turn. \return the state after it
+    /// A drag over the height of the view rotates by 180 degrees. \return the state after it
     json drag_turns_camera() {
         const json before = window().wait_for_rest();
         EXPECT_NEAR(before["camera"]["azimuth"].get<double>(), 30.0, 1e-3);
@@ -88,7 +87,7 @@ class MovedWindow : public Window {
 
     void double_click_aims_at_surface() {
         const json before = window().wait_for_rest();
-        // On a busy machine two clicks may be seen too far apart.
+        // On a busy machine, two clicks may be too far apart in time.
         const auto is_aimed = [&] {
             return window().state()["camera"]["target"] != before["camera"]["target"];
         };
@@ -100,7 +99,7 @@ class MovedWindow : public Window {
         EXPECT_EQ(aimed["camera"]["azimuth"], before["camera"]["azimuth"]);
         EXPECT_LT(aimed["camera"]["distance"], before["camera"]["distance"])
             << "the front, not the axis";
-        // The point is in the middle now, in the same size: aiming at it again changes nothing.
+        // The point is in the center now, so a second double click must not change anything.
         const int middle = 1280 - aimed["view"][0].get<int>() / 2;
         window().point_at(middle, aimed["view"][1].get<int>() / 2);
         display().act("sleep 0.5 click --repeat 2 --delay 40 1");  // Not a third and fourth click.
@@ -132,7 +131,7 @@ class MovedWindow : public Window {
         window().wait_for("panned", [&](const json& now) {
             return now["camera"]["target"][2] != before["camera"]["target"][2];
         });
-        // Two fingers, or the wheel, with Shift take the model along and come no nearer.
+        // With Shift, the wheel or two fingers pan instead of zooming.
         const json panned = window().wait_for_rest();
         display().act("mousemove 800 400 keydown shift click 4 click 6 keyup shift");
         const json scrolled = window().wait_for("scrolled", [&](const json& now) {
@@ -157,7 +156,7 @@ class MovedWindow : public Window {
     }
 
   private:
-    /// Processor time that the viewer uses in so many seconds.
+    /// Processor time of the viewer during an interval.
     double used_in(double seconds) {
         const pid_t viewer = window().process().pid();
         const double before = processor_seconds(viewer);
@@ -166,7 +165,7 @@ class MovedWindow : public Window {
     }
 };
 
-TEST_F(MovedWindow, MouseKeysAndTextMoveTheViewWhichThenRests) {
+TEST_F(MovedWindow, MouseKeysAndTextMoveTheViewAndIdleCostsNothing) {
     RELIEF_NEEDS_WINDOW("data/vase.obj --camera 30,20");
     const json turned = drag_turns_camera();
     window().key("ctrl+c");
@@ -216,7 +215,7 @@ class PanelsOfWindow : public Window {
     void costs_are_measured_until_the_plan_changes() {
         const json before = window().wait_for_rest();
         EXPECT_TRUE(before["costs"].is_null());
-        window().click_on("Measure what they cost");
+        window().click_on("Measure times");
         const json measured = window().wait_for("costs", [](const json& now) {
             return !now["costs"].is_null() && now["costs"]["going_on"] == false;
         });
@@ -283,15 +282,15 @@ TEST_F(Window, WithoutAModelTakesDroppedFiles) {
     EXPECT_EQ(broken["triangles"], 2) << "the old one stays";
 }
 
-TEST_F(Window, SlowPicturesAreSmallerWhileMovingAndMeasuringThemCanBeStopped) {
-    // One thread of software OpenGL and all effects take far longer than 60 ms on any CI machine.
-    // Without the shader cache, measuring takes long enough to be stopped.
+TEST_F(Window, SlowPicturesAreReducedDuringMotionAndMeasuringCanBeStopped) {
+    // With one thread of software OpenGL, all effects take far longer than 60 ms on any CI machine.
+    // Without the shader cache, the measurement takes long enough to be stopped.
     RELIEF_NEEDS_WINDOW(
         "data/vase.obj --environment data/sky --reflectivity 0.3 --height-map "
         "data/bricks-height.png",
         "LP_NUM_THREADS=0 MESA_SHADER_CACHE_DISABLE=true");
     const json before = window().wait_for_rest();
-    window().click_on("Measure what they cost");
+    window().click_on("Measure times");
     window().click_on("Stop");
     window().wait_for("no costs", [](const json& now) { return now["costs"].is_null(); });
 
@@ -316,7 +315,7 @@ class SavingWindow : public Window {
         workplace().write("vase-scene-1.json", "mine");
     }
 
-    /// What the view shows, as soon as it stays as it is.
+    /// The picture of the view as soon as it is stable.
     Image shown(const json& state) {
         window().wait_for("the whole picture",
                           [](const json& now) { return now["drawn"]["whole"]; });

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Pictures saved from the window: one, or all of a turn, as --output and --turntable write them.
-/// They are drawn by the drawing thread where it has nothing else to do, one after the other.
+/// Saving from the window: pictures and turntables, scene files and models, and the panel.
 /// Tests: tests/tools/window/capture_test.cpp.
 #pragma once
 
@@ -15,38 +14,42 @@
 #include "relief/shade/effect_forcing.h"
 #include "relief/shade/render_cache.h"
 #include "relief/shade/renderer.h"
+#include "window/background_jobs.h"
+#include "window/draw_thread.h"
+#include "window/viewer_state.h"
 
 namespace relief::tools {
 
-/// What the panel asks for.
+/// The settings of the panel.
 struct CaptureSettings {
-    bool own_size = false;  ///< Else that of the view.
+    bool custom_size = false;  ///< Otherwise the size of the view is used.
     int width = 1920;
     int height = 1080;
-    bool transparent = false;  ///< Neither background nor skybox.
-    int pictures = 36;         ///< Of one turn.
+    bool transparent = false;  ///< Without background and skybox.
+    int pictures = 36;         ///< Pictures per turntable.
 };
 
-struct CaptureWish {
+/// A request to save one picture or a turntable.
+struct CaptureRequest {
     std::shared_ptr<const Scene> scene;
     EffectWishes effects;
     FrameSettings settings;
     Camera camera;
     bool transparent = false;
-    int turntable = 0;       ///< Pictures of one turn; 0: a single one.
-    glm::vec3 middle{0.0F};  ///< What the model turns about.
+    int turntable = 0;       ///< Number of pictures; 0 for a single picture.
+    glm::vec3 middle{0.0F};  ///< Center of the rotation.
     std::filesystem::path file;
 };
 
-/// How far it is, for all threads.
+/// The progress of saving pictures. Any thread may use it.
 class CaptureProgress {
   public:
     struct State {
         int done = 0;
         int count = 0;
-        std::string file;   ///< Written last.
-        std::string error;  ///< Nothing more is written after one.
-        [[nodiscard]] bool is_going_on() const { return error.empty() && done < count; }
+        std::string file;   ///< The last file that was written.
+        std::string error;  ///< After an error, saving stops.
+        [[nodiscard]] bool is_running() const { return error.empty() && done < count; }
     };
     [[nodiscard]] State state() const;
     void set(const State& state);
@@ -58,21 +61,50 @@ class CaptureProgress {
 
 nlohmann::ordered_json json_of(const CaptureProgress::State& state);
 
-/// "Saved 3 of 36: vase-turn-0003.png", or the error; empty: nothing was asked for.
+/// For example "Saved 36 pictures, to vase-turn-1-0036.png", or the error. Empty if nothing was
+/// saved.
 std::string text_of(const CaptureProgress::State& state);
 
-/// Work for the thread with that context: each call draws and writes one picture, and says whether
-/// there is more. What it leaves on the GPU goes with the function, which is to be destroyed there.
-using DrawTask = std::function<bool(const Context& context, RenderCache& cache)>;
-DrawTask capture_task(CaptureWish wish, std::shared_ptr<CaptureProgress> progress);
+/// A task that draws and writes one picture per step.
+DrawTask capture_task(CaptureRequest request, std::shared_ptr<CaptureProgress> progress);
 
-/// "vase-1.png" beside the model, or with the next number that is free; of a turn
-/// "vase-turn-1.png", whose pictures are "vase-turn-1-0001.png" and so on.
-/// \param turntable  how many pictures, of which none may be there; 0: one, and no turn
+/// The first free name of the form "vase-1.png" beside the model, or "vase-turn-1.png" for a
+/// turntable, whose files are "vase-turn-1-0001.png" and so on.
+/// \param turntable  the number of pictures; 0 for a single picture
 std::filesystem::path free_file(const std::filesystem::path& model, int turntable);
 
-/// "vase-scene-1.json" beside the model, for "-scene-" and ".json", or the next that is free.
+/// The first free name of the form "vase-scene-1.json" beside the model, for "-scene-" and ".json".
 std::filesystem::path free_beside(const std::filesystem::path& model, const std::string& middle,
                                   const std::string& extension);
+
+/// Saves scenes and models on another thread. Existing files are never overwritten.
+class Saving {
+  public:
+    /// \param wake  called from another thread when a file is done
+    explicit Saving(std::function<void()> wake) : job_(std::move(wake)) {}
+
+    /// Saves as "vase-scene-1.json". Does nothing while a file is being saved.
+    void save_scene(const ViewerState& state);
+    /// Saves as "vase-model-1.glb".
+    void save_model(const ViewerState& state);
+
+    void follow();
+    [[nodiscard]] bool is_running() const { return job_.is_running(); }
+
+    /// For example "Saved vase-scene-1.json", or the error. Empty if nothing was saved.
+    [[nodiscard]] const std::string& text() const { return text_; }
+    [[nodiscard]] nlohmann::ordered_json json() const;
+
+  private:
+    struct Saved {
+        std::filesystem::path file;
+        std::string error;
+    };
+    void begin(const std::filesystem::path& file, std::function<void()> save);
+
+    NewestJob<Saved> job_;
+    Saved saved_;
+    std::string text_;
+};
 
 }  // namespace relief::tools

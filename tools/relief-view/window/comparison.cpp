@@ -1,13 +1,109 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tests: tests/tools/window/comparison_test.cpp.
 #include "window/comparison.h"
 
+#include <imgui.h>
+
 #include <algorithm>
+#include <array>
+
+#include "relief/mesh/heat_picture.h"
+#include "window/controls.h"
+#include "window/panels.h"
 
 namespace relief::tools {
 namespace {
 
-constexpr float least_split = 0.02F;  // Nearer to the edge, the line could not be caught again.
+Image drawn_image(const Context& context, RenderCache& cache, const Scene& scene,
+                  const Camera& camera, const DrawRequest& request) {
+    Report unused;  // The window has already shown these findings.
+    Renderer renderer(cache, context, scene, forced_plan(scene, request.settings, request.effects),
+                      request.settings, unused);
+    return renderer.draw(camera).image;
+}
+
+ComparisonResult numbers_of(const ComparisonKey& key, const Image& left, const Image& right) {
+    ComparisonResult numbers;
+    numbers.key = key;
+    try {
+        numbers.comparison = compare_pictures(left, right);
+        const Image apart = largest_differences(left, right);
+        const auto values = apart.as<float>();
+        const float largest = *std::max_element(values.begin(), values.end());
+        numbers.absolute =
+            std::make_shared<const Image>(heat_picture(apart, largest > 0.0F ? largest : 1.0F));
+        numbers.flip =
+            std::make_shared<const Image>(heat_picture(numbers.comparison.flip.map, 1.0));
+    } catch (const std::exception& error) {
+        numbers.error = error.what();
+    }
+    return numbers;
+}
+
+}  // namespace
+
+ComparisonKey key_of(const DrawRequest& request) {
+    return {request.revision,
+            request.beside ? request.beside->revision : 0,
+            request.camera.world_from_view,
+            request.camera.vertical_fov,
+            request.settings.width,
+            request.settings.height};
+}
+
+std::optional<DrawTask> ComparisonJob::begin(const DrawRequest& request) {
+    if (begun_ || !request.beside) return std::nullopt;
+    begun_ = key_of(request);
+    drawn_ = std::make_shared<Drawn>();
+    return [request, drawn = drawn_](const Context& context, RenderCache& cache) {
+        Image left, right;
+        std::string error;
+        try {
+            left = drawn_image(context, cache, *request.scene, request.camera, request);
+            right = drawn_image(context, cache, *request.beside->scene, request.beside->camera,
+                                request);
+        } catch (const std::exception& thrown) {
+            error = thrown.what();
+        }
+        const std::lock_guard lock(drawn->mutex);
+        drawn->left = std::move(left);
+        drawn->right = std::move(right);
+        drawn->error = std::move(error);
+        drawn->is_done = true;
+        return false;
+    };
+}
+
+void ComparisonJob::follow() {
+    if (drawn_) {
+        const std::lock_guard lock(drawn_->mutex);
+        if (drawn_->is_done) {
+            comparing_.start([key = *begun_, drawn = drawn_](const Progress&) {
+                const std::lock_guard none_else(drawn->mutex);
+                if (drawn->error.empty()) return numbers_of(key, drawn->left, drawn->right);
+                ComparisonResult failed;
+                failed.key = key;
+                failed.error = drawn->error;
+                return failed;
+            });
+        }
+    }
+    if (drawn_ && comparing_.is_running()) drawn_.reset();
+    if (std::optional<ComparisonResult> numbers = comparing_.take()) {
+        numbers_ = std::move(numbers);
+        begun_.reset();
+    }
+}
+
+void ComparisonJob::discard() {
+    numbers_.reset();
+    drawn_.reset();
+    begun_.reset();
+    comparing_.cancel();
+}
+
+namespace {
+
+constexpr float min_split = 0.02F;  // Closer to the edge, the line could not be dragged.
 
 std::vector<std::size_t> map_images(const Scene& scene) {
     constexpr auto none = static_cast<std::size_t>(-1);
@@ -19,44 +115,46 @@ std::vector<std::size_t> map_images(const Scene& scene) {
     return images;
 }
 
-nlohmann::ordered_json json_of(const std::optional<SideNumbers>& numbers) {
+nlohmann::ordered_json json_of(const std::optional<ComparisonResult>& numbers) {
     if (!numbers || !numbers->error.empty()) return nullptr;
     return numbers_json(numbers->comparison);
 }
 
-const char* word_for(SidesShown shown) {
-    return shown == SidesShown::both ? "both" : shown == SidesShown::flip ? "flip" : "absolute";
+const char* name_of(ComparisonView shown) {
+    return shown == ComparisonView::both   ? "both"
+           : shown == ComparisonView::flip ? "flip"
+                                           : "absolute";
 }
 
 }  // namespace
 
-ReadOfScene::ReadOfScene(const Scene& scene) : images_(map_images(scene)) {
+VariantInputs::VariantInputs(const Scene& scene) : images_(map_images(scene)) {
     for (const Shared<Mesh>& mesh : scene.meshes)
         meshes_.push_back(mesh.identity());
 }
 
-bool ReadOfScene::is(const Scene& scene) const {
+bool VariantInputs::is(const Scene& scene) const {
     return meshes_.size() == scene.meshes.size() && images_ == map_images(scene) &&
            std::equal(meshes_.begin(), meshes_.end(), scene.meshes.begin(),
                       [](const auto& identity, const auto& mesh) { return identity.is(mesh); });
 }
 
 Comparison::Comparison(const CompareChoices& choices, const std::function<void()>& wake)
-    : choices_(choices), is_on_(choices.compares()), working_(wake), pictures_(wake) {
-    set_split(choices.split.value_or(usual_split));
+    : choices_(choices), is_on_(choices.compares()), preparing_(wake), pictures_(wake) {
+    set_split(choices.split.value_or(default_split));
 }
 
 void Comparison::choose(const Variant& variant) {
     choices_.variant = variant;
     choices_.file.reset();
-    forget();
+    discard();
     is_on_ = true;
 }
 
 void Comparison::choose(const std::filesystem::path& file) {
     choices_.file = file;
     choices_.variant.reset();
-    forget();
+    discard();
     is_on_ = true;
 }
 
@@ -66,29 +164,29 @@ void Comparison::toggle() {
 }
 
 void Comparison::toggle_difference() {
-    shown_ = shown_ == SidesShown::both ? SidesShown::flip : SidesShown::both;
+    shown_ = shown_ == ComparisonView::both ? ComparisonView::flip : ComparisonView::both;
 }
 
 void Comparison::set_split(float split) {
-    split_ = std::clamp(split, least_split, 1.0F - least_split);
+    split_ = std::clamp(split, min_split, 1.0F - min_split);
 }
 
 bool Comparison::is_working() const {
-    return working_.is_going_on() || pictures_.is_going_on();
+    return preparing_.is_running() || pictures_.is_running();
 }
 
-void Comparison::forget() {
+void Comparison::discard() {
     read_.reset();
-    worked_.reset();
+    prepared_.reset();
     composed_.reset();
-    working_.cancel();
-    pictures_.forget();
+    preparing_.cancel();
+    pictures_.discard();
     error_.clear();
     last_.reset();
 }
 
 std::string Comparison::label(bool is_other) const {
-    return is_other ? side_in_words(choices_) : "as it is";
+    return is_other ? side_name(choices_) : "original";
 }
 
 void Comparison::begin(const ViewerState& state) {
@@ -97,70 +195,71 @@ void Comparison::begin(const ViewerState& state) {
     ViewOptions options = state.options();
     options.debug = {};
     if (choices_.file) options.model = *choices_.file;
-    working_.start([scene = state.scene(), options, choices = choices_](const Progress&) {
-        Worked worked;
-        worked.options = options;
-        Report told;
+    preparing_.start([scene = state.scene(), options, choices = choices_](const Progress&) {
+        PreparedSide prepared;
+        prepared.options = options;
+        Report unused;
         Stages silent(true);
         try {
             if (choices.variant)
-                worked.prepared = prepare(*choices.variant, scene, options, told);
+                prepared.prepared = prepare(*choices.variant, scene, options, unused);
             else
-                worked.file = std::move(compose_scene(worked.options, silent, told).scene());
+                prepared.file = std::move(compose_scene(prepared.options, silent, unused).scene());
         } catch (const Cancelled&) {
             throw;
         } catch (const std::exception& error) {
-            worked.error = error.what();
+            prepared.error = error.what();
         }
-        return worked;
+        return prepared;
     });
 }
 
 void Comparison::compose(const Scene& shown, std::uint64_t revision) {
     composed_of_ = revision;
     ++revision_;
-    if (!worked_->file) {
-        composed_ = std::make_shared<const Scene>(with(shown, worked_->prepared));
+    if (!prepared_->file) {
+        composed_ = std::make_shared<const Scene>(with_variant(shown, prepared_->prepared));
         return;
     }
-    OtherSide side = side_of_file(shown, Camera{}, worked_->options, *worked_->file);
+    OtherSide side = side_of_file(shown, Camera{}, prepared_->options, *prepared_->file);
     composed_ = std::make_shared<const Scene>(std::move(side.scene));
 }
 
 void Comparison::follow(const ViewerState& state) {
     pictures_.follow();
     if (!is_on_ || !choices_.compares() || !state.has_scene()) {
-        if (read_) forget();  // What is not compared takes no memory.
+        if (read_) discard();  // Frees the memory of an inactive comparison.
         return;
     }
     if (!read_ || !read_->is(state.scene())) begin(state);
-    if (std::optional<Worked> worked = working_.take()) {
-        error_ = worked->error;
-        worked_ = std::move(worked);
+    if (std::optional<PreparedSide> prepared = preparing_.take()) {
+        error_ = prepared->error;
+        prepared_ = std::move(prepared);
         composed_.reset();
-        if (!error_.empty()) worked_.reset();
+        if (!error_.empty()) prepared_.reset();
     }
-    const std::optional<DrawWish> wish = state.wish();
-    if (worked_ && wish && !working_.is_going_on() &&
-        (!composed_ || composed_of_ != wish->revision))
-        compose(*wish->scene, wish->revision);
+    const std::optional<DrawRequest> request = state.request();
+    if (prepared_ && request && !preparing_.is_running() &&
+        (!composed_ || composed_of_ != request->revision))
+        compose(*request->scene, request->revision);
 }
 
-std::optional<DrawTask> Comparison::add_to(DrawWish& wish) {
-    if (!is_on_ || !composed_ || composed_of_ != wish.revision) return std::nullopt;
+std::optional<DrawTask> Comparison::add_to(DrawRequest& request) {
+    if (!is_on_ || !composed_ || composed_of_ != request.revision) return std::nullopt;
     const Camera camera =
-        choices_.file ? seeing(wish.camera, ball_around(world_bounds(*composed_))) : wish.camera;
-    wish.beside = BesideWish{composed_, revision_, camera};
-    const SidesKey key = key_of(wish);
-    const bool rests = last_ == key;
+        choices_.file ? with_depth_range(request.camera, bounding_sphere(world_bounds(*composed_)))
+                      : request.camera;
+    request.beside = BesideRequest{composed_, revision_, camera};
+    const ComparisonKey key = key_of(request);
+    const bool is_unchanged = last_ == key;
     last_ = key;
-    const bool are_there = numbers() && numbers()->key == key;
-    if (shown_ != SidesShown::both && are_there && numbers()->error.empty())
-        wish.instead = shown_ == SidesShown::flip ? numbers()->flip : numbers()->absolute;
-    const bool are_wanted = are_numbers_asked_ || shown_ != SidesShown::both;
-    if (!are_wanted || are_there || !rests) return std::nullopt;
-    std::optional<DrawTask> task = pictures_.begin(wish);
-    if (task) are_numbers_asked_ = false;
+    const bool has_numbers = numbers() && numbers()->key == key;
+    if (shown_ != ComparisonView::both && has_numbers && numbers()->error.empty())
+        request.instead = shown_ == ComparisonView::flip ? numbers()->flip : numbers()->absolute;
+    const bool needs_numbers = has_numbers_request_ || shown_ != ComparisonView::both;
+    if (!needs_numbers || has_numbers || !is_unchanged) return std::nullopt;
+    std::optional<DrawTask> task = pictures_.begin(request);
+    if (task) has_numbers_request_ = false;
     return task;
 }
 
@@ -177,12 +276,94 @@ nlohmann::ordered_json Comparison::json() const {
     json["left"] = left_label();
     json["right"] = right_label();
     json["split"] = split_;
-    json["shown"] = word_for(shown_);
+    json["shown"] = name_of(shown_);
     json["working"] = is_working();
     json["error"] = error_;
     json["revision"] = composed_ ? revision_ : 0;
     json["numbers"] = json_of(numbers());
     return json;
+}
+
+namespace {
+
+const VariantTopic& topic_of(const Variant& variant) {
+    return variant_topics().at(variant.index());
+}
+
+/// \return the new selection, or null
+template <typename Named, typename Name>
+const Named* choose_one(const char* label, const std::string& now, const std::vector<Named>& all,
+                        const Name& name) {
+    const Named* chosen = nullptr;
+    if (ImGui::BeginCombo(label, now.c_str())) {
+        for (const Named& one : all) {
+            if (ImGui::Selectable(name(one).c_str(), name(one) == now)) chosen = &one;
+            probe_item(name(one));
+        }
+        ImGui::EndCombo();
+    } else {
+        probe_item(label);
+    }
+    return chosen;
+}
+
+void choose_variant(Comparison& comparison) {
+    const std::optional<Variant>& variant = comparison.choices().variant;
+    const std::string name = variant ? topic_of(*variant).name : "";
+    const VariantTopic* topic =
+        choose_one("Change", name, variant_topics(), [](const VariantTopic& t) { return t.name; });
+    if (topic != nullptr) comparison.choose(topic->choices.front().second);
+    if (!variant || topic != nullptr) return;
+    const std::string text = to_text(*variant);
+    const auto* choice =
+        choose_one("To", text.substr(text.find('=') + 1), topic_of(*variant).choices,
+                   [](const auto& c) { return c.first; });
+    ImGui::TextWrapped("%s", topic_of(*variant).what.c_str());
+    if (choice != nullptr) comparison.choose(choice->second);
+}
+
+void choose_file(Comparison& comparison) {
+    static std::array<char, 4096> name{};
+    const bool entered =
+        ImGui::InputTextWithHint("Other file", "path of a model or scene", name.data(), name.size(),
+                                 ImGuiInputTextFlags_EnterReturnsTrue);
+    probe_item("Other file");
+    if (entered && name.front() != '\0') comparison.choose(std::filesystem::path(name.data()));
+}
+
+void draw_numbers(const Comparison& comparison) {
+    const std::optional<ComparisonResult>& numbers = comparison.numbers();
+    if (!numbers) return;
+    if (!numbers->error.empty()) return ImGui::TextWrapped("%s", numbers->error.c_str());
+    ImGui::TextWrapped("%s", difference_text(numbers->comparison).c_str());
+}
+
+}  // namespace
+
+void draw_compare_panel(const PanelInput& input) {
+    if (!input.state.has_scene() || input.comparison == nullptr) return;
+    Comparison& comparison = *input.comparison;
+    bool is_on = comparison.is_on();
+    if (ImGui::Checkbox("Compare with##two", &is_on)) comparison.toggle();
+    probe_item("Compare two");
+    choose_variant(comparison);
+    choose_file(comparison);
+    if (!comparison.is_on()) return;
+    if (!comparison.error().empty())
+        ImGui::TextColored({1.0F, 0.5F, 0.4F, 1.0F}, "%s", comparison.error().c_str());
+    if (ImGui::Button("Swap sides")) comparison.swap();
+    probe_item("Swap sides");
+    int shown = static_cast<int>(comparison.shown());
+    if (ImGui::Combo("Show##sides", &shown,
+                     "Both sides\0Perceived difference\0Largest difference\0"))
+        comparison.show(static_cast<ComparisonView>(shown));
+    if (ImGui::Button("Measure the difference")) comparison.request_numbers();
+    probe_item("Measure the difference");
+    if (comparison.is_working()) {
+        ImGui::SameLine();
+        ImGui::TextUnformatted("working");
+    }
+    draw_numbers(comparison);
 }
 
 }  // namespace relief::tools

@@ -1,92 +1,150 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// What the scene is compared with in the window: one change, or another file; which side is left;
-/// where the line is; the difference in numbers. The changed scene is worked out on a thread of its
-/// own, and anew where meshes or maps are others; edits of lights and colours come along at once.
-/// Neither a window nor OpenGL. Tests: tests/tools/window/comparison_test.cpp.
+/// Comparison of the scene with a variant or another file: preparation of the other scene in the
+/// background, difference images and error statistics, and the panel.
+/// Tests: tests/tools/window/comparison_test.cpp.
 #pragma once
 
 #include <cstdint>
 #include <memory>
+#include <mutex>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 
-#include "compare_options.h"
-#include "variant_scene.h"
-#include "window/side_pictures.h"
+#include "picture_comparison.h"
+#include "variant.h"
+#include "window/background_jobs.h"
+#include "window/draw_thread.h"
 #include "window/viewer_state.h"
 
 namespace relief::tools {
 
-/// What is shown of two sides.
-enum class SidesShown {
-    both,      ///< Beside each other, split by the line.
-    flip,      ///< Their difference as an eye sees it.
-    absolute,  ///< Their largest difference of any channel.
+/// Identifies the request that two pictures were drawn for. Equal keys have equal results.
+struct ComparisonKey {
+    std::uint64_t revision = 0;
+    std::uint64_t beside = 0;
+    glm::mat4 world_from_view{0.0F};
+    float vertical_fov = 0.0F;
+    int width = 0;
+    int height = 0;
+    friend bool operator==(const ComparisonKey&, const ComparisonKey&) = default;
+};
+ComparisonKey key_of(const DrawRequest& request);
+
+/// The comparison of two pictures.
+struct ComparisonResult {
+    ComparisonKey key;
+    PictureComparison comparison;
+    std::shared_ptr<const Image> flip;      ///< FLIP, as a heat map.
+    std::shared_ptr<const Image> absolute;  ///< Largest difference of any channel, as a heat map.
+    std::string error;                      ///< If not empty, there is no result.
 };
 
-/// What the preparation of a change has read of a scene.
-class ReadOfScene {
+/// Draws two pictures on the drawing thread and compares them on another thread.
+class ComparisonJob {
   public:
-    ReadOfScene() = default;
-    explicit ReadOfScene(const Scene& scene);
+    explicit ComparisonJob(std::function<void()> wake) : comparing_(std::move(wake)) {}
+
+    /// Starts a comparison for this request, unless one is running.
+    /// \return the work for the drawing thread
+    std::optional<DrawTask> begin(const DrawRequest& request);
+
+    /// Continues when the drawing thread or the comparing thread is done.
+    void follow();
+
+    /// The last result, which may belong to an earlier request.
+    [[nodiscard]] const std::optional<ComparisonResult>& numbers() const { return numbers_; }
+    [[nodiscard]] bool is_running() const { return begun_.has_value(); }
+    void discard();
+
+  private:
+    /// The pictures that the drawing thread has drawn.
+    struct Drawn {
+        std::mutex mutex;
+        bool is_done = false;
+        Image left;
+        Image right;
+        std::string error;
+    };
+
+    std::optional<ComparisonKey> begun_;
+    std::shared_ptr<Drawn> drawn_;
+    NewestJob<ComparisonResult> comparing_;
+    std::optional<ComparisonResult> numbers_;
+};
+
+/// The view of the two sides.
+enum class ComparisonView {
+    both,      ///< Side by side, split by a line.
+    flip,      ///< The perceived difference.
+    absolute,  ///< The largest difference of any channel.
+};
+
+/// The parts of a scene that the preparation of a variant reads.
+class VariantInputs {
+  public:
+    VariantInputs() = default;
+    explicit VariantInputs(const Scene& scene);
     [[nodiscard]] bool is(const Scene& scene) const;
 
   private:
     std::vector<Shared<Mesh>::Identity> meshes_;
-    std::vector<std::size_t> images_;  ///< Of the materials' maps.
+    std::vector<std::size_t> images_;  ///< Image indices of the materials' maps.
 };
 
+/// The comparison that the window shows.
 class Comparison {
   public:
-    /// \param wake  called, from another thread, when there is something new
+    /// \param wake  called from another thread when there is news
     Comparison(const CompareChoices& choices, const std::function<void()>& wake);
 
-    // What keys and the panel choose.
+    // Actions of shortcuts and the panel.
     void choose(const Variant& variant);
     void choose(const std::filesystem::path& file);
-    /// On, with something to begin with where nothing was chosen; or off.
+    /// Switches the comparison on or off. The default is a comparison with flat shading.
     void toggle();
     void toggle_difference();
     void swap() { is_swapped_ = !is_swapped_; }
     void set_split(float split);
-    void show(SidesShown shown) { shown_ = shown; }
-    /// Works the numbers out once, for what is shown now.
-    void ask_for_numbers() { are_numbers_asked_ = true; }
+    void show(ComparisonView shown) { shown_ = shown; }
+    /// Compares the current pictures once.
+    void request_numbers() { has_numbers_request_ = true; }
 
     [[nodiscard]] bool is_on() const { return is_on_; }
     [[nodiscard]] const CompareChoices& choices() const { return choices_; }
     [[nodiscard]] float split() const { return split_; }
     [[nodiscard]] bool is_swapped() const { return is_swapped_; }
-    [[nodiscard]] SidesShown shown() const { return shown_; }
+    [[nodiscard]] ComparisonView shown() const { return shown_; }
     [[nodiscard]] bool is_working() const;
     [[nodiscard]] const std::string& error() const { return error_; }
-    [[nodiscard]] const std::optional<SideNumbers>& numbers() const { return pictures_.numbers(); }
-    /// What stands on the left, and on the right.
+    [[nodiscard]] const std::optional<ComparisonResult>& numbers() const {
+        return pictures_.numbers();
+    }
+    /// Names of the two sides.
     [[nodiscard]] std::string left_label() const { return label(is_swapped_); }
     [[nodiscard]] std::string right_label() const { return label(!is_swapped_); }
 
-    /// Goes on with what is to be worked out for the state's scene.
+    /// Prepares the other side for the state's scene. To be called once per frame.
     void follow(const ViewerState& state);
 
-    /// Puts the other side beside what is wished, or the picture of the difference in its place.
-    /// \return work for the drawing thread, where numbers are wanted
-    std::optional<DrawTask> add_to(DrawWish& wish);
+    /// Adds the other side to a request, or replaces it with the difference picture.
+    /// \return work for the drawing thread, if a comparison is needed
+    std::optional<DrawTask> add_to(DrawRequest& request);
 
     [[nodiscard]] std::string command_line() const;
     [[nodiscard]] nlohmann::ordered_json json() const;
 
   private:
-    /// What another thread has worked out.
-    struct Worked {
+    /// The result of a preparation thread.
+    struct PreparedSide {
         PreparedVariant prepared;
-        std::optional<Scene> file;  ///< Of the other file, in place of a change.
-        ViewOptions options;        ///< That file's.
+        std::optional<Scene> file;  ///< The scene of the other file, if there is no variant.
+        ViewOptions options;        ///< The options of the other file.
         std::string error;
     };
 
-    void forget();
+    void discard();
     void begin(const ViewerState& state);
     void compose(const Scene& shown, std::uint64_t revision);
     [[nodiscard]] std::string label(bool is_other) const;
@@ -94,19 +152,19 @@ class Comparison {
     CompareChoices choices_;
     bool is_on_ = false;
     bool is_swapped_ = false;
-    float split_ = usual_split;
-    SidesShown shown_ = SidesShown::both;
-    bool are_numbers_asked_ = false;
+    float split_ = default_split;
+    ComparisonView shown_ = ComparisonView::both;
+    bool has_numbers_request_ = false;
     std::string error_;
 
-    NewestJob<Worked> working_;
-    std::optional<ReadOfScene> read_;  ///< None: it is to be worked out.
-    std::optional<Worked> worked_;
+    NewestJob<PreparedSide> preparing_;
+    std::optional<VariantInputs> read_;  ///< Empty if a preparation is needed.
+    std::optional<PreparedSide> prepared_;
     std::shared_ptr<const Scene> composed_;
-    std::uint64_t composed_of_ = 0;  ///< The state's revision.
+    std::uint64_t composed_of_ = 0;  ///< Revision of the state.
     std::uint64_t revision_ = 0;
-    SidePictures pictures_;
-    std::optional<SidesKey> last_;  ///< The wish before.
+    ComparisonJob pictures_;
+    std::optional<ComparisonKey> last_;  ///< Key of the last request.
 };
 
 }  // namespace relief::tools

@@ -1,18 +1,38 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// What panels are made of: lists to choose from and sliders, which mark their places (places.h).
-/// Tests: tests/tools/window/panels_test.cpp.
+/// Controls that panels consist of: combo boxes, sliders, file fields and progress bars. Each
+/// control reports its position to the UI test probe, which is part of --dump-state. Tests:
+/// tests/tools/window/user_interface_test.cpp.
 #pragma once
 
+#include <filesystem>
 #include <initializer_list>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+
+#include "relief/mesh/progress.h"
 
 namespace relief::tools {
 
-/// A list of which one is chosen. Its entries are places while it is open: "Kind: Spot".
-/// \return whether another one was chosen
+/// Enables the UI test probe. Without this call, positions are not stored.
+void enable_ui_probe();
+
+/// Starts a frame: removes the positions of the last frame.
+void clear_ui_probe();
+
+/// Stores the center of the last ImGui item under this name, in window units, if the item is
+/// visible.
+void probe_item(const std::string& name);
+
+/// For example {"Lights": [120, 240]}.
+nlohmann::ordered_json ui_probe_json();
+
+/// A combo box. While it is open, the probe reports its entries as "Kind: Spot".
+/// \return whether the selection changed
 bool choose_index(const char* label, int& index, std::initializer_list<const char*> names);
 
-/// The same for an enumeration whose values are in the names' order.
+/// The same for an enumeration. The names are in the order of its values.
 template <typename Choice>
 bool choose(const char* label, Choice& choice, std::initializer_list<const char*> names) {
     int index = static_cast<int>(choice);
@@ -21,10 +41,10 @@ bool choose(const char* label, Choice& choice, std::initializer_list<const char*
     return changed;
 }
 
-/// Typed numbers stay within the limits, too.
+/// The range of a slider, which also limits typed numbers.
 struct Slider {
-    float least = 0.0F;
-    float most = 1.0F;
+    float min = 0.0F;
+    float max = 1.0F;
     const char* format = "%.3f";  ///< As printf's, with the unit.
     bool is_logarithmic = false;
 };
@@ -32,7 +52,20 @@ struct Slider {
 /// \return whether the value changed
 bool slide(const char* label, float& value, const Slider& slider = {});
 
-/// For what has no upper limit worth a slider: dragged, by `step` a pixel; never below 0.
+/// A drag field for values from 0 without an upper limit; `step` is the change per pixel.
 bool drag_up(const char* label, float& value, float step = 0.01F);
+
+/// The user's input in a file field.
+struct FileChoice {
+    std::optional<std::filesystem::path> file;  ///< A path that was typed or pasted.
+    bool is_cleared = false;                    ///< The user pressed the clear button.
+};
+
+/// A text field for the path of a file.
+/// \param shown  the current value, if there is one
+FileChoice file_field(const char* label, const std::optional<std::string>& shown);
+
+/// Shows a label such as "Reading big.obj: parsing", and a progress bar if the share is known.
+void draw_progress(const std::string& what, const Progress::State& progress);
 
 }  // namespace relief::tools

@@ -1,17 +1,35 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tests: tests/tools/window/draw_thread_test.cpp.
 #include "window/draw_thread.h"
 
+#include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace relief::tools {
+namespace {
+
+constexpr double cost_of_samples = 2.4;  // Measured ratio of 4 samples to 1 in software.
+constexpr int coarsest = 4;
+
+}  // namespace
+
+FrameSettings AdaptiveResolution::settings_for(FrameSettings full, double now) const {
+    if (milliseconds_ <= max_milliseconds || now - last_move_ >= idle_seconds) return full;
+    const double of_one_sample = full.samples > 1 ? milliseconds_ / cost_of_samples : milliseconds_;
+    const double divisor = std::ceil(std::sqrt(of_one_sample / max_milliseconds));
+    const int n = static_cast<int>(std::clamp(divisor, 1.0, static_cast<double>(coarsest)));
+    full.samples = 1;
+    full.width = std::max(full.width / n, 1);
+    full.height = std::max(full.height / n, 1);
+    return full;
+}
 
 FramePlan forced_plan(const Scene& scene, const FrameSettings& settings,
                       const EffectWishes& effects) {
     return force_effects(scene, settings, plan_effects(scene, settings), effects);
 }
 
-/// What lives on the thread, in its context.
+/// The objects that live in the thread's context.
 class DrawThread::Drawer {
   public:
     Drawer(GlLoader loader, const std::string& name)
@@ -27,25 +45,25 @@ class DrawThread::Drawer {
 
     bool run(const DrawTask& task) { return task(context_, cache_); }
 
-    /// Draws, or throws; what was drawn before stays. What cannot be prepared is tried once, and
-    /// what was there before can still be looked at from elsewhere.
-    void draw(const DrawWish& wish, DrawnPicture& drawn, const Progress& progress) {
-        if (wish.instead) {
-            show(*wish.instead, wish, drawn);
+    /// Draws a request, or throws and keeps the old picture. A scene that cannot be prepared is
+    /// tried once; after that, the old scene still follows the camera.
+    void draw(const DrawRequest& request, DrawnPicture& drawn, const Progress& progress) {
+        if (request.instead) {
+            show(*request.instead, request, drawn);
             return;
         }
-        const bool is_tried = has_tried_ && tried_revision_ == wish.revision &&
-                              tried_beside_ == revision_of(wish.beside) &&
-                              tried_settings_ == wish.settings;
-        if (!is_tried) try_to_prepare(wish, drawn, progress);
+        const bool is_tried = has_tried_ && tried_revision_ == request.revision &&
+                              tried_beside_ == revision_of(request.beside) &&
+                              tried_settings_ == request.settings;
+        if (!is_tried) try_to_prepare(request, drawn, progress);
         drawn.error = failure_;
         if (!renderer_) return;
-        if (!failure_.empty() && is_same_view(drawn.camera, wish.camera)) return;
-        draw_prepared(wish, drawn);
+        if (!failure_.empty() && is_same_view(drawn.camera, request.camera)) return;
+        draw_prepared(request, drawn);
     }
 
   private:
-    /// Also of what could not be prepared: a file may be mended.
+    /// Stores the files that were read, even after an error, because the user may repair a file.
     struct NotedFiles {
         const Progress& progress;
         DrawnPicture& drawn;
@@ -55,7 +73,7 @@ class DrawThread::Drawer {
         }
     };
 
-    static std::uint64_t revision_of(const std::optional<BesideWish>& beside) {
+    static std::uint64_t revision_of(const std::optional<BesideRequest>& beside) {
         return beside ? beside->revision : 0;
     }
 
@@ -63,38 +81,38 @@ class DrawThread::Drawer {
         return a.world_from_view == b.world_from_view && a.vertical_fov == b.vertical_fov;
     }
 
-    void show(const Image& picture, const DrawWish& wish, DrawnPicture& drawn) {
+    void show(const Image& picture, const DrawRequest& request, DrawnPicture& drawn) {
         handover_.put(picture);
         drawn.error.clear();
         drawn.beside = 0;
         drawn.is_difference = true;
-        drawn.camera = wish.camera;
-        drawn.settings = wish.settings;
+        drawn.camera = request.camera;
+        drawn.settings = request.settings;
         ++drawn.frames;
     }
 
-    void draw_prepared(const DrawWish& wish, DrawnPicture& drawn) {
-        drawn.times = renderer_->draw_only(wish.camera).times;
-        const bool has_beside = wish.beside && beside_;
-        if (has_beside) drawn.times.draw += beside_->draw_only(wish.beside->camera).times.draw;
+    void draw_prepared(const DrawRequest& request, DrawnPicture& drawn) {
+        drawn.times = renderer_->draw_only(request.camera).times;
+        const bool has_beside = request.beside && beside_;
+        if (has_beside) drawn.times.draw += beside_->draw_only(request.beside->camera).times.draw;
         handover_.put(*renderer_, has_beside ? beside_.get() : nullptr);
-        drawn.beside = has_beside ? wish.beside->revision : 0;
+        drawn.beside = has_beside ? request.beside->revision : 0;
         drawn.is_difference = false;
-        drawn.camera = wish.camera;
+        drawn.camera = request.camera;
         drawn.settings = settings_;
         ++drawn.frames;
     }
 
-    void try_to_prepare(const DrawWish& wish, DrawnPicture& drawn, const Progress& progress) {
+    void try_to_prepare(const DrawRequest& request, DrawnPicture& drawn, const Progress& progress) {
         const NotedFiles noted{progress, drawn};
-        tried_revision_ = wish.revision;
-        tried_beside_ = revision_of(wish.beside);
-        tried_settings_ = wish.settings;
+        tried_revision_ = request.revision;
+        tried_beside_ = revision_of(request.beside);
+        tried_settings_ = request.settings;
         has_tried_ = true;
         failure_.clear();
         try {
-            prepare(wish, drawn);
-            prepare_beside(wish);
+            prepare(request, drawn);
+            prepare_beside(request);
             cache_.drop_unused();
         } catch (const Cancelled&) {
             throw;
@@ -103,27 +121,28 @@ class DrawThread::Drawer {
         }
     }
 
-    void prepare(const DrawWish& wish, DrawnPicture& drawn) {
+    void prepare(const DrawRequest& request, DrawnPicture& drawn) {
         Report findings;
-        renderer_ = prepared(*wish.scene, wish, findings);
-        settings_ = wish.settings;
-        drawn.revision = wish.revision;
+        renderer_ = prepared(*request.scene, request, findings);
+        settings_ = request.settings;
+        drawn.revision = request.revision;
         drawn.plan = std::make_shared<const FramePlan>(renderer_->plan());
         drawn.findings = std::move(findings);
         ++drawn.renderers;
     }
 
-    /// Goes where nothing is to be beside the scene, or what should be cannot.
-    void prepare_beside(const DrawWish& wish) {
-        Report findings;  // Nearly those of the scene.
+    /// Prepares the second scene, or removes it.
+    void prepare_beside(const DrawRequest& request) {
+        Report findings;  // Mostly the same as those of the first scene.
         beside_.reset();
-        if (wish.beside) beside_ = prepared(*wish.beside->scene, wish, findings);
+        if (request.beside) beside_ = prepared(*request.beside->scene, request, findings);
     }
 
-    std::unique_ptr<Renderer> prepared(const Scene& scene, const DrawWish& wish, Report& findings) {
+    std::unique_ptr<Renderer> prepared(const Scene& scene, const DrawRequest& request,
+                                       Report& findings) {
         return std::make_unique<Renderer>(cache_, context_, scene,
-                                          forced_plan(scene, wish.settings, wish.effects),
-                                          wish.settings, findings);
+                                          forced_plan(scene, request.settings, request.effects),
+                                          request.settings, findings);
     }
 
     Context context_;
@@ -131,12 +150,13 @@ class DrawThread::Drawer {
     Handover handover_;
     std::unique_ptr<Renderer> renderer_;
     std::unique_ptr<Renderer> beside_;
-    FrameSettings settings_;  ///< Of the renderer.
-    bool has_tried_ = false;  ///< The last wish was prepared, and shaders have not changed since.
+    FrameSettings settings_;  ///< Settings of the renderer.
+    bool has_tried_ =
+        false;  ///< The last request was prepared, and shaders have not changed since.
     std::uint64_t tried_revision_ = 0;
     std::uint64_t tried_beside_ = 0;
     FrameSettings tried_settings_;
-    std::string failure_;  ///< Of that; empty: none.
+    std::string failure_;  ///< Error of the last preparation; empty if there was none.
 };
 
 DrawThread::DrawThread(DrawContext context) : context_(std::move(context)) {
@@ -159,10 +179,10 @@ DrawThread::~DrawThread() {
     thread_.join();
 }
 
-void DrawThread::wish(DrawWish wish) {
+void DrawThread::request(DrawRequest request) {
     {
         const std::lock_guard lock(mutex_);
-        wish_ = std::move(wish);
+        request_ = std::move(request);
     }
     changed_.notify_all();
 }
@@ -191,7 +211,7 @@ Handover::Shown DrawThread::shown() {
 
 bool DrawThread::is_busy() {
     const std::lock_guard lock(mutex_);
-    return is_drawing_ || wish_.has_value();
+    return is_drawing_ || request_.has_value();
 }
 
 Progress::State DrawThread::progress() {
@@ -199,7 +219,7 @@ Progress::State DrawThread::progress() {
     return is_drawing_ ? progress_->state() : Progress::State{};
 }
 
-/// One step of the first task, while others may wish.
+/// Runs one step of the first task without the lock.
 void DrawThread::do_step(Drawer& drawer, std::unique_lock<std::mutex>& lock) {
     const DrawTask task = tasks_.front();
     const std::shared_ptr<Progress> progress = progress_ = std::make_shared<Progress>();
@@ -209,29 +229,29 @@ void DrawThread::do_step(Drawer& drawer, std::unique_lock<std::mutex>& lock) {
         const ProgressScope scope(*progress);
         has_more = drawer.run(task);
     }
-    // Not after each step: the window's frame would always meet what is timed first in the next
-    // one.
+    // Waking after each step would let the window's frame disturb the first measurement of the next
+    // step.
     if (!has_more) context_.wake();
     lock.lock();
     if (!has_more) tasks_.pop_front();
 }
 
-/// Waits for a wish; none: the end.
-std::optional<DrawWish> DrawThread::next(Drawer& drawer) {
+/// Waits for a request. Returns nothing at the end.
+std::optional<DrawRequest> DrawThread::next(Drawer& drawer) {
     std::unique_lock lock(mutex_);
     is_drawing_ = false;
-    // After every picture, or a model that turns would let no task through.
+    // One step after each picture. Otherwise a turntable would block all tasks.
     if (!is_ending_ && !tasks_.empty()) do_step(drawer, lock);
     for (;;) {
-        changed_.wait(lock, [&] { return is_ending_ || wish_ || !tasks_.empty(); });
+        changed_.wait(lock, [&] { return is_ending_ || request_ || !tasks_.empty(); });
         if (is_ending_) return std::nullopt;
-        if (wish_) break;
+        if (request_) break;
         do_step(drawer, lock);
     }
     is_drawing_ = true;
     progress_ = std::make_shared<Progress>();
     if (std::exchange(is_relinking_, false)) drawer.relink();
-    return std::exchange(wish_, std::nullopt);
+    return std::exchange(request_, std::nullopt);
 }
 
 std::shared_ptr<Progress> DrawThread::progress_of_now() {
@@ -251,11 +271,11 @@ void DrawThread::run() {
         }
         changed_.notify_all();
         DrawnPicture picture;
-        while (const std::optional<DrawWish> wish = next(drawer)) {
+        while (const std::optional<DrawRequest> request = next(drawer)) {
             try {
                 const std::shared_ptr<Progress> progress = progress_of_now();
                 const ProgressScope scope(*progress);
-                drawer.draw(*wish, picture, *progress);
+                drawer.draw(*request, picture, *progress);
             } catch (const std::exception& error) {
                 picture.error = error.what();
             }
@@ -267,7 +287,7 @@ void DrawThread::run() {
             context_.wake();
         }
         const std::lock_guard lock(mutex_);
-        tasks_.clear();  // They hold what lives in this context.
+        tasks_.clear();  // Tasks own objects of this context.
     } catch (...) {
         const std::lock_guard lock(mutex_);
         failure_ = std::current_exception();

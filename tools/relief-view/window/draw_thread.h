@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// The thread that draws: it takes the newest wish, however many came meanwhile, and leaves
-/// finished pictures for the window, which never waits for one. A scene that cannot be drawn leaves
-/// the picture as it was, with an error. Tests: tests/tools/window/draw_thread_test.cpp.
+/// The drawing thread: it draws the newest request and hands finished pictures to the window, which
+/// never waits. If a scene cannot be drawn, the old picture stays, with an error message. During
+/// motion, slow pictures are drawn at a lower resolution.
+/// Tests: tests/tools/window/draw_thread_test.cpp.
 #pragma once
 
 #include <condition_variable>
@@ -20,82 +21,115 @@
 #include "relief/mesh/progress.h"
 #include "relief/mesh/report.h"
 #include "relief/shade/effect_forcing.h"
+#include "relief/shade/frame_settings.h"
 #include "relief/shade/handover.h"
+#include "relief/shade/render_cache.h"
 #include "relief/shade/renderer.h"
-#include "window/capture.h"
 
 namespace relief::tools {
 
-/// What is drawn beside it at the same time, with the same effects and settings.
-struct BesideWish {
+/// Reduces the resolution during motion if pictures are slow.
+class AdaptiveResolution {
+  public:
+    /// Slower pictures make interaction lag.
+    static constexpr double max_milliseconds = 60.0;
+    /// Motion ends after this time without a change.
+    static constexpr double idle_seconds = 0.15;
+
+    /// Reports the time of a picture at full resolution.
+    void set_full_time(double milliseconds) { milliseconds_ = milliseconds; }
+
+    /// Reports motion at this time, in seconds.
+    void note_motion(double now) { last_move_ = now; }
+
+    /// The settings for drawing. During motion, slow pictures get one sample per pixel and, if that
+    /// is not enough, a half to a quarter of the width and height, so that a picture takes about
+    /// max_milliseconds.
+    [[nodiscard]] FrameSettings settings_for(FrameSettings full, double now) const;
+
+  private:
+    double milliseconds_ = 0.0;
+    double last_move_ = -1e9;
+};
+
+/// Work for the drawing thread, in its OpenGL context. Each call does one step and returns whether
+/// there is more to do. The thread also destroys the function, with the GPU objects that it owns.
+using DrawTask = std::function<bool(const Context& context, RenderCache& cache)>;
+
+/// A second scene to draw at the same time, with the same effects and settings.
+struct BesideRequest {
     std::shared_ptr<const Scene> scene;
     std::uint64_t revision = 0;
     Camera camera;
 };
 
-/// What is to be drawn.
-struct DrawWish {
+/// A request for one picture.
+struct DrawRequest {
     std::shared_ptr<const Scene> scene;
-    std::uint64_t revision = 0;  ///< Another one where anything but the camera is different.
+    std::uint64_t revision = 0;  ///< Changes with everything except the camera.
     EffectWishes effects;
     FrameSettings settings;
     Camera camera;
-    std::optional<BesideWish> beside = std::nullopt;
-    std::shared_ptr<const Image> instead = nullptr;  ///< A finished picture; nothing is drawn.
+    std::optional<BesideRequest> beside = std::nullopt;
+    /// A finished picture to show instead of the scene.
+    std::shared_ptr<const Image> instead = nullptr;
 };
 
-/// The plan of a scene with the effects that were forced.
+/// The plan of a scene with forced effects.
 FramePlan forced_plan(const Scene& scene, const FrameSettings& settings,
                       const EffectWishes& effects);
 
-/// What was drawn last, or why it could not be.
+/// The last picture, or the reason why it could not be drawn.
 struct DrawnPicture {
     std::uint64_t revision = 0;
-    std::uint64_t beside = 0;     ///< The revision of what is beside it; 0: nothing is.
-    bool is_difference = false;   ///< DrawWish::instead.
-    std::uint64_t frames = 0;     ///< Drawn so far, all in all.
-    std::uint64_t renderers = 0;  ///< Made so far.
+    std::uint64_t beside = 0;     ///< The revision of the second scene; 0 if there is none.
+    bool is_difference = false;   ///< DrawRequest::instead was shown.
+    std::uint64_t frames = 0;     ///< Total number of frames.
+    std::uint64_t renderers = 0;  ///< Total number of renderers.
     FrameTimes times;
     std::shared_ptr<const FramePlan> plan;
     Report findings;
-    std::string error;  ///< Empty: none.
+    std::string error;  ///< Empty if there was no error.
     FrameSettings settings;
     Camera camera;
-    /// What the last renderer read, or would have: images and shaders. Another value each time.
+    /// The images and shaders that the last renderer read or tried to read. A new object after each
+    /// preparation.
     std::shared_ptr<const std::map<std::filesystem::path, FileStamp>> files;
 };
 
-/// A context for the thread: made current there, and given back.
+/// The OpenGL context of the thread.
 struct DrawContext {
     std::function<void()> use;
     std::function<void()> release;
     GlLoader loader = nullptr;
-    std::function<void()> wake;  ///< Called when there is something new.
+    std::function<void()> wake;  ///< Called when there is news.
 };
 
+/// Owns an OpenGL context, a renderer and a render cache on another thread.
 class DrawThread {
   public:
-    /// Waits until the thread's context is ready. \throws GpuError if it is of no use
+    /// Waits until the thread's context is ready.
+    /// \throws GpuError if the context cannot be used
     explicit DrawThread(DrawContext context);
-    /// What is being prepared or done ends.
+    /// Cancels preparations and tasks.
     ~DrawThread();
     DrawThread(const DrawThread&) = delete;
     DrawThread& operator=(const DrawThread&) = delete;
 
-    void wish(DrawWish wish);
+    void request(DrawRequest request);
 
-    /// Shader files were edited: programs are linked anew for the picture that is wished next.
+    /// Links all programs again for the next picture, because shader files have changed.
     void relink();
 
-    /// Done a step at a time, where no picture is wished; wakes after the last one. What is left at
-    /// the end is not done.
+    /// Runs a task step by step while no picture is requested, and wakes the window after the last
+    /// step. Unfinished tasks are dropped at the end.
     void add(DrawTask task);
 
     [[nodiscard]] DrawnPicture drawn();
     [[nodiscard]] Handover::Shown shown();
-    /// Whether a wish is waiting or being drawn.
+    /// Whether a request is waiting or being drawn.
     [[nodiscard]] bool is_busy();
-    /// How far a renderer is prepared; no stage: none is.
+    /// Progress of preparing a renderer. Without a preparation, the stage is empty.
     [[nodiscard]] Progress::State progress();
     [[nodiscard]] const std::string& renderer_name() const { return renderer_name_; }
 
@@ -104,20 +138,21 @@ class DrawThread {
 
     void run();
     void do_step(Drawer& drawer, std::unique_lock<std::mutex>& lock);
-    std::optional<DrawWish> next(Drawer& drawer);
+    std::optional<DrawRequest> next(Drawer& drawer);
     std::shared_ptr<Progress> progress_of_now();
 
     DrawContext context_;
     std::string renderer_name_;
     std::mutex mutex_;
     std::condition_variable changed_;
-    std::optional<DrawWish> wish_;
+    std::optional<DrawRequest> request_;
     std::deque<DrawTask> tasks_;
     bool is_drawing_ = false;
     bool is_relinking_ = false;
     bool is_ending_ = false;
     bool is_ready_ = false;
-    std::shared_ptr<Progress> progress_ = std::make_shared<Progress>();  ///< Of what goes on.
+    /// Progress of the current work.
+    std::shared_ptr<Progress> progress_ = std::make_shared<Progress>();
     std::exception_ptr failure_;
     DrawnPicture drawn_;
     Handover* handover_ = nullptr;

@@ -1,21 +1,144 @@
 // SPDX-License-Identifier: Apache-2.0
-// Materials: the model, its colours and numbers, its maps, how strongly they show.
-// Tests: tests/tools/window/panels_test.cpp.
+#include "window/material_panel.h"
+
 #include <imgui.h>
 
+#include <algorithm>
+#include <cmath>
+
+#include "relief/mesh/image_file.h"
 #include "relief/shade/labels.h"
 #include "window/controls.h"
-#include "window/file_field.h"
-#include "window/map_slots.h"
-#include "window/material_models.h"
 #include "window/panels.h"
-#include "window/places.h"
 
 namespace relief::tools {
 namespace {
 
+/// Inverse of shininess = 2
+/// alpha^2 - 2, with alpha = roughness^2.
+float roughness_of(float shininess) {
+    return std::clamp(std::pow(2.0F / (shininess + 2.0F), 0.25F), 0.045F, 1.0F);
+}
+
+}  // namespace
+
+MaterialModel model_of(const Material& material) {
+    if (material.unlit) return MaterialModel::unlit;
+    return material.metallic_roughness ? MaterialModel::metallic_roughness : MaterialModel::phong;
+}
+
+void set_model(Material& material, MaterialModel model) {
+    material.unlit = model == MaterialModel::unlit;
+    if (model == MaterialModel::phong) material.metallic_roughness.reset();
+    if (model != MaterialModel::metallic_roughness || material.metallic_roughness) return;
+    material.metallic_roughness = {.base_color = glm::min(material.diffuse, glm::vec3(1.0F)),
+                                   .metallic = 0.0F,
+                                   .roughness = roughness_of(material.shininess),
+                                   .texture = {}};
+}
+
+namespace {
+
+using MaybeTexture = std::optional<Texture>;
+
+/// Access to a slot that is a member of the material.
+template <MaybeTexture Material::*member>
+MaybeTexture get(const Material& material) {
+    return material.*member;
+}
+template <MaybeTexture Material::*member>
+void put(Material& material, const MaybeTexture& texture) {
+    material.*member = texture;
+}
+
+bool always(const Material&) {
+    return true;
+}
+bool is_phong(const Material& material) {
+    return !material.metallic_roughness && !material.unlit;
+}
+bool is_metallic(const Material& material) {
+    return material.metallic_roughness && !material.unlit;
+}
+bool is_lit(const Material& material) {
+    return !material.unlit;
+}
+
+MaybeTexture metallic_texture(const Material& material) {
+    return material.metallic_roughness ? material.metallic_roughness->texture : std::nullopt;
+}
+void set_metallic_texture(Material& material, const MaybeTexture& texture) {
+    if (material.metallic_roughness) material.metallic_roughness->texture = texture;
+}
+
+MaybeTexture normal_texture(const Material& material) {
+    return material.normal_map ? MaybeTexture(material.normal_map->texture) : std::nullopt;
+}
+void set_normal_texture(Material& material, const MaybeTexture& texture) {
+    if (!texture) return material.normal_map.reset();
+    if (!material.normal_map) material.normal_map.emplace();
+    material.normal_map->texture = *texture;
+    material.normal_map->flat.reset();  // The new image may use another code for zero.
+    material.bump_map.reset();
+}
+
+MaybeTexture bump_texture(const Material& material) {
+    return material.bump_map ? MaybeTexture(material.bump_map->texture) : std::nullopt;
+}
+void set_bump_texture(Material& material, const MaybeTexture& texture) {
+    if (!texture) return material.bump_map.reset();
+    if (!material.bump_map) material.bump_map.emplace();
+    material.bump_map->texture = *texture;
+    material.normal_map.reset();
+}
+
+/// The index of a file among the scene's images. Adds the file if it is new.
+std::size_t image_of(Scene& scene, const std::filesystem::path& file) {
+    const auto is_it = [&](const ImageSource& image) {
+        const auto* path = std::get_if<std::filesystem::path>(&image.source);
+        return path != nullptr && *path == file;
+    };
+    const auto found = std::find_if(scene.images.begin(), scene.images.end(), is_it);
+    if (found != scene.images.end()) return static_cast<std::size_t>(found - scene.images.begin());
+    scene.images.push_back({.name = file.string(), .source = file, .is_required = true});
+    return scene.images.size() - 1;
+}
+
+}  // namespace
+
+const std::vector<MapSlot>& map_slots() {
+    using M = Material;
+    static const std::vector<MapSlot> slots = {
+        {"Diffuse map", get<&M::diffuse_texture>, put<&M::diffuse_texture>, always},
+        {"Specular map", get<&M::specular_texture>, put<&M::specular_texture>, is_phong},
+        {"Metallic and roughness map", metallic_texture, set_metallic_texture, is_metallic},
+        {"Normal map", normal_texture, set_normal_texture, is_lit},
+        {"Bump map", bump_texture, set_bump_texture, is_lit},
+        {"Occlusion map", get<&M::occlusion_texture>, put<&M::occlusion_texture>, is_lit},
+        {"Emission map", get<&M::emission_texture>, put<&M::emission_texture>, is_lit},
+        {"Opacity map", get<&M::opacity_texture>, put<&M::opacity_texture>, always},
+    };
+    return slots;
+}
+
+std::optional<std::string> map_name(const Scene& scene, std::size_t material, const MapSlot& slot) {
+    const MaybeTexture texture = slot.texture(scene.materials[material]);
+    if (!texture) return std::nullopt;
+    return scene.images[texture->image].name;
+}
+
+void set_map(Scene& scene, std::size_t material, const MapSlot& slot,
+             const std::filesystem::path& file) {
+    read_image_info(file);
+    Texture texture = slot.texture(scene.materials[material]).value_or(Texture{});
+    texture.image = image_of(scene, file);
+    slot.set(scene.materials[material], texture);
+}
+
+namespace {
+
 bool edit_metallic_roughness(MetallicRoughness& model) {
-    bool changed = ImGui::ColorEdit3("Base colour", &model.base_color.x);
+    bool changed = ImGui::ColorEdit3("Base color", &model.base_color.x);
     changed |= slide("Metallic", model.metallic);
     changed |= slide("Roughness", model.roughness);
     return changed;
@@ -23,21 +146,21 @@ bool edit_metallic_roughness(MetallicRoughness& model) {
 
 bool edit_phong(Material& material) {
     bool changed = ImGui::ColorEdit3("Diffuse", &material.diffuse.x);
-    changed |= ImGui::ColorEdit3("Ambient share", &material.ambient.x);
+    changed |= ImGui::ColorEdit3("Ambient", &material.ambient.x);
     changed |= ImGui::ColorEdit3("Specular", &material.specular.x);
     changed |= slide("Shininess", material.shininess, {0.0F, 1000.0F, "%.0f", true});
     changed |= choose("Highlights", material.specular_model,
-                      {"Phong", "Blinn-Phong", "Blinn-Phong, normalised"});
+                      {"Phong", "Blinn-Phong", "Blinn-Phong, normalized"});
     return changed;
 }
 
-/// Of Phong's model; seen only where the scene has surroundings.
+/// Edits the reflection parameters of the Phong model, which need an environment.
 bool edit_reflection(Material& material) {
     bool changed = ImGui::ColorEdit3("Reflectivity", &material.reflectivity.x);
     changed |= choose("Fresnel", material.fresnel, {"Schlick", "Dielectric", "Conductor"});
-    changed |= slide("Blur", material.reflection_roughness);
+    changed |= slide("Reflection roughness", material.reflection_roughness);
     changed |= slide("Transmission", material.transmission);
-    changed |= slide("Refraction", material.refractive_index, {1.0F, 3.0F});
+    changed |= slide("Refractive index", material.refractive_index, {1.0F, 3.0F});
     return changed;
 }
 
@@ -48,7 +171,7 @@ bool edit_model(Material& material) {
     if (material.metallic_roughness) {
         changed |= edit_metallic_roughness(*material.metallic_roughness);
     } else if (material.unlit) {
-        changed |= ImGui::ColorEdit3("Colour", &material.diffuse.x);
+        changed |= ImGui::ColorEdit3("Color", &material.diffuse.x);
     } else {
         changed |= edit_phong(material);
         changed |= edit_reflection(material);
@@ -60,26 +183,25 @@ bool edit_model(Material& material) {
     return changed;
 }
 
-/// How a normal or bump map shows.
+/// Edits the parameters of a normal map or bump map.
 bool edit_relief(Material& material) {
     bool changed = false;
     if (material.normal_map) {
         changed |= slide("Strength", material.normal_map->scale, {0.0F, 4.0F});
         changed |=
-            choose("Green is", material.normal_map->green, {"up (OpenGL)", "down (DirectX)"});
+            choose("Green channel", material.normal_map->green, {"up (OpenGL)", "down (DirectX)"});
     }
     if (material.bump_map) {
         changed |= slide("Height", material.bump_map->strength, {0.0F, 128.0F, "%.1f texels"});
     }
     if (material.normal_map || material.bump_map) {
-        changed |= choose("Tangents", material.tangent_frame, {"Stored", "By derivatives"});
-        changed |=
-            ImGui::Checkbox("Highlights widened by the map", &material.specular_antialiasing);
+        changed |= choose("Tangents", material.tangent_frame, {"Stored", "Derivatives"});
+        changed |= ImGui::Checkbox("Specular antialiasing", &material.specular_antialiasing);
     }
     return changed;
 }
 
-/// Files take their places at once, or say why not.
+/// Edits the files of the maps. If a file cannot be used, the state reports the error.
 void edit_maps(ViewerState& state, std::size_t index) {
     for (const MapSlot& slot : map_slots()) {
         if (!slot.is_used(state.scene().materials[index])) continue;
@@ -98,8 +220,8 @@ bool edit_surface(Material& material) {
     changed |= choose("Alpha", material.alpha_mode, {"Opaque", "Mask", "Blend"});
     if (material.alpha_mode != AlphaMode::opaque) changed |= slide("Opacity", material.opacity);
     if (material.alpha_mode == AlphaMode::mask)
-        changed |= slide("Cut off below", material.alpha_cutoff);
-    changed |= ImGui::Checkbox("Both sides", &material.double_sided);
+        changed |= slide("Alpha cutoff", material.alpha_cutoff);
+    changed |= ImGui::Checkbox("Double-sided", &material.double_sided);
     return changed;
 }
 
@@ -116,7 +238,7 @@ void edit_material(ViewerState& state, std::size_t index) {
     edit_part(state, index, edit_surface);
 }
 
-/// What courses compare first: one choice for every material.
+/// Edits properties of all materials at once.
 void edit_all(ViewerState& state) {
     const Material& first = state.scene().materials.front();
     Interpolation interpolation = first.interpolation;
@@ -141,17 +263,17 @@ void draw_material_panel(const PanelInput& input) {
     ViewerState& state = input.state;
     if (!state.has_scene()) return;
     if (uses_default_material(state.scene())) {
-        ImGui::TextUnformatted("The default material");
+        ImGui::TextUnformatted("Default material");
         ImGui::SameLine();
-        if (ImGui::SmallButton("Edit it")) state.name_default_material();
-        mark_place("Edit it");
+        if (ImGui::SmallButton("Edit")) state.name_default_material();
+        probe_item("Edit");
     }
     if (!state.scene().materials.empty()) edit_all(state);
     for (std::size_t i = 0; i < state.scene().materials.size(); ++i) {
         ImGui::PushID(static_cast<int>(i));
         const std::string label = material_label(state.scene(), i);
         const bool is_open = ImGui::TreeNode("material", "%s", label.c_str());
-        mark_place(label);
+        probe_item(label);
         if (is_open) {
             edit_material(state, i);
             ImGui::TreePop();

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tests: tests/tools/window/orbit_camera_test.cpp.
 #include "window/orbit_camera.h"
 
 #include <fmt/format.h>
@@ -8,19 +7,22 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <sstream>
+#include <vector>
 
 namespace relief::tools {
 namespace {
 
 constexpr float half_turn = std::numbers::pi_v<float>;
 constexpr float pole = 0.5F * half_turn;
-constexpr float room = 1.04F;             // Around the model, as framed() leaves it.
-constexpr float nearest_share = 1e-4F;    // Of the far plane: nearer, depth loses its precision.
-constexpr float step = 0.9F;              // Of the distance, for each step of the wheel.
-constexpr float nearest_to_ball = 1e-4F;  // Of its radius; nearer, floats are too coarse.
-constexpr float farthest_of_ball = 1e4F;
+constexpr float margin = 1.04F;  // Around the model, as in framed().
+// Of the far plane. A smaller near plane would reduce the depth precision.
+constexpr float min_near_share = 1e-4F;
+constexpr float zoom_step = 0.9F;      // Factor of the distance per step.
+constexpr float min_distance = 1e-4F;  // In radii of the sphere, limited by float precision.
+constexpr float max_distance = 1e4F;
 
-/// Axes of the eye in world space: right, up, backwards.
+/// Axes of the camera in world space: right, up, backward.
 glm::mat3 axes_of(const OrbitCamera& orbit) {
     const glm::vec3 back(std::cos(orbit.elevation) * std::sin(orbit.azimuth),
                          std::sin(orbit.elevation),
@@ -29,19 +31,19 @@ glm::mat3 axes_of(const OrbitCamera& orbit) {
     return {right, glm::cross(back, right), back};
 }
 
-/// The height of what is seen as far away as the target.
-float seen_height(const OrbitCamera& orbit) {
+/// The visible height at the distance of the target.
+float visible_height(const OrbitCamera& orbit) {
     return 2.0F * orbit.distance * std::tan(0.5F * orbit.vertical_fov);
 }
 
-/// Within a turn, so that turning on and on costs no digits.
+/// Limits an angle to one turn, so that repeated rotation loses no precision.
 float wrapped(float angle) {
     return std::remainder(angle, 2.0F * half_turn);
 }
 
 }  // namespace
 
-Ball ball_around(const Bounds& bounds) {
+BoundingSphere bounding_sphere(const Bounds& bounds) {
     if (bounds.empty()) return {};
     const glm::vec3 half = 0.5F * bounds.max - 0.5F * bounds.min;
     const float radius = glm::length(half);
@@ -49,21 +51,21 @@ Ball ball_around(const Bounds& bounds) {
     return {bounds.min + half, has_size ? radius : 1.0F};
 }
 
-Camera camera_of(const OrbitCamera& orbit, const Ball& ball) {
+Camera camera_of(const OrbitCamera& orbit, const BoundingSphere& sphere) {
     const glm::mat3 axes = axes_of(orbit);
     const glm::vec3 eye = orbit.target + orbit.distance * axes[2];
     Camera camera;
     camera.world_from_view = glm::mat4(axes);
     camera.world_from_view[3] = glm::vec4(eye, 1.0F);
     camera.vertical_fov = orbit.vertical_fov;
-    return seeing(camera, ball);
+    return with_depth_range(camera, sphere);
 }
 
-Camera seeing(Camera camera, const Ball& ball) {
+Camera with_depth_range(Camera camera, const BoundingSphere& sphere) {
     const glm::vec3 eye(camera.world_from_view[3]);
-    const float depth = glm::dot(eye - ball.center, glm::vec3(camera.world_from_view[2]));
-    camera.far = std::max(depth + room * ball.radius, room * ball.radius);
-    camera.near = std::max(depth - room * ball.radius, nearest_share * camera.far);
+    const float depth = glm::dot(eye - sphere.center, glm::vec3(camera.world_from_view[2]));
+    camera.far = std::max(depth + margin * sphere.radius, margin * sphere.radius);
+    camera.near = std::max(depth - margin * sphere.radius, min_near_share * camera.far);
     return camera;
 }
 
@@ -71,18 +73,18 @@ OrbitCamera orbit_of(const CameraOption& option, const CameraPlace& place, float
     return {place.target, option.azimuth, option.elevation, place.distance, vertical_fov};
 }
 
-OrbitCamera orbit_of(const Camera& camera, const Ball& ball) {
+OrbitCamera orbit_of(const Camera& camera, const BoundingSphere& sphere) {
     const glm::vec3 eye(camera.world_from_view[3]);
     const glm::vec3 back = glm::normalize(glm::vec3(camera.world_from_view[2]));
     OrbitCamera orbit;
     orbit.elevation = std::asin(std::clamp(back.y, -1.0F, 1.0F));
     const glm::vec3 right(camera.world_from_view[0]);
-    // Straight up or down, azimuth is where the right-hand side says.
+    // At the poles, the azimuth follows from the right axis.
     const bool at_pole = std::abs(back.y) > 0.99999F;
     orbit.azimuth = at_pole ? std::atan2(-right.z, right.x) : std::atan2(back.x, back.z);
     orbit.vertical_fov = camera.vertical_fov;
-    const float depth = glm::dot(eye - ball.center, back);
-    orbit.distance = depth > nearest_to_ball * ball.radius ? depth : ball.radius;
+    const float depth = glm::dot(eye - sphere.center, back);
+    orbit.distance = depth > min_distance * sphere.radius ? depth : sphere.radius;
     orbit.target = eye - orbit.distance * back;
     return orbit;
 }
@@ -95,31 +97,32 @@ void orbit_by(OrbitCamera& orbit, const glm::vec2& pixels, int view_height) {
 
 void pan_by(OrbitCamera& orbit, const glm::vec2& pixels, int view_height) {
     const glm::mat3 axes = axes_of(orbit);
-    const float unit = seen_height(orbit) / static_cast<float>(std::max(view_height, 1));
+    const float unit = visible_height(orbit) / static_cast<float>(std::max(view_height, 1));
     orbit.target += unit * (pixels.y * axes[1] - pixels.x * axes[0]);
 }
 
-void zoom_by(OrbitCamera& orbit, float steps, const glm::vec2& pointer, const Ball& ball) {
-    const float before = seen_height(orbit);
-    orbit.distance = std::clamp(orbit.distance * std::pow(step, steps),
-                                nearest_to_ball * ball.radius, farthest_of_ball * ball.radius);
+void zoom_by(OrbitCamera& orbit, float steps, const glm::vec2& pointer,
+             const BoundingSphere& sphere) {
+    const float before = visible_height(orbit);
+    orbit.distance = std::clamp(orbit.distance * std::pow(zoom_step, steps),
+                                min_distance * sphere.radius, max_distance * sphere.radius);
     const glm::mat3 axes = axes_of(orbit);
-    const float shrunk = 0.5F * (before - seen_height(orbit));
+    const float shrunk = 0.5F * (before - visible_height(orbit));
     orbit.target += shrunk * (pointer.x * axes[0] + pointer.y * axes[1]);
 }
 
-void fit(OrbitCamera& orbit, const Ball& ball, float aspect) {
+void fit(OrbitCamera& orbit, const BoundingSphere& sphere, float aspect) {
     const float half_height = 0.5F * orbit.vertical_fov;
     const float half_width = std::atan(std::tan(half_height) * aspect);
-    orbit.target = ball.center;
-    orbit.distance = room * ball.radius / std::sin(std::min(half_height, half_width));
+    orbit.target = sphere.center;
+    orbit.distance = margin * sphere.radius / std::sin(std::min(half_height, half_width));
 }
 
 std::string degrees_text(float radians) {
-    constexpr int usual_digits = 6;
+    constexpr int default_digits = 6;
     constexpr int digits_of_double = 17;
     const double degrees = glm::degrees(static_cast<double>(radians));
-    for (int digits = usual_digits;; ++digits) {
+    for (int digits = default_digits;; ++digits) {
         const std::string text = fmt::format("{:.{}g}", degrees, digits);
         const auto again = static_cast<float>(glm::radians(std::stod(text)));
         if (again == radians || digits == digits_of_double) return text;
@@ -130,6 +133,104 @@ std::string to_text(const OrbitCamera& orbit) {
     return fmt::format("{},{}@{},{},{},{}", degrees_text(orbit.azimuth),
                        degrees_text(orbit.elevation), orbit.target.x, orbit.target.y,
                        orbit.target.z, orbit.distance);
+}
+
+namespace {
+
+using glm::dvec3;
+
+/// The ray parameter of the hit with a triangle. The signs of three volumes are computed in double
+/// precision, so a ray can pass between adjacent triangles only because of rounding.
+std::optional<double> hit(const dvec3& origin, const dvec3& direction,
+                          const std::array<dvec3, 3>& corners) {
+    const dvec3 a = corners[0] - origin, b = corners[1] - origin, c = corners[2] - origin;
+    const double u = glm::dot(direction, glm::cross(c, b));
+    const double v = glm::dot(direction, glm::cross(a, c));
+    const double w = glm::dot(direction, glm::cross(b, a));
+    const bool is_inside = (u >= 0 && v >= 0 && w >= 0) || (u <= 0 && v <= 0 && w <= 0);
+    const double sum = u + v + w;
+    if (!is_inside || sum == 0.0) return std::nullopt;
+    const dvec3 point = (u * a + v * b + w * c) / sum;
+    const double along = glm::dot(point, direction) / glm::dot(direction, direction);
+    if (!(along > 0.0)) return std::nullopt;
+    return along;
+}
+
+/// The smallest ray parameter of the hits in a mesh.
+double nearest_in(const Mesh& mesh, const dvec3& origin, const dvec3& direction) {
+    double nearest = std::numeric_limits<double>::infinity();
+    for (const auto& triangle : mesh.triangles) {
+        const std::array<dvec3, 3> corners = {dvec3(mesh.positions[triangle[0]]),
+                                              dvec3(mesh.positions[triangle[1]]),
+                                              dvec3(mesh.positions[triangle[2]])};
+        const std::optional<double> along = hit(origin, direction, corners);
+        if (along && *along < nearest) nearest = *along;
+    }
+    return nearest;
+}
+
+}  // namespace
+
+Ray ray_through(const Camera& camera, const glm::vec2& pointer) {
+    const float half_height = std::tan(0.5F * camera.vertical_fov);
+    const glm::vec3 view(half_height * pointer.x, half_height * pointer.y, -1.0F);
+    return {glm::vec3(camera.world_from_view[3]), glm::mat3(camera.world_from_view) * view};
+}
+
+std::optional<glm::vec3> surface_hit(const Scene& scene, const Ray& ray) {
+    double nearest = std::numeric_limits<double>::infinity();
+    for (const Instance& instance : scene.instances) {
+        // An affine map keeps the ray parameter.
+        const glm::dmat4 object_from_world = glm::inverse(glm::dmat4(instance.world_from_object));
+        const dvec3 origin(object_from_world * glm::dvec4(ray.origin, 1.0));
+        const dvec3 direction(object_from_world * glm::dvec4(ray.direction, 0.0));
+        nearest = std::min(nearest, nearest_in(*scene.meshes[instance.mesh], origin, direction));
+    }
+    if (!std::isfinite(nearest)) return std::nullopt;
+    return glm::vec3(dvec3(ray.origin) + nearest * dvec3(ray.direction));
+}
+
+void aim_at(OrbitCamera& orbit, const glm::vec3& point) {
+    const Camera camera = camera_of(orbit, BoundingSphere{});
+    const glm::vec3 back(camera.world_from_view[2]);
+    const float depth = glm::dot(glm::vec3(camera.world_from_view[3]) - point, back);
+    if (!(depth > 0.0F)) return;
+    orbit.target = point;
+    orbit.distance = depth;
+}
+
+namespace {
+
+std::vector<std::string> words_of(const std::string& text) {
+    std::istringstream stream(text);
+    std::vector<std::string> words;
+    for (std::string word; stream >> word;)
+        words.push_back(word);
+    return words;
+}
+
+/// The value of an option, "--fov 35" or "--fov=35".
+std::optional<std::string> value_of(const std::vector<std::string>& words,
+                                    const std::string& option) {
+    for (std::size_t i = 0; i < words.size(); ++i) {
+        if (words[i] == option && i + 1 < words.size()) return words[i + 1];
+        if (words[i].starts_with(option + "=")) return words[i].substr(option.size() + 1);
+    }
+    return std::nullopt;
+}
+
+}  // namespace
+
+ViewText parse_view_text(const std::string& text) {
+    const std::vector<std::string> words = words_of(text);
+    std::optional<std::string> camera = value_of(words, "--camera");
+    if (!camera && words.size() == 1) camera = words.front();
+    if (!camera) throw UsageError("the pasted text contains no camera", "copy one with Ctrl+C");
+    ViewText view;
+    view.camera = parse_camera("pasted " + *camera, *camera);
+    if (const auto fov = value_of(words, "--fov"))
+        view.vertical_fov = parse_fov("pasted --fov " + *fov, *fov);
+    return view;
 }
 
 }  // namespace relief::tools

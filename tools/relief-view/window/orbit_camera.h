@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// The camera of the window: it looks at a point and is moved by hands. World space, y up; radians
-/// inside, degrees in text. No window and no OpenGL.
+/// The orbit camera of the window: mouse movement, framing, picking, and its form as command-line
+/// options. World space, y up; radians in code, degrees in text.
 /// Tests: tests/tools/window/orbit_camera_test.cpp.
 #pragma once
 
 #include <glm/glm.hpp>
+#include <optional>
 #include <string>
 
 #include "relief/shade/scene.h"
@@ -13,55 +14,86 @@
 
 namespace relief::tools {
 
+/// A camera that looks at a target.
 struct OrbitCamera {
     glm::vec3 target{0.0F};
-    float azimuth = 0.0F;    ///< From +z towards +x: from where it looks.
+    float azimuth = 0.0F;    ///< From +z towards +x, of the camera seen from the target.
     float elevation = 0.0F;  ///< Above the horizon, -90 to 90 degrees.
-    float distance = 1.0F;   ///< From the target, more than 0.
+    float distance = 1.0F;   ///< From the target; positive.
     float vertical_fov = 0.610865238F;
 };
 
-/// Where a model is, as a ball.
-struct Ball {
+/// The bounding sphere of a model.
+struct BoundingSphere {
     glm::vec3 center{0.0F};
-    float radius = 1.0F;  ///< At least a little.
+    float radius = 1.0F;  ///< Always positive.
 };
-Ball ball_around(const Bounds& bounds);
+BoundingSphere bounding_sphere(const Bounds& bounds);
 
-/// As the renderer takes it: near and far enclose the ball, and the near plane keeps a share of the
-/// far one, so that depth has a precision.
-Camera camera_of(const OrbitCamera& orbit, const Ball& ball);
+/// The camera for the renderer. The near and far planes enclose the sphere, and their ratio is
+/// limited to keep the depth precision.
+Camera camera_of(const OrbitCamera& orbit, const BoundingSphere& sphere);
 
-/// The same camera with a depth range for another ball.
-Camera seeing(Camera camera, const Ball& ball);
+/// The same camera with the near and far planes for another sphere.
+Camera with_depth_range(Camera camera, const BoundingSphere& sphere);
 
-/// As --camera AZIMUTH,ELEVATION@X,Y,Z,DISTANCE says it.
+/// The camera of --camera AZIMUTH,ELEVATION@X,Y,Z,DISTANCE.
 OrbitCamera orbit_of(const CameraOption& option, const CameraPlace& place, float vertical_fov);
 
-/// The orbit on which another camera looks, at the point nearest to the ball's centre.
-OrbitCamera orbit_of(const Camera& camera, const Ball& ball);
+/// The orbit of another camera, around the point of its axis that is nearest to the center of the
+/// sphere.
+OrbitCamera orbit_of(const Camera& camera, const BoundingSphere& sphere);
 
-/// Turns by a drag in pixels: to the right moves the eye to the left. A drag over the height of the
-/// view is half a turn; elevation stops at the poles.
+/// Orbits by a drag in pixels. A drag over the height of the view rotates by 180 degrees. The
+/// elevation is limited to the poles.
 void orbit_by(OrbitCamera& orbit, const glm::vec2& pixels, int view_height);
 
-/// Moves target and eye by a drag, so that what lies as far as the target stays under the pointer.
+/// Moves target and camera so that points at the distance of the target follow the pointer.
 void pan_by(OrbitCamera& orbit, const glm::vec2& pixels, int view_height);
 
-/// Comes nearer by `steps` of a tenth (or goes farther, where negative), and keeps what is under
-/// the pointer there.
+/// Zooms by steps of 10 %, in or (if negative) out. The point under the pointer stays.
 ///
-/// \param pointer  from the centre of the view, in halves of its height, y up
-void zoom_by(OrbitCamera& orbit, float steps, const glm::vec2& pointer, const Ball& ball);
+/// \param pointer  relative to the center of the view, in halves of its height, y up
+void zoom_by(OrbitCamera& orbit, float steps, const glm::vec2& pointer,
+             const BoundingSphere& sphere);
 
-/// As far away as shows all of the ball, looking at its centre.
-void fit(OrbitCamera& orbit, const Ball& ball, float aspect);
+/// Looks at the center of the sphere from the distance that shows all of it.
+void fit(OrbitCamera& orbit, const BoundingSphere& sphere, float aspect);
 
-/// "30,20@0,0.5,0,3.2": azimuth and elevation in degrees, target, distance; what --camera takes.
-/// Reading it back gives the same camera, bit for bit.
+/// For example "30,20@0,0.5,0,3.2": azimuth and elevation in degrees, target, distance.
+/// parse_camera() reads back the same bits.
 std::string to_text(const OrbitCamera& orbit);
 
-/// An angle with as many digits as --camera and --fov need to read it back, bit for bit.
+/// An angle in degrees, with enough digits to read back the same bits.
 std::string degrees_text(float radians);
+
+/// A ray; `direction` may have any positive length.
+struct Ray {
+    glm::vec3 origin{0.0F};
+    glm::vec3 direction{0.0F, 0.0F, -1.0F};
+};
+
+/// \param pointer  relative to the center of the view, in halves of its height, y up
+Ray ray_through(const Camera& camera, const glm::vec2& pointer);
+
+/// The nearest hit of a ray with a triangle, from either side. Transparent triangles count. All
+/// triangles are tested, which takes some milliseconds per million. Degenerate triangles and
+/// triangles with NaN are never hit.
+std::optional<glm::vec3> surface_hit(const Scene& scene, const Ray& ray);
+
+/// Moves the target to a point and keeps the direction. The distance becomes the depth of the
+/// point, so its size on the screen stays. Points behind the camera are ignored.
+void aim_at(OrbitCamera& orbit, const glm::vec3& point);
+
+/// A camera that was parsed from a command line.
+struct ViewText {
+    CameraOption camera;
+    std::optional<float> vertical_fov;
+};
+
+/// \param text  "--camera 30,20@0,0,0,3 --fov 35", which may contain other options, or only the
+///              value of --camera
+/// \throws UsageError if the text contains no valid camera
+ViewText parse_view_text(const std::string& text);
 
 }  // namespace relief::tools

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// What stands beside the picture: the scene, its lights and materials, the effects with their
-/// reasons. Each panel reads the state and edits it. Tests: tests/tools/window/window_test.cpp.
+/// The panels beside the picture, and the small ones among them: scene, environment, debug view and
+/// picture. Tests: tests/tools/window/user_interface_test.cpp.
 #pragma once
 
 #include <optional>
@@ -9,37 +9,36 @@
 #include "variant.h"
 #include "window/capture.h"
 #include "window/draw_thread.h"
-#include "window/effect_prices.h"
-#include "window/shader_panel.h"
+#include "window/effects_panel.h"
 #include "window/viewer_state.h"
-#include "window/window_layout.h"
+#include "window/window_system.h"
 
 namespace relief::tools {
 
 class Comparison;
 class SceneAccuracy;
 
-/// Everything drawn with Dear ImGui for one frame of the window.
+/// The data that the user interface shows in one frame, and the objects that it edits.
 struct PanelInput {
     ViewerState& state;
     WindowLayout& layout;
     const DrawnPicture& drawn;
     const std::string& renderer;
-    double loading_seconds = 0.0;  ///< 0: nothing is being read.
-    std::string loading;           ///< The file's name.
-    Progress::State progress;      ///< Of reading, else of preparing what is drawn next.
-    bool is_drawing = false;       ///< Else the picture is the newest, and nothing goes on.
+    double loading_seconds = 0.0;  ///< 0 if nothing is being read.
+    std::string loading;           ///< The name of the file that is being read.
+    Progress::State progress;      ///< Progress of reading, or else of preparing the next picture.
+    bool is_drawing = false;       ///< Otherwise the picture is up to date.
     CaptureSettings* capture = nullptr;
-    std::string captured;     ///< What was saved, in words.
-    std::string layout_note;  ///< What became of the layout that was remembered.
-    EffectPrices& prices;
+    std::string captured;     ///< A message about saved files.
+    std::string layout_note;  ///< A message about the saved layout.
+    EffectTimes& effect_times;
     ShaderPanel& shaders;
     Comparison* comparison = nullptr;
     SceneAccuracy* accuracy = nullptr;
 };
 
-/// What a panel asks the window to do.
-struct PanelWishes {
+/// The panels' requests to the window.
+struct PanelRequests {
     bool cancel_loading = false;
     bool save_picture = false;
     bool save_turn = false;
@@ -58,21 +57,21 @@ void draw_material_panel(const PanelInput& input);
 void draw_environment_panel(const PanelInput& input);
 void draw_picture_panel(const PanelInput& input);
 void draw_compare_panel(const PanelInput& input);
-void draw_capture_panel(const PanelInput& input, PanelWishes& wishes);
-void draw_effects_panel(const PanelInput& input, PanelWishes& wishes);
-void draw_accuracy_panel(const PanelInput& input, PanelWishes& wishes);
+void draw_capture_panel(const PanelInput& input, PanelRequests& requests);
+void draw_effects_panel(const PanelInput& input, PanelRequests& requests);
+void draw_accuracy_panel(const PanelInput& input, PanelRequests& requests);
 void draw_view_panel(const PanelInput& input);
 
-/// The headers of all panels, from the top.
+/// The panel headers from top to bottom.
 std::vector<std::string> panel_names();
 
-/// All of them in one column. \return its width in the window's units
-float draw_panels(const PanelInput& input, PanelWishes& wishes);
+/// Draws all panels in one column. \return its width in window units
+float draw_panels(const PanelInput& input, PanelRequests& requests);
 
-/// The line at the bottom: triangles, the frame's time, what is going on.
-void draw_status(const PanelInput& input, PanelWishes& wishes);
+/// Draws the status line at the bottom: triangles, frame time, current work.
+void draw_status(const PanelInput& input, PanelRequests& requests);
 
-/// The list of bindings, in the middle of the window.
+/// Draws the list of shortcuts in the center of the window.
 void draw_help(bool& is_open);
 
 }  // namespace relief::tools

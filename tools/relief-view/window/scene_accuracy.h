@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// What methods err and cost on the scene in the window: normals and tangents of its largest mesh,
-/// kernels for its height map. Measured when somebody asks, on a thread of its own; forgotten when
-/// another scene is read. A method that is chosen is computed on that thread too, and put into the
-/// scene; a scene read anew gets it again. Tests: tests/tools/window/scene_accuracy_test.cpp.
+/// Errors and times of methods for the scene in the window: normals and tangents of its largest
+/// mesh, and kernels for its height map. They are measured in the background on request, and
+/// discarded when another scene is read. The method that the user chooses is also computed in the
+/// background and applied to the scene. Tests: tests/tools/window/scene_accuracy_test.cpp.
 #pragma once
 
 #include <cstddef>
@@ -16,47 +16,48 @@
 #include <vector>
 
 #include "relief/accuracy/own.h"
-#include "variant_scene.h"
-#include "window/newest_job.h"
+#include "variant.h"
+#include "window/background_jobs.h"
 #include "window/viewer_state.h"
 
 namespace relief::tools {
 
-/// One thing that methods differ in.
+/// An experiment with its rows in the panel.
 struct AccuracyTopic {
     OwnExperiment own;
-    std::vector<std::size_t> rows;  ///< All measurements, the fastest first.
-    /// By measurement, what puts it to use; absent where the window cannot.
+    std::vector<std::size_t> rows;  ///< Indices of all measurements, the fastest first.
+    /// For each measurement, the variant that applies it, if there is one.
     std::vector<std::optional<Variant>> uses;
 };
 
-/// Of one scene.
-struct FoundAccuracy {
+/// The measurements of one scene.
+struct AccuracyResult {
     std::vector<AccuracyTopic> topics;
     std::string error;
-    std::optional<Kernel> kernel;  ///< kernel_shown(), where there is a height map.
+    std::optional<Kernel> kernel;  ///< displayed_kernel(), if there is a height map.
 };
 
 class SceneAccuracy {
   public:
-    /// \param wake  called, from another thread, when there is something new
+    /// \param wake  called from another thread when there is news
     explicit SceneAccuracy(const std::function<void()>& wake);
 
     void measure(const ViewerState& state);
     void stop() { measuring_.cancel(); }
 
-    /// Normals or tangents from now on.
+    /// Applies a method for normals or tangents.
     void use(const Variant& variant);
 
-    /// Takes what is there by now, and puts methods that were chosen into the state's scene.
+    /// Collects results, and applies the chosen methods to the state's scene. To be called once per
+    /// frame.
     void follow(ViewerState& state);
 
-    [[nodiscard]] const FoundAccuracy& found() const { return found_; }
-    [[nodiscard]] bool is_measuring() const { return measuring_.is_going_on(); }
-    [[nodiscard]] bool is_working() const { return is_measuring() || computing_.is_going_on(); }
+    [[nodiscard]] const AccuracyResult& result() const { return result_; }
+    [[nodiscard]] bool is_measuring() const { return measuring_.is_running(); }
+    [[nodiscard]] bool is_working() const { return is_measuring() || computing_.is_running(); }
     [[nodiscard]] Progress::State progress() const { return measuring_.progress(); }
 
-    /// Whether this is what the picture shows now: what was chosen, or the options' kernel.
+    /// Whether the picture uses this method.
     [[nodiscard]] bool is_used(const Variant& variant, const ViewOptions& options) const;
 
     [[nodiscard]] nlohmann::ordered_json json(const ViewOptions& options) const;
@@ -70,12 +71,13 @@ class SceneAccuracy {
 
     void begin_next(const ViewerState& state);
 
-    NewestJob<FoundAccuracy> measuring_;
+    NewestJob<AccuracyResult> measuring_;
     NewestJob<Computed> computing_;
-    FoundAccuracy found_;
-    std::uint64_t scene_ = 0;                ///< ViewerState::scenes() that all this is about.
-    std::map<std::size_t, Variant> chosen_;  ///< By kind: one for normals, one for tangents.
-    std::vector<Variant> waiting_;           ///< To be computed, one after the other.
+    AccuracyResult result_;
+    std::uint64_t scene_ = 0;  ///< ViewerState::scenes() of the results.
+    /// The chosen methods by the index of the variant type.
+    std::map<std::size_t, Variant> chosen_;
+    std::vector<Variant> waiting_;  ///< Methods that are still to be computed.
 };
 
 }  // namespace relief::tools

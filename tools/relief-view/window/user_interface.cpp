@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tests: tests/tools/window/window_test.cpp.
 #include "window/user_interface.h"
 
 #define GLFW_INCLUDE_NONE
@@ -13,21 +12,84 @@
 #include <string_view>
 #include <utility>
 
-#include "window/compare_view.h"
-#include "window/picking.h"
-#include "window/places.h"
+#include "window/comparison.h"
+#include "window/controls.h"
+#include "window/orbit_camera.h"
 
 namespace relief::tools {
 namespace {
 
+constexpr ImU32 line_color = IM_COL32(255, 255, 255, 255);
+constexpr ImU32 label_color = IM_COL32(255, 255, 255, 255);
+constexpr ImU32 label_back = IM_COL32(20, 22, 26, 200);
+constexpr float label_margin = 8.0F;
+constexpr float label_padding = 4.0F;
+
+ImVec2 vec(const glm::vec2& v) {
+    return {v.x, v.y};
+}
+
+/// Draws a range of columns of a picture, as fractions of the width.
+void draw_part(unsigned texture, const ViewPlace& place, float from, float to) {
+    if (!(from < to)) return;
+    const float width = place.max.x - place.min.x;
+    // Row 0 of the texture is at the bottom.
+    ImGui::GetBackgroundDrawList()->AddImage(
+        reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(texture)),
+        {place.min.x + from * width, place.min.y}, {place.min.x + to * width, place.max.y},
+        {from, 1.0F}, {to, 0.0F});
+}
+
+/// \param align  0: `place` is the left end; 1: `place` is the right end
+void draw_label(const std::string& text, const glm::vec2& place, float align) {
+    ImDrawList& list = *ImGui::GetBackgroundDrawList();
+    const ImVec2 size = ImGui::CalcTextSize(text.c_str());
+    const glm::vec2 min(std::round(place.x - align * size.x), place.y);
+    const glm::vec2 max = min + glm::vec2(size.x, size.y);
+    list.AddRectFilled(vec(min - label_padding), vec(max + label_padding), label_back);
+    list.AddText(vec(min), label_color, text.c_str());
+}
+
+void draw_picture(const Handover::Shown& picture, const ViewPlace& place) {
+    draw_part(picture.texture, place, 0.0F, 1.0F);
+}
+
+float draw_sides(const Handover::Shown& picture, const ViewPlace& place,
+                 const Comparison& comparison) {
+    const float width = place.max.x - place.min.x;
+    // The line is on a whole pixel, so that both textures are sampled at texel centers.
+    const float x = std::round(place.min.x + comparison.split() * width);
+    const float split = (x - place.min.x) / width;
+    const bool swapped = comparison.is_swapped();
+    draw_part(swapped ? picture.beside : picture.texture, place, 0.0F, split);
+    draw_part(swapped ? picture.texture : picture.beside, place, split, 1.0F);
+    ImDrawList& list = *ImGui::GetBackgroundDrawList();
+    list.AddRectFilled({x - 1.0F, place.min.y}, {x + 1.0F, place.max.y}, line_color);
+    draw_label(comparison.left_label(), {x - 2.0F * label_margin, place.min.y + label_margin},
+               1.0F);
+    draw_label(comparison.right_label(), {x + 2.0F * label_margin, place.min.y + label_margin},
+               0.0F);
+    return x;
+}
+
+void draw_difference(const Handover::Shown& picture, const ViewPlace& place,
+                     const Comparison& comparison) {
+    draw_picture(picture, place);
+    const std::string kind = comparison.shown() == ComparisonView::flip
+                                 ? "perceived difference (FLIP)"
+                                 : "largest channel difference";
+    draw_label(kind + ": " + comparison.left_label() + " | " + comparison.right_label(),
+               place.min + label_margin + label_padding, 0.0F);
+}
+
 constexpr ImU32 backdrop = IM_COL32(24, 26, 30, 255);
 constexpr double double_click_seconds = 0.35;
-constexpr float double_click_reach = 6.0F;  // In the window's units.
-constexpr float line_reach = 6.0F;          // Of the line between two pictures.
-constexpr float drag_zoom = 0.02F;          // Steps of the wheel for each pixel of a right drag.
-constexpr float wheel_pan = 40.0F;          // The window's units for each step of the wheel.
+constexpr float double_click_reach = 6.0F;  // In window units.
+constexpr float line_reach = 6.0F;          // For the line between two pictures.
+constexpr float drag_zoom = 0.02F;          // Wheel steps per pixel of a right drag.
+constexpr float wheel_pan = 40.0F;          // Window units per wheel step.
 
-/// GLFW's code of a key by its name.
+/// The GLFW code of a key name.
 int key_code(std::string_view name) {
     static constexpr std::array<std::pair<std::string_view, int>, 8> named{{
         {"Left", GLFW_KEY_LEFT},
@@ -45,7 +107,7 @@ int key_code(std::string_view name) {
     return name.empty() ? GLFW_KEY_UNKNOWN : static_cast<int>(name.back());
 }
 
-/// Whether a key with these modifiers is the one that a binding names.
+/// Whether a shortcut names this key with these modifiers.
 bool is_named(std::string_view name, int key, int modifiers) {
     constexpr std::string_view control = "Ctrl+";
     const bool needs_control = name.substr(0, control.size()) == control;
@@ -54,14 +116,14 @@ bool is_named(std::string_view name, int key, int modifiers) {
     return has_control == needs_control && key == key_code(name);
 }
 
-/// Whom an event is for.
+/// The user interface of a window.
 UserInterface& interface_of(GLFWwindow* window) {
     auto& interface = *static_cast<UserInterface*>(glfwGetWindowUserPointer(window));
     interface.on_input();
     return interface;
 }
 
-/// Dear ImGui's own callbacks come after these, and call them.
+/// Dear ImGui installs its own callbacks later, which call these.
 void install_callbacks(GLFWwindow* window) {
     glfwSetDropCallback(window, [](GLFWwindow* where, int count, const char** names) {
         for (int i = 0; i < count; ++i)
@@ -84,13 +146,13 @@ void install_callbacks(GLFWwindow* window) {
     });
 }
 
-/// Whether a key that is held down does it on and on.
+/// Whether the action repeats while its key is held.
 bool is_repeating(Action action) {
     switch (action) {
-        case Action::narrower:
-        case Action::wider:
-        case Action::nearer:
-        case Action::farther:
+        case Action::narrow_fov:
+        case Action::widen_fov:
+        case Action::zoom_in:
+        case Action::zoom_out:
         case Action::orbit_left:
         case Action::orbit_right:
         case Action::orbit_up:
@@ -124,7 +186,7 @@ UserInterface::~UserInterface() {
     ImGui::DestroyContext();
 }
 
-/// Letters are drawn anew, in pixels; everything else in the window's units.
+/// Glyphs are rasterized again in pixels. Other sizes are in window units.
 void UserInterface::apply_scale() {
     if (scale_ == wanted_scale_) return;
     scale_ = wanted_scale_;
@@ -154,9 +216,9 @@ std::optional<glm::ivec2> UserInterface::pointer() {
 
 void UserInterface::on_key(int key, int modifiers, bool is_held) {
     if (is_typing()) return;
-    for (const Binding& binding : bindings()) {
-        if (is_named(binding.key, key, modifiers) && (!is_held || is_repeating(binding.action)))
-            pressed_.push_back(binding.action);
+    for (const Shortcut& shortcut : shortcuts()) {
+        if (is_named(shortcut.key, key, modifiers) && (!is_held || is_repeating(shortcut.action)))
+            pressed_.push_back(shortcut.action);
     }
 }
 
@@ -172,7 +234,7 @@ bool UserInterface::is_on_line() const {
     return line_ && std::abs(pointer_.x - *line_) <= line_reach;
 }
 
-/// A second click soon after the first and near it; a third one is a first one again.
+/// Detects double clicks. A third click counts as a first one.
 bool UserInterface::is_second_click() {
     const double now = glfwGetTime();
     const bool is_second = now - clicked_at_ < double_click_seconds &&
@@ -206,7 +268,7 @@ void UserInterface::on_move(const glm::vec2& place) {
     if (drag_ != Drag::none) moves_.push_back({drag_, moved, 0.0F, place});
 }
 
-/// Two fingers zoom; with Shift they take the model along, as a drag with Shift does.
+/// The wheel zooms. With Shift it pans.
 void UserInterface::on_wheel(const glm::vec2& steps, bool has_shift) {
     if (!is_on_picture()) return;
     if (has_shift) {
@@ -216,7 +278,7 @@ void UserInterface::on_wheel(const glm::vec2& steps, bool has_shift) {
     }
 }
 
-/// From the centre of the view, in halves of its height, y up.
+/// The position relative to the center of the view, in halves of its height, y up.
 glm::vec2 UserInterface::on_view(const glm::vec2& place, const ViewerState& state) const {
     const ImGuiIO& io = ImGui::GetIO();
     const glm::vec2 middle(0.5F * (left_ + io.DisplaySize.x), 0.5F * (io.DisplaySize.y - bottom_));
@@ -236,10 +298,10 @@ void UserInterface::apply(const Move& move, ViewerState& state) const {
     if (move.drag == Drag::aim) return state.aim(on_view(move.place, state));
     const bool is_drag = move.drag == Drag::zoom;
     const glm::vec2 pointer = is_drag ? glm::vec2(0.0F) : on_view(move.place, state);
-    zoom_by(state.camera(), is_drag ? -drag_zoom * moved.y : move.steps, pointer, state.ball());
+    zoom_by(state.camera(), is_drag ? -drag_zoom * moved.y : move.steps, pointer, state.sphere());
 }
 
-/// The picture, or two of them, or their difference.
+/// Draws one picture, two pictures, or their difference.
 void UserInterface::draw_view(const PanelInput& input, const Handover::Shown& picture,
                               const ViewPlace& place) {
     line_.reset();
@@ -260,7 +322,7 @@ UserInterface::Events UserInterface::draw(const PanelInput& input, const Handove
     apply_scale();
     ImGui_ImplGlfw_NewFrame();
     ImGui::NewFrame();
-    forget_places();
+    clear_ui_probe();
     Events events;
     events.dropped = std::exchange(dropped_, {});
     events.has_input = std::exchange(has_input_, false);
@@ -273,7 +335,7 @@ UserInterface::Events UserInterface::draw(const PanelInput& input, const Handove
     const glm::vec2 size(io.DisplaySize.x - left_, io.DisplaySize.y - bottom_);
     const glm::vec2 pixels = size * vec(io.DisplayFramebufferScale);
     input.state.set_view(glm::ivec2(glm::max(pixels, glm::vec2(1.0F))));
-    // Under the picture, which may be transparent, and instead of it; nothing else clears.
+    // The background of transparent pictures; nothing else clears the window.
     ImGui::GetBackgroundDrawList()->AddRectFilled({0.0F, 0.0F}, io.DisplaySize, backdrop);
     draw_view(input, picture, {{left_, 0.0F}, {io.DisplaySize.x, io.DisplaySize.y - bottom_}});
     for (const Move& move : std::exchange(moves_, {})) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Dear ImGui in a window, and hands on the picture behind it: drags, wheel, keys, dropped files.
-/// Tests: tests/tools/window/window_test.cpp.
+/// The user interface: Dear ImGui, mouse gestures, keys, dropped files, and the picture behind the
+/// panels. Tests: tests/tools/window/window_test.cpp.
 #pragma once
 
 #include <filesystem>
@@ -9,12 +9,16 @@
 #include <optional>
 #include <vector>
 
-#include "window/compare_view.h"
-#include "window/interface_scale.h"
 #include "window/panels.h"
 #include "window/window_system.h"
 
 namespace relief::tools {
+
+/// The rectangle of the view, in the units of the user interface.
+struct ViewPlace {
+    glm::vec2 min{0.0F};
+    glm::vec2 max{0.0F};
+};
 
 class UserInterface {
   public:
@@ -23,30 +27,30 @@ class UserInterface {
     UserInterface(const UserInterface&) = delete;
     UserInterface& operator=(const UserInterface&) = delete;
 
-    /// What came in since the last frame, beside what went into the state.
+    /// Events since the last frame that the window handles.
     struct Events {
-        std::vector<Action> actions;  ///< In the order of their keys.
+        std::vector<Action> actions;  ///< In the order of the key presses.
         std::vector<std::filesystem::path> dropped;
-        PanelWishes panels;
-        bool has_input = false;  ///< A key, the mouse or a drop: Dear ImGui needs frames to react.
+        PanelRequests panels;
+        bool has_input = false;  ///< A key, the mouse or a drop. Dear ImGui then needs more frames.
     };
 
-    /// One frame: panels, picture, hands. The view's size goes into the state.
+    /// Draws one frame with panels and picture, and applies mouse gestures to the state.
     Events draw(const PanelInput& input, const Handover::Shown& picture);
 
     void show_help() { is_help_open_ = !is_help_open_; }
     [[nodiscard]] bool is_help_open() const { return is_help_open_; }
 
-    /// Keys go into a field, and do nothing else.
+    /// Whether a text field has the keyboard focus.
     [[nodiscard]] static bool is_typing();
-    /// Where the pointer is, in pixels of the window; none if it is outside or unknown.
+    /// The pointer position in pixels, if the pointer is inside the window.
     [[nodiscard]] static std::optional<glm::ivec2> pointer();
 
-    /// Letters and panels become so large before the next frame.
-    void set_scale(const InterfaceScale& scale) { wanted_scale_ = scale; }
-    [[nodiscard]] const InterfaceScale& scale() const { return scale_; }
+    /// Sets the scale for the next frame.
+    void set_scale(const UiScale& scale) { wanted_scale_ = scale; }
+    [[nodiscard]] const UiScale& scale() const { return scale_; }
 
-    // From GLFW, as it happens: two events between frames are still two.
+    // GLFW callbacks. Several events may arrive between two frames.
     void on_key(int key, int modifiers, bool is_held);
     void on_button(int button, bool is_down, int modifiers);
     void on_move(const glm::vec2& place);
@@ -57,9 +61,9 @@ class UserInterface {
   private:
     enum class Drag { none, orbit, pan, zoom, lights, aim, line };
 
-    /// What hands did to the picture, in pixels.
+    /// A mouse gesture on the picture, in pixels.
     struct Move {
-        Drag drag = Drag::none;  ///< None: the wheel; aim: a double click.
+        Drag drag = Drag::none;  ///< none: wheel; aim: double click.
         glm::vec2 pixels{0.0F};
         float steps = 0.0F;
         glm::vec2 place{0.0F};
@@ -79,15 +83,15 @@ class UserInterface {
     std::vector<Action> pressed_;
     std::vector<Move> moves_;
     Drag drag_ = Drag::none;
-    glm::vec2 pointer_{0.0F};   ///< In the window's units.
-    glm::vec2 clicked_{-1e6F};  ///< Where and when a button last went down.
+    glm::vec2 pointer_{0.0F};   ///< In window units.
+    glm::vec2 clicked_{-1e6F};  ///< Position of the last click.
     double clicked_at_ = -1e9;
     bool is_help_open_ = false;
-    InterfaceScale scale_{.layout = 0.0F, .glyphs = 0.0F};  ///< None yet.
-    InterfaceScale wanted_scale_;
-    std::optional<float> line_;  ///< Between two pictures; in the interface's units.
-    float left_ = 0.0F;          ///< Of the picture, in the interface's units.
-    float bottom_ = 0.0F;        ///< What is below it.
+    UiScale scale_{.layout = 0.0F, .glyphs = 0.0F};  ///< Not set yet.
+    UiScale wanted_scale_;
+    std::optional<float> line_;  ///< The x of the line between two pictures, in interface units.
+    float left_ = 0.0F;          ///< Left edge of the picture, in interface units.
+    float bottom_ = 0.0F;        ///< Height of the area below the picture.
 };
 
 }  // namespace relief::tools

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tests: tests/tools/window/viewer_state_test.cpp.
 #include "window/viewer_state.h"
 
 #include <fmt/format.h>
@@ -11,18 +10,60 @@
 #include <utility>
 
 #include "debug_options.h"
-#include "environment_options.h"
+#include "scene_options.h"
 #include "window/draw_thread.h"
-#include "window/material_models.h"
-#include "window/pasted_view.h"
-#include "window/picking.h"
+#include "window/material_panel.h"
+#include "window/orbit_camera.h"
 
 namespace relief::tools {
+
+SceneTree tree_of(const SceneGraph& graph) {
+    SceneTree tree;
+    for (std::size_t i = 0; i < graph.nodes.size(); ++i) {
+        const std::string& name = graph.nodes[i].name;
+        tree.nodes.emplace_back().name = name.empty() ? fmt::format("node {}", i) : name;
+    }
+    const auto node_of = [&](std::optional<std::size_t> node) -> TreeNode& {
+        return node ? tree.nodes.at(*node) : tree.world;
+    };
+    for (std::size_t i = 0; i < graph.nodes.size(); ++i)
+        node_of(graph.nodes[i].parent).children.push_back(i);
+    // The list may be shorter than the objects. The others belong to the world.
+    const auto holder = [&](const std::vector<Carried>& carried, std::size_t i) -> TreeNode& {
+        return node_of(i < carried.size() ? carried[i].node : std::nullopt);
+    };
+    for (std::size_t i = 0; i < graph.scene.instances.size(); ++i)
+        holder(graph.instances, i).instances.push_back(i);
+    const auto hang = [&](const std::vector<Carried>& carried, std::size_t count,
+                          const char* kind) {
+        for (std::size_t i = 0; i < count; ++i)
+            holder(carried, i).carried.push_back(fmt::format("{} light {}", kind, i + 1));
+    };
+    const Scene& scene = graph.scene;
+    hang(graph.directional_lights, scene.directional_lights.size(), "directional");
+    hang(graph.point_lights, scene.point_lights.size(), "point");
+    hang(graph.spot_lights, scene.spot_lights.size(), "spot");
+    if (scene.camera) node_of(graph.camera.node).carried.emplace_back("camera");
+    return tree;
+}
+
+std::vector<std::size_t> instances_below(const SceneTree& tree, const TreeNode& node) {
+    std::vector<std::size_t> all = node.instances;
+    std::vector<std::size_t> open = node.children;
+    while (!open.empty()) {
+        const TreeNode& next = tree.nodes[open.back()];
+        open.pop_back();
+        all.insert(all.end(), next.instances.begin(), next.instances.end());
+        open.insert(open.end(), next.children.begin(), next.children.end());
+    }
+    return all;
+}
+
 namespace {
 
 constexpr float quarter = 0.5F * std::numbers::pi_v<float>;
 constexpr float key_turn = quarter / 18.0F;  // 5 degrees.
-constexpr float turntable_speed = 0.5F;      // Radians a second.
+constexpr float turntable_speed = 0.5F;      // Radians per second.
 constexpr float fov_step = 1.1F;
 
 float changed_fov(float fov, float factor) {
@@ -32,13 +73,13 @@ float changed_fov(float fov, float factor) {
 }  // namespace
 
 ViewerState::ViewerState(ViewOptions options)
-    : options_(std::move(options)), effects_(options_.effects.wishes) {}
+    : options_(std::move(options)), effects_(options_.effects.requests) {}
 
 void ViewerState::take(Loaded loaded) {
     error_ = loaded.error;
     if (!loaded.composed) return;
     const bool is_new = loaded.options.model != shown_model_;
-    const DebugChoices debug = options_.debug;  // Stays as it is now.
+    const DebugChoices debug = options_.debug;  // The window's debug settings stay.
     options_ = std::move(loaded.options);
     options_.debug = debug;
     shown_model_ = options_.model;
@@ -49,24 +90,24 @@ void ViewerState::take(Loaded loaded) {
     auto scene = std::make_shared<Scene>(std::move(loaded.composed->scene()));
     if (has_named_default_) relief::name_default_material(*scene);
     auto read = std::make_shared<const Scene>(*scene);
-    kept_ = scene_ ? keep_edits(*read_, *scene_, *scene) : KeptEdits{};
-    notes_.insert(notes_.end(), kept_.lost.begin(), kept_.lost.end());
+    rebased_ = scene_ ? rebase_edits(*read_, *scene_, *scene) : RebasedEdits{};
+    notes_.insert(notes_.end(), rebased_.lost.begin(), rebased_.lost.end());
     if (is_new || hidden_.size() != scene->instances.size())
         hidden_.assign(scene->instances.size(), false);
     replace(std::move(scene));
-    lamps_.meet(*scene_);
+    light_rows_.update(*scene_);
     read_ = std::move(read);
     edit_error_.clear();
     ++scenes_;
-    ball_ = ball_around(world_bounds(*scene_));
+    sphere_ = bounding_sphere(world_bounds(*scene_));
     mark_health();
     if (!is_new) return;
     const std::optional<CameraOption>& view = options_.camera;
     camera_ = view && view->place ? orbit_of(*view, *view->place, camera.vertical_fov)
-                                  : orbit_of(camera, ball_);
+                                  : orbit_of(camera, sphere_);
 }
 
-/// Another scene, or the same one edited.
+/// Replaces the scene, and updates the scene without hidden instances.
 void ViewerState::replace(std::shared_ptr<const Scene> scene) {
     scene_ = std::move(scene);
     shown_ = scene_;
@@ -117,12 +158,12 @@ void ViewerState::set_environment(const std::filesystem::path& file) {
     });
 }
 
-std::vector<LampRow> ViewerState::lamps() const {
-    return scene_ ? lamps_.rows(*scene_) : std::vector<LampRow>();
+std::vector<LightRow> ViewerState::light_rows() const {
+    return scene_ ? light_rows_.rows(*scene_) : std::vector<LightRow>();
 }
 
-void ViewerState::set_lamps(std::vector<LampRow> rows) {
-    edit([&](Scene& scene) { lamps_.set(scene, std::move(rows)); });
+void ViewerState::set_light_rows(std::vector<LightRow> rows) {
+    edit([&](Scene& scene) { light_rows_.set(scene, std::move(rows)); });
 }
 
 void ViewerState::orbit_lights(const glm::vec2& pixels) {
@@ -132,25 +173,25 @@ void ViewerState::orbit_lights(const glm::vec2& pixels) {
     glm::mat4 rotation = glm::rotate(glm::mat4(1.0F), unit * pixels.y, right);
     rotation = glm::rotate(rotation, unit * pixels.x, {0.0F, 1.0F, 0.0F});
     edit([&](Scene& scene) {
-        std::vector<Lamp> lamps = lamps_of(scene);
-        for (Lamp& lamp : lamps)
-            tools::turn(lamp, glm::mat3(rotation), ball_.center);
-        tools::set_lamps(scene, lamps);
+        std::vector<AnyLight> lights = lights_of(scene);
+        for (AnyLight& light : lights)
+            tools::turn(light, glm::mat3(rotation), sphere_.center);
+        tools::set_lights(scene, lights);
     });
 }
 
 void ViewerState::aim(const glm::vec2& pointer) {
     if (!scene_) return;
-    const Ray ray = ray_through(camera_of(camera_, ball_), pointer);
-    if (const std::optional<glm::vec3> point = surface_on(*shown_, ray)) aim_at(camera_, *point);
+    const Ray ray = ray_through(camera_of(camera_, sphere_), pointer);
+    if (const std::optional<glm::vec3> point = surface_hit(*shown_, ray)) aim_at(camera_, *point);
 }
 
-void ViewerState::look_as(const std::string& text) {
+void ViewerState::apply_view_text(const std::string& text) {
     error_.clear();
     try {
-        const PastedView view = pasted_view(text);
+        const ViewText view = parse_view_text(text);
         const float fov = view.vertical_fov.value_or(camera_.vertical_fov);
-        // Without a place, it is the same one from another side.
+        // Without a target, only the direction changes.
         const CameraPlace place =
             view.camera.place.value_or(CameraPlace{camera_.target, camera_.distance});
         camera_ = orbit_of(view.camera, place, fov);
@@ -166,15 +207,15 @@ void ViewerState::set_effects(EffectWishes effects) {
 
 void ViewerState::mark_health() {
     markers_ = {};
-    wishes_health_ = scene_ != nullptr;
+    has_health_request_ = scene_ != nullptr;
 }
 
-std::optional<HealthWish> ViewerState::take_health_wish() {
-    if (!std::exchange(wishes_health_, false)) return std::nullopt;
-    return HealthWish{scene_, options_.debug.health_markers};
+std::optional<HealthRequest> ViewerState::take_health_request() {
+    if (!std::exchange(has_health_request_, false)) return std::nullopt;
+    return HealthRequest{scene_, options_.debug.health_markers};
 }
 
-void ViewerState::take(FoundHealth found) {
+void ViewerState::take(HealthResult found) {
     if (!found.error.empty()) error_ = found.error;
     markers_ = std::move(found.markers);
     ++revision_;
@@ -196,7 +237,7 @@ void ViewerState::act_on_debug(Action action) {
     };
     if (action == Action::next_view) turn(1);
     if (action == Action::previous_view) turn(count - 1);
-    if (action == Action::plain_view) choices = {};
+    if (action == Action::picture_view) choices = {};
     if (action == Action::wireframe) choices.wireframe = !choices.wireframe;
     if (action == Action::vertex_frames) choices.vertex_frames = !choices.vertex_frames;
     if (action == Action::health_markers) {
@@ -217,7 +258,7 @@ void ViewerState::act(Action action) {
         view_.y > 0 ? static_cast<float>(view_.x) / static_cast<float>(view_.y) : 1.0F;
     switch (action) {
         case Action::fit:
-            return fit(camera_, ball_, aspect);
+            return fit(camera_, sphere_, aspect);
         case Action::front:
             return look_from(0.0F, 0.0F);
         case Action::back:
@@ -230,19 +271,19 @@ void ViewerState::act(Action action) {
             return look_from(0.0F, quarter);
         case Action::bottom:
             return look_from(0.0F, -quarter);
-        case Action::narrower:
+        case Action::narrow_fov:
             camera_.vertical_fov = changed_fov(camera_.vertical_fov, 1.0F / fov_step);
             return;
-        case Action::wider:
+        case Action::widen_fov:
             camera_.vertical_fov = changed_fov(camera_.vertical_fov, fov_step);
             return;
         case Action::turntable:
             is_turning_ = !is_turning_;
             return;
-        case Action::nearer:
-            return zoom_by(camera_, 1.0F, glm::vec2(0.0F), ball_);
-        case Action::farther:
-            return zoom_by(camera_, -1.0F, glm::vec2(0.0F), ball_);
+        case Action::zoom_in:
+            return zoom_by(camera_, 1.0F, glm::vec2(0.0F), sphere_);
+        case Action::zoom_out:
+            return zoom_by(camera_, -1.0F, glm::vec2(0.0F), sphere_);
         case Action::orbit_left:
             return look_from(camera_.azimuth - key_turn, camera_.elevation);
         case Action::orbit_right:
@@ -253,13 +294,13 @@ void ViewerState::act(Action action) {
             return look_from(camera_.azimuth, std::max(camera_.elevation - key_turn, -quarter));
         case Action::next_view:
         case Action::previous_view:
-        case Action::plain_view:
+        case Action::picture_view:
         case Action::wireframe:
         case Action::vertex_frames:
         case Action::health_markers:
             return act_on_debug(action);
         default:
-            return;  // The window's own.
+            return;  // The window handles the other actions.
     }
 }
 
@@ -267,27 +308,28 @@ void ViewerState::set_view(const glm::ivec2& pixels) {
     view_ = pixels;
 }
 
-bool ViewerState::pass(double seconds) {
-    if (lamps_.is_moving()) edit([&](Scene& scene) { lamps_.pass(scene, seconds, ball_.center); });
-    if (!is_turning_) return lamps_.is_moving();
+bool ViewerState::advance(double seconds) {
+    if (light_rows_.is_moving())
+        edit([&](Scene& scene) { light_rows_.advance(scene, seconds, sphere_.center); });
+    if (!is_turning_) return light_rows_.is_moving();
     camera_.azimuth = std::remainder(
         camera_.azimuth - turntable_speed * static_cast<float>(seconds), 4.0F * quarter);
     return true;
 }
 
-std::optional<DrawWish> ViewerState::wish() const {
+std::optional<DrawRequest> ViewerState::request() const {
     if (!scene_ || view_.x <= 0 || view_.y <= 0) return std::nullopt;
-    DrawWish wish;
-    wish.scene = shown_;
-    wish.revision = revision_;
-    wish.effects = effects_;
-    wish.settings.width = view_.x;
-    wish.settings.height = view_.y;
-    wish.settings.samples = options_.samples;
-    wish.settings.view = options_.debug.view;
-    wish.settings.overlays = overlays_of(options_.debug, markers_);
-    wish.camera = camera_of(camera_, ball_);
-    return wish;
+    DrawRequest request;
+    request.scene = shown_;
+    request.revision = revision_;
+    request.effects = effects_;
+    request.settings.width = view_.x;
+    request.settings.height = view_.y;
+    request.settings.samples = options_.samples;
+    request.settings.view = options_.debug.view;
+    request.settings.overlays = overlays_of(options_.debug, markers_);
+    request.camera = camera_of(camera_, sphere_);
+    return request;
 }
 
 std::string ViewerState::command_line() const {
@@ -311,7 +353,7 @@ nlohmann::ordered_json ViewerState::json(const DrawnPicture& drawn) const {
                                     {"overlays", overlays_json(options_.debug, markers_)},
                                     {"turntable", is_turning_},
                                     {"scenes", scenes_},
-                                    {"edits", {{"kept", kept_.kept}, {"lost", kept_.lost}}},
+                                    {"edits", {{"kept", rebased_.kept}, {"lost", rebased_.lost}}},
                                     {"revision", revision_},
                                     {"drawn",
                                      {{"revision", drawn.revision},
@@ -330,9 +372,9 @@ nlohmann::ordered_json ViewerState::json(const DrawnPicture& drawn) const {
         lights.push_back(numbers(light.direction_world));
     state["directional_lights"] = lights;
     state["lights"] = nlohmann::json::array();
-    for (const LampRow& row : lamps()) {
+    for (const LightRow& row : light_rows()) {
         state["lights"].push_back(
-            {{"kind", name_of(kind_of(row.lamp))}, {"speed", glm::degrees(row.speed)}});
+            {{"kind", name_of(kind_of(row.light))}, {"speed", glm::degrees(row.speed)}});
     }
     if (drawn.plan) state["effects"] = effects_in(*drawn.plan);
     return state;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// What the window shows, as plain data, and what actions do to it. Neither a window nor OpenGL.
-/// Tests: tests/tools/window/viewer_state_test.cpp.
+/// The state of the window as plain data, and the actions that change it. It uses neither a window
+/// nor OpenGL. Tests: tests/tools/window/viewer_state_test.cpp.
 #pragma once
 
 #include <cstdint>
@@ -9,23 +9,43 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "relief/shade/effect_forcing.h"
 #include "relief/shade/health_markers.h"
+#include "relief/shade/scene_graph.h"
 #include "scene_options.h"
-#include "window/bindings.h"
-#include "window/health_search.h"
-#include "window/kept_edits.h"
-#include "window/lamp_rows.h"
-#include "window/loader.h"
+#include "window/background_jobs.h"
+#include "window/edit_rebase.h"
+#include "window/light_panel.h"
 #include "window/orbit_camera.h"
-#include "window/scene_tree.h"
+#include "window/shortcuts.h"
 
 namespace relief::tools {
 
-struct DrawWish;
+/// A node of the scene, or the world.
+struct TreeNode {
+    std::string name;  ///< "node 3" if the node has no name.
+    std::vector<std::size_t> instances;
+    /// Names of cameras and lights, for example "point light 2".
+    std::vector<std::string> carried;
+    std::vector<std::size_t> children;  ///< Indices into SceneTree::nodes.
+};
+
+/// The nodes of a graph in their order.
+struct SceneTree {
+    std::vector<TreeNode> nodes;
+    TreeNode world;  ///< Objects without a node.
+};
+SceneTree tree_of(const SceneGraph& graph);
+
+/// All instances of a node and the nodes below it.
+std::vector<std::size_t> instances_below(const SceneTree& tree, const TreeNode& node);
+
+struct DrawRequest;
 struct DrawnPicture;
 
+/// The scene, the camera and the options that the window shows.
 class ViewerState {
   public:
     explicit ViewerState(ViewOptions options);
@@ -34,21 +54,21 @@ class ViewerState {
     [[nodiscard]] bool has_scene() const { return scene_ != nullptr; }
     [[nodiscard]] const Scene& scene() const { return *scene_; }
     [[nodiscard]] std::shared_ptr<const Scene> shared_scene() const { return scene_; }
-    /// How many were read so far.
+    /// The number of scenes that were read.
     [[nodiscard]] std::uint64_t scenes() const { return scenes_; }
     [[nodiscard]] const std::vector<std::string>& notes() const { return notes_; }
     [[nodiscard]] const Report& findings() const { return findings_; }
     [[nodiscard]] const std::string& error() const { return error_.empty() ? edit_error_ : error_; }
 
-    /// Takes over what was read, and puts the edits of the scene before it on that (kept_edits.h).
-    /// The first scene, and one of another model, is shown whole; the same model read again keeps
-    /// the view. An error leaves the scene as it was.
+    /// Takes over a scene that was read, and rebases the edits of the previous scene
+    /// (edit_rebase.h). The camera is reset if the model is another one. After an error, the scene
+    /// stays.
     void take(Loaded loaded);
 
-    /// Images that the scene names have changed: it is to be drawn anew.
+    /// Draws the scene again, because its images have changed.
     void refresh() { ++revision_; }
 
-    /// Changes lights, materials and whatever else a scene has; copies share its meshes.
+    /// Changes the scene. Copies of a scene share its meshes.
     template <typename Edit>
     void edit(const Edit& change) {
         if (!scene_) return;
@@ -57,8 +77,8 @@ class ViewerState {
         replace(std::move(edited));
     }
 
-    /// The same for what may fail: then nothing changes, and error() says why until something
-    /// succeeds.
+    /// Changes the scene, unless an exception is thrown. Then error() returns its message until an
+    /// edit succeeds.
     template <typename Edit>
     void try_edit(const Edit& change) {
         try {
@@ -69,64 +89,65 @@ class ViewerState {
         }
     }
 
-    /// Lamps beside what the window knows of them.
-    [[nodiscard]] std::vector<LampRow> lamps() const;
-    void set_lamps(std::vector<LampRow> rows);
+    /// The lights with the data that only the window stores.
+    [[nodiscard]] std::vector<LightRow> light_rows() const;
+    void set_light_rows(std::vector<LightRow> rows);
 
-    /// Gives the default material a place in the list, so that it can be edited, and in scenes that
-    /// are read later.
+    /// Adds the default material to the list of materials, so that it can be edited. This also
+    /// applies to scenes that are read later.
     void name_default_material();
 
-    /// Surroundings from an image or a folder with six, also for what is read later; an error as
-    /// with try_edit. What was chosen of the surroundings before stays; else they shed light where
-    /// a material is metallic-roughness, as --environment does.
+    /// Sets the environment to an image or a folder with six images, also for scenes that are read
+    /// later. Errors are reported as by try_edit(). Intensity, skybox and lighting of a previous
+    /// environment stay; otherwise the environment lights the scene if a material is
+    /// metallic-roughness.
     void set_environment(const std::filesystem::path& file);
 
-    /// What hangs on what, as the file has it.
+    /// The node hierarchy of the file.
     [[nodiscard]] const SceneTree& tree() const { return tree_; }
-    /// Instances that are not drawn, though the scene has them.
+    /// Hidden instances are not drawn, but stay in the scene.
     [[nodiscard]] bool is_shown(std::size_t instance) const { return !hidden_[instance]; }
     void show(const std::vector<std::size_t>& instances, bool are_shown);
 
-    /// Turns the lights about the world's y and the view's right-hand side.
+    /// Rotates the lights about the world's y axis and the camera's right axis.
     void orbit_lights(const glm::vec2& pixels);
 
-    /// The surface there becomes what the camera goes round; where there is none, nothing happens.
-    /// \param pointer  from the centre of the view, in halves of its height, y up
+    /// Makes the surface under the pointer the target of the camera, if there is one.
+    /// \param pointer  relative to the center of the view, in halves of its height, y up
     void aim(const glm::vec2& pointer);
 
-    /// Takes over a view that was copied as text; what is no such text is an error.
-    void look_as(const std::string& text);
+    /// Applies the camera of a command line. If the text contains none, error() reports it.
+    void apply_view_text(const std::string& text);
 
     void set_effects(EffectWishes effects);
     [[nodiscard]] const EffectWishes& effects() const { return effects_; }
 
-    /// Debug view and overlays.
+    /// Sets the debug view and the overlays.
     void set_debug(const DebugChoices& choices);
-    /// Where markers are to be looked for, or not any more: what for. Only once.
-    std::optional<HealthWish> take_health_wish();
-    void take(FoundHealth found);
+    /// A new request for the search for mesh problems. Each request is returned once.
+    std::optional<HealthRequest> take_health_request();
+    void take(HealthResult found);
     [[nodiscard]] const DebugChoices& debug() const { return options_.debug; }
     [[nodiscard]] const HealthMarkers& markers() const { return markers_; }
 
-    /// What keys do; help, panels, screenshot and quit are the window's.
+    /// Handles the actions that affect the scene or the camera.
     void act(Action action);
 
     void set_view(const glm::ivec2& pixels);
     [[nodiscard]] const glm::ivec2& view() const { return view_; }
     OrbitCamera& camera() { return camera_; }
     [[nodiscard]] const OrbitCamera& camera() const { return camera_; }
-    [[nodiscard]] const Ball& ball() const { return ball_; }
+    [[nodiscard]] const BoundingSphere& sphere() const { return sphere_; }
 
-    /// Whether the camera or a lamp moves by itself.
-    [[nodiscard]] bool is_turning() const { return is_turning_ || lamps_.is_moving(); }
-    /// Lets time pass for the turntable and for lamps. \return whether anything moved
-    bool pass(double seconds);
+    /// Whether the turntable or a light rotates.
+    [[nodiscard]] bool is_turning() const { return is_turning_ || light_rows_.is_moving(); }
+    /// Advances the turntable and the rotation of lights. \return whether anything moved
+    bool advance(double seconds);
 
-    /// What is to be drawn now; none without a scene or a view.
-    [[nodiscard]] std::optional<DrawWish> wish() const;
+    /// The request for the current picture. Empty without a scene or a view.
+    [[nodiscard]] std::optional<DrawRequest> request() const;
 
-    /// The options that show the same picture without a window: "relief-view MODEL --camera ...".
+    /// Options that draw the same picture without a window: "--camera ... --fov ... --size ...".
     [[nodiscard]] std::string command_line() const;
 
     [[nodiscard]] nlohmann::ordered_json json(const DrawnPicture& drawn) const;
@@ -139,21 +160,21 @@ class ViewerState {
 
     ViewOptions options_;
     std::shared_ptr<const Scene> scene_;
-    std::shared_ptr<const Scene> read_;   ///< The same without any edit.
-    KeptEdits kept_;                      ///< Of the last scene that was read.
-    std::uint64_t scenes_ = 0;            ///< Read so far.
-    std::shared_ptr<const Scene> shown_;  ///< The same without what is hidden.
-    std::vector<bool> hidden_;            ///< By instance.
+    std::shared_ptr<const Scene> read_;   ///< The scene without edits.
+    RebasedEdits rebased_;                ///< Edits of the last scene that was read.
+    std::uint64_t scenes_ = 0;            ///< The number of scenes that were read.
+    std::shared_ptr<const Scene> shown_;  ///< The scene without hidden instances.
+    std::vector<bool> hidden_;            ///< Indexed by instance.
     bool has_named_default_ = false;
     SceneTree tree_;
-    LampRows lamps_;
+    LightRows light_rows_;
     std::filesystem::path shown_model_;
     std::uint64_t revision_ = 0;
-    HealthMarkers markers_;  ///< Of the scene, where they are asked for and found.
-    bool wishes_health_ = false;
+    HealthMarkers markers_;  ///< The result of the search for mesh problems.
+    bool has_health_request_ = false;
     EffectWishes effects_;
     OrbitCamera camera_;
-    Ball ball_;
+    BoundingSphere sphere_;
     glm::ivec2 view_{0};
     bool is_turning_ = false;
     std::vector<std::string> notes_;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+// The main loop of the window. It draws when something has changed, and sleeps otherwise.
 // Tests: tests/tools/window/window_test.cpp.
-#include "window/window_loop.h"
-
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 #include <fmt/format.h>
@@ -11,38 +10,38 @@
 
 #include "common/command.h"
 #include "file_replacement.h"
+#include "view_command.h"
+#include "window/capture.h"
 #include "window/comparison.h"
-#include "window/dropped_files.h"
-#include "window/followed_files.h"
-#include "window/places.h"
-#include "window/resolution.h"
-#include "window/saving.h"
+#include "window/controls.h"
+#include "window/draw_thread.h"
+#include "window/input_files.h"
 #include "window/scene_accuracy.h"
 #include "window/user_interface.h"
 
 namespace relief::tools {
 namespace {
 
-constexpr int frames_to_settle = 3;  // Dear ImGui reacts to what it drew a frame ago.
+constexpr int frames_to_settle = 3;  // Dear ImGui reacts to the previous frame.
 constexpr double turning_step = 1.0 / 60.0;
-constexpr double loading_step = 0.1;  // Seconds between looks at how far reading is.
+constexpr double loading_step = 0.1;  // Seconds between progress updates.
 
-/// {"stage", "part": 0 to 1, or null where nobody knows}
+/// {"stage", "part": 0 to 1, or null if it is unknown}
 nlohmann::ordered_json json_of(const Progress::State& progress) {
     return {{"stage", progress.stage},
             {"part", progress.part ? nlohmann::ordered_json(*progress.part) : nullptr}};
 }
 
-RememberedLayout remembered_layout(const ViewOptions& options) {
-    const std::optional<std::filesystem::path> file = usual_layout_file();
-    return options.no_state || !file ? RememberedLayout() : RememberedLayout(*file);
+SavedLayout saved_layout(const ViewOptions& options) {
+    const std::optional<std::filesystem::path> file = default_layout_file();
+    return options.no_state || !file ? SavedLayout() : SavedLayout(*file);
 }
 
 class WindowLoop {
   public:
     explicit WindowLoop(const ViewOptions& options)
-        : remembered_(remembered_layout(options)),
-          layout_(remembered_.layout()),
+        : saved_layout_(saved_layout(options)),
+          layout_(saved_layout_.layout()),
           system_("relief-view", layout_),
           drawer_({[this] { system_.use_worker_context(); },
                    [this] { system_.release_worker_context(); }, WindowSystem::loader(),
@@ -55,141 +54,140 @@ class WindowLoop {
           comparison_(options.compare, WindowSystem::wake),
           accuracy_(WindowSystem::wake),
           saving_(WindowSystem::wake),
-          reading_(options),
+          loading_options_(options),
           ui_scale_(options.ui_scale),
-          dump_(options.dump_state) {
-        if (dump_) keep_places();
-        if (options.size_given) asked_view_ = options.size;
-        if (!options.model.empty()) loader_.start(reading_);
+          state_file_(options.dump_state) {
+        if (state_file_) enable_ui_probe();
+        if (options.size_given) requested_view_size_ = options.size;
+        if (!options.model.empty()) loader_.start(loading_options_);
     }
 
     void run() {
         while (!system_.is_closing()) {
             wait();
             take_results();
-            state_.pass(seconds_since_last());
+            state_.advance(seconds_since_last());
             accuracy_.follow(state_);
             comparison_.follow(state_);
             saving_.follow();
             if (system_.is_visible()) draw();
         }
-        // A size that an option asked for is for this time.
-        if (!state_.options().size_given) system_.note_place(layout_);
-        if (const std::string problem = remembered_.remember(layout_); !problem.empty())
+        // A size from the command line is not stored.
+        if (!state_.options().size_given) system_.store_geometry(layout_);
+        if (const std::string problem = saved_layout_.save(layout_); !problem.empty())
             fmt::print(err(), "relief-view: warning: {}\n", problem);
     }
 
   private:
-    /// What other threads have found since.
+    /// Collects the results of other threads.
     void take_results() {
         if (std::optional<Loaded> loaded = loader_.take()) {
             files_.follow(*loaded);
             state_.take(std::move(*loaded));
-            settling_ = frames_to_settle;
+            pending_frames_ = frames_to_settle;
         }
-        if (std::optional<HealthWish> wish = state_.take_health_wish())
-            health_.start(std::move(*wish));
-        if (std::optional<FoundHealth> found = health_.take()) state_.take(std::move(*found));
+        if (std::optional<HealthRequest> request = state_.take_health_request())
+            health_.start(std::move(*request));
+        if (std::optional<HealthResult> found = health_.take()) state_.take(std::move(*found));
         take_changes(files_.take());
     }
 
-    /// What files that changed make stale is made anew; the camera and edits stay.
-    void take_changes(const FollowedFiles::Changed& changed) {
+    /// Reloads changed files. The camera and the edits stay.
+    void take_changes(const WatchedFiles::Changed& changed) {
         if (changed.scene || changed.attempt) {
-            // What was wanted last, if that is still to come.
-            if (!loader_.is_loading() && !changed.attempt) reading_ = state_.options();
-            loader_.start(reading_);
+            // A model that is still being read is read again.
+            if (!loader_.is_loading() && !changed.attempt) loading_options_ = state_.options();
+            loader_.start(loading_options_);
         }
         if (changed.picture) state_.refresh();
         if (changed.shaders) {
             drawer_.relink();
-            wished_.reset();
+            requested_.reset();
             ++relinked_;
         }
     }
 
-    /// Sleeps unless something is going on.
+    /// Sleeps until there is work.
     void wait() {
-        if (settling_ > 0) {
-            --settling_;
+        if (pending_frames_ > 0) {
+            --pending_frames_;
             glfwPollEvents();
             return;
         }
         if (state_.is_turning()) {
             WindowSystem::wait(turning_step);
-        } else if (is_resting_later_ && system_.is_visible()) {
-            WindowSystem::wait(0.5 * Resolution::resting_seconds);
+        } else if (is_full_resolution_pending_ && system_.is_visible()) {
+            WindowSystem::wait(0.5 * AdaptiveResolution::idle_seconds);
         } else {
             WindowSystem::wait(is_working() ? loading_step : 0.0);
-            if (!is_working()) settling_ = frames_to_settle - 1;
+            if (!is_working()) pending_frames_ = frames_to_settle - 1;
         }
     }
 
-    /// While something is read or drawn, a frame each step shows how far it is.
+    /// While work is in progress, the window draws frames to show it.
     bool is_working() {
         return loader_.is_loading() || drawer_.is_busy() || accuracy_.is_measuring() ||
-               prices_.state().is_going_on || captured_->state().is_going_on();
+               effect_times_.state().is_running || captured_->state().is_running();
     }
 
     double seconds_since_last() {
         const auto now = std::chrono::steady_clock::now();
         const double seconds = std::chrono::duration<double>(now - last_).count();
         last_ = now;
-        return std::min(seconds, 0.1);  // After a sleep, nothing leaps.
+        return std::min(seconds, 0.1);  // Limits the motion after a pause.
     }
 
     void draw() {
-        // Asked first: not busy now means that what comes next is the newest.
+        // This must come first: if the thread is idle now, drawn() is the newest picture.
         const bool was_busy = drawer_.is_busy();
         const DrawnPicture drawn = drawer_.drawn();
         files_.follow(drawn);
         if (drawn.frames > 0 && !is_reduced(drawn.settings))
-            resolution_.whole_took(drawn.times.draw);
+            resolution_.set_full_time(drawn.times.draw);
         interface_.set_scale(scale());
         const PanelInput input{state_,
                                layout_,
                                drawn,
                                drawer_.renderer_name(),
                                loader_.seconds_so_far(),
-                               reading_.model.filename().string(),
+                               loading_options_.model.filename().string(),
                                loader_.is_loading() ? loader_.progress() : drawer_.progress(),
-                               was_busy || is_resting_later_,
+                               was_busy || is_full_resolution_pending_,
                                &capture_settings_,
                                saved_text(),
-                               remembered_.note(),
-                               prices_,
+                               saved_layout_.note(),
+                               effect_times_,
                                shaders_,
                                &comparison_,
                                &accuracy_};
         const UserInterface::Events events = interface_.draw(input, drawer_.shown());
-        // Whenever it came: while the panels settle after something else, too.
-        if (events.has_input) settling_ = frames_to_settle;
+        // Input may arrive while the panels settle after earlier input.
+        if (events.has_input) pending_frames_ = frames_to_settle;
         if (events.panels.cancel_loading) loader_.cancel();
         for (const Action action : events.actions)
             act(action);
-        if (const auto view = std::exchange(asked_view_, std::nullopt))
+        if (const auto view = std::exchange(requested_view_size_, std::nullopt))
             system_.grow(*view - state_.view());
         measure(drawn, events.panels);
-        judge_methods(events.panels);
+        handle_accuracy_requests(events.panels);
         if (events.panels.save_picture) save(0);
         if (events.panels.save_scene) saving_.save_scene(state_);
         if (events.panels.save_model) saving_.save_model(state_);
         if (events.panels.save_turn) save(capture_settings_.pictures);
         if (!events.dropped.empty()) drop(events.dropped);
-        const bool is_busy = request() || was_busy || is_resting_later_ || health_.is_going_on();
-        dump(drawn, is_busy || accuracy_.is_working() || comparison_.is_working() ||
-                        saving_.is_going_on());
+        const bool is_busy =
+            request_picture() || was_busy || is_full_resolution_pending_ || health_.is_running();
+        write_state(drawn, is_busy || accuracy_.is_working() || comparison_.is_working() ||
+                               saving_.is_running());
     }
 
     void act(Action action) {
         state_.act(action);
         if (action == Action::help) interface_.show_help();
         if (action == Action::panels) layout_.has_panels = !layout_.has_panels;
-        if (action == Action::larger_interface)
-            rescale(next_scale(interface_.scale().glyphs, true));
-        if (action == Action::smaller_interface)
-            rescale(next_scale(interface_.scale().glyphs, false));
-        if (action == Action::usual_interface) rescale(std::nullopt);
+        if (action == Action::larger_ui) rescale(next_ui_scale(interface_.scale().glyphs, true));
+        if (action == Action::smaller_ui) rescale(next_ui_scale(interface_.scale().glyphs, false));
+        if (action == Action::reset_ui_scale) rescale(std::nullopt);
         if (action == Action::quit) system_.close();
         if (action == Action::save_picture) save(0);
         if (action == Action::save_scene) saving_.save_scene(state_);
@@ -208,21 +206,21 @@ class WindowLoop {
 
     void paste() {
         const char* text = glfwGetClipboardString(system_.window());
-        state_.look_as(text == nullptr ? "" : text);
+        state_.apply_view_text(text == nullptr ? "" : text);
     }
 
-    /// What was chosen here is remembered; the option holds until then, for this time only.
+    /// A scale that is set in the window is saved. It replaces the option.
     void rescale(std::optional<float> scale) {
         ui_scale_.reset();
         layout_.ui_scale = scale;
     }
-    [[nodiscard]] InterfaceScale scale() const {
-        return interface_scale(ui_scale_ ? ui_scale_ : layout_.ui_scale, system_.content_scale(),
-                               system_.pixels_to_unit());
+    [[nodiscard]] UiScale scale() const {
+        return ui_scale_for(ui_scale_ ? ui_scale_ : layout_.ui_scale, system_.content_scale(),
+                            system_.pixels_to_unit());
     }
 
-    /// Whether two wishes show the same, in whatever resolution.
-    static bool is_same(const DrawWish& a, const DrawWish& b) {
+    /// Whether two requests show the same picture, in any resolution.
+    static bool is_same(const DrawRequest& a, const DrawRequest& b) {
         return a.revision == b.revision && a.camera.world_from_view == b.camera.world_from_view &&
                a.camera.vertical_fov == b.camera.vertical_fov && a.instead == b.instead &&
                a.beside.has_value() == b.beside.has_value() &&
@@ -239,15 +237,16 @@ class WindowLoop {
         read_with([&](const ViewOptions& options) { return with_dropped(options, files); });
     }
 
-    /// Reads with other options; what contradicts them is said like what cannot be read.
+    /// Reads the model with changed options. Invalid options are reported like read errors.
     template <typename Change>
     void read_with(const Change& change) {
         try {
-            // On top of what is still being read.
-            ViewOptions options = change(loader_.is_loading() ? reading_ : state_.options());
-            options.debug = {};  // Chosen in the window, where nothing is a useless choice.
+            // Changes apply to the model that is being read, if there is one.
+            ViewOptions options =
+                change(loader_.is_loading() ? loading_options_ : state_.options());
+            options.debug = {};  // The window has its own debug settings.
             settle(options);
-            reading_ = options;
+            loading_options_ = options;
             loader_.start(options);
         } catch (const std::exception& error) {
             Loaded refused;
@@ -256,142 +255,146 @@ class WindowLoop {
         }
     }
 
-    /// Figures for methods, and another method for the picture. A kernel is an option of what is
-    /// read, which is how it stays with the height map when that changes.
-    void judge_methods(const PanelWishes& wishes) {
-        if (wishes.measure_accuracy) accuracy_.measure(state_);
-        if (wishes.stop_accuracy) accuracy_.stop();
-        if (!wishes.use_method) return;
-        if (const Kernel* kernel = std::get_if<Kernel>(&*wishes.use_method)) {
+    /// Starts measurements, and applies the chosen method. A kernel is an option of the height map,
+    /// so the model is read again.
+    void handle_accuracy_requests(const PanelRequests& requests) {
+        if (requests.measure_accuracy) accuracy_.measure(state_);
+        if (requests.stop_accuracy) accuracy_.stop();
+        if (!requests.use_method) return;
+        if (const Kernel* kernel = std::get_if<Kernel>(&*requests.use_method)) {
             read_with([&](ViewOptions options) {
                 options.kernel = *kernel;
                 return options;
             });
         } else {
-            accuracy_.use(*wishes.use_method);
+            accuracy_.use(*requests.use_method);
         }
     }
 
-    /// What effects cost, as long as they are those of the picture.
-    void measure(const DrawnPicture& drawn, const PanelWishes& wishes) {
-        const std::optional<DrawWish> wish = state_.wish();
-        if (!wish || wishes.stop_measuring) return prices_.cancel();
-        if (wishes.measure_effects) drawer_.add(prices_.start(*wish));
-        if (drawn.plan && drawn.revision == wish->revision) prices_.keep_for(*drawn.plan, *wish);
+    /// Starts and stops the measurement of effect times, and discards outdated ones.
+    void measure(const DrawnPicture& drawn, const PanelRequests& requests) {
+        const std::optional<DrawRequest> request = state_.request();
+        if (!request || requests.stop_measuring) return effect_times_.cancel();
+        if (requests.measure_effects) drawer_.add(effect_times_.start(*request));
+        if (drawn.plan && drawn.revision == request->revision)
+            effect_times_.discard_unless_valid_for(*drawn.plan, *request);
     }
 
-    /// One at a time; the panel and the status line say how far it is.
+    /// Saves one picture or a turntable, unless pictures are being saved.
     void save(int turntable) {
-        const std::optional<DrawWish> wish = state_.wish();
-        if (!wish || captured_->state().is_going_on()) return;
-        CaptureWish capture{.scene = wish->scene,
-                            .effects = wish->effects,
-                            .settings = wish->settings,
-                            .camera = wish->camera,
-                            .transparent = capture_settings_.transparent,
-                            .turntable = turntable,
-                            .middle = state_.ball().center,
-                            .file = free_file(state_.options().model, turntable)};
-        if (capture_settings_.own_size) {
+        const std::optional<DrawRequest> request = state_.request();
+        if (!request || captured_->state().is_running()) return;
+        CaptureRequest capture{.scene = request->scene,
+                               .effects = request->effects,
+                               .settings = request->settings,
+                               .camera = request->camera,
+                               .transparent = capture_settings_.transparent,
+                               .turntable = turntable,
+                               .middle = state_.sphere().center,
+                               .file = free_file(state_.options().model, turntable)};
+        if (capture_settings_.custom_size) {
             capture.settings.width = capture_settings_.width;
             capture.settings.height = capture_settings_.height;
         }
         drawer_.add(capture_task(std::move(capture), captured_));
     }
 
-    /// What was saved last, in words: pictures, or scene and model.
+    /// The message about the last saved files.
     [[nodiscard]] std::string saved_text() const {
         const std::string pictures = text_of(captured_->state());
         return pictures.empty() || saving_.text().empty() ? pictures + saving_.text()
                                                           : pictures + "   " + saving_.text();
     }
 
-    /// Asks for a picture where the last one asked for shows something else. \return whether it did
-    bool request() {
-        std::optional<DrawWish> wish = state_.wish();
-        if (!wish) return false;
-        if (std::optional<DrawTask> task = comparison_.add_to(*wish)) drawer_.add(std::move(*task));
-        const bool is_moved = !wished_ || !is_same(*wished_, *wish);
+    /// Requests a picture if it differs from the last request. \return whether it does
+    bool request_picture() {
+        std::optional<DrawRequest> request = state_.request();
+        if (!request) return false;
+        if (std::optional<DrawTask> task = comparison_.add_to(*request))
+            drawer_.add(std::move(*task));
+        const bool is_moved = !requested_ || !is_same(*requested_, *request);
         const double now = glfwGetTime();
-        if (is_moved && wished_ && !wish->instead) resolution_.moved(now);
-        DrawWish reduced = *wish;
-        reduced.settings = resolution_.settings_for(wish->settings, now);
-        is_resting_later_ = is_reduced(reduced.settings);
-        const bool is_as_asked = asked_.width == reduced.settings.width &&
-                                 asked_.height == reduced.settings.height &&
-                                 asked_.samples == reduced.settings.samples;
+        if (is_moved && requested_ && !request->instead) resolution_.note_motion(now);
+        DrawRequest reduced = *request;
+        reduced.settings = resolution_.settings_for(request->settings, now);
+        is_full_resolution_pending_ = is_reduced(reduced.settings);
+        const bool is_as_asked = requested_settings_.width == reduced.settings.width &&
+                                 requested_settings_.height == reduced.settings.height &&
+                                 requested_settings_.samples == reduced.settings.samples;
         if (!is_moved && is_as_asked) return false;
-        if (is_resting_later_) ++reduced_;
-        wished_ = wish;
-        asked_ = reduced.settings;
-        drawer_.wish(std::move(reduced));
+        if (is_full_resolution_pending_) ++reduced_;
+        requested_ = request;
+        requested_settings_ = reduced.settings;
+        drawer_.request(std::move(reduced));
         return true;
     }
 
-    /// Tests and scripts see what the window sees.
-    void dump(const DrawnPicture& drawn, bool is_busy) {
-        if (!dump_) return;
-        nlohmann::ordered_json seen = state_.json(drawn);
-        seen["loading"] = loader_.is_loading();
-        seen["progress"] = loader_.is_loading() ? json_of(loader_.progress()) : nullptr;
-        seen["busy"] = is_busy;
-        seen["files"] = files_.count();
-        seen["relinked"] = relinked_;
-        seen["drawn"]["size"] = {drawn.settings.width, drawn.settings.height};
-        seen["drawn"]["samples"] = drawn.settings.samples;
-        seen["drawn"]["whole"] = !is_reduced(drawn.settings);
-        seen["reduced"] = reduced_;
-        seen["costs"] = json_of(prices_.state());
-        seen["command_line"] = command_line();
-        seen["compare"] = comparison_.json();
-        seen["accuracy"] = accuracy_.json(state_.options());
-        seen["drawn"]["beside"] = drawn.beside;
-        seen["drawn"]["difference"] = drawn.is_difference;
-        seen["saved"] = json_of(captured_->state());
-        seen["saved_files"] = saving_.json();
-        seen["layout"] = {{"scale", interface_.scale().layout},
-                          {"panels", panel_names()},
-                          {"open", layout_.open_panels},
-                          {"note", remembered_.note()}};
-        seen["typing"] = UserInterface::is_typing();
+    /// Writes the state for tests and scripts (--dump-state).
+    void write_state(const DrawnPicture& drawn, bool is_busy) {
+        if (!state_file_) return;
+        nlohmann::ordered_json state = state_.json(drawn);
+        state["loading"] = loader_.is_loading();
+        state["progress"] = loader_.is_loading() ? json_of(loader_.progress()) : nullptr;
+        state["busy"] = is_busy;
+        state["files"] = files_.count();
+        state["relinked"] = relinked_;
+        state["drawn"]["size"] = {drawn.settings.width, drawn.settings.height};
+        state["drawn"]["samples"] = drawn.settings.samples;
+        state["drawn"]["whole"] = !is_reduced(drawn.settings);
+        state["reduced"] = reduced_;
+        state["costs"] = json_of(effect_times_.state());
+        state["command_line"] = command_line();
+        state["compare"] = comparison_.json();
+        state["accuracy"] = accuracy_.json(state_.options());
+        state["drawn"]["beside"] = drawn.beside;
+        state["drawn"]["difference"] = drawn.is_difference;
+        state["saved"] = json_of(captured_->state());
+        state["saved_files"] = saving_.json();
+        state["layout"] = {{"scale", interface_.scale().layout},
+                           {"panels", panel_names()},
+                           {"open", layout_.open_panels},
+                           {"note", saved_layout_.note()}};
+        state["typing"] = UserInterface::is_typing();
         const std::optional<glm::ivec2> pointer = UserInterface::pointer();
-        seen["pointer"] = pointer ? nlohmann::ordered_json{pointer->x, pointer->y} : nullptr;
-        seen["help"] = interface_.is_help_open();
-        seen["places"] = places_json();
-        const std::string text = seen.dump(2) + "\n";
-        if (text == dumped_) return;
-        dumped_ = text;
-        replace_file(*dump_, std::as_bytes(std::span(text)));
+        state["pointer"] = pointer ? nlohmann::ordered_json{pointer->x, pointer->y} : nullptr;
+        state["help"] = interface_.is_help_open();
+        state["places"] = ui_probe_json();
+        const std::string text = state.dump(2) + "\n";
+        if (text == written_state_) return;
+        written_state_ = text;
+        replace_file(*state_file_, std::as_bytes(std::span(text)));
     }
 
-    RememberedLayout remembered_;
+    SavedLayout saved_layout_;
     WindowLayout layout_;
     WindowSystem system_;
     DrawThread drawer_;
     Loader loader_;
     HealthSearch health_;
-    FollowedFiles files_;
+    WatchedFiles files_;
     UserInterface interface_;
     ViewerState state_;
     Comparison comparison_;
     SceneAccuracy accuracy_;
     Saving saving_;
-    ViewOptions reading_;                   ///< What was last begun to be read.
-    std::optional<glm::ivec2> asked_view_;  ///< Until the first frame shows how large it is.
-    std::optional<float> ui_scale_;         ///< By option, until another one is chosen.
-    std::optional<std::filesystem::path> dump_;
-    std::string dumped_;
+    ViewOptions loading_options_;  ///< Options of the last read.
+    /// The view size from the command line, until the first frame is drawn.
+    std::optional<glm::ivec2> requested_view_size_;
+    std::optional<float> ui_scale_;  ///< The scale from the command line, until another one is set.
+    std::optional<std::filesystem::path> state_file_;
+    std::string written_state_;
     CaptureSettings capture_settings_;
     std::shared_ptr<CaptureProgress> captured_ = std::make_shared<CaptureProgress>();
-    EffectPrices prices_;
+    EffectTimes effect_times_;
     ShaderPanel shaders_;
-    std::optional<DrawWish> wished_;
-    Resolution resolution_;
-    FrameSettings asked_;            ///< Of the last wish, whole or not.
-    std::uint64_t reduced_ = 0;      ///< Wishes that were not.
-    std::uint64_t relinked_ = 0;     ///< How often shaders have changed.
-    bool is_resting_later_ = false;  ///< The whole picture is still to come.
-    int settling_ = frames_to_settle;
+    std::optional<DrawRequest> requested_;
+    AdaptiveResolution resolution_;
+    FrameSettings requested_settings_;  ///< Settings of the last request.
+    std::uint64_t reduced_ = 0;         ///< Number of requests with reduced resolution.
+    std::uint64_t relinked_ = 0;        ///< How often the programs were linked again.
+    bool is_full_resolution_pending_ =
+        false;  ///< The picture at full resolution is still to be drawn.
+    int pending_frames_ = frames_to_settle;
     std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };
 

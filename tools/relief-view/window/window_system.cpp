@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tests: tests/tools/window/window_test.cpp.
 #include "window/window_system.h"
 
 #define GLFW_INCLUDE_NONE
@@ -7,25 +6,175 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdlib>
+#include <fstream>
+#include <glm/common.hpp>
 #include <glm/glm.hpp>
+#include <nlohmann/json.hpp>
+#include <span>
+#include <stdexcept>
+#include <utility>
 
 #include "common/command.h"
+#include "file_replacement.h"
 
 namespace relief::tools {
 namespace {
 
-/// What GLFW said last.
-std::string& complaint() {
+constexpr std::array scale_steps{0.5F, 0.75F, 1.0F, 1.25F, 1.5F, 1.75F,
+                                 2.0F, 2.5F,  3.0F, 3.5F,  4.0F};
+static_assert(scale_steps.front() == min_ui_scale && scale_steps.back() == max_ui_scale);
+
+/// Limits a scale to its range. Invalid scales become 1.
+float clamped_scale(float scale) {
+    if (!std::isfinite(scale) || scale <= 0.0F) return 1.0F;
+    return std::clamp(scale, min_ui_scale, max_ui_scale);
+}
+
+}  // namespace
+
+UiScale ui_scale_for(std::optional<float> wanted, float content_scale, float pixels_to_unit) {
+    const float glyphs = clamped_scale(wanted.value_or(content_scale));
+    const bool has_ratio = std::isfinite(pixels_to_unit) && pixels_to_unit > 0.0F;
+    return {.layout = glyphs / (has_ratio ? pixels_to_unit : 1.0F), .glyphs = glyphs};
+}
+
+float next_ui_scale(float scale, bool is_larger) {
+    if (is_larger) {
+        const auto* const next = std::upper_bound(scale_steps.begin(), scale_steps.end(), scale);
+        return next == scale_steps.end() ? scale_steps.back() : *next;
+    }
+    const auto* const next = std::lower_bound(scale_steps.begin(), scale_steps.end(), scale);
+    return next == scale_steps.begin() ? scale_steps.front() : *(next - 1);
+}
+
+namespace {
+
+using nlohmann::json;
+using nlohmann::ordered_json;
+
+constexpr int layout_version = 1;
+constexpr int largest_window_side = 16384;
+constexpr glm::ivec2 smallest{320, 240};
+
+/// The file has a newer version. The file itself is valid.
+class NewerVersion : public std::runtime_error {
+    using std::runtime_error::runtime_error;
+};
+
+glm::ivec2 pair_of(const json& value) {
+    const auto pair = value.get<std::array<int, 2>>();
+    const glm::ivec2 limit(largest_window_side);
+    return glm::clamp(glm::ivec2(pair[0], pair[1]), -limit, limit);
+}
+
+WindowLayout layout_of(const json& document) {
+    const int found = document.at("version").get<int>();
+    if (found > layout_version) throw NewerVersion(fmt::format("of version {}", found));
+    WindowLayout layout;
+    const json window = document.value("window", json::object());
+    if (window.contains("size")) layout.size = glm::max(pair_of(window["size"]), smallest);
+    if (window.contains("position")) layout.position = pair_of(window["position"]);
+    layout.is_maximized = window.value("maximized", false);
+    const json panels = document.value("panels", json::object());
+    layout.has_panels = panels.value("shown", true);
+    layout.open_panels = panels.value("open", std::map<std::string, bool>{});
+    if (document.contains("scale")) {
+        layout.ui_scale = std::clamp(document["scale"].get<float>(), min_ui_scale, max_ui_scale);
+    }
+    return layout;
+}
+
+ordered_json json_of(const WindowLayout& layout) {
+    ordered_json window = ordered_json::object();
+    if (layout.size) window["size"] = {layout.size->x, layout.size->y};
+    if (layout.position) window["position"] = {layout.position->x, layout.position->y};
+    window["maximized"] = layout.is_maximized;
+    ordered_json document = {
+        {"version", layout_version},
+        {"window", std::move(window)},
+        {"panels", {{"shown", layout.has_panels}, {"open", layout.open_panels}}}};
+    if (layout.ui_scale) document["scale"] = *layout.ui_scale;
+    return document;
+}
+
+/// The value of an environment variable, if it is an absolute path.
+std::optional<std::filesystem::path> absolute_path_variable(const char* variable) {
+    const char* text = std::getenv(variable);
+    if (text == nullptr || !std::filesystem::path(text).is_absolute()) return std::nullopt;
+    return text;
+}
+
+}  // namespace
+
+WindowLayout fitted_to_screen(WindowLayout layout, const ScreenArea& screen) {
+    if (screen.size.x <= 0 || screen.size.y <= 0) return layout;
+    if (layout.size) layout.size = glm::min(*layout.size, screen.size);
+    if (layout.position) {
+        const glm::ivec2 room = screen.size - layout.size.value_or(smallest);
+        layout.position = glm::clamp(*layout.position, screen.corner,
+                                     screen.corner + glm::max(room, glm::ivec2(0)));
+    }
+    return layout;
+}
+
+std::optional<std::filesystem::path> default_layout_file() {
+    std::optional<std::filesystem::path> folder = absolute_path_variable("XDG_STATE_HOME");
+    if (!folder) {
+        folder = absolute_path_variable("HOME");
+        if (!folder) return std::nullopt;
+        *folder /= ".local/state";
+    }
+    return *folder / "relief" / "relief-view.json";
+}
+
+SavedLayout::SavedLayout(std::filesystem::path file) : file_(std::move(file)) {
+    std::error_code none;
+    if (!std::filesystem::exists(*file_, none)) return;
+    try {
+        std::ifstream stream(*file_, std::ios::binary);
+        if (!stream) throw std::runtime_error("cannot be read");
+        layout_ = layout_of(json::parse(stream));
+    } catch (const NewerVersion& later) {
+        note_ = fmt::format(
+            "{} is {}, and this program supports {}: the default layout is used and not saved",
+            file_->string(), later.what(), layout_version);
+        file_.reset();
+    } catch (const std::exception& error) {
+        note_ = fmt::format("{}: {}: the default layout is used", file_->string(), error.what());
+    }
+}
+
+std::string SavedLayout::save(const WindowLayout& layout) {
+    if (!file_ || layout == layout_) return "";
+    try {
+        make_folder(file_->parent_path());
+        const std::string text = json_of(layout).dump(2) + "\n";
+        replace_file(*file_, std::as_bytes(std::span(text)));
+    } catch (const std::exception& error) {
+        return fmt::format("the layout is not saved: {}", error.what());
+    }
+    layout_ = layout;
+    return "";
+}
+
+namespace {
+
+/// The last error message of GLFW.
+std::string& last_glfw_error() {
     static std::string text;
     return text;
 }
 
 [[noreturn]] void fail(const std::string& problem) {
-    const std::string said = complaint().empty() ? "" : fmt::format(": {}", complaint());
-    throw WindowError(problem + said);
+    const std::string details =
+        last_glfw_error().empty() ? "" : fmt::format(": {}", last_glfw_error());
+    throw WindowError(problem + details);
 }
 
-constexpr glm::ivec2 usual_size{1280, 800};
+constexpr glm::ivec2 default_size{1280, 800};
 
 ScreenArea area_of(GLFWmonitor* monitor) {
     ScreenArea area;
@@ -35,7 +184,7 @@ ScreenArea area_of(GLFWmonitor* monitor) {
     return area;
 }
 
-/// Of the monitor that a place is on; the first one's where it is on none.
+/// The work area of the monitor that contains a position, or else of the primary monitor.
 ScreenArea area_around(const std::optional<glm::ivec2>& place) {
     int count = 0;
     GLFWmonitor** const monitors = glfwGetMonitors(&count);
@@ -52,21 +201,22 @@ ScreenArea area_around(const std::optional<glm::ivec2>& place) {
 }  // namespace
 
 WindowSystem::WindowSystem(const std::string& title, const WindowLayout& layout) {
-    glfwSetErrorCallback([](int, const char* text) { complaint() = text; });
+    glfwSetErrorCallback([](int, const char* text) { last_glfw_error() = text; });
     if (glfwInit() != GLFW_TRUE) fail("no window can be opened");
     glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
     glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
     glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
     glfwWindowHint(GLFW_OPENGL_FORWARD_COMPAT, GLFW_TRUE);
-    const WindowLayout fitting = within(layout, area_around(layout.position));
-    // A size that was remembered is one of this screen already.
+    const WindowLayout fitting = fitted_to_screen(layout, area_around(layout.position));
+    // A saved size is already in the units of this screen.
     glfwWindowHint(GLFW_SCALE_TO_MONITOR, fitting.size ? GLFW_FALSE : GLFW_TRUE);
     glfwWindowHint(GLFW_MAXIMIZED, fitting.is_maximized ? GLFW_TRUE : GLFW_FALSE);
     glfwWindowHint(GLFW_VISIBLE, GLFW_FALSE);
     glfwWindowHint(GLFW_DEPTH_BITS, 0);
     glfwWindowHint(GLFW_STENCIL_BITS, 0);
-    const WindowLayout usual = within({.size = usual_size}, area_around(std::nullopt));
-    const glm::ivec2 size = fitting.size.value_or(*usual.size);
+    const WindowLayout default_layout =
+        fitted_to_screen({.size = default_size}, area_around(std::nullopt));
+    const glm::ivec2 size = fitting.size.value_or(*default_layout.size);
     window_ = glfwCreateWindow(size.x, size.y, title.c_str(), nullptr, nullptr);
     if (window_ != nullptr) {
         glfwWindowHint(GLFW_MAXIMIZED, GLFW_FALSE);
@@ -124,7 +274,7 @@ float WindowSystem::pixels_to_unit() const {
                                        : 1.0F;
 }
 
-void WindowSystem::note_place(WindowLayout& layout) const {
+void WindowSystem::store_geometry(WindowLayout& layout) const {
     layout.is_maximized = glfwGetWindowAttrib(window_, GLFW_MAXIMIZED) == GLFW_TRUE;
     if (layout.is_maximized || !is_visible()) return;
     glm::ivec2 size(0), position(0);

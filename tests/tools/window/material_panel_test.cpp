@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "window/material_panel.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "relief/mesh/error.h"
+#include "relief/shade/scene_file.h"
+#include "tools/workplace.h"
+
+namespace relief::tools {
+namespace {
+
+using test::Workplace;
+
+TEST(MaterialModels, CanBeChangedToEachOther) {
+    for (const MaterialModel from :
+         {MaterialModel::phong, MaterialModel::metallic_roughness, MaterialModel::unlit}) {
+        for (const MaterialModel to :
+             {MaterialModel::phong, MaterialModel::metallic_roughness, MaterialModel::unlit}) {
+            Material material;
+            set_model(material, from);
+            set_model(material, to);
+            EXPECT_EQ(model_of(material), to);
+        }
+    }
+}
+
+TEST(MaterialModels, ShininessAndRoughnessAreInverse) {
+    for (const float shininess : {2.0F, 32.0F, 500.0F}) {
+        Material material;
+        material.shininess = shininess;
+        set_model(material, MaterialModel::metallic_roughness);
+        GltfMaterial same;
+        same.roughness = material.metallic_roughness->roughness;
+        EXPECT_NEAR(phong_from_metallic_roughness(same, {}).shininess, shininess,
+                    1e-3F * shininess);
+    }
+    Material sharp;
+    sharp.shininess = 1e6F;
+    set_model(sharp, MaterialModel::metallic_roughness);
+    EXPECT_GE(sharp.metallic_roughness->roughness, 0.03F);
+    EXPECT_LE(sharp.metallic_roughness->roughness, 0.05F);
+}
+
+TEST(MaterialModels, RoundTripKeepsTheMaterial) {
+    Material material;
+    material.diffuse = {0.2F, 0.4F, 0.6F};
+    material.shininess = 77.0F;
+    set_model(material, MaterialModel::metallic_roughness);
+    EXPECT_EQ(material.metallic_roughness->base_color, material.diffuse);
+    set_model(material, MaterialModel::phong);
+    EXPECT_FALSE(material.metallic_roughness);
+    EXPECT_EQ(material.diffuse, glm::vec3(0.2F, 0.4F, 0.6F));
+    EXPECT_EQ(material.shininess, 77.0F);
+}
+
+TEST(MaterialModels, DefaultMaterialIsAddedIfItIsUsed) {
+    Mesh bare;
+    bare.triangles.resize(2);
+    Mesh half;
+    half.triangles.resize(3);
+    half.material_ranges = {{0, 1, 0U}, {1, 2, std::nullopt}};
+    Scene scene;
+    scene.materials.resize(1);
+    EXPECT_FALSE(uses_default_material(scene));
+    name_default_material(scene);
+    EXPECT_EQ(scene.materials.size(), 1U) << "nobody uses it";
+    scene.meshes = {bare, half, Mesh{}};
+    EXPECT_TRUE(uses_default_material(scene));
+    const Scene before = scene;
+    name_default_material(scene);
+    EXPECT_FALSE(uses_default_material(scene));
+    ASSERT_EQ(scene.materials.size(), 2U);
+    EXPECT_EQ(scene.meshes[0]->material_ranges[0].material, 1U);
+    EXPECT_EQ(scene.meshes[0]->material_ranges[0].triangle_count, 2U);
+    EXPECT_EQ(scene.meshes[1]->material_ranges[0].material, 0U);
+    EXPECT_EQ(scene.meshes[1]->material_ranges[1].material, 1U);
+    EXPECT_TRUE(scene.meshes[2]->material_ranges.empty());
+    EXPECT_TRUE(before.meshes[0]->material_ranges.empty()) << "the copy has what it had";
+}
+
+const MapSlot& slot_named(const std::string& name) {
+    for (const MapSlot& slot : map_slots()) {
+        if (slot.name == name) return slot;
+    }
+    throw std::runtime_error("no slot " + name);
+}
+
+class MapSlots : public testing::Test {
+  protected:
+    MapSlots() { scene_.materials.resize(2); }
+    [[nodiscard]] std::filesystem::path heights() const {
+        return workplace_ / "data/bricks-height.png";
+    }
+    [[nodiscard]] std::filesystem::path colors() const {
+        return workplace_ / "data/bricks-diffuse.png";
+    }
+    Scene& scene() { return scene_; }
+    Workplace& workplace() { return workplace_; }
+
+  private:
+    Workplace workplace_;
+    Scene scene_;
+};
+
+TEST_F(MapSlots, CanBeSetAndCleared) {
+    Material& material = scene().materials[0];
+    material.metallic_roughness.emplace();
+    for (const MapSlot& slot : map_slots()) {
+        EXPECT_FALSE(map_name(scene(), 0, slot)) << slot.name;
+        set_map(scene(), 0, slot, colors());
+        EXPECT_EQ(map_name(scene(), 0, slot), colors().string()) << slot.name;
+        EXPECT_FALSE(map_name(scene(), 1, slot)) << slot.name << " of the other one";
+        slot.set(material, std::nullopt);
+        EXPECT_FALSE(map_name(scene(), 0, slot)) << slot.name;
+    }
+    EXPECT_EQ(scene().images.size(), 1U) << "one file is one image";
+    EXPECT_NO_THROW(validate(scene()));
+}
+
+TEST_F(MapSlots, NormalMapAndBumpMapReplaceEachOther) {
+    Material& material = scene().materials[0];
+    set_map(scene(), 0, slot_named("Bump map"), heights());
+    material.bump_map->strength = 5.0F;
+    set_map(scene(), 0, slot_named("Bump map"), colors());
+    EXPECT_EQ(material.bump_map->strength, 5.0F) << "another image as strong";
+    set_map(scene(), 0, slot_named("Normal map"), colors());
+    EXPECT_FALSE(material.bump_map);
+    material.normal_map->scale = 2.0F;
+    material.normal_map->flat = FlatCode::middle;
+    set_map(scene(), 0, slot_named("Normal map"), heights());
+    EXPECT_EQ(material.normal_map->scale, 2.0F);
+    EXPECT_FALSE(material.normal_map->flat) << "told by the image again";
+    set_map(scene(), 0, slot_named("Bump map"), heights());
+    EXPECT_FALSE(material.normal_map);
+    EXPECT_NO_THROW(validate(scene()));
+}
+
+TEST_F(MapSlots, KeepTheWrapMode) {
+    const MapSlot& slot = slot_named("Diffuse map");
+    set_map(scene(), 0, slot, colors());
+    scene().materials[0].diffuse_texture->wrap_u = TextureWrap::clamp;
+    set_map(scene(), 0, slot, heights());
+    EXPECT_EQ(scene().materials[0].diffuse_texture->wrap_u, TextureWrap::clamp);
+    EXPECT_EQ(scene().materials[0].diffuse_texture->wrap_v, TextureWrap::repeat);
+}
+
+TEST_F(MapSlots, RejectInvalidImages) {
+    workplace().write("words.png", "no image");
+    const MapSlot& slot = slot_named("Diffuse map");
+    set_map(scene(), 0, slot, colors());
+    EXPECT_THROW(set_map(scene(), 0, slot, workplace() / "words.png"), FileError);
+    EXPECT_THROW(set_map(scene(), 0, slot, workplace() / "absent.png"), FileError);
+    EXPECT_EQ(map_name(scene(), 0, slot), colors().string());
+}
+
+TEST_F(MapSlots, DependOnTheMaterialModel) {
+    Material phong;
+    Material metallic;
+    metallic.metallic_roughness.emplace();
+    Material unlit;
+    unlit.unlit = true;
+    EXPECT_TRUE(slot_named("Specular map").is_used(phong));
+    EXPECT_FALSE(slot_named("Specular map").is_used(metallic));
+    EXPECT_TRUE(slot_named("Metallic and roughness map").is_used(metallic));
+    EXPECT_FALSE(slot_named("Metallic and roughness map").is_used(phong));
+    EXPECT_FALSE(slot_named("Normal map").is_used(unlit));
+    EXPECT_TRUE(slot_named("Diffuse map").is_used(unlit));
+}
+
+}  // namespace
+}  // namespace relief::tools

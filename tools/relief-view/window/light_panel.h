@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// Editing lights: the lights of a scene as one list, conversion between kinds, rotating lights,
+/// and the panel. World space, angles in radians. Tests: tests/tools/window/light_panel_test.cpp.
+#pragma once
+
+#include <variant>
+#include <vector>
+
+#include "relief/shade/scene.h"
+#include "window/orbit_camera.h"
+
+namespace relief::tools {
+
+enum class LightKind { directional, point, spot };
+
+/// The alternatives are in the order of LightKind.
+using AnyLight = std::variant<DirectionalLight, PointLight, SpotLight>;
+
+LightKind kind_of(const AnyLight& light);
+const char* name_of(LightKind kind);
+
+/// All lights: directional lights first, then point lights, then spotlights.
+std::vector<AnyLight> lights_of(const Scene& scene);
+
+/// Replaces all lights of the scene. The order within a kind stays.
+void set_lights(Scene& scene, const std::vector<AnyLight>& lights);
+
+/// A new light at the upper right, for a model of this size.
+AnyLight new_light(LightKind kind, const BoundingSphere& sphere);
+
+/// Converts a light to another kind with the same irradiance at the center of the sphere. A
+/// directional light that becomes a point light or spotlight is placed outside the sphere, in the
+/// direction of the light. The conversion to a directional light loses the range and falloff.
+AnyLight converted_to(const AnyLight& light, LightKind kind, const BoundingSphere& sphere);
+
+/// Rotates the position and direction of a light about a center.
+void turn(AnyLight& light, const glm::mat3& rotation, const glm::vec3& center);
+
+/// A light with the data that only the window stores.
+struct LightRow {
+    AnyLight light;
+    unsigned id = 0;  ///< Constant for the lifetime of the light; 0: not yet assigned.
+    /// Radians per second about the vertical axis through the center of the model.
+    float speed = 0.0F;
+};
+
+/// Identifies lights across edits, and rotates them.
+class LightRows {
+  public:
+    /// Updates the list for another scene, or for changed lights. Lights of the same kind keep
+    /// their id and speed in order.
+    void update(const Scene& scene);
+
+    /// The rows for the scene of the last update().
+    [[nodiscard]] std::vector<LightRow> rows(const Scene& scene) const;
+
+    /// Replaces the lights of the scene, sorted by kind. New lights get an id.
+    void set(Scene& scene, std::vector<LightRow> rows);
+
+    /// Whether any light rotates.
+    [[nodiscard]] bool is_moving() const;
+
+    /// Rotates the lights by the elapsed time.
+    void advance(Scene& scene, double seconds, const glm::vec3& center) const;
+
+  private:
+    struct Entry {
+        LightKind kind;
+        unsigned id;
+        float speed;
+    };
+
+    std::vector<Entry> entries_;  ///< In the order of the scene's lights.
+    unsigned last_id_ = 0;
+};
+
+}  // namespace relief::tools
