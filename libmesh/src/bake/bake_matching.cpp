@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: Apache-2.0
+// Groups parts by name, explains boxes that do not fit, and estimates missed texels.
+#include "relief/mesh/bake_matching.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cmath>
+#include <map>
+#include <string_view>
+
+namespace relief {
+namespace {
+
+struct UnitPair {
+    double ratio;  ///< One large unit in small units.
+    const char* small;
+    const char* large;
+};
+constexpr std::array unit_pairs = {
+    UnitPair{2.54, "centimeters", "inches"},      UnitPair{3.2808399, "feet", "meters"},
+    UnitPair{10.0, "millimeters", "centimeters"}, UnitPair{12.0, "inches", "feet"},
+    UnitPair{25.4, "millimeters", "inches"},      UnitPair{30.48, "centimeters", "feet"},
+    UnitPair{39.370079, "inches", "meters"},      UnitPair{100.0, "centimeters", "meters"},
+    UnitPair{304.8, "millimeters", "feet"},       UnitPair{1000.0, "millimeters", "meters"}};
+
+/// The units that would explain a ratio of sizes; empty if there are none.
+std::string unit_cause(double size_ratio) {
+    const double ratio = std::max(size_ratio, 1.0 / size_ratio);
+    for (const UnitPair& pair : unit_pairs) {
+        if (std::abs(std::log(ratio / pair.ratio)) > std::log(1.05)) continue;
+        const bool high_is_larger = size_ratio > 1.0;
+        return fmt::format("is the high model in {} and the low one in {}?",
+                           high_is_larger ? pair.small : pair.large,
+                           high_is_larger ? pair.large : pair.small);
+    }
+    return "";
+}
+
+std::string pair_name_of(const BakePartName& part, BakeSide side) {
+    const std::optional<std::string> name = pair_name(part.object, side);
+    return name ? *name : pair_name(part.file, side).value_or("");
+}
+
+}  // namespace
+
+std::optional<std::string> pair_name(const std::string& name, BakeSide side) {
+    constexpr std::string_view separators = "_-. ";
+    std::string lower = name;
+    std::transform(lower.begin(), lower.end(), lower.begin(),
+                   [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
+    const std::string_view word = side == BakeSide::high ? "high" : "low";
+    for (std::size_t at = lower.rfind(word); at != std::string::npos && at > 1;
+         at = lower.rfind(word, at - 1)) {
+        const std::size_t end = at + word.size();
+        const bool begins = separators.find(lower[at - 1]) != std::string_view::npos;
+        const bool ends =
+            end == lower.size() || separators.find(lower[end]) != std::string_view::npos;
+        if (begins && ends) return lower.substr(0, at - 1);
+    }
+    return std::nullopt;
+}
+
+std::vector<BakeNameGroup> group_by_pair_name(std::span<const BakePartName> high,
+                                              std::span<const BakePartName> low) {
+    std::map<std::string, BakeNameGroup> groups;
+    for (std::size_t i = 0; i < high.size(); ++i)
+        groups[pair_name_of(high[i], BakeSide::high)].high.push_back(i);
+    for (std::size_t i = 0; i < low.size(); ++i)
+        groups[pair_name_of(low[i], BakeSide::low)].low.push_back(i);
+    std::vector<BakeNameGroup> sorted;
+    for (auto& [name, group] : groups) {
+        group.name = name;
+        sorted.push_back(std::move(group));
+    }
+    return sorted;
+}
+
+std::string likely_cause(const BakeFit& fit) {
+    if (fit.low.empty() || fit.high.empty()) return "";
+    const std::string units = unit_cause(fit.size_ratio);
+    if (!units.empty()) return units;
+    if (fit.fits_turned) return "is one of them Y up and the other Z up?";
+    const glm::dvec3 low_min(fit.low.min), low_max(fit.low.max);
+    const glm::dvec3 moved =
+        0.5 * (glm::dvec3(fit.high.max) + glm::dvec3(fit.high.min) - low_max - low_min);
+    const bool is_similar = fit.size_ratio < 1.25 && fit.size_ratio > 0.8;
+    if (glm::length(moved) > 0.1 * glm::length(low_max - low_min)) {
+        return fmt::format(
+            "the high model is moved by ({:.4g}, {:.4g}, {:.4g}){}: was one of them exported "
+            "without its transform?",
+            moved.x, moved.y, moved.z, is_similar ? ", and has the size of the low one" : "");
+    }
+    return fit.differs_in_size()
+               ? "are they in different units, or was one exported without its scale?"
+               : "";
+}
+
+MissedEstimate estimate_missed(const Baker& baker, const BakeMapOptions& map) {
+    BakeMapOptions reduced = map;
+    const double texels = static_cast<double>(map.width) * static_cast<double>(map.height);
+    const double scale = std::min(std::sqrt(estimate_texels / texels), 1.0);
+    reduced.width = std::max(static_cast<int>(std::lround(scale * map.width)), 1);
+    reduced.height = std::max(static_cast<int>(std::lround(scale * map.height)), 1);
+    reduced.samples = 1;
+    reduced.sample_angle.reset();
+    reduced.padding = 0;
+    reduced.border_folder.reset();
+    reduced.progress = nullptr;
+    reduced.measures_missed = true;
+    reduced.layers = {.normals = false, .heights = true};
+    Report unused;
+    return {reduced.width, reduced.height,
+            baker.bake(
+                reduced, [](const BakedRows&) {}, unused)};
+}
+
+}  // namespace relief
