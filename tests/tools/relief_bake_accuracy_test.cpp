@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// relief-bake mesh --max-error and --compare: samples and bits by measured error.
+// Runs relief-bake mesh --max-error and --compare.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -20,7 +20,7 @@ using test::ProgramResult;
 using test::Workplace;
 using testing::HasSubstr;
 
-/// Waves above the square of Workplace, of which a texel of 32 has a fifth of one.
+/// Waves above the square of Workplace. A texel of a map of 32 covers a fifth of a wave.
 std::string smooth_waves() {
     std::string text;
     constexpr int cells = 300;
@@ -52,7 +52,7 @@ class BakeAccuracy : public testing::Test {
     Workplace workplace;
 };
 
-TEST_F(BakeAccuracy, RaisesSamplesAndBitsUntilTheErrorIsKept) {
+TEST_F(BakeAccuracy, IncreasesSamplesAndBitsUntilTheErrorIsWithinTheLimit) {
     const json loose = baked("--max-error 5");
     EXPECT_EQ(loose["kept"]["samples"], 1);
     EXPECT_EQ(loose["kept"]["bits"], 8);
@@ -67,13 +67,13 @@ TEST_F(BakeAccuracy, RaisesSamplesAndBitsUntilTheErrorIsKept) {
     const auto said = read_image_info(workplace / "out/map.png").metadata;
     EXPECT_EQ(said.at("relief:bake"),
               fmt::format("--samples {} --space tangent", tight["kept"]["samples"].get<int>()));
-    // What was measured is what the file has.
+    // The file has the measured method.
     const json checked = baked("--max-error 0.1 --verify");
     EXPECT_NEAR(checked["maps"][0]["check"]["error"]["rms"].get<double>(),
                 tight["kept"]["rms"].get<double>(), 0.01);
 }
 
-TEST_F(BakeAccuracy, KeepsToWhatIsTold) {
+TEST_F(BakeAccuracy, KeepsGivenSamplesAndBits) {
     // Directions in the plane y = 0 have no exact code in 8 bits, so that rounding alone is 0.25
     // degrees.
     const json bits = baked("--max-error 0.3 --bits 8");
@@ -83,14 +83,14 @@ TEST_F(BakeAccuracy, KeepsToWhatIsTold) {
     EXPECT_EQ(samples["steps"].size(), 2U);
 }
 
-/// The least error that a refusal names.
+/// The minimum error in an error message.
 double least_in(const std::string& error) {
-    const std::string before = "the least is ";
+    const std::string before = "the minimum is ";
     const std::size_t at = error.find(before);
     return at == std::string::npos ? -1.0 : std::stod(error.substr(at + before.size()));
 }
 
-TEST_F(BakeAccuracy, RefusesWithTheLeastErrorOfAllChoices) {
+TEST_F(BakeAccuracy, FailsWithTheMinimumErrorOfAllChoices) {
     const auto error_of = [&](const std::string& options) {
         const ProgramResult result =
             workplace.run("relief-bake mesh high.obj low.obj out/" + options + " --size 32");
@@ -98,21 +98,22 @@ TEST_F(BakeAccuracy, RefusesWithTheLeastErrorOfAllChoices) {
         EXPECT_EQ(workplace.outputs(), "") << options;
         return result.error;
     };
-    // Rounding is the larger part.
+    // Rounding is the larger part of the error.
     const std::string rounding = error_of("map.png --max-error 0.05 --bits 8");
-    EXPECT_THAT(rounding, HasSubstr("no choice of samples and bits keeps the error within 0.05 "
-                                    "degrees (RMS): the least is 0."));
-    EXPECT_THAT(rounding, HasSubstr(" 8 bit; rounding to 8 bits alone makes 0."));
-    EXPECT_THAT(rounding, HasSubstr("(16 bits would do, with 0.0"));
+    EXPECT_THAT(
+        rounding,
+        HasSubstr("no choice of samples and bits is within 0.05 degrees (RMS): the minimum is 0."));
+    EXPECT_THAT(rounding, HasSubstr(" 8 bit; rounding to 8 bits alone causes 0."));
+    EXPECT_THAT(rounding, HasSubstr("(16 bits are within the limit, with 0.0"));
     EXPECT_THAT(rounding, HasSubstr(": give --bits 16)"));
-    // Sampling is, although rounding alone is beyond the limit too: 256 samples are tried.
+    // Sampling is the larger part. Rounding alone exceeds the limit too, so 256 samples are tried.
     const std::string both = error_of("map.png --max-error 0.0001");
-    EXPECT_THAT(both, HasSubstr("with 256 samples, 16 bit; sampling alone makes 0.0"));
+    EXPECT_THAT(both, HasSubstr("with 256 samples, 16 bit; sampling alone causes 0.0"));
     EXPECT_THAT(both, HasSubstr("(allow a larger error)"));
     const std::string floats = error_of("map.exr --max-error 0.000001");
-    EXPECT_THAT(floats, HasSubstr("with 256 samples, 32 bit; sampling alone makes "));
+    EXPECT_THAT(floats, HasSubstr("with 256 samples, 32 bit; sampling alone causes "));
     EXPECT_LE(least_in(floats), least_in(both));
-    // What the refusals name can be had.
+    // The minimum errors of the messages can be reached.
     const json eight = baked(fmt::format("--max-error {} --bits 8", 1.02 * least_in(rounding)));
     EXPECT_LE(eight["kept"]["rms"].get<double>(), 1.02 * least_in(rounding));
     const json sixteen = baked(fmt::format("--max-error {}", 1.02 * least_in(both)));
@@ -125,12 +126,12 @@ TEST_F(BakeAccuracy, RefusesWithTheLeastErrorOfAllChoices) {
         "relief-bake mesh high.obj low.obj out/map.png --size 32 --max-error 0.0001 "
         "--max-error-kind max --samples 4");
     EXPECT_EQ(result.exit_code, 1);
-    EXPECT_THAT(result.error, HasSubstr("within 0.0001 degrees (greatest)"));
+    EXPECT_THAT(result.error, HasSubstr("within 0.0001 degrees (maximum)"));
     EXPECT_EQ(workplace.outputs(), "");
 }
 
-TEST_F(BakeAccuracy, ErrorsOfNoTexelKeepNoBound) {
-    // Beside the low square, so that no ray meets it.
+TEST_F(BakeAccuracy, WithoutTexelsNoErrorIsWithinALimit) {
+    // The high model is beside the low square, so that no ray hits it.
     workplace.write("high.obj", "v 1.5 0 0\nv 2.5 0 0\nv 1.5 1 0\nf 1 2 3\n");
     for (const char* option : {"--max-error 5", "--compare"}) {
         const ProgramResult result = workplace.run(
@@ -162,34 +163,34 @@ TEST_F(BakeAccuracy, ComparesEverySampleCountAndDepth) {
     EXPECT_GE(efficient, 2U);
     EXPECT_EQ(report["reference"]["samples"], 256);
     EXPECT_TRUE(report["reference"]["whole"].get<bool>());
-    // The map is baked as usual beside.
+    // The map is also baked as usual.
     EXPECT_EQ(report["samples"], 32 * 32);
 }
 
-TEST_F(BakeAccuracy, Takes256SamplesWhereFewerAreNotEnough) {
+TEST_F(BakeAccuracy, Uses256SamplesIfFewerAreNotEnough) {
     const json few = baked("--max-error 10 --samples 64 --bits 16");
     const double bound = 0.6 * few["kept"]["rms"].get<double>();
     const json report = baked(fmt::format("--max-error {}", bound));
     EXPECT_EQ(report["kept"]["samples"], 256);
     EXPECT_EQ(report["kept"]["bits"], 16);
     EXPECT_LE(report["kept"]["rms"].get<double>(), bound);
-    // Compared with more samples than its own: the error is that of the samples, and not 0.
+    // The reference has more samples than the map, so the error is that of the samples, not 0.
     EXPECT_EQ(report["reference"]["samples"], 1024);
     EXPECT_GT(report["kept"]["sampling"].get<double>(), 0.1 * bound);
     EXPECT_EQ(report["samples"], 256 * 32 * 32);
 }
 
-TEST(BakeAccuracyRefusal, LeavesEverythingAsItWas) {
+TEST(BakeAccuracyRefusal, LeavesAllFilesUnchanged) {
     const Workplace workplace;
     workplace.write_square("low.obj");
     workplace.write("high.obj", smooth_waves());
     expect_refusals(workplace, "relief-bake", "map.png",
                     {{"relief-bake mesh high.obj low.obj out/map.png --max-error-kind max", 2,
-                      "--max-error-kind: is for --max-error"},
+                      "--max-error-kind: has no effect without --max-error"},
                      {"relief-bake mesh high.obj low.obj out/map.png --max-error 1 --compare", 2,
-                      "--compare, --max-error: one bakes in every way, the other in one"},
+                      "--compare, --max-error: contradict each other"},
                      {"relief-bake mesh high.obj low.obj 'out/<UDIM>.png' --compare", 2,
-                      "--compare: is of one map, not those of <material> or <UDIM>"},
+                      "--compare: needs a single map, not <material> or <UDIM>"},
                      {"relief-bake mesh high.obj low.obj out/map.exr --half --max-error 1", 2,
                       "--max-error, --half: errors of half floats are not measured"}});
 }

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// relief-bake heights as users run it: the file that it writes gives the normal map back by the
-// command that it names.
+// Runs relief-bake heights: heights whose normals are those of the map, and refusals.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -21,7 +20,7 @@ using test::ProgramResult;
 using test::Workplace;
 using testing::HasSubstr;
 
-/// Root mean square angle between two maps of the workplace, in degrees.
+/// The root mean square angle between two maps of the workplace, in degrees.
 double rms_angle(const Workplace& workplace, const char* a, const char* b) {
     Report report;
     const auto normals = [&](const char* file) {
@@ -41,14 +40,14 @@ double rms_angle(const Workplace& workplace, const char* a, const char* b) {
     return std::sqrt(squares * 3.0 / static_cast<double>(one.sample_count()));
 }
 
-/// The command after "way back", with its result at out/back.png.
+/// The command after "inverse", with the output file out/back.png.
 std::string way_back(const std::string& summary) {
     const std::size_t begin = summary.find("relief-bake bump");
     std::string line = summary.substr(begin, summary.find('\n', begin) - begin);
     return line.replace(line.find("normals.png"), 11, "out/back.png");
 }
 
-TEST(HeightsCommand, NamesTheWayBack) {
+TEST(HeightsCommand, PrintsTheInverseCommand) {
     const Workplace workplace;
     EXPECT_EQ(workplace
                   .run("relief-bake bump data/bricks-height.png out/map.png --strength 20 --kernel "
@@ -64,12 +63,12 @@ TEST(HeightsCommand, NamesTheWayBack) {
         const std::string command = way_back(result.out);
         EXPECT_THAT(command, HasSubstr(" --kernel sobel3 --wrap repeat"));
         EXPECT_EQ(workplace.run(command).exit_code, 0) << command;
-        // 16-bit codes of the map that it is made of, and of the heights.
+        // The error is that of the 16-bit codes of the map and of the heights.
         EXPECT_LT(rms_angle(workplace, "out/map.png", "out/back.png"), 0.02) << options;
     }
 }
 
-TEST(HeightsCommand, SaysWhatItMadeInTheReportAndTheFile) {
+TEST(HeightsCommand, DescribesTheHeightsInTheReportAndTheFile) {
     const Workplace workplace;
     const ProgramResult result = workplace.run(
         "relief-bake heights data/scenes/bricks-normal.png out/heights.png --report "
@@ -92,7 +91,7 @@ TEST(HeightsCommand, SaysWhatItMadeInTheReportAndTheFile) {
     EXPECT_NEAR(std::stod(metadata.at("relief:strength")), report["strength"].get<double>(), 1e-6);
 }
 
-TEST(HeightsCommand, RefusesToGuessGreenAndWhatCannotHoldHeights) {
+TEST(HeightsCommand, RefusesToGuessGreenAndUnsuitableFormats) {
     const Workplace workplace;
     Image flat = make_image(8, 8, 3, 8, ColorSpace::data);
     for (std::size_t i = 0; i < flat.sample_count(); ++i)
@@ -100,17 +99,17 @@ TEST(HeightsCommand, RefusesToGuessGreenAndWhatCannotHoldHeights) {
     write_image(workplace / "flat.png", flat);
     for (const auto& [line, code, message] :
          {test::Refused{"relief-bake heights flat.png out/old.png", 1,
-                        "flat.png: where its green is bright is not known, nor do its slopes tell "
-                        "(give --input-green)"},
+                        "flat.png: the direction of its green channel is unknown, nor do its "
+                        "slopes tell (give --input-green)"},
           test::Refused{"relief-bake heights flat.png out/old.png --bits 32", 2,
                         "--bits 32: .png holds 16 or 8 bits"},
           test::Refused{"relief-bake heights flat.png out/old.jpg", 2,
-                        "out/old.jpg: no format to write heights in (use .png, .tif or .exr)"},
+                        "out/old.jpg: the format cannot store heights (use .png, .tif or .exr)"},
           test::Refused{"relief-bake heights flat.png out/old.png --wrap auto,clamp,repeat", 2,
                         "--wrap auto,clamp,repeat: names more than two axes"},
-          test::Refused{"relief-bake heights flat.png flat.png", 2,
-                        "flat.png: would replace the normal map (write to another folder, or by "
-                        "another name)"},
+          test::Refused{
+              "relief-bake heights flat.png flat.png", 2,
+              "flat.png: would replace the normal map (choose another output file or folder)"},
           test::Refused{"relief-bake heights data/bricks-height.png out/old.png", 1,
                         "data/bricks-height.png: has 1 channel, which holds no normals"}}) {
         expect_refusal(workplace, "relief-bake", {line, code, message}, "old.png");

@@ -1,9 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// The commands of relief-bake. Each adds its options to the tool and says what to run.
+/// The commands of relief-bake, and what they share: converting one map or many files, and the
+/// options for how a normal map is stored. Tests: tests/tools/relief_bake_bump_test.cpp,
+/// relief_bake_convert_test.cpp.
 #pragma once
 
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/batch.h"
 #include "common/command.h"
+#include "common/file_jobs.h"
+#include "common/options.h"
+#include "common/report_options.h"
+#include "relief/mesh/image_file.h"
+#include "relief/mesh/normal_map.h"
 
 namespace relief::tools {
 
@@ -11,9 +25,87 @@ namespace relief::tools {
 Tool relief_bake();
 
 Command add_bump_command(CLI::App& tool);
+Command add_mesh_command(CLI::App& tool);
+Command add_convert_command(CLI::App& tool);
 Command add_map_check_command(CLI::App& tool);
 Command add_heights_command(CLI::App& tool);
-Command add_convert_command(CLI::App& tool);
-Command add_mesh_command(CLI::App& tool);
+
+// Commands that convert maps, one by one.
+
+/// The options of every command that converts maps.
+struct MapFiles {
+    FileWords words;
+    ReportOptions report;
+    GeneralOptions general;
+};
+
+/// The conversion of a single map.
+struct MapWork {
+    nlohmann::ordered_json head;  ///< The first entries of the report: tool, version.
+    /// Throws UsageError if the command line alone shows that the conversion is impossible.
+    std::function<void(const Job& job)> check;
+    /// Converts a map, and prints a summary if asked to.
+    std::function<FileOutcome(const Job& job, Stages& stages, bool prints_summary)> work;
+};
+
+/// Adds the file arguments.
+/// \param input    what an input file is: "normal map"; its plural adds an s
+/// \param output   what an output file is
+/// \param details  more sentences for the help text
+void add_map_files(CLI::App& app, MapFiles& files, const std::string& input,
+                   const std::string& details, const std::string& output = "normal map");
+
+/// Adds -o. A command calls this before it adds its other output options, so that --help lists it
+/// first.
+void add_map_folder(CLI::App& app, MapFiles& files);
+
+/// \param kind  what the file is: "height map"
+/// \throws UsageError if the output of the job would replace the file
+void refuse_to_replace(const std::filesystem::path& file, const std::string& kind, const Job& job);
+
+/// Converts one map and prints a summary, or many maps and prints a line for each.
+/// \throws UsageError, FileError before any file is read, if the command line is wrong
+ExitCode run_map_jobs(const CLI::App& app, const MapFiles& files, const MapWork& work);
+
+// The storage of normal maps.
+
+/// Options for how a normal map is stored. Absent: the default of the command.
+struct MapOutputOptions {
+    std::optional<int> bits;
+    std::optional<Green> green;
+    std::optional<FlatCode> flat;
+    std::optional<Dither> dither;
+    bool half = false;
+    bool fast = false;
+    bool small = false;
+};
+
+/// The defaults of a command.
+struct MapOutputDefaults {
+    /// Absent, or not supported by the file format: the largest integer depth of the format.
+    std::optional<int> bits{};
+    Green green = Green::up;
+    FlatCode flat = FlatCode::half;
+};
+
+/// Adds --bits, --green, --zero-code, --dither, --half, --fast and --small.
+/// \param follows_input  whether --help names the input's format as the default
+void add_map_output_options(CLI::App& app, MapOutputOptions& options, bool follows_input = false);
+
+/// The bit depths in which a file format can store normals, the default first; empty if it cannot
+/// store them.
+std::vector<int> depths_of(const std::filesystem::path& output);
+
+/// \throws UsageError if the file format cannot store normals, or not with this depth, or if an
+///         option has no effect
+NormalMapFormat format_of(const MapOutputOptions& options, const std::filesystem::path& output,
+                          const MapOutputDefaults& defaults = {});
+
+/// \throws UsageError if options contradict each other, or have no effect on this file
+ImageWriteOptions write_options_of(const MapOutputOptions& options,
+                                   const std::filesystem::path& output);
+
+/// "8 bit, zero at 127.5 of 255 (the glTF decoding; ...), green up"
+std::string to_string(const NormalMapFormat& format);
 
 }  // namespace relief::tools

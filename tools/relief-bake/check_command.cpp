@@ -1,0 +1,574 @@
+// SPDX-License-Identifier: Apache-2.0
+// The command `relief-bake check`: identifies the content and conventions of images that should be
+// normal maps, finds their problems, and with --high compares a map with its models. It checks all
+// files, even if one fails. Tests: tests/tools/relief_bake_check_test.cpp.
+#include <fmt/format.h>
+
+#include <array>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "commands.h"
+#include "common/findings.h"
+#include "common/map_choices.h"
+#include "common/quoted.h"
+#include "common/text.h"
+#include "mesh_bake.h"
+#include "relief/mesh/image_file.h"
+#include "relief/mesh/image_tags.h"
+#include "relief/mesh/normal_map_check.h"
+#include "relief/mesh/threads.h"
+
+namespace relief::tools {
+namespace {
+
+constexpr const char* documentation = "docs/map-check.md";
+
+// The check of an image by itself.
+
+struct CheckedMap {
+    std::filesystem::path file;
+    std::string error;  ///< The reason if it cannot be read.
+    int width = 0;
+    int height = 0;
+    int channels = 0;
+    int bits = 0;
+    std::string color_tag;  ///< Empty: the file has no color tag.
+    NormalMapCheck check;
+    double milliseconds = 0.0;  ///< Of the check, without reading.
+
+    [[nodiscard]] bool is_sound() const { return error.empty() && !check.has_trouble(); }
+    [[nodiscard]] bool has_green() const {
+        return check.content == MapContent::tangent_normals ||
+               check.content == MapContent::xy_normals;
+    }
+    [[nodiscard]] bool has_directions() const {
+        return has_green() || check.content == MapContent::object_normals;
+    }
+    [[nodiscard]] double megapixels_per_second() const {
+        const double pixels = static_cast<double>(width) * height;
+        return milliseconds > 0.0 ? pixels / milliseconds / 1000.0 : 0.0;
+    }
+};
+
+/// Reads and checks an image.
+/// \param green  the expected direction of green; absent: that of the file's metadata
+CheckedMap check_map(const std::filesystem::path& file, std::optional<Green> green) {
+    CheckedMap map;
+    map.file = file;
+    try {
+        const Image image = read_image(file, ImageUse::data);
+        std::map<std::string, std::string> metadata = read_image_info(file).metadata;
+        if (green) metadata["relief:green"] = name_of(*green, green_choices());
+        map.color_tag = color_tag(file);
+        map.width = image.width;
+        map.height = image.height;
+        map.channels = image.channels;
+        map.bits = image.bits();
+        Stages stages(true);
+        map.check =
+            stages.run("check", [&] { return check_normal_map(image, metadata, map.color_tag); });
+        map.milliseconds = stages.milliseconds("check");
+    } catch (const FileError& error) {
+        map.error = error.what();
+    }
+    return map;
+}
+
+/// The command that remedies a condition; empty if there is none. Output files are "out.png".
+std::string remedy_for(MapCondition condition, const CheckedMap& map) {
+    const auto convert = [&](const char* options) {
+        return fmt::format("relief-bake convert {} out.png{}", quoted(map.file), options);
+    };
+    switch (condition) {
+        case MapCondition::not_normals:
+            if (map.check.content != MapContent::grey) return "";
+            return fmt::format("relief-bake bump {} out.png", quoted(map.file));
+        case MapCondition::object_space:
+            return convert(" --to-tangent mesh.glb");
+        case MapCondition::z_missing:
+        case MapCondition::z_constant:
+            return convert(" --rebuild-z rg");
+        case MapCondition::signed_samples:
+            return convert(" --input-signed");
+        case MapCondition::tagged_as_color:
+            return convert("");
+        case MapCondition::texel_not_finite:
+        case MapCondition::texel_without_direction:
+        case MapCondition::not_unit:
+        case MapCondition::not_quite_unit:
+            return convert(" --normalize");
+        case MapCondition::green_contradicted:
+        case MapCondition::green_down:
+            return convert(" --flip green");
+        case MapCondition::flat_contradicted:
+            return convert(" --input-zero-code 127.5");
+        case MapCondition::bits_unused:
+            return convert(" --bits 8");
+        case MapCondition::alpha_opaque:
+            return convert(" --alpha drop");
+        default:
+            return "";
+    }
+}
+
+const char* describe(MapContent content) {
+    switch (content) {
+        case MapContent::tangent_normals:
+            return "tangent-space normals";
+        case MapContent::object_normals:
+            return "object-space normals";
+        case MapContent::xy_normals:
+            return "x and y of tangent-space normals";
+        case MapContent::grey:
+            return "grayscale: heights or a mask";
+        default:
+            return "not normals: colors, or several masks";
+    }
+}
+
+/// "mean 0.975, RMS deviation from 1: 0.048, 95.3 % within 0.1"
+std::string describe(const VectorLengths& lengths) {
+    return fmt::format("mean {:.3f}, RMS deviation from 1: {:.3f}, {:.1f} % within {:g}",
+                       lengths.mean, lengths.rms_deviation, 100.0 * lengths.within[3],
+                       VectorLengths::bounds[3]);
+}
+
+std::string describe(const GreenEvidence& green) {
+    const std::string evidence =
+        fmt::format("(correlation {:+.2f} +- {:.2g}; +1 is up, -1 is down)", green.correlation,
+                    green.deviation);
+    if (!green.green) return "cannot be determined from the slopes " + evidence;
+    return fmt::format("{}, from the slopes {}", name_of(*green.green, green_choices()), evidence);
+}
+
+/// "along x and y", and the differences across the seams.
+std::string describe(const Tiling& tiling) {
+    const std::string axes = tiling.tiles_x() && tiling.tiles_y() ? "x and y"
+                             : tiling.tiles_x()                   ? "x"
+                             : tiling.tiles_y()                   ? "y"
+                                                                  : "no axis";
+    return fmt::format(
+        "along {} (differences across the seams are {:.2g} and {:.2g} times those inside)", axes,
+        tiling.seam_x, tiling.seam_y);
+}
+
+/// "8, 8, 8 used"; the library reports more than 16 bits as 0.
+std::string describe_bits(const std::vector<int>& bits) {
+    std::vector<std::string> counts;
+    for (const int count : bits)
+        counts.push_back(count == 0 ? "more than 16" : fmt::format("{}", count));
+    return fmt::format("{} used", fmt::join(counts, ", "));
+}
+
+/// The findings of one severity, each followed by its remedy.
+std::vector<std::string> finding_lines(const CheckedMap& map, Severity severity) {
+    std::vector<std::string> lines;
+    for (const FoundMapCondition& found : map.check.found) {
+        const MapConditionInfo& info = condition_info(found.condition);
+        if (info.severity != severity) continue;
+        lines.push_back(
+            info.element == "map"
+                ? fmt::format("{}: {}", info.word, info.meaning)
+                : to_string(Finding{std::string(info.word), std::string(info.element),
+                                    std::string(info.meaning), found.count, found.first}));
+        const std::string remedy = remedy_for(found.condition, map);
+        if (!remedy.empty()) lines.push_back("-> " + remedy);
+    }
+    return lines;
+}
+
+void print_text(const CheckedMap& map) {
+    const NormalMapCheck& check = map.check;
+    print_entry("file",
+                fmt::format("{}: {} x {}, {}, {} bit: {}", map.file.string(), map.width, map.height,
+                            counted(static_cast<std::size_t>(map.channels), "channel"), map.bits,
+                            map.is_sound() ? "sound" : "has problems"));
+    print_entry("content", describe(check.content));
+    if (map.has_directions()) {
+        print_entry("lengths", describe(check.lengths));
+        if (check.curve != StoredCurve::none)
+            print_entry("decoded", describe(check.lengths_uncurved));
+    }
+    if (map.has_green()) print_entry("green", describe(check.green));
+    if (map.has_directions()) {
+        if (map.bits != 32) {
+            print_entry("zero", check.flat == FlatCode::middle
+                                    ? "a code (128 of 255)"
+                                    : "between two codes (127.5 of 255), as in glTF");
+        }
+        print_entry("tiles", describe(check.tiling));
+    }
+    print_entry("bits", describe_bits(check.bits));
+    print_entry("problems", finding_lines(map, Severity::trouble));
+    print_entry("notes", finding_lines(map, Severity::remark));
+    print_entry("time", fmt::format("{} ({:.0f} MPixel/s without file access)",
+                                    duration(map.milliseconds), map.megapixels_per_second()));
+}
+
+nlohmann::ordered_json findings_json(const CheckedMap& map, Severity severity) {
+    nlohmann::ordered_json list = nlohmann::ordered_json::array();
+    for (const FoundMapCondition& found : map.check.found) {
+        const MapConditionInfo& info = condition_info(found.condition);
+        if (info.severity != severity) continue;
+        list.push_back({{"kind", info.word},
+                        {"element", info.element},
+                        {"count", found.count},
+                        {"first", found.first},
+                        {"meaning", info.meaning},
+                        {"remedy", remedy_for(found.condition, map)}});
+    }
+    return list;
+}
+
+nlohmann::ordered_json lengths_json(const VectorLengths& lengths) {
+    nlohmann::ordered_json within = nlohmann::ordered_json::object();
+    for (std::size_t i = 0; i < lengths.within.size(); ++i)
+        within[fmt::format("{:g}", VectorLengths::bounds[i])] = lengths.within[i];
+    return {{"mean", lengths.mean},
+            {"rms_deviation", lengths.rms_deviation},
+            {"within", std::move(within)}};
+}
+
+nlohmann::ordered_json green_json(const CheckedMap& map) {
+    if (!map.has_green()) return nullptr;
+    const GreenEvidence& green = map.check.green;
+    return {{"is", green.green ? name_of(*green.green, green_choices()) : "unknown"},
+            {"correlation", green.correlation},
+            {"deviation", green.deviation},
+            {"confidence", green.confidence},
+            {"scale", green.scale}};
+}
+
+nlohmann::ordered_json json_of(const CheckedMap& map) {
+    if (!map.error.empty())
+        return {{"file", map.file.string()}, {"sound", false}, {"error", map.error}};
+    const Choices<MapContent> contents = {{"tangent-space", MapContent::tangent_normals},
+                                          {"object-space", MapContent::object_normals},
+                                          {"xy", MapContent::xy_normals},
+                                          {"grey", MapContent::grey},
+                                          {"other", MapContent::other}};
+    const Choices<StoredCurve> curves = {{"none", StoredCurve::none},
+                                         {"srgb-encoded", StoredCurve::srgb_encoded},
+                                         {"srgb-decoded", StoredCurve::srgb_decoded}};
+    const NormalMapCheck& check = map.check;
+    return {{"file", map.file.string()},
+            {"sound", map.is_sound()},
+            {"width", map.width},
+            {"height", map.height},
+            {"channels", map.channels},
+            {"bits", map.bits},
+            {"content", name_of(check.content, contents)},
+            {"curve", name_of(check.curve, curves)},
+            {"color_tag", map.color_tag},
+            {"lengths", lengths_json(check.lengths)},
+            {"lengths_uncurved", lengths_json(check.lengths_uncurved)},
+            {"green", green_json(map)},
+            {"zero_code", name_of(check.flat, zero_code_choices())},
+            {"seams", {check.tiling.seam_x, check.tiling.seam_y}},
+            {"bits_used", check.bits},
+            {"alpha_correlation", check.alpha_correlation
+                                      ? nlohmann::ordered_json(*check.alpha_correlation)
+                                      : nlohmann::ordered_json()},
+            {"trouble", findings_json(map, Severity::trouble)},
+            {"remarks", findings_json(map, Severity::remark)},
+            {"milliseconds", map.milliseconds},
+            {"megapixels_per_second", map.megapixels_per_second()}};
+}
+
+// The check of a map against its models: the bake is repeated in memory.
+
+struct SurfaceCheckRequest {
+    MeshBakeRequest bake;
+    VerifyRequest verify;
+    std::optional<int> udim;
+
+    [[nodiscard]] bool is_wanted() const { return !bake.high.empty(); }
+};
+
+struct SurfaceCheck {
+    BakeRecord of_file;  ///< The record of the file.
+    BakeRecord used;     ///< The record completed by the command line.
+    BakeDistances distances;
+    VerifiedMap map;
+    Findings findings;
+};
+
+void add_surface_options(CLI::App& app, SurfaceCheckRequest& request) {
+    add_repeatable(
+        app, "--high", "FILE",
+        "Compare a single map with this detailed model, as a renderer shows the map on --low. May "
+        "be given several times.",
+        [&](const std::string&, const std::string& text) { request.bake.high.emplace_back(text); })
+        .group("Models");
+    add_path(app, "--low", request.bake.low,
+             "The simple model of the map. Options of the bake are read from the file if relief "
+             "baked it; those on the command line take precedence.")
+        .group("Models");
+    add_value(app, "--udim", "N", "UDIM tile of the map, from 1001.",
+              [&](const std::string& subject, const std::string& text) {
+                  request.udim = parse_integer(subject, text, 1001, 9999);
+              })
+        .group("Models");
+    add_ray_options(app, request.bake);
+    add_fit_options(app, request.bake, "More are a problem.");
+    add_texel_options(app, request.bake);
+    add_high_normal_map_option(app, request.bake.textures);
+    add_bound_options(app, request.verify.bound,
+                      "Errors above DEG degrees are a problem. Default: it is a problem if the map "
+                      "differs by 1 degree (RMS) from this bake, or if another convention explains "
+                      "the map.");
+    add_error_map_option(app, request.verify.error_map);
+}
+
+/// \throws UsageError if options have no effect, models are missing, or there are several maps
+void check(const CLI::App& app, const SurfaceCheckRequest& request,
+           const std::vector<std::filesystem::path>& maps) {
+    constexpr std::array surface_options = {"--low",          "--cage",
+                                            "--rays",         "--hardness",
+                                            "--offset",       "--space",
+                                            "--back-faces",   "--max-distance",
+                                            "--samples",      "--outside",
+                                            "--sample-angle", "--udim",
+                                            "--max-error",    "--max-error-kind",
+                                            "--error-map",    "--high-normal-map",
+                                            "--max-missed",   "--allow-size-mismatch"};
+    if (!request.is_wanted()) {
+        for (const char* name : surface_options) {
+            if (is_given(app, name))
+                throw UsageError(fmt::format("{}: has no effect without --high", name),
+                                 "give --high FILE and --low FILE");
+        }
+        return;
+    }
+    if (request.bake.low.empty())
+        throw UsageError("--high: needs the model of the map", "give --low FILE");
+    if (maps.size() > 1)
+        throw UsageError(fmt::format("--high: needs a single map, not {}", maps.size()));
+    check_bake_options(request.bake);
+    check(request.verify.bound);
+    std::vector<std::filesystem::path> files = request.bake.high;
+    files.push_back(request.bake.low);
+    if (request.bake.cage) files.push_back(*request.bake.cage);
+    files.push_back(maps.front());
+    check_error_map(request.verify.error_map, files);
+}
+
+/// Finds the plan of the map by the material and tile in its file.
+MapPlan plan_of(const SurfaceCheckRequest& request, const BakeModels& models,
+                const std::map<std::string, std::string>& metadata) {
+    const auto entry = [&](const char* key) {
+        const auto found = metadata.find(key);
+        return found == metadata.end() ? std::string() : found->second;
+    };
+    MeshBakeRequest bake = request.bake;
+    const std::string material = entry("relief:material");
+    const std::string udim = request.udim ? fmt::format("{}", *request.udim) : entry("relief:udim");
+    bake.output = fmt::format("{}{}.png", material.empty() ? "map" : material_word,
+                              udim.empty() ? std::string_view() : tile_word);
+    MapPlans plans = plan_maps(bake, models.low, models.materials);
+    for (MapPlan& plan : plans.maps) {
+        const bool matches = plan.material.value_or("") == material &&
+                             (udim.empty() || fmt::format("{}", plan.udim.value_or(0)) == udim);
+        if (matches) return std::move(plan);
+    }
+    throw failure(
+        request.bake.low,
+        fmt::format("has no {}{}{}", material.empty() ? "" : "material '" + material + "'",
+                    material.empty() || udim.empty() ? "" : " in ",
+                    udim.empty() ? "" : "tile " + udim),
+        "is it the model of the map?");
+}
+
+/// If the map was converted to another space after the bake, its content entry has the new space.
+void apply_content(const std::map<std::string, std::string>& metadata, BakeRecord& record) {
+    const auto content = metadata.find("relief:content");
+    if (record.empty() || content == metadata.end()) return;
+    for (const char* space : {"tangent", "object", "world"}) {
+        if (content->second.ends_with(fmt::format("{} space", space))) record["--space"] = space;
+    }
+}
+
+/// Reads models and map, and compares them. \throws FileError, UsageError
+SurfaceCheck check_surface(const CLI::App& app, const SurfaceCheckRequest& request,
+                           Stages& stages) {
+    SurfaceCheck result;
+    const auto metadata = read_image_info(request.verify.map).metadata;
+    result.of_file = read_record(request.verify.map, metadata);
+    apply_content(metadata, result.of_file);
+    result.used = merged(record_of(app), result.of_file);
+    if (result.used.contains("--cage") && !request.bake.cage) {
+        throw failure(request.verify.map, "was baked with a cage, but does not name its file",
+                      "give --cage FILE");
+    }
+    SurfaceCheckRequest settled = request;
+    settled.bake = MeshBakeRequest{};
+    settled.bake.high = request.bake.high;
+    settled.bake.low = request.bake.low;
+    settled.bake.textures = request.bake.textures;
+    settled.bake.bake.allow_size_mismatch = request.bake.bake.allow_size_mismatch;
+    settled.bake.max_missed = request.bake.max_missed;
+    apply_record(result.used, settled.bake);
+    const BakeModels models =
+        stages.run("read", [&] { return read_bake_models(settled.bake, result.findings); });
+    BakeOptions options = bake_options_of(settled.bake);
+    options.output_from_mesh = output_axes(settled.bake, models.world_from_low);
+    options.details = models.textures.details();
+    if (models.cage) options.cage = &*models.cage;
+    const MapPlan plan = plan_of(settled, models, metadata);
+    Report report;
+    about(request.bake.low, [&] {
+        stages.run("check", [&] {
+            const Baker baker = make_baker(settled.bake, models, options, report);
+            result.distances = baker.distances();
+            result.map = verify_map(baker, models, settled.bake, map_options(options, plan),
+                                    request.verify, report);
+        });
+    });
+    result.findings.add("", report);
+    return result;
+}
+
+void print_text(const SurfaceCheck& check) {
+    const char* const source = check.of_file.empty()         ? "the file has no record of its bake"
+                               : check.of_file == check.used ? "from the file"
+                                                             : "from the command line and the file";
+    print_entry("baked", {fmt::format("{} ({})", to_string(check.used), source),
+                          fmt::format("rays from {:.4g} outside to {:.4g} inside",
+                                      check.distances.offset, check.distances.max_distance)});
+    print_verified(check.map);
+    if (!check.findings.empty()) print_entry("findings", check.findings.lines());
+}
+
+nlohmann::ordered_json json_of(const SurfaceCheck& check) {
+    nlohmann::ordered_json json = {{"baked", to_string(check.used)},
+                                   {"file_says", to_string(check.of_file)},
+                                   {"offset", check.distances.offset},
+                                   {"max_distance", check.distances.max_distance}};
+    json.update(verified_json(check.map));
+    json["findings"] = check.findings.json();
+    return json;
+}
+
+// The command.
+
+struct CheckOptions {
+    std::vector<std::filesystem::path> files;
+    std::optional<Green> green;
+    bool json = false;
+    bool strict = false;
+    GeneralOptions general;
+    SurfaceCheckRequest surface;
+};
+
+/// The number of files with each verdict.
+struct Verdicts {
+    std::size_t sound = 0;
+    std::size_t with_problems = 0;
+    std::size_t unreadable = 0;
+
+    [[nodiscard]] std::size_t all() const { return sound + with_problems + unreadable; }
+};
+
+void print_verdicts(const Verdicts& verdicts) {
+    if (verdicts.all() > 1) {
+        print_entry("verdict", fmt::format("{}: {} sound, {} with problems, {} unreadable",
+                                           counted(verdicts.all(), "file"), verdicts.sound,
+                                           verdicts.with_problems, verdicts.unreadable));
+    }
+    if (verdicts.sound + verdicts.with_problems > 0)
+        print_entry("see", fmt::format("{} explains all findings", documentation));
+}
+
+ExitCode exit_code_for(const CLI::App& app, const Verdicts& verdicts, bool strict) {
+    if (strict && verdicts.with_problems > 0) {
+        warn(app, fmt::format("{} with problems (exit code 3, because of --strict)",
+                              counted(verdicts.with_problems, "file")));
+    }
+    if (verdicts.unreadable > 0) return ExitCode::failed;
+    return strict && verdicts.with_problems > 0 ? ExitCode::fell_back : ExitCode::done;
+}
+
+ExitCode run(const CLI::App& app, const CheckOptions& options) {
+    if (options.json && options.general.quiet)
+        throw UsageError("--json and --quiet contradict each other");
+    check(app, options.surface, options.files);
+    set_thread_limit(options.general.threads);
+    const bool prints_text = !options.json && !options.general.quiet;
+    Stages stages(options.general.quiet);
+    Verdicts verdicts;
+    nlohmann::ordered_json files = nlohmann::ordered_json::array();
+    for (const std::filesystem::path& file : options.files) {
+        const CheckedMap map = stages.run("check", "check " + file.string(),
+                                          [&] { return check_map(file, options.green); });
+        std::optional<SurfaceCheck> surface;
+        if (options.surface.is_wanted() && map.error.empty()) {
+            SurfaceCheckRequest request = options.surface;
+            request.verify.map = file;
+            request.verify.input.green = options.green;
+            surface = check_surface(app, request, stages);
+        }
+        if (!map.error.empty())
+            ++verdicts.unreadable;
+        else if (map.is_sound() && (!surface || surface->map.problems.empty()))
+            ++verdicts.sound;
+        else
+            ++verdicts.with_problems;
+        if (!map.error.empty())
+            complain(app, map.error);
+        else if (prints_text)
+            print_text(map);
+        if (prints_text && surface) print_text(*surface);
+        if (options.json) files.push_back(json_of(map));
+        if (options.json && surface) files.back()["surface"] = json_of(*surface);
+    }
+    if (prints_text) print_verdicts(verdicts);
+    if (options.json) {
+        print_json({{"tool", "relief-bake check"},
+                    {"version", version()},
+                    {"sound", verdicts.sound},
+                    {"with_trouble", verdicts.with_problems},
+                    {"unreadable", verdicts.unreadable},
+                    {"words", documentation},
+                    {"files", std::move(files)}});
+    }
+    return exit_code_for(app, verdicts, options.strict);
+}
+
+}  // namespace
+
+Command add_map_check_command(CLI::App& tool) {
+    CLI::App& app = add_subcommand(tool, "check",
+                                   "Checks whether images are normal maps, detects their "
+                                   "conventions and finds their problems.");
+    const auto options = std::make_shared<CheckOptions>();
+    add_files(app, "MAPS", options->files, "Images to read: PNG, JPEG, TIFF, EXR, ...").required();
+    add_surface_options(app, options->surface);
+    add_choice(app, "--green", options->green, green_choices(),
+               "Expected direction of the green channel; slopes that contradict it are a problem. "
+               "Default: from the file's metadata, if it has an entry.");
+    add_switch(
+        app, "--json", options->json,
+        "Print one JSON object: tool, version, sound, with_trouble and unreadable (numbers of "
+        "files), words (the documentation), files [file, sound, error or: width, height, channels, "
+        "bits, content, curve, color_tag, lengths and lengths_uncurved {mean, rms_deviation, "
+        "within}, green {is, correlation, deviation, confidence, scale} or null, zero_code, seams "
+        "[x, y], bits_used, alpha_correlation, trouble (problems) and remarks (notes) [kind, "
+        "element, count, first, meaning, remedy], milliseconds, megapixels_per_second, surface "
+        "{baked, error and centre {rms, mean, p99, max, texels}, stages {share, rms}, worst, "
+        "convention, trouble, remedies, ...}].");
+    add_switch(app, "--strict", options->strict,
+               "Exit with 3 if a file has problems, by itself or on its models. Notes are not "
+               "problems.");
+    add_general_options(app, options->general);
+    set_examples(app,
+                 {"relief-bake check data/scenes/bricks-normal.png",
+                  "relief-bake check data/scenes/bricks-normal.png --green up --strict",
+                  "relief-mesh subdivide data/vase.obj out/high.obj --levels 2",
+                  "relief-bake mesh out/high.obj data/vase.obj out/vase-baked.png --size 256",
+                  "relief-bake check out/vase-baked.png --high out/high.obj --low data/vase.obj",
+                  "relief-bake check data/bricks-height.png data/scenes/bricks-normal.png --json"});
+    return {&app, [&app, options] { return run(app, *options); }};
+}
+
+}  // namespace relief::tools

@@ -1,0 +1,591 @@
+// SPDX-License-Identifier: Apache-2.0
+// The command `relief-bake mesh` and its options. Contradictory and useless options are refused
+// before any file is read. Tests: tests/tools/relief_bake_mesh_test.cpp,
+// relief_bake_layers_test.cpp.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "common/model_file.h"
+#include "common/text.h"
+#include "mesh_bake.h"
+#include "relief/mesh/threads.h"
+
+namespace relief::tools {
+namespace {
+
+constexpr double default_angle = 2.0;  // In degrees.
+constexpr int auto_samples = 16;
+
+// Options of rays, texels and maps.
+
+/// Parses "1024" or "2048x1024".
+glm::ivec2 parse_map_size(const std::string& subject, const std::string& text) {
+    if (text.find('x') != std::string::npos) return parse_size(subject, text);
+    const int side = parse_integer(subject, text, 1, 16384);
+    return {side, side};
+}
+
+SampleChoice parse_samples(const std::string& subject, const std::string& text) {
+    if (text == "auto") return {auto_samples, true, true};
+    const Choices<int> counts = {{"1", 1},   {"4", 4},     {"16", 16},
+                                 {"64", 64}, {"256", 256}, {"auto", 0}};
+    return {parse_choice(subject, text, counts), false, true};
+}
+
+void add_map_options(CLI::App& app, MeshBakeRequest& request) {
+    const std::string group = "Map";
+    add_value(app, "--size", "N|WxH", "Size of the map in texels. Default: 1024.",
+              [&](const std::string& subject, const std::string& text) {
+                  request.size = parse_map_size(subject, text);
+              })
+        .group(group);
+    add_texel_options(app, request);
+    add_value(app, "--padding", "PX|border",
+              "Width of the padding around charts in texels, 0 to 1024, filled from the nearest "
+              "texels. border fills the whole map, which needs temporary space in OUT's folder: 3 "
+              "bytes per texel, and 4 bytes per texel and channel. Default: 16.",
+              [&](const std::string& subject, const std::string& text) {
+                  request.fills_to_border = text == "border";
+                  request.bake.padding =
+                      request.fills_to_border ? 0 : parse_integer(subject, text, 0, 1024);
+              })
+        .group(group);
+    add_choice(
+        app, "--background", request.background,
+        Choices<Background>{{"flat", Background::flat}, {"transparent", Background::transparent}},
+        "Texels beyond the padding: flat normals in three channels, or a fourth channel that is 1 "
+        "in baked and padded texels (with --padding border: only in baked ones) and 0 elsewhere. "
+        "Default: flat.")
+        .group(group);
+}
+
+void add_high_texture_option(CLI::App& app, const std::string& name,
+                             std::optional<std::filesystem::path>& target,
+                             const std::string& description) {
+    add_value(app, name, "FILE|none", description,
+              [&target](const std::string&, const std::string& text) {
+                  target = text == "none" ? std::filesystem::path() : std::filesystem::path(text);
+              })
+        .group("High models");
+}
+
+// Options of layers.
+
+struct LayerInfo {
+    LayerKind kind;
+    const char* option;
+    const char* name;
+    const char* description;
+};
+
+constexpr LayerInfo all_layers[] = {
+    {LayerKind::height, "--height-map", "height map",
+     "Write the height of the high surface above the low mesh along the ray, in the unit of the "
+     "mesh."},
+    {LayerKind::occlusion, "--occlusion-map", "ambient occlusion",
+     "Write the ambient occlusion by the high meshes: 1 is not occluded."},
+    {LayerKind::curvature, "--curvature-map", "curvature",
+     "Write the mean curvature of the high meshes per unit of length: convex surfaces are "
+     "positive; a sphere of radius r has 1/r."},
+    {LayerKind::position, "--position-map", "positions",
+     "Write the world positions of the points that rays hit."},
+    {LayerKind::color, "--color-map", "colors",
+     "Write the color of the high meshes: the product of vertex color, material color and "
+     "texture."},
+};
+
+const LayerInfo& layer_info(LayerKind kind) {
+    return *std::ranges::find(all_layers, kind, &LayerInfo::kind);
+}
+
+void add_layer_options(CLI::App& app, LayerOptions& options) {
+    const std::string group = "Other layers, from the same rays";
+    for (const LayerInfo& layer : all_layers) {
+        add_value(app, layer.option, "FILE", layer.description,
+                  [&options, kind = layer.kind](const std::string&, const std::string& text) {
+                      options.files[kind] = text;
+                  })
+            .group(group);
+    }
+    add_choice(app, "--layer-bits", options.bits, Choices<int>{{"8", 8}, {"16", 16}, {"32", 32}},
+               "Bits per channel of these files: 8 or 16 for .png; 8, 16 or 32 (float) for .tif; "
+               "32 for .exr. Default: 16, 8 for colors, and 32 for .exr.")
+        .group(group);
+    const Range positive{1e-30, 1e30, ""};
+    add_number(app, "--height-range", "H", options.height_range, positive,
+               "Height of white in 8 and 16 bits; black is -H, and the middle code is exactly 0. "
+               "Default: the ray length.")
+        .group(group);
+    add_number(app, "--curvature-range", "C", options.curvature_range, positive,
+               "Curvature of white in the same way. Default: the maximum; in 8 bits, the value "
+               "that 99% of the high meshes do not exceed.")
+        .group(group);
+    add_number(app, "--position-range", "P", options.position_range, positive,
+               "Coordinate of white in the same way. Default: the maximum of the high meshes.")
+        .group(group);
+    add_value(app, "--occlusion-rays", "N",
+              "Occlusion rays per texel, 1 to 65536, shared by its samples. Doubling N reduces the "
+              "error to 0.6 times. Default: 64.",
+              [&options](const std::string& subject, const std::string& text) {
+                  options.occlusion_rays = parse_integer(subject, text, 1, 65536);
+              })
+        .group(group);
+    add_number(app, "--occlusion-distance", "D", options.occlusion_distance, {0.0, 1e30, ""},
+               "Length of occlusion rays: surfaces farther away do not occlude. Default: half of "
+               "the longest side of the bounding box of the high meshes.")
+        .group(group);
+}
+
+/// Checks an option that only integer files of one layer use.
+void check_range(const LayerOptions& options, LayerKind kind, const std::optional<double>& range,
+                 const char* option) {
+    if (!range) return;
+    if (!options.has(kind))
+        throw UsageError(
+            fmt::format("{}: has no effect without {}", option, layer_info(kind).option));
+    if (bits_of(options, kind) == 32)
+        throw UsageError(
+            fmt::format("{}: has no effect on float files, which need no range", option));
+}
+
+void check(const LayerOptions& options) {
+    for (const auto& [kind, file] : options.files)
+        bits_of(options, kind);
+    if (options.bits && options.files.empty())
+        throw UsageError("--layer-bits: has no effect without a layer's file");
+    check_range(options, LayerKind::height, options.height_range, "--height-range");
+    check_range(options, LayerKind::curvature, options.curvature_range, "--curvature-range");
+    check_range(options, LayerKind::position, options.position_range, "--position-range");
+    if ((options.occlusion_rays || options.occlusion_distance) &&
+        !options.has(LayerKind::occlusion)) {
+        throw UsageError(
+            "--occlusion-rays, --occlusion-distance: have no effect without --occlusion-map");
+    }
+}
+
+BakeLayers bake_layers_of(const LayerOptions& options) {
+    BakeLayers layers;
+    layers.heights = options.has(LayerKind::height);
+    layers.curvature = options.has(LayerKind::curvature);
+    layers.positions = options.has(LayerKind::position);
+    layers.colors = options.has(LayerKind::color);
+    if (options.has(LayerKind::occlusion)) {
+        layers.occlusion.emplace();
+        layers.occlusion->rays = options.occlusion_rays.value_or(layers.occlusion->rays);
+        layers.occlusion->distance = options.occlusion_distance;
+    }
+    return layers;
+}
+
+// Options of accuracy and the preview.
+
+void add_accuracy_options(CLI::App& app, MeshBakeRequest& request) {
+    add_switch(app, "--verify", request.verify,
+               "Read the finished map, compare every texel as rendered with the high models, and "
+               "print the errors and their causes.")
+        .group("Accuracy");
+    add_error_map_option(app, request.error_map);
+    add_bound_options(app, request.bound,
+                      "Increase samples and bits (unless they are given) until the error is at "
+                      "most DEG degrees; fail if it never is. The error is measured on this map, "
+                      "against the mean over each texel.");
+    add_switch(app, "--compare", request.compare,
+               "Also bake with all numbers of samples, bits and dither methods, in memory, and "
+               "print their errors and times.")
+        .group("Accuracy");
+}
+
+void add_preview_options(CLI::App& app, PreviewOptions& options) {
+    const std::string group = "Report";
+    add_path(app, "--preview", options.file,
+             "Also write a picture (.png) of the high models, the low model with the finished map, "
+             "and the low model without it, side by side.")
+        .group(group);
+    add_value(app, "--preview-size", "WxH",
+              "Size of each of the three panels in pixels. Default: 512x512.",
+              [&](const std::string& subject, const std::string& text) {
+                  options.size = parse_size(subject, text);
+              })
+        .group(group);
+}
+
+// Checks of the command line.
+
+/// \throws UsageError if an output file is one of the other files of the command
+void check_distinct(const char* option, const std::filesystem::path& file,
+                    const std::vector<std::filesystem::path>& files) {
+    for (const std::filesystem::path& other : files) {
+        if (identity_of(file) == identity_of(other))
+            throw UsageError(
+                fmt::format("{} {}: is also the input or the output", option, file.string()));
+    }
+}
+
+/// Samples are counted along the sides of the map.
+void check_sample_count(const MeshBakeRequest& request) {
+    int across = 1;
+    while (across * across < request.samples.count)
+        ++across;
+    const int max_side = TexelCover::largest_side / across;
+    if (std::max(request.size.x, request.size.y) <= max_side) return;
+    throw UsageError(fmt::format("--size {}x{}: with {} samples per texel, the maximum side is {}",
+                                 request.size.x, request.size.y, request.samples.count, max_side));
+}
+
+/// Splits the files into high meshes, low mesh and map, and checks the options.
+void check_request(MeshBakeRequest& request, const std::vector<std::filesystem::path>& files) {
+    if (files.size() < 3)
+        throw UsageError(fmt::format("{} files are too few", files.size()),
+                         "give HIGH... LOW OUT: models, and the map to write");
+    request.high.assign(files.begin(), files.end() - 2);
+    request.low = files[files.size() - 2];
+    request.output = files.back();
+    for (const std::filesystem::path& file : request.high)
+        readable_format(file);
+    readable_format(request.low);
+    format_of(request.map, request.output);
+    write_options_of(request.map, request.output);
+    check(request.layers);
+    if (request.textures.color && !request.layers.has(LayerKind::color))
+        throw UsageError("--high-color: has no effect without --color-map");
+    check_map_names(request);
+    check_bake_options(request);
+    check_sample_count(request);
+    check_accuracy(request);
+}
+
+void check_error_map_request(const MeshBakeRequest& request,
+                             const std::vector<std::filesystem::path>& files) {
+    if (!request.error_map) return;
+    if (!request.verify)
+        throw UsageError("--error-map: has no effect without --verify", "give --verify");
+    if (names_word(request.output, material_word) || names_word(request.output, tile_word))
+        throw UsageError("--error-map: needs a single map, not <material> or <UDIM>",
+                         "use relief-bake check for each map");
+    check_error_map(request.error_map, files);
+}
+
+void check_files(const MeshBakeRequest& request, std::vector<std::filesystem::path> files) {
+    if (request.cage) files.push_back(*request.cage);
+    for (const auto& [kind, file] : request.layers.files)
+        files.push_back(file);
+    check(request.report, files);
+    if (request.report.file) files.push_back(*request.report.file);
+    check(request.preview, files);
+    if (request.preview.file) files.push_back(*request.preview.file);
+    check_error_map_request(request, files);
+    require_folder_of(request.output);
+    for (const auto& [kind, file] : request.layers.files)
+        require_folder_of(file);
+}
+
+// The command.
+
+struct MeshOptions {
+    std::vector<std::filesystem::path> files;
+    MeshBakeRequest request;
+    GeneralOptions general;
+};
+
+/// The findings for which --strict exits with 3: all except intended ones and those that an option
+/// limits.
+Findings strict_findings(const MeshBakeRequest& request, const Findings& findings) {
+    Findings strict;
+    for (const PlacedFinding& placed : findings.all()) {
+        const std::string& kind = placed.finding.kind;
+        const bool is_intended = kind == "texel of mirrored triangles";
+        const bool is_limited = (kind == "texel missed by its rays" && request.max_missed) ||
+                                (kind == "normal behind the surface" && request.bound.degrees);
+        if (is_intended || is_limited) continue;
+        Report report;
+        report.add(placed.finding);
+        strict.add(placed.where, report);
+    }
+    return strict;
+}
+
+ExitCode run(const CLI::App& app, MeshOptions& options) {
+    MeshBakeRequest& request = options.request;
+    check_request(request, options.files);
+    check_files(request, options.files);
+    set_thread_limit(options.general.threads);
+    Stages stages(options.general.quiet);
+    const MeshBake bake = bake_maps(request, stages);
+    if (!options.general.quiet) print_summary(request, bake, stages);
+    for (const std::string& warning :
+         {shared_texels_warning(request, bake),
+          swapped_models_warning(request, bake.high_triangles, bake.low_triangles)}) {
+        if (!warning.empty()) warn(app, warning);
+    }
+    nlohmann::ordered_json report = {{"tool", "relief-bake mesh"}, {"version", version()}};
+    report.update(results_json(request, bake, stages));
+    return finish(app, request.report, request.low, strict_findings(request, bake.findings),
+                  report);
+}
+
+}  // namespace
+
+void add_ray_options(CLI::App& app, MeshBakeRequest& request) {
+    const std::string group = "Rays";
+    add_choice(app, "--rays", request.directions,
+               Choices<RayDirections>{{"averaged", RayDirections::averaged},
+                                      {"shading", RayDirections::shading},
+                                      {"face", RayDirections::face}},
+               "Ray directions: smoothed normals, which ignore hard edges (averaged); the vertex "
+               "normals of the low mesh (shading); or its face normals (face). Default: averaged.")
+        .group(group);
+    add_number(app, "--hardness", "H", request.hardness, {0.0, 1.0, ""},
+               "Blends averaged ray directions with the vertex normals: at hard edges, 0 leaves no "
+               "gaps, and 1 does not skew details. Default: 0.")
+        .group(group);
+    add_path(app, "--cage", request.cage,
+             "Cast rays from this cage mesh to the low mesh. The cage has the triangles of the low "
+             "mesh, moved outwards.")
+        .group(group);
+    add_number(app, "--offset", "D", request.bake.offset, {0.0, 1e30, ""},
+               "Distance outside the low mesh at which rays begin, in its unit. Default: 1.5 times "
+               "the distance of the surfaces, plus 1% of half the size of the low mesh.")
+        .group(group);
+    add_number(app, "--max-distance", "D", request.bake.max_distance, {0.0, 1e30, ""},
+               "Distance inside the low mesh at which rays end. Default: as for --offset; with "
+               "--cage, the distance to the cage.")
+        .group(group);
+    add_choice(app, "--match", request.match,
+               Choices<MatchChoice>{{"auto", MatchChoice::automatic},
+                                    {"name", MatchChoice::name},
+                                    {"all", MatchChoice::all}},
+               "High parts that each low part sees: name selects parts with the same object or "
+               "file name (X_low sees X_high), all selects all parts, and auto selects by name if "
+               "every part has a counterpart. Default: auto.")
+        .group(group);
+    add_choice(
+        app, "--back-faces", request.bake.back_faces,
+        Choices<BackFaces>{{"skip", BackFaces::skip}, {"take", BackFaces::take}},
+        "High triangles that face away from the ray: skip ignores them, take flips their normals. "
+        "Default: skip.")
+        .group(group);
+}
+
+void add_texel_options(CLI::App& app, MeshBakeRequest& request) {
+    const std::string group = "Map";
+    add_choice(app, "--space", request.space,
+               Choices<SpaceChoice>{{"tangent", SpaceChoice::tangent},
+                                    {"object", SpaceChoice::object},
+                                    {"world", SpaceChoice::world}},
+               "Space of the normals: the tangent space of the low mesh (with the tangents of its "
+               "file, else those of MikkTSpace), its object space, or world space. Default: "
+               "tangent.")
+        .group(group);
+    add_value(app, "--samples", "N|auto",
+              "Samples per texel: 1, 4, 16, 64 or 256 in a square grid; auto uses 4, and 16 if "
+              "they differ. Default: 1.",
+              [&](const std::string& subject, const std::string& text) {
+                  request.samples = parse_samples(subject, text);
+              })
+        .group(group);
+    add_number(app, "--sample-angle", "DEG", request.sample_angle, {0.0, 180.0, "degrees"},
+               fmt::format("Difference of the first samples above which --samples auto uses more. "
+                           "Default: {:g}.",
+                           default_angle))
+        .group(group);
+    add_choice(app, "--outside", request.bake.placement.repeat,
+               Choices<bool>{{"drop", false}, {"repeat", true}},
+               "Texture coordinates outside the unit square: do not bake them (drop), or wrap them "
+               "into the square (repeat). Default: drop.")
+        .group(group);
+}
+
+void add_fit_options(CLI::App& app, MeshBakeRequest& request, const std::string& consequence) {
+    add_number(app, "--max-missed", "PERCENT", request.max_missed, {0.0, 100.0, "percent"},
+               fmt::format("Maximum share of the texels covered by LOW whose rays may hit nothing. "
+                           "{} Default: {:g}.",
+                           consequence, MeshBakeRequest{}.missed_limit()))
+        .group("Rays");
+    add_switch(app, "--allow-size-mismatch", request.bake.allow_size_mismatch,
+               fmt::format("Accept models whose bounding boxes differ in size by more than a "
+                           "factor of {:g}, which is an error otherwise.",
+                           max_size_ratio))
+        .group("Rays");
+}
+
+void add_high_normal_map_option(CLI::App& app, HighTextureOptions& options) {
+    add_high_texture_option(app, "--high-normal-map", options.normal_map,
+                            "Normal map of the high models, green up, which is added to their "
+                            "normals; or none. Default: those of their materials (glTF, MTL's "
+                            "norm).");
+}
+
+void add_bound_options(CLI::App& app, ErrorBound& bound, const std::string& description) {
+    const std::string group = "Accuracy";
+    add_number(app, "--max-error", "DEG", bound.degrees, {0.0, 180.0, "degrees"}, description)
+        .group(group);
+    add_choice(app, "--max-error-kind", bound.kind,
+               Choices<BoundKind>{
+                   {"rms", BoundKind::rms}, {"p99", BoundKind::p99}, {"max", BoundKind::max}},
+               "Error that --max-error limits: the root mean square, the error that 99 of 100 "
+               "texels do not exceed (p99), or the maximum. Default: rms.")
+        .group(group);
+}
+
+void add_error_map_option(CLI::App& app, std::optional<std::filesystem::path>& file) {
+    add_path(app, "--error-map", file,
+             "Write the error of every texel: .png from black (no error) to pale yellow (the "
+             "printed maximum of the scale), .exr or .tif in degrees.")
+        .group("Accuracy");
+}
+
+std::string layer_name(LayerKind kind) {
+    return layer_info(kind).name;
+}
+
+int bits_of(const LayerOptions& options, LayerKind kind) {
+    const std::filesystem::path& file = options.files.at(kind);
+    const std::vector<int> depths = depths_of(file);
+    if (depths.empty()) {
+        throw UsageError(fmt::format("{} {}: the format cannot store this layer",
+                                     layer_info(kind).option, file.string()),
+                         "use .png, .tif or .exr");
+    }
+    const auto is_supported = [&](int bits) {
+        return std::find(depths.begin(), depths.end(), bits) != depths.end();
+    };
+    const int default_bits = kind == LayerKind::color && is_supported(8) ? 8 : depths.front();
+    const int bits = options.bits.value_or(default_bits);
+    if (!is_supported(bits)) {
+        throw UsageError(fmt::format("--layer-bits {}: {} holds {} bits", bits, extension_of(file),
+                                     fmt::join(depths, " or ")));
+    }
+    return bits;
+}
+
+double ErrorBound::error(const AngleSummary& summary) const {
+    switch (kind.value_or(BoundKind::rms)) {
+        case BoundKind::p99:
+            return summary.p99;
+        case BoundKind::max:
+            return summary.max;
+        default:
+            return summary.rms;
+    }
+}
+
+std::string to_string(const ErrorBound& bound) {
+    const BoundKind kind = bound.kind.value_or(BoundKind::rms);
+    return fmt::format("{:g} degrees ({})", bound.degrees.value_or(0.0),
+                       kind == BoundKind::rms   ? "RMS"
+                       : kind == BoundKind::p99 ? "99 of 100 texels"
+                                                : "maximum");
+}
+
+void check_bake_options(const MeshBakeRequest& request) {
+    if (request.cage) {
+        readable_format(*request.cage);
+        if (request.bake.offset || request.directions || request.hardness)
+            throw UsageError("--offset, --rays, --hardness: have no effect with --cage");
+    }
+    if (request.hardness &&
+        request.directions.value_or(RayDirections::averaged) != RayDirections::averaged)
+        throw UsageError("--hardness: has no effect without --rays averaged");
+    if (request.sample_angle && !request.samples.is_auto)
+        throw UsageError("--sample-angle: has no effect without --samples auto");
+}
+
+void check(const ErrorBound& bound) {
+    if (bound.kind && !bound.degrees)
+        throw UsageError("--max-error-kind: has no effect without --max-error",
+                         "give --max-error DEG");
+}
+
+void check_error_map(const std::optional<std::filesystem::path>& file,
+                     const std::vector<std::filesystem::path>& files) {
+    if (!file) return;
+    const std::string extension = extension_of(*file);
+    if (extension != ".png" && extension != ".exr" && extension != ".tif" && extension != ".tiff") {
+        throw UsageError(fmt::format("--error-map {}: the format cannot store it", file->string()),
+                         "use .png, .exr or .tif");
+    }
+    check_distinct("--error-map", *file, files);
+    require_folder_of(*file);
+}
+
+void check(const PreviewOptions& options, const std::vector<std::filesystem::path>& files) {
+    if (!options.file) {
+        if (options.size) throw UsageError("--preview-size: has no effect without --preview");
+        return;
+    }
+    if (extension_of(*options.file) != ".png")
+        throw UsageError(
+            fmt::format("--preview {}: the format is not supported", options.file->string()),
+            "use .png");
+    check_distinct("--preview", *options.file, files);
+    require_folder_of(*options.file);
+}
+
+std::optional<double> angle_of(const MeshBakeRequest& request, const SampleChoice& samples) {
+    if (!samples.is_auto) return std::nullopt;
+    return request.sample_angle.value_or(default_angle);
+}
+
+BakeOptions bake_options_of(const MeshBakeRequest& request) {
+    BakeOptions options = request.bake;
+    options.layers = bake_layers_of(request.layers);
+    options.width = request.size.x;
+    options.height = request.size.y;
+    options.space = request.space == SpaceChoice::tangent ? BakeSpace::tangent : BakeSpace::object;
+    options.directions = request.directions.value_or(RayDirections::averaged);
+    options.hardness = request.hardness.value_or(0.0);
+    options.samples = request.samples.count;
+    if (const auto angle = angle_of(request, request.samples))
+        options.sample_angle = glm::radians(*angle);
+    if (request.fills_to_border) {
+        const std::filesystem::path folder = request.output.parent_path();
+        options.border_folder = folder.empty() ? "." : folder;
+    }
+    return options;
+}
+
+Command add_mesh_command(CLI::App& tool) {
+    CLI::App& app = add_subcommand(
+        tool, "mesh", "Bakes the normals of detailed models into a map for a simple one.");
+    const auto options = std::make_shared<MeshOptions>();
+    MeshBakeRequest& request = options->request;
+    add_files(app, "FILE...", options->files,
+              "HIGH... LOW OUT: one or more detailed models (.glb .gltf .obj .ply .stl .off), the "
+              "simple model with texture coordinates, and the map to write (.png .tif .exr). "
+              "<material> in the name of OUT writes a map for each material of LOW; <UDIM> writes "
+              "a map for each UDIM tile that LOW uses.");
+    add_ray_options(app, request);
+    add_fit_options(app, request,
+                    "If more are missed, the bake fails and writes nothing. If this option is "
+                    "given, --strict accepts missed texels.");
+    add_map_options(app, request);
+    add_high_normal_map_option(app, request.textures);
+    add_high_texture_option(app, "--high-color", request.textures.color,
+                            "Color texture of the high models for --color-map; or none. Default: "
+                            "those of their materials.");
+    add_layer_options(app, request.layers);
+    add_map_output_options(app, request.map);
+    add_preview_options(app, request.preview);
+    add_accuracy_options(app, request);
+    add_report_options(
+        app, request.report,
+        "Exit with 3 if there is a finding. The map is written in any case. Accepted findings: "
+        "texels of mirrored triangles; missed texels, with --max-missed; normals behind the "
+        "surface, with --max-error.");
+    add_general_options(app, options->general);
+    set_examples(
+        app,
+        {"relief-mesh subdivide data/vase.obj out/high.obj --levels 2",
+         "relief-bake mesh out/high.obj data/vase.obj out/vase-baked.png --size 512 "
+         "--preview out/vase-preview.png",
+         "relief-bake mesh out/high.obj data/vase.obj out/vase-baked.png --size 256 --verify",
+         "relief-bake mesh out/high.obj data/vase.obj out/vase-baked.png --size 128 --max-error 1",
+         "relief-bake mesh out/high.obj data/vase.obj out/vase-baked.png --size 64 --compare",
+         "relief-bake mesh out/high.obj data/vase.obj 'out/<material>-<UDIM>.png'"});
+    return {&app, [&app, options] { return run(app, *options); }};
+}
+
+}  // namespace relief::tools

@@ -1,0 +1,352 @@
+// SPDX-License-Identifier: Apache-2.0
+// Reads the models of a bake, pairs their parts by name, and decodes the textures of the high
+// models. Tests: tests/tools/relief_bake_models_test.cpp, relief_bake_layers_test.cpp.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+#include "common/text.h"
+#include "mesh_bake.h"
+#include "relief/mesh/bake_matching.h"
+#include "relief/mesh/mesh_part.h"
+
+namespace relief::tools {
+namespace {
+
+// Pairs of parts by name.
+
+/// An object of a part: its names, and its triangles, counted in the part.
+struct PartObject {
+    std::size_t model = 0;
+    std::size_t part = 0;
+    BakePartName name;
+    std::vector<std::uint32_t> triangles;
+
+    [[nodiscard]] const std::string& shown_name() const {
+        return name.object.empty() ? name.file : name.object;
+    }
+};
+
+/// Appends the objects of a model that have triangles.
+void add_objects(const NamedModel& model, std::size_t index, std::vector<PartObject>& objects) {
+    const std::string stem = model.file.stem().string();
+    for (std::size_t i = 0; i < model.model->parts.size(); ++i) {
+        const MapModelPart& part = model.model->parts[i];
+        std::vector<PartObject> of_part;
+        for (const std::string& name : part.objects)
+            of_part.push_back({index, i, {name, stem}, {}});
+        if (of_part.empty()) of_part.push_back({index, i, {"", stem}, {}});
+        for (std::uint32_t t = 0; t < part.mesh.triangles.size(); ++t)
+            of_part[part.object_of.empty() ? 0 : part.object_of[t]].triangles.push_back(t);
+        std::erase_if(of_part, [](const PartObject& object) { return object.triangles.empty(); });
+        std::ranges::move(of_part, std::back_inserter(objects));
+    }
+}
+
+std::vector<BakePartName> names_of(const std::vector<PartObject>& objects) {
+    std::vector<BakePartName> names;
+    for (const PartObject& object : objects)
+        names.push_back(object.name);
+    return names;
+}
+
+/// Whether the objects of a low model have several pair names; otherwise there is nothing to pair.
+bool has_several_names(const NamedModel& low) {
+    std::set<std::string> names;
+    for (const MapModelPart& part : low.model->parts) {
+        for (const std::string& object : part.objects) {
+            if (const auto name = pair_name(object, BakeSide::low)) names.insert(*name);
+        }
+    }
+    return names.size() > 1;
+}
+
+/// \throws FileError if a low part has no counterpart
+void require_counterparts(const std::filesystem::path& file,
+                          const std::vector<BakeNameGroup>& groups,
+                          const std::vector<PartObject>& low) {
+    constexpr std::size_t max_named = 4;
+    std::vector<std::string> alone;
+    for (const BakeNameGroup& group : groups) {
+        if (group.is_pair()) continue;
+        for (const std::size_t object : group.low)
+            alone.push_back(low[object].shown_name());
+    }
+    if (alone.empty()) return;
+    const std::size_t count = alone.size();
+    alone.resize(std::min(count, max_named));
+    throw failure(file,
+                  fmt::format("{} of its parts {} no high part of the same name: {}{}", count,
+                              count == 1 ? "has" : "have", fmt::join(alone, ", "),
+                              count > max_named ? ", ..." : ""),
+                  "name them X_low and X_high, or use --match all");
+}
+
+/// The names without a counterpart, if there are also names with one.
+std::vector<std::string> unpaired_names(const std::vector<BakeNameGroup>& groups) {
+    if (std::ranges::none_of(groups, &BakeNameGroup::is_pair)) return {};
+    std::vector<std::string> names;
+    for (const BakeNameGroup& group : groups) {
+        if (!group.is_pair())
+            names.push_back(group.name.empty() ? "parts without a name" : group.name);
+    }
+    return names;
+}
+
+/// The index of the first triangle of each part in the joined model.
+std::vector<std::uint32_t> first_triangles(const MapModel& model) {
+    std::vector<std::uint32_t> first = {0};
+    for (const MapModelPart& part : model.parts)
+        first.push_back(first.back() + static_cast<std::uint32_t>(part.mesh.triangles.size()));
+    return first;
+}
+
+// Reading.
+
+MapModel read(const std::filesystem::path& file, Findings& findings) {
+    Report report;
+    MapModel model = read_map_model(file, ModelSpace::world, report);
+    findings.add(file.string(), report);
+    return model;
+}
+
+MapModel read_with_origin(const glm::dvec3& origin, const std::filesystem::path& file,
+                          Findings& findings) {
+    MapModel model = read(file, findings);
+    move_to(model, origin);
+    return model;
+}
+
+Mesh join_parts(const std::filesystem::path& file, MapModel model) {
+    return about(file, [&] { return joined(std::move(model.parts)); });
+}
+
+/// Takes the triangles of a piece out of its model; the model is not used afterwards.
+Mesh take_piece(std::vector<MapModel>& models, const HighPiece& piece) {
+    Mesh& mesh = models[piece.model].parts[piece.part].mesh;
+    return piece.triangles.size() == mesh.triangles.size() ? std::move(mesh)
+                                                           : part_of(mesh, piece.triangles);
+}
+
+/// Adds the high meshes, pair by pair if parts are paired by name.
+/// \return the index of the file of each mesh
+std::vector<std::size_t> add_high(const MeshBakeRequest& request, const MapModel& low,
+                                  std::vector<MapModel> high, BakeModels& models,
+                                  Findings& findings) {
+    std::vector<NamedModel> named;
+    for (std::size_t i = 0; i < high.size(); ++i)
+        named.push_back({request.high[i], &high[i]});
+    ModelPairs paired = pair_models(named, {request.low, &low}, request.match);
+    findings.add("", paired.report);
+    models.unpaired = std::move(paired.unpaired);
+    std::vector<std::size_t> file_of;
+    for (ModelPair& pair : paired.pairs) {
+        BakePair range{pair.name, models.high.size(), pair.high.size(), 0, std::move(pair.low)};
+        for (const HighPiece& piece : pair.high) {
+            file_of.push_back(piece.model);
+            models.high.push_back(take_piece(high, piece));
+            range.high_triangles += models.high.back().triangles.size();
+        }
+        models.pairs.push_back(std::move(range));
+    }
+    if (!paired.pairs.empty()) return file_of;
+    for (std::size_t i = 0; i < high.size(); ++i) {
+        file_of.push_back(i);
+        models.high.push_back(join_parts(request.high[i], std::move(high[i])));
+    }
+    return file_of;
+}
+
+/// Adds the textures of the high meshes, which must be in their final places.
+void add_textures(const MeshBakeRequest& request, const std::vector<MapLooks>& looks,
+                  std::span<const std::size_t> file_of, BakeModels& models, Findings& findings) {
+    const bool with_colors = request.layers.has(LayerKind::color);
+    std::vector<Report> reports(looks.size());
+    for (std::size_t i = 0; i < models.high.size(); ++i) {
+        const std::size_t file = file_of[i];
+        models.textures.add(request.high[file], models.high[i], looks[file], request.textures,
+                            with_colors, reports[file]);
+    }
+    for (std::size_t file = 0; file < looks.size(); ++file)
+        findings.add(request.high[file].string(), reports[file]);
+}
+
+}  // namespace
+
+ModelPairs pair_models(std::span<const NamedModel> high, const NamedModel& low,
+                       MatchChoice choice) {
+    if (choice == MatchChoice::all || (choice == MatchChoice::automatic && !has_several_names(low)))
+        return {};
+    std::vector<PartObject> high_objects, low_objects;
+    for (std::size_t i = 0; i < high.size(); ++i)
+        add_objects(high[i], i, high_objects);
+    add_objects(low, 0, low_objects);
+    const std::vector<BakeNameGroup> groups =
+        group_by_pair_name(names_of(high_objects), names_of(low_objects));
+    ModelPairs result;
+    if (choice == MatchChoice::automatic && !std::ranges::all_of(groups, &BakeNameGroup::is_pair)) {
+        result.unpaired = unpaired_names(groups);
+        return result;
+    }
+    require_counterparts(low.file, groups, low_objects);
+    const std::vector<std::uint32_t> first = first_triangles(*low.model);
+    for (const BakeNameGroup& group : groups) {
+        ModelPair pair{group.name, {}, {}};
+        for (const std::size_t i : group.high) {
+            PartObject& object = high_objects[i];
+            pair.high.push_back({object.model, object.part, std::move(object.triangles)});
+        }
+        for (const std::size_t i : group.low) {
+            for (const std::uint32_t triangle : low_objects[i].triangles)
+                pair.low.push_back(first[low_objects[i].part] + triangle);
+        }
+        std::ranges::sort(pair.low);
+        if (group.is_pair()) {
+            result.pairs.push_back(std::move(pair));
+            continue;
+        }
+        for (const HighPiece& piece : pair.high)
+            result.report.add("high part without a low one", "part", piece.part,
+                              "is not seen by any low part");
+    }
+    return result;
+}
+
+const Image* HighTextures::image(const std::filesystem::path& file, ImageUse use) {
+    const std::string key = fmt::format("{} {}", file.string(), static_cast<int>(use));
+    const auto known = images_.find(key);
+    if (known != images_.end()) return &known->second;
+    const Image* added = &images_.emplace(key, read_image(file, use)).first->second;
+    if (use == ImageUse::data) metadata_[added] = read_image_info(file).metadata;
+    return added;
+}
+
+const Image* HighTextures::image(const std::filesystem::path& model, const MapLooks& looks,
+                                 std::size_t index, ImageUse use) {
+    const GltfImage& source = looks.images[index];
+    const char* remedy = "put it there, or use --high-normal-map none, --high-color none";
+    if (const auto* file = std::get_if<std::filesystem::path>(&source.source)) {
+        if (!std::filesystem::exists(*file))
+            throw failure(model, fmt::format("image {} is missing", file->string()), remedy);
+        return image(*file, use);
+    }
+    const std::string name = fmt::format("{}, image {}", model.string(), index);
+    const std::string key = fmt::format("{} {}", name, static_cast<int>(use));
+    const auto known = images_.find(key);
+    if (known != images_.end()) return &known->second;
+    const auto& bytes = std::get<std::vector<std::byte>>(source.source);
+    if (bytes.empty()) {
+        throw failure(model, fmt::format("image {} is outside of its folder", index), remedy);
+    }
+    const Image* added = &images_.emplace(key, read_image(bytes, name, use)).first->second;
+    if (use == ImageUse::data) metadata_[added] = read_image_info(bytes, name).metadata;
+    return added;
+}
+
+SurfaceTexture HighTextures::texture(const std::filesystem::path& model, const MapLooks& looks,
+                                     const GltfTexture& texture, ImageUse use) {
+    return {image(model, looks, texture.image, use), texture.wrap_u, texture.wrap_v, texture.filter,
+            texture.transform};
+}
+
+SurfaceNormalMap HighTextures::normal_map(const SurfaceTexture& texture, float scale) const {
+    const Image& map = *texture.image;
+    SurfaceNormalMap result{texture, scale, Green::up, FlatCode::half, {}};
+    result.flat = detect_flat_code(map, metadata_.at(&map));
+    if (result.flat == FlatCode::half) result.flat_codes = flat_texel_codes(map);
+    return result;
+}
+
+void HighTextures::add(const std::filesystem::path& file, const Mesh& mesh, const MapLooks& looks,
+                       const HighTextureOptions& options, bool with_colors, Report& report) {
+    HighDetail detail{&mesh, {}, {}};
+    for (std::size_t i = 0; i < looks.materials.size(); ++i) {
+        const GltfMaterial& source = looks.materials[i];
+        HighMaterial material;
+        if (source.normal_texture && !options.normal_map) {
+            material.normal_map = normal_map(
+                texture(file, looks, *source.normal_texture, ImageUse::data), source.normal_scale);
+            ++normal_maps_;
+        }
+        if (with_colors && !options.color) material.color = glm::vec3(source.base_color);
+        const bool has_texture = with_colors && !options.color && source.base_color_texture;
+        const bool differs_in_texcoords =
+            has_texture && source.normal_texture &&
+            source.normal_texture->texcoord_set != source.base_color_texture->texcoord_set;
+        if (differs_in_texcoords) {
+            report.add("color texture with other texture coordinates than the normal map",
+                       "material", i, "is left out");
+        } else if (has_texture) {
+            material.color_texture =
+                texture(file, looks, *source.base_color_texture, ImageUse::color);
+            ++color_textures_;
+        }
+        detail.materials.push_back(std::move(material));
+    }
+    // Textures that options give apply to the whole mesh.
+    const bool has_normal_map = options.normal_map && !options.normal_map->empty();
+    const bool has_color = with_colors && options.color && !options.color->empty();
+    if (has_normal_map || has_color) detail.otherwise.emplace();
+    const auto set_textures = [&](HighMaterial& material) {
+        if (has_normal_map) {
+            const SurfaceTexture texture{.image = image(*options.normal_map, ImageUse::data)};
+            material.normal_map = normal_map(texture, 1.0F);
+        }
+        if (has_color)
+            material.color_texture =
+                SurfaceTexture{.image = image(*options.color, ImageUse::color)};
+    };
+    for (HighMaterial& material : detail.materials)
+        set_textures(material);
+    if (detail.otherwise) set_textures(*detail.otherwise);
+    normal_maps_ += has_normal_map ? 1 : 0;
+    color_textures_ += has_color ? 1 : 0;
+    details_.push_back(std::move(detail));
+}
+
+std::string HighTextures::description() const {
+    std::string text;
+    if (normal_maps_ > 0) text = counted(normal_maps_, "normal map") + " added to their normals";
+    if (color_textures_ > 0)
+        text += (text.empty() ? "" : ", ") + counted(color_textures_, "color texture");
+    return text;
+}
+
+BakeModels read_bake_models(const MeshBakeRequest& request, Findings& findings) {
+    BakeModels models;
+    MapModel low = read(request.low, findings);
+    require_texcoords(request.low, low, "no texture coordinates, which a map needs",
+                      "unwrap it in a modeling program");
+    std::vector<MapModel> high;
+    std::vector<MapLooks> looks;
+    for (const std::filesystem::path& file : request.high) {
+        high.push_back(read_with_origin(low.origin, file, findings));
+        looks.push_back(std::move(high.back().looks));
+    }
+    if (request.cage) {
+        models.cage =
+            join_parts(*request.cage, read_with_origin(low.origin, *request.cage, findings));
+    }
+    const std::vector<std::size_t> file_of =
+        add_high(request, low, std::move(high), models, findings);
+    add_textures(request, looks, file_of, models, findings);
+    models.materials = low.materials;
+    models.world_from_low = low.world_from_object;
+    models.origin = low.origin;
+    models.low = join_parts(request.low, std::move(low));
+    return models;
+}
+
+glm::dmat3 output_axes(const MeshBakeRequest& request,
+                       const std::optional<glm::dmat3>& world_from_low) {
+    if (request.space != SpaceChoice::object) return glm::dmat3(1.0);
+    if (!world_from_low) {
+        throw failure(request.low, "has several primitives, and therefore no single object space",
+                      "use --space world or tangent");
+    }
+    // Normals transform with the inverse transpose of the matrix of positions.
+    return glm::transpose(*world_from_low);
+}
+
+}  // namespace relief::tools

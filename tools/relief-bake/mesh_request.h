@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// The options of `relief-bake mesh`. `relief-bake check --high` shares those of models, rays and
+/// texels. Tests: tests/tools/relief_bake_mesh_test.cpp.
+#pragma once
+
+#include <filesystem>
+#include <glm/vec2.hpp>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "commands.h"
+#include "relief/mesh/angle_distribution.h"
+#include "relief/mesh/bake.h"
+
+namespace relief::tools {
+
+enum class SpaceChoice { tangent, object, world };
+
+enum class Background { flat, transparent };
+
+/// The high parts that each low part sees.
+enum class MatchChoice { automatic, name, all };
+
+/// The samples of a texel.
+struct SampleChoice {
+    int count = 1;
+    bool is_auto = false;
+    bool is_given = false;
+};
+
+/// A file for all high models, or an empty path for none. Absent: those of their materials.
+struct HighTextureOptions {
+    std::optional<std::filesystem::path> normal_map, color;
+};
+
+enum class LayerKind { height, occlusion, curvature, position, color };
+
+/// "height map", "ambient occlusion", ..., which is also the "relief:content" of files.
+std::string layer_name(LayerKind kind);
+
+/// The layers that are written beside the normal map.
+struct LayerOptions {
+    std::map<LayerKind, std::filesystem::path> files;
+    std::optional<int> bits;
+    std::optional<double> height_range, curvature_range, position_range;
+    std::optional<int> occlusion_rays;
+    std::optional<double> occlusion_distance;
+
+    [[nodiscard]] bool has(LayerKind kind) const { return files.contains(kind); }
+};
+
+/// The bit depth of a layer: 8, 16, or 32 for floats.
+/// \throws UsageError if the file format cannot store it
+int bits_of(const LayerOptions& options, LayerKind kind);
+
+/// The error that a limit applies to.
+enum class BoundKind { rms, p99, max };
+
+/// A limit of the error.
+struct ErrorBound {
+    std::optional<double> degrees;
+    std::optional<BoundKind> kind;  ///< Absent: rms.
+
+    /// The error that the limit applies to.
+    [[nodiscard]] double error(const AngleSummary& summary) const;
+    [[nodiscard]] bool allows(const AngleSummary& summary) const {
+        return !degrees || error(summary) <= *degrees;
+    }
+};
+
+/// "0.5 degrees (RMS)"
+std::string to_string(const ErrorBound& bound);
+
+struct PreviewOptions {
+    std::optional<std::filesystem::path> file;
+    std::optional<glm::ivec2> size;  ///< Of each panel.
+};
+
+struct MeshBakeRequest {
+    std::vector<std::filesystem::path> high;
+    std::filesystem::path low, output;
+    std::optional<std::filesystem::path> cage;
+    glm::ivec2 size{1024, 1024};
+    SpaceChoice space = SpaceChoice::tangent;
+    std::optional<RayDirections> directions;
+    std::optional<double> hardness;
+    /// The other options of the library: ray lengths, back faces, padding, size mismatch, repeating
+    /// texture coordinates.
+    BakeOptions bake = default_bake();
+    std::optional<double> max_missed;  ///< In percent of the covered texels.
+    MatchChoice match = MatchChoice::automatic;
+    SampleChoice samples;
+    std::optional<double> sample_angle;  ///< In degrees.
+    bool fills_to_border = false;        ///< Instead of the padding.
+    Background background = Background::flat;
+    MapOutputOptions map;
+    LayerOptions layers;
+    HighTextureOptions textures;
+    PreviewOptions preview;
+    ReportOptions report;
+    bool verify = false;
+    std::optional<std::filesystem::path> error_map;
+    ErrorBound bound;
+    bool compare = false;
+
+    /// Whether errors are measured before the bake.
+    [[nodiscard]] bool needs_trials() const { return compare || bound.degrees.has_value(); }
+
+    /// The limit of missed texels in percent: --max-missed or its default.
+    [[nodiscard]] double missed_limit() const { return max_missed.value_or(50.0); }
+
+    static BakeOptions default_bake() {
+        BakeOptions options;
+        options.padding = 16;
+        return options;
+    }
+};
+
+/// The word of <material> in the names of maps.
+inline constexpr std::string_view material_word = "<material>";
+
+void add_ray_options(CLI::App& app, MeshBakeRequest& request);
+
+/// Adds --space, --samples, --sample-angle and --outside.
+void add_texel_options(CLI::App& app, MeshBakeRequest& request);
+
+/// Adds --max-missed and --allow-size-mismatch.
+/// \param consequence  the result if more texels are missed, as a sentence
+void add_fit_options(CLI::App& app, MeshBakeRequest& request, const std::string& consequence);
+
+void add_high_normal_map_option(CLI::App& app, HighTextureOptions& options);
+
+/// Adds --max-error and --max-error-kind. \param description  the effect of the limit
+void add_bound_options(CLI::App& app, ErrorBound& bound, const std::string& description);
+
+void add_error_map_option(CLI::App& app, std::optional<std::filesystem::path>& file);
+
+/// \throws UsageError if options of rays and texels contradict each other, or have no effect
+void check_bake_options(const MeshBakeRequest& request);
+
+/// \throws UsageError if a kind is given without a limit
+void check(const ErrorBound& bound);
+
+/// \param files  the other files of the command
+/// \throws UsageError if the error map has another format or is one of these files; FileError if
+///         its folder does not exist
+void check_error_map(const std::optional<std::filesystem::path>& file,
+                     const std::vector<std::filesystem::path>& files);
+
+/// Checks the preview file in the same way.
+void check(const PreviewOptions& options, const std::vector<std::filesystem::path>& files);
+
+/// The angle between first samples, in degrees, above which --samples auto casts more; absent
+/// unless `samples` is auto.
+std::optional<double> angle_of(const MeshBakeRequest& request, const SampleChoice& samples);
+
+/// The complete options of the library, except for the cage and what depends on the models.
+BakeOptions bake_options_of(const MeshBakeRequest& request);
+
+}  // namespace relief::tools

@@ -1,0 +1,405 @@
+// SPDX-License-Identifier: Apache-2.0
+// The summary of `relief-bake mesh` as text and as JSON. Tests:
+// tests/tools/relief_bake_mesh_test.cpp, relief_bake_accuracy_test.cpp.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "common/map_choices.h"
+#include "common/text.h"
+#include "mesh_bake.h"
+
+namespace relief::tools {
+namespace {
+
+/// The rays per second of the whole bake, including encoding and writing, in millions.
+double megarays_per_second(const MeshBake& bake, const Stages& stages) {
+    const double milliseconds = stages.milliseconds("bake");
+    return milliseconds > 0 ? static_cast<double>(bake.all.rays) / milliseconds / 1000 : 0;
+}
+
+// Text.
+
+std::string ray_text(const MeshBakeRequest& request, const BakeResult& result) {
+    const std::string heights = result.texels_baked == 0
+                                    ? ""
+                                    : fmt::format("; the surface is {:.4g} to {:.4g} outside",
+                                                  result.least_height, result.greatest_height);
+    if (request.cage) return "from the cage" + heights;
+    const bool is_given = request.bake.offset && request.bake.max_distance;
+    return fmt::format("from {:.4g} outside to {:.4g} inside{}{}", result.distances.offset,
+                       result.distances.max_distance, is_given ? "" : " (automatic)", heights);
+}
+
+std::string space_text(const MeshBakeRequest& request, const MeshBake& bake) {
+    if (request.space == SpaceChoice::object) return "object space";
+    if (request.space == SpaceChoice::world) return "world space";
+    return bake.has_file_tangents ? "tangent space, with the model's tangents"
+                                  : "tangent space, with MikkTSpace tangents";
+}
+
+const char* space_name(SpaceChoice space) {
+    return space == SpaceChoice::tangent  ? "tangent"
+           : space == SpaceChoice::object ? "object"
+                                          : "world";
+}
+
+/// "a, b, c"; long lists end with "...".
+std::string join_names(std::vector<std::string> names) {
+    constexpr std::size_t max_names = 8;
+    if (names.size() > max_names) {
+        names.resize(max_names);
+        names.emplace_back("...");
+    }
+    return fmt::format("{}", fmt::join(names, ", "));
+}
+
+/// The name of the map and a colon, if there are several maps.
+std::string prefix_of(const BakedMap& map) {
+    const std::string name = map.plan.name();
+    return name.empty() ? "" : name + ": ";
+}
+
+std::vector<std::string> read_lines(const MeshBakeRequest& request, const MeshBake& bake) {
+    const std::string high =
+        request.high.size() == 1 ? request.high[0].string() : counted(request.high.size(), "model");
+    std::vector<std::string> lines = {
+        fmt::format("{}: {}{}{}", high, counted(bake.high_triangles, "triangle"),
+                    bake.textures.empty() ? "" : ", ", bake.textures),
+        fmt::format("{}: {}", request.low.string(), counted(bake.low_triangles, "triangle"))};
+    if (!bake.pairs.empty()) {
+        std::vector<std::string> names;
+        for (const BakePair& pair : bake.pairs)
+            names.push_back(pair.name);
+        const std::string count = counted(names.size(), "part");
+        lines.push_back(fmt::format("{} matched by name: {}", count, join_names(std::move(names))));
+    }
+    if (!bake.unpaired.empty())
+        lines.push_back("not matched by name: no counterpart for " + join_names(bake.unpaired));
+    return lines;
+}
+
+std::vector<std::string> map_lines(const MeshBakeRequest& request, const MeshBake& bake) {
+    std::vector<std::string> lines;
+    for (const BakedMap& map : bake.maps) {
+        lines.push_back(fmt::format(
+            "{}{} x {}: {} baked, {} missed", prefix_of(map), request.size.x, request.size.y,
+            counted(map.result.texels_baked, "texel"), map.result.texels_missed));
+    }
+    return lines;
+}
+
+void print_missed(const MeshBakeRequest& request, const MeshBake& bake) {
+    std::vector<std::string> lines;
+    for (const BakedMap& map : bake.maps) {
+        for (const std::string& line : missed_lines(request, map.result, bake.origin))
+            lines.push_back(prefix_of(map) + line);
+    }
+    if (!lines.empty()) print_entry("missed", lines);
+}
+
+/// "auto 2" or "16", for the table.
+std::string sample_cell(const MeasuredBake& bake) {
+    return bake.samples.is_auto ? fmt::format("auto {:g}", bake.sample_angle.value_or(0.0))
+                                : fmt::format("{}", bake.samples.count);
+}
+
+/// The table of --compare, sorted by error.
+std::vector<std::string> comparison_table(const MeshAccuracy& accuracy) {
+    std::vector<const MeasuredBake*> rows;
+    for (const MeasuredBake& bake : accuracy.measured)
+        rows.push_back(&bake);
+    std::stable_sort(rows.begin(), rows.end(),
+                     [](const auto* a, const auto* b) { return a->error.rms < b->error.rms; });
+    std::vector<std::string> lines = {
+        fmt::format("{:<9} {:<4} {:<10} {:>9} {:>9} {:>9} {:>9} {:>9}", "samples", "bits", "dither",
+                    "RMS deg", "99% deg", "max deg", "time", "MRays/s")};
+    for (const MeasuredBake* row : rows) {
+        const double rate =
+            row->seconds > 0.0 ? static_cast<double>(row->rays) / row->seconds / 1e6 : 0.0;
+        lines.push_back(fmt::format(
+            "{:<9} {:<4} {:<10} {:>9.3g} {:>9.3g} {:>9.3g} {:>9} {:>9.2f} {}", sample_cell(*row),
+            row->format.bits, name_of(row->format.dither, dither_choices()), row->error.rms,
+            row->error.p99, row->error.max, duration(1000.0 * row->seconds), rate,
+            row->is_efficient ? "*" : ""));
+    }
+    lines.emplace_back("* no other method is both faster and more accurate");
+    lines.emplace_back("auto: 4 samples, and 16 if they differ by more than this angle in degrees");
+    for (std::string& line : lines)
+        line.erase(line.find_last_not_of(' ') + 1);
+    return lines;
+}
+
+/// The steps of --max-error: a line for each number of samples.
+std::vector<std::string> step_lines(const MeshBakeRequest& request, const MeshAccuracy& accuracy) {
+    std::vector<std::string> lines;
+    const MeasuredBake* previous = nullptr;
+    for (const MeasuredBake& bake : accuracy.measured) {
+        const bool is_new = previous == nullptr || previous->samples.count != bake.samples.count;
+        const auto bytes = std::uintmax_t{3} * static_cast<unsigned>(bake.format.bits / 8) *
+                           static_cast<unsigned>(request.size.x) *
+                           static_cast<unsigned>(request.size.y);
+        const std::string error =
+            fmt::format("{:.3g} in {} bit ({} at most)", request.bound.error(bake.error),
+                        bake.format.bits, byte_size(bytes));
+        if (is_new) {
+            lines.push_back(
+                fmt::format("{}, {} rays in {}: {}",
+                            bake.samples.is_auto
+                                ? std::string("auto samples")
+                                : counted(static_cast<std::size_t>(bake.samples.count), "sample"),
+                            bake.rays, duration(1000.0 * bake.seconds), error));
+        } else {
+            lines.back() += ", " + error;
+        }
+        previous = &bake;
+    }
+    return lines;
+}
+
+void print_accuracy(const MeshBakeRequest& request, const MeshAccuracy& accuracy) {
+    if (accuracy.selected) {
+        print_entry("steps", step_lines(request, accuracy));
+        print_entry("selected", fmt::format("{}: {}", to_string(*accuracy.selected),
+                                            to_string(accuracy.selected->error)));
+    }
+    print_entry("errors",
+                fmt::format("measured on {} of the map, against {} samples per texel",
+                            accuracy.is_whole ? "all" : fmt::format("{} texels", accuracy.texels),
+                            accuracy.reference_samples));
+    if (!accuracy.selected) print_entry("", comparison_table(accuracy));
+}
+
+/// "out/height.png: height map, 16 bit, -0.1 to 0.1"
+std::string layer_text(const WrittenLayer& layer) {
+    const LayerCoding& coding = layer.coding;
+    std::string text =
+        fmt::format("{}: {}, {}", layer.file.string(), layer_name(coding.kind),
+                    coding.bits == 32 ? "float" : fmt::format("{} bit", coding.bits));
+    if (coding.bits == 32) return text;
+    if (coding.is_signed()) text += fmt::format(", {:.6g} to {:.6g}", -coding.range, coding.range);
+    if (coding.kind == LayerKind::color) text += ", sRGB";
+    return text;
+}
+
+void print_layers(const MeshBake& bake) {
+    std::vector<std::string> lines;
+    for (const BakedMap& map : bake.maps) {
+        for (const WrittenLayer& layer : map.layers)
+            lines.push_back(layer_text(layer));
+    }
+    if (lines.empty()) return;
+    for (const WrittenLayer& layer : bake.maps.front().layers) {
+        const LayerCoding& coding = layer.coding;
+        if (coding.kind != LayerKind::height) continue;
+        lines.push_back(fmt::format("heights as a displacement: strength {:.7g}, midlevel {:.7g}",
+                                    coding.strength(), coding.midlevel()));
+        if (bake.texel_size > 0.0) {
+            lines.push_back(
+                fmt::format("heights for relief-bake bump: --height {:.7g} --texel-size {:.5g}",
+                            coding.strength(), bake.texel_size));
+        }
+    }
+    if (bake.all.occlusion_rays > 0)
+        lines.push_back(fmt::format("{} rays for occlusion", bake.all.occlusion_rays));
+    print_entry("layers", lines);
+}
+
+std::vector<std::string> written_files(const MeshBakeRequest& request, const MeshBake& bake) {
+    std::vector<std::string> files;
+    for (const BakedMap& map : bake.maps) {
+        files.push_back(file_and_size(map.plan.output));
+        for (const WrittenLayer& layer : map.layers)
+            files.push_back(file_and_size(layer.file));
+    }
+    if (request.preview.file) {
+        files.push_back(file_and_size(*request.preview.file) +
+                        " (high, low with the map, low without)");
+    }
+    return files;
+}
+
+// JSON.
+
+nlohmann::ordered_json point_json(const glm::dvec3& point) {
+    return {point.x, point.y, point.z};
+}
+
+nlohmann::ordered_json clipped_json(const ClippedRays& clipped) {
+    return {{"texels", clipped.texels},
+            {"shortest", clipped.shortest},
+            {"half", clipped.half},
+            {"longest", clipped.longest}};
+}
+
+nlohmann::ordered_json missed_json(const BakeResult& result, const glm::dvec3& origin) {
+    nlohmann::ordered_json first = nlohmann::ordered_json::array();
+    for (const MissedTexel& texel : result.first_missed) {
+        first.push_back(
+            {{"x", texel.x}, {"y", texel.y}, {"position", point_json(texel.position + origin)}});
+    }
+    return {{"percent", missed_percent(result.texels_missed, result.texels_baked)},
+            {"first", first},
+            {"from_behind", result.missed_from_behind},
+            {"clipped_outside", clipped_json(result.clipped_outside)},
+            {"clipped_inside", clipped_json(result.clipped_inside)},
+            {"measuring_rays", result.measuring_rays}};
+}
+
+/// The bounding boxes in world space, their gap and the ratio of their sizes.
+nlohmann::ordered_json boxes_json(const BakeFit& fit, const glm::dvec3& origin) {
+    const auto box_json = [&](const Bounds& box) -> nlohmann::ordered_json {
+        if (box.empty()) return nullptr;
+        return {{"min", point_json(glm::dvec3(box.min) + origin)},
+                {"max", point_json(glm::dvec3(box.max) + origin)}};
+    };
+    return {{"high", box_json(fit.high)},
+            {"low", box_json(fit.low)},
+            {"gap", fit.gap},
+            {"size_ratio", fit.size_ratio}};
+}
+
+nlohmann::ordered_json layer_json(const WrittenLayer& layer) {
+    const LayerCoding& coding = layer.coding;
+    nlohmann::ordered_json json = {{"content", layer_name(coding.kind)},
+                                   {"output", layer.file.string()},
+                                   {"bits", coding.bits}};
+    if (coding.bits != 32 && coding.is_signed()) {
+        json["range"] = coding.range;
+        json["zero"] = coding.zero_code();
+    }
+    if (coding.kind == LayerKind::height) {
+        json["strength"] = coding.strength();
+        json["midlevel"] = coding.midlevel();
+    }
+    return json;
+}
+
+nlohmann::ordered_json map_json(const BakedMap& map, const glm::dvec3& origin) {
+    nlohmann::ordered_json json = {{"output", map.plan.output.string()}};
+    if (map.plan.material) json["material"] = *map.plan.material;
+    if (map.plan.udim) json["tile"] = *map.plan.udim;
+    json.update({{"texels_baked", map.result.texels_baked},
+                 {"texels_missed", map.result.texels_missed},
+                 {"least_height", map.result.least_height},
+                 {"greatest_height", map.result.greatest_height},
+                 {"samples", map.result.samples},
+                 {"rays", map.result.rays},
+                 {"missed", missed_json(map.result, origin)}});
+    if (map.verified) json["check"] = verified_json(*map.verified);
+    for (const WrittenLayer& layer : map.layers)
+        json["layers"].push_back(layer_json(layer));
+    return json;
+}
+
+nlohmann::ordered_json measured_json(const MeasuredBake& bake) {
+    return {{"samples", bake.samples.is_auto ? nlohmann::ordered_json("auto")
+                                             : nlohmann::ordered_json(bake.samples.count)},
+            {"sample_angle", bake.sample_angle ? nlohmann::ordered_json(*bake.sample_angle)
+                                               : nlohmann::ordered_json(nullptr)},
+            {"bits", bake.format.bits},
+            {"dither", name_of(bake.format.dither, dither_choices())},
+            {"rms", bake.error.rms},
+            {"mean", bake.error.mean},
+            {"p99", bake.error.p99},
+            {"max", bake.error.max},
+            {"rounding", bake.rounding.rms},
+            {"sampling", bake.sampling.rms},
+            {"rays", bake.rays},
+            {"milliseconds", 1000.0 * bake.seconds},
+            {"efficient", bake.is_efficient}};
+}
+
+void add_accuracy(const MeshAccuracy& accuracy, nlohmann::ordered_json& json) {
+    json["reference"] = {{"samples", accuracy.reference_samples},
+                         {"rays", accuracy.reference_rays},
+                         {"texels", accuracy.texels},
+                         {"whole", accuracy.is_whole}};
+    if (accuracy.selected) json["kept"] = measured_json(*accuracy.selected);
+    nlohmann::ordered_json all = nlohmann::ordered_json::array();
+    for (const MeasuredBake& bake : accuracy.measured)
+        all.push_back(measured_json(bake));
+    json[accuracy.selected ? "steps" : "comparison"] = all;
+}
+
+}  // namespace
+
+std::string shared_texels_warning(const MeshBakeRequest& request, const MeshBake& bake) {
+    if (bake.materials < 2 || bake.all.coverage.shared == 0 || bake.maps.front().plan.material)
+        return "";
+    return fmt::format(
+        "{}: {} share one map, in which some texels belong to several triangles "
+        "(<material> in the map's name writes a map for each material)",
+        request.low.string(), counted(bake.materials, "material"));
+}
+
+void print_summary(const MeshBakeRequest& request, const MeshBake& bake, const Stages& stages) {
+    const BakeResult& result = bake.all;
+    print_entry("read", read_lines(request, bake));
+    print_entry("rays", {ray_text(request, result),
+                         fmt::format("{} for {}, {:.2f} million per second", result.rays,
+                                     counted(result.samples, "sample"),
+                                     megarays_per_second(bake, stages))});
+    print_entry(bake.maps.size() == 1 ? "map" : "maps", map_lines(request, bake));
+    print_missed(request, bake);
+    print_entry("format", fmt::format("{}, {}", space_text(request, bake), to_string(bake.format)));
+    if (bake.accuracy) print_accuracy(request, *bake.accuracy);
+    for (const BakedMap& map : bake.maps) {
+        if (map.verified) print_verified(*map.verified);
+    }
+    print_layers(bake);
+    print_entry("findings",
+                bake.findings.empty() ? std::vector<std::string>{"none"} : bake.findings.lines());
+    print_entry("time", durations(stages.finished()));
+    print_entry("wrote", written_files(request, bake));
+}
+
+nlohmann::ordered_json results_json(const MeshBakeRequest& request, const MeshBake& bake,
+                                    const Stages& stages) {
+    const BakeResult& result = bake.all;
+    nlohmann::ordered_json high = nlohmann::ordered_json::array();
+    for (const std::filesystem::path& file : request.high)
+        high.push_back(file.string());
+    nlohmann::ordered_json pairs = nlohmann::ordered_json::array();
+    for (const BakePair& pair : bake.pairs) {
+        pairs.push_back({{"name", pair.name},
+                         {"high_triangles", pair.high_triangles},
+                         {"low_triangles", pair.low.size()}});
+    }
+    nlohmann::ordered_json maps = nlohmann::ordered_json::array();
+    for (const BakedMap& map : bake.maps)
+        maps.push_back(map_json(map, bake.origin));
+    nlohmann::ordered_json results = {{"high", high},
+                                      {"low", request.low.string()},
+                                      {"output", request.output.string()},
+                                      {"width", request.size.x},
+                                      {"height", request.size.y},
+                                      {"space", space_name(request.space)},
+                                      {"bits", bake.format.bits},
+                                      {"green", name_of(bake.format.green, green_choices())},
+                                      {"zero_code", name_of(bake.format.flat, zero_code_choices())},
+                                      {"dither", name_of(bake.format.dither, dither_choices())},
+                                      {"high_triangles", bake.high_triangles},
+                                      {"low_triangles", bake.low_triangles},
+                                      {"offset", result.distances.offset},
+                                      {"max_distance", result.distances.max_distance},
+                                      {"least_height", result.least_height},
+                                      {"greatest_height", result.greatest_height},
+                                      {"texels_baked", result.texels_baked},
+                                      {"texels_missed", result.texels_missed},
+                                      {"samples", result.samples},
+                                      {"rays", result.rays},
+                                      {"occlusion_rays", result.occlusion_rays},
+                                      {"rays_per_second", megarays_per_second(bake, stages) * 1e6},
+                                      {"boxes", boxes_json(bake.fit, bake.origin)},
+                                      {"pairs", pairs},
+                                      {"maps", maps},
+                                      {"findings", bake.findings.json()},
+                                      {"milliseconds", durations_json(stages.finished())}};
+    if (bake.accuracy) add_accuracy(*bake.accuracy, results);
+    if (request.preview.file) results["preview"] = request.preview.file->string();
+    return results;
+}
+
+}  // namespace relief::tools
