@@ -1,29 +1,33 @@
 // SPDX-License-Identifier: Apache-2.0
-// What experiments have in common once they are measured. Tests:
-// tests/accuracy/experiment_test.cpp.
+// Derives figures, efficient methods and convergence orders from measured data.
 #include "relief/accuracy/experiment.h"
 
+#include <fmt/format.h>
+
+#include <array>
 #include <cmath>
 #include <limits>
 
-#include "measured_methods.h"
+#include "experiment_driver.h"
+#include "relief/accuracy/words.h"
 #include "relief/mesh/frontier.h"
 
 namespace relief {
 namespace {
 
-constexpr double not_known = std::numeric_limits<double>::quiet_NaN();
+constexpr double undefined_error = std::numeric_limits<double>::quiet_NaN();
 
-/// \param angles  what an AngleDistribution and an AngleSummary have in common; of no angle both
-///                say 0, which would be exactly right
+/// \param angles  an AngleDistribution or an AngleSummary; without angles both contain 0, which
+/// would
+///                mean no error
 template <typename Angles>
 ErrorFigures figures_of_summary(const Angles& angles, std::size_t undefined) {
     if (angles.count == 0)
         return {.undefined = undefined,
-                .rms = not_known,
-                .mean = not_known,
-                .p99 = not_known,
-                .max = not_known};
+                .rms = undefined_error,
+                .mean = undefined_error,
+                .p99 = undefined_error,
+                .max = undefined_error};
     return {.count = angles.count,
             .undefined = undefined,
             .rms = angles.rms,
@@ -43,7 +47,7 @@ ErrorFigures figures_of(const AngleSummary& angles) {
 }
 
 double curve_error(const ErrorFigures& error) {
-    return error.undefined > 0 ? not_known : error.rms;
+    return error.undefined > 0 ? undefined_error : error.rms;
 }
 
 double curve_error(const AngleDistribution& angles) {
@@ -78,6 +82,22 @@ std::optional<double> fitted_order(const std::vector<CurvePoint>& points) {
     const double spread = count * sum_xx - sum_x * sum_x;
     if (count < 2.0 || spread <= 1e-12 * count * sum_xx) return std::nullopt;
     return (count * sum_xy - sum_x * sum_y) / spread;
+}
+
+std::string seconds_in_words(double seconds) {
+    struct Unit {
+        double seconds;
+        const char* name;
+    };
+    static constexpr std::array units = {Unit{1e-9, "ns"}, Unit{1e-6, "µs"}, Unit{1e-3, "ms"},
+                                         Unit{1.0, "s"}};
+    // A value that rounds to 1000 is written in the next unit.
+    std::size_t unit = 0;
+    while (unit + 1 < units.size() && seconds >= 999.5 * units.at(unit).seconds)
+        ++unit;
+    const double value = seconds / units.at(unit).seconds;
+    const int digits = value < 9.995 ? 2 : value < 99.95 ? 1 : 0;
+    return fmt::format("{:.{}f} {}", value, digits, units.at(unit).name);
 }
 
 }  // namespace relief

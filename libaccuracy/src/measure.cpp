@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Clocks and resident memory around work that is run in turns. Tests:
-// tests/accuracy/measure_test.cpp.
+// Measures time and resident memory of several works in interleaved rounds.
 #include "relief/accuracy/measure.h"
 
 #include <malloc.h>
@@ -18,19 +17,19 @@
 namespace relief {
 namespace {
 
-/// A slice of the scheduler's: shorter rounds are mostly chance, and all of a method's could lie
-/// within one busy moment of the machine, which a median does not see through.
-constexpr double shortest_round = 4e-3;
+/// A time slice of the scheduler. Shorter rounds are mostly noise, and all rounds of a method could
+/// be within one busy moment of the machine, which distorts the median.
+constexpr double min_round_seconds = 4e-3;
 
-/// How many times in a row a work is to be done so that a round is long enough.
-std::size_t times_in_a_round(const std::function<void()>& work) {
+/// Returns how often a work must be repeated so that a round is long enough.
+std::size_t repeats_per_round(const std::function<void()>& work) {
     const double seconds = seconds_of(work);
-    return seconds >= shortest_round
+    return seconds >= min_round_seconds
                ? 1
-               : static_cast<std::size_t>(std::ceil(shortest_round / std::max(seconds, 1e-7)));
+               : static_cast<std::size_t>(std::ceil(min_round_seconds / std::max(seconds, 1e-7)));
 }
 
-/// The limit of all threads on the way out, by an exception too.
+/// Limits parallel loops to one thread, and sets another limit when it is destroyed.
 class OneThread {
   public:
     explicit OneThread(unsigned afterwards) : afterwards_(afterwards) { set_thread_limit(1); }
@@ -42,7 +41,7 @@ class OneThread {
     unsigned afterwards_;
 };
 
-/// The processor time of this process and all its threads, in seconds.
+/// Processor time of this process with all its threads, in seconds.
 double processor_seconds() {
     timespec now{};
     ::clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
@@ -52,20 +51,20 @@ double processor_seconds() {
 /// Measures the processor time of one thread, which excludes the time of other programs; a wall
 /// clock includes it.
 double processor_seconds_of(const std::function<void()>& work) {
-    constexpr double least = 1e-9;  // Work that waits alone still has a time.
+    constexpr double min_seconds = 1e-9;  // Work that only waits must have a positive time.
     const double begin = processor_seconds();
     work();
-    return std::max(processor_seconds() - begin, least);
+    return std::max(processor_seconds() - begin, min_seconds);
 }
 
-/// \param clock  the seconds of a work, by the wall or by the processor
+/// \param clock  returns the wall time or the processor time of a work
 std::vector<Timing> timings(std::span<const std::function<void()>> works, const RunOptions& options,
                             double (*clock)(const std::function<void()>&)) {
     std::vector<std::size_t> times;
     for (const std::function<void()>& work : works) {
         check_cancelled();
-        work();  // The first time of all fills caches, and takes longer.
-        times.push_back(times_in_a_round(work));
+        work();  // The first run fills caches and is slower.
+        times.push_back(repeats_per_round(work));
     }
     return rounds_in_turns(works.size(), options, [&](std::size_t i) {
         const double seconds = clock([&] {
@@ -76,7 +75,7 @@ std::vector<Timing> timings(std::span<const std::function<void()>> works, const 
     });
 }
 
-/// A line "VmHWM:   12345 kB" of what Linux tells of this process, in bytes.
+/// The value of a line such as "VmHWM:   12345 kB" in /proc/self/status, in bytes.
 std::optional<std::uint64_t> status_bytes(const std::string& name) {
     std::ifstream status("/proc/self/status");
     for (std::string word; status >> word;) {
@@ -111,9 +110,9 @@ std::vector<Timing> rounds_in_turns(
 }
 
 std::optional<std::uint64_t> peak_bytes_of(const std::function<void()>& work) {
-    ::malloc_trim(0);  // Or work would be done in memory that was held before.
+    ::malloc_trim(0);  // Otherwise the work could reuse memory that is already resident.
     std::ofstream reset("/proc/self/clear_refs");
-    reset << 5 << std::flush;  // Sets VmHWM to what is resident now.
+    reset << 5 << std::flush;  // Sets VmHWM to the current VmRSS.
     const std::optional<std::uint64_t> before = status_bytes("VmRSS");
     if (!reset || !before) return std::nullopt;
     work();
@@ -127,16 +126,16 @@ std::vector<Cost> measure_costs(std::span<const std::function<void()>> works,
     std::vector<Cost> costs(works.size());
     if (!options.is_timed) return costs;
     if (choice.one_thread) {
-        const std::vector<Timing> found =
+        const std::vector<Timing> result =
             on_one_thread(options, [&] { return timings(works, options, processor_seconds_of); });
         for (std::size_t i = 0; i < works.size(); ++i)
-            costs[i].one_thread = found[i];
+            costs[i].one_thread = result[i];
     }
     set_thread_limit(options.threads);
     if (choice.all_threads) {
-        const std::vector<Timing> found = timings(works, options, seconds_of);
+        const std::vector<Timing> result = timings(works, options, seconds_of);
         for (std::size_t i = 0; i < works.size(); ++i)
-            costs[i].all_threads = found[i];
+            costs[i].all_threads = result[i];
     }
     if (choice.memory) {
         for (std::size_t i = 0; i < works.size(); ++i)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The ground truth of normals and tangents a second time: positions by formulas of this file's own,
-// in long double, differentiated numerically.
+// Checks the ground truth of normals and tangents independently: positions by the formulas of this
+// file in long double, differentiated numerically.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -10,9 +10,9 @@
 #include <span>
 #include <vector>
 
-#include "analytic_words.h"
 #include "relief/mesh/analytic_surfaces.h"
 #include "relief/mesh/direction_error.h"
+#include "report_names.h"
 
 namespace relief {
 namespace {
@@ -48,8 +48,8 @@ std::array<Real, terms> powers(Real x, Real y) {
     return {1, x, y, x * x, x * y, y * y, x * x * x, x * x * y, x * y * y, y * y * y};
 }
 
-/// A cubic's coefficients are drawn at random: found again from points on it, by least squares.
-/// x and y are -reach to reach where s and t are 0 to 1.
+/// The random coefficients of a cubic are determined from points on it by least squares. x and y
+/// range from -reach to reach while s and t range from 0 to 1.
 Formula cubic_through(std::span<const glm::vec3> points, Real reach) {
     std::array<std::array<Real, terms + 1>, terms> rows{};
     for (const glm::vec3& p : points) {
@@ -60,7 +60,7 @@ Formula cubic_through(std::span<const glm::vec3> points, Real reach) {
             rows[i][terms] += row[i] * static_cast<Real>(p.z);
         }
     }
-    for (std::size_t pivot = 0; pivot < terms; ++pivot) {  // Gauss and Jordan.
+    for (std::size_t pivot = 0; pivot < terms; ++pivot) {  // Gauss-Jordan elimination.
         const auto largest = std::max_element(
             rows.begin() + static_cast<std::ptrdiff_t>(pivot), rows.end(),
             [&](const auto& a, const auto& b) { return std::abs(a[pivot]) < std::abs(b[pivot]); });
@@ -98,8 +98,8 @@ Formula formula_of(AnalyticSurface surface, const TexturedMesh& truth) {
     }
 }
 
-/// The derivative along (ds, dt): central differences of three widths, extrapolated twice
-/// [Richardson 1911]; errors of h^6.
+/// The derivative along (ds, dt) by central differences of three widths, extrapolated twice
+/// [Richardson 1911]; the error is O(h^6).
 Point derivative(const Formula& formula, Real s, Real t, Real ds, Real dt) {
     const auto central = [&](Real h) {
         return (formula(s + h * ds, t + h * dt) - formula(s - h * ds, t - h * dt)) / (2 * h);
@@ -113,7 +113,7 @@ Point derivative(const Formula& formula, Real s, Real t, Real ds, Real dt) {
     return (Real(16) * again - once) / Real(15);
 }
 
-/// Numbers that the cubic's coefficients come back with are as good as the float positions.
+/// The fitted coefficients of the cubic are only as accurate as the float positions.
 double tolerance_for(AnalyticSurface surface) {
     return surface == AnalyticSurface::cubic ? 1e-5 : 1e-9;
 }
@@ -127,7 +127,7 @@ TEST(AnalyticTruth, MeshesLieOnTheSurfacesOfTheseFormulas) {
             const glm::dvec2 at = truth.parameters[v];
             const Point expected = formula(static_cast<Real>(at.x), static_cast<Real>(at.y));
             EXPECT_LE(glm::length(glm::dvec3(truth.mesh.positions[v]) - glm::dvec3(expected)), 2e-7)
-                << word_of(surface);
+                << name_of(surface);
         }
     }
 }
@@ -138,7 +138,7 @@ TEST(AnalyticTruth, FramesAreThoseOfNumericDerivatives) {
             const TexturedMesh truth =
                 textured_mesh(surface, Triangulation::jittered, layout, 16, 1);
             const Formula formula = formula_of(surface, truth);
-            // v stays the same along u where t makes up for what s does to it.
+            // v is constant along u if t compensates the effect of s.
             const Real slant = layout == TextureLayout::sheared ? 0.5L : 0.0L;
             for (const glm::dvec2& at : truth.parameters) {
                 const Real s = static_cast<Real>(at.x);
@@ -148,7 +148,7 @@ TEST(AnalyticTruth, FramesAreThoseOfNumericDerivatives) {
                 const Point along_u = derivative(formula, s, t, 1, slant);
                 const SurfaceFrame frame = truth.frame_at(at);
                 const Point cross = glm::cross(along_s, along_t);
-                // Outwards, or up, as the mesh's triangles are.
+                // The normal points outwards or up, like the triangles of the mesh.
                 const Point normal =
                     glm::dot(glm::dvec3(cross), frame.normal) < 0.0 ? -cross : cross;
                 EXPECT_LE(degrees_between(glm::dvec3(normal), frame.normal),
@@ -165,7 +165,7 @@ TEST(AnalyticTruth, VertexNormalsAreThoseOfTheFrames) {
         const AnalyticMesh bare = analytic_mesh(surface, Triangulation::regular, 16, 1);
         const TexturedMesh textured =
             textured_mesh(surface, Triangulation::regular, TextureLayout::upright, 16, 1);
-        // Seams double vertices of the textured mesh: they are found by position.
+        // Vertices at seams of the textured mesh are duplicates, so match them by position.
         for (std::size_t v = 0; v < bare.normals.size(); ++v) {
             std::size_t found = 0;
             for (std::size_t w = 0; w < textured.parameters.size(); ++w) {
@@ -174,13 +174,13 @@ TEST(AnalyticTruth, VertexNormalsAreThoseOfTheFrames) {
                 EXPECT_LE(degrees_between(bare.normals[v], frame.normal), 1e-12);
                 ++found;
             }
-            EXPECT_GE(found, 1U) << word_of(surface) << " " << v;
+            EXPECT_GE(found, 1U) << name_of(surface) << " " << v;
         }
     }
 }
 
-/// Fans of one seed lie on one cubic, whatever their valence: enough points to know it by, all of
-/// them within 0.2 of the origin, and that itself.
+/// Fans of one seed lie on one cubic for every valence. Together they have enough points to
+/// determine it, all within 0.2 of the origin, including the origin.
 std::vector<glm::vec3> points_of_fans(std::uint32_t seed) {
     std::vector<glm::vec3> points;
     for (int valence = 3; valence <= 18; ++valence) {
@@ -192,15 +192,16 @@ std::vector<glm::vec3> points_of_fans(std::uint32_t seed) {
 
 constexpr Real fan_reach = 0.2L;
 
-/// Of the fitted surface at the origin, by numeric derivatives; up.
+/// The upward normal of the fitted surface at the origin, by numeric derivatives.
 glm::dvec3 normal_at_origin(const Formula& surface) {
     return glm::dvec3(
         glm::cross(derivative(surface, 0.5L, 0.5L, 1, 0), derivative(surface, 0.5L, 0.5L, 0, 1)));
 }
 
 TEST(AnalyticTruth, FansLieOnACubicWhoseNormalAtTheOriginIsUp) {
-    // Heights, below 1/16, are rounded by 2^-29, and x and y by 2^-27, where the surface rises by
-    // half of that; 0.05 away and more, heights are 2e-6 degrees for one point, and for all less.
+    // Heights below 1/16 are rounded by 2^-29, and x and y by 2^-27, where the surface rises by
+    // half of that. At a distance of 0.05 or more this is 2e-6 degrees for one point, and less for
+    // all.
     constexpr double height_rounding = 1e-8;
     constexpr double normal_rounding = 2e-6;
     const glm::dvec3 up(0.0, 0.0, 1.0);

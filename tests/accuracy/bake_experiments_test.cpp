@@ -1,16 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// Baked maps of the bumpy sphere: the experiments' truth against the surface's formula, and what
-// they find.
-#include "bake/bake_experiments.h"
+// Bakes of the sphere with bumps: the ground truth of the experiments against the formula of the
+// surface, and the results of the experiments.
+#include "bake_experiments.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
-#include "bake/bumpy_bake.h"
 #include "bake_errors/bumpy_truth.h"
-#include "drawn/picture_error.h"
+#include "error_metrics.h"
 #include "experiment_checks.h"
 #include "relief/mesh/direction_error.h"
 #include "relief/mesh/normal_space.h"
@@ -22,7 +21,7 @@ namespace {
 constexpr int stacks = 100;
 constexpr int side = 96;
 
-/// The map of so many rays a texel, as unit normals in object space.
+/// Bakes a map with a number of rays per texel; returns unit normals in object space.
 Image baked(const BumpyBake& bake, int samples) {
     Image normals = make_image(side, side, 3, 32, ColorSpace::data);
     BakeMapOptions map = bake.map();
@@ -40,14 +39,13 @@ Image baked(const BumpyBake& bake, int samples) {
 
 std::vector<test::TexelTruth> truths(const BumpyBake& bake) {
     Report report;
-    Mesh rays = bake.baker().low();  // They run along averaged normals.
+    Mesh rays = bake.baker().low();  // Rays run along smoothed normals.
     rays.normals = vertex_normals(rays.positions, rays.triangles, NormalWeight::angle, report);
     return test::texel_truths(BumpySphere(stacks), rays,
                               {BumpyBake::low_slices, BumpyBake::low_stacks}, side);
 }
 
-/// Root of the mean square, in degrees, of a map against the formula's truth; x turned round where
-/// it is to be broken.
+/// The RMS angle between a map and the formula, in degrees. Can negate x to simulate a defect.
 double rms_of(const Image& map, const std::vector<test::TexelTruth>& all,
               glm::dvec3 test::TexelTruth::*which, double x_sign = 1.0) {
     double squares = 0.0;
@@ -61,7 +59,7 @@ double rms_of(const Image& map, const std::vector<test::TexelTruth>& all,
 }
 
 TEST(BumpySphere, HasTheNormalsOfItsFormula) {
-    // Differences of the radius, r = 1 + 0.02 sin(12 longitude) sin(12 polar), along both angles.
+    // Derivatives of the radius, r = 1 + 0.02 sin(12 longitude) sin(12 polar), by both angles.
     const auto position = [](double longitude, double polar) {
         const double radius = 1.0 + 0.02 * std::sin(12.0 * longitude) * std::sin(12.0 * polar);
         return radius * glm::dvec3(std::sin(polar) * std::sin(longitude), std::cos(polar),
@@ -82,7 +80,7 @@ TEST(BumpySphere, HasTheNormalsOfItsFormula) {
     }
 }
 
-/// The same of two maps, over all texels.
+/// The RMS angle between two maps over all texels, in degrees.
 double rms_between(const Image& a, const Image& b) {
     const std::span<const float> one = a.as<float>();
     const std::span<const float> other = b.as<float>();
@@ -101,21 +99,21 @@ TEST(BakeTruth, OfManyRaysIsThatOfTheFormula) {
     ASSERT_GT(all.size(), 150U);
     const Image many = baked(bake, 256);
     const Image one = baked(bake, 1);
-    // 256 rays of the baker's and 256 lines of the formula through the same squares.
+    // 256 rays of the baker, and 256 exact intersections in the same squares.
     EXPECT_LT(rms_of(many, all, &test::TexelTruth::mesh), 0.1);
-    // One ray asks about the middle, exactly, and about the mean only roughly.
+    // One ray has the exact normal in the middle, but only approximates the mean.
     EXPECT_LT(rms_of(one, all, &test::TexelTruth::mesh_middle), 0.1);
     EXPECT_GT(rms_of(one, all, &test::TexelTruth::mesh), 0.3);
-    // What the experiments count from is that bake of 256 rays, over all texels, poles as well.
+    // The experiments use such a bake with 256 rays over all texels, including the poles.
     const std::vector<BakeWay> ways = {{1}};
-    const std::vector<BakeWayFound> found = bake.measured(ways, test::quick_untimed());
+    const std::vector<BakeWayResult> found = bake.measured(ways, test::quick_untimed());
     const double between = rms_between(one, many);
     EXPECT_NEAR(found[0].trial.errors[2].rms, between, 0.1 * between);
-    // A map with x turned round is not taken for right.
+    // A map with negated x is detected.
     EXPECT_GT(rms_of(many, all, &test::TexelTruth::mesh, -1.0), 20.0);
 }
 
-/// Run once for all tests of a process.
+/// The experiments, run once per process.
 const std::vector<Experiment>& quick_experiments() {
     static const std::vector<Experiment> all = bake_experiments(test::quick_untimed());
     return all;
@@ -131,8 +129,8 @@ TEST(BakeExperiments, FindFewerDegreesForMoreRays) {
     };
     EXPECT_LT(rms("16 rays, float"), 0.5 * rms("4 rays, float"));
     EXPECT_LT(rms("4 rays, float"), 0.5 * rms("1 ray, float"));
-    // A code of 8 bits is 1 / 127 wide: rounding x and y errs by that over sqrt(12) each, a little
-    // more on slopes, where z is one of three.
+    // An 8-bit code is 1 / 127 wide. Rounding has an error of 1 / sqrt(12) codes in x and in y, and
+    // a little more on slopes, where z counts as well.
     const double of_codes =
         1.0 / 127.0 / std::sqrt(12.0) * std::sqrt(2.0) * 180.0 / std::numbers::pi;
     EXPECT_NEAR(std::sqrt(rms("16 rays, 8 bit") * rms("16 rays, 8 bit") -

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// What every experiment has to have, and finding one's way in a list of them.
+/// Checks that apply to every experiment, and functions that look up experiments and methods.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "planned_experiment.h"
+#include "experiment_driver.h"
 #include "relief/accuracy/own.h"
 
 namespace relief::test {
@@ -24,7 +24,7 @@ inline RunOptions quick_untimed() {
     return options;
 }
 
-/// The experiment with this title.
+/// The experiment with a title.
 inline const Experiment& titled(const std::vector<Experiment>& all, const std::string& title) {
     for (const Experiment& one : all) {
         if (one.title == title) return one;
@@ -55,7 +55,7 @@ inline void expect_sound(const ErrorFigures& error) {
     EXPECT_LE(error.p99, error.max);
 }
 
-/// Everything that reports rely on: words, unique names, numbers that can be.
+/// Checks what reports rely on: texts, unique names, and plausible numbers.
 inline void expect_whole(const std::vector<Experiment>& all, Subject subject) {
     std::set<std::string> ids;
     for (const Experiment& one : all) {
@@ -66,7 +66,7 @@ inline void expect_whole(const std::vector<Experiment>& all, Subject subject) {
              {one.title, one.question, one.truth, one.input, one.error_unit, one.item, one.finding})
             EXPECT_FALSE(text.empty());
         EXPECT_EQ(one.question.back(), '?');
-        // What was not timed is no part of a sentence.
+        // Findings do not mention times that were not measured.
         EXPECT_EQ(one.finding.find("not timed"), std::string::npos) << one.finding;
         EXPECT_GT(one.items, 0.0);
         EXPECT_FALSE(one.measurements.empty());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Frontiers and fitted orders by hand.
+// Pareto frontiers and fitted orders, computed by hand.
 #include "relief/accuracy/experiment.h"
 
 #include <gtest/gtest.h>
@@ -21,7 +21,7 @@ TEST(MarkEfficient, GoesByTheMedianOnOneThread) {
     Experiment experiment;
     experiment.measurements = {measured(1.0, 2.0), measured(2.0, 1.0), measured(2.0, 3.0)};
     experiment.measurements[1].cost.one_thread = Timing{{1.0, 9.0, 1.0}};
-    experiment.measurements[2].cost.all_threads = Timing{{0.1}};  // Does not count.
+    experiment.measurements[2].cost.all_threads = Timing{{0.1}};  // The time on one thread counts.
     mark_efficient(experiment);
     EXPECT_TRUE(experiment.measurements[0].is_efficient);
     EXPECT_TRUE(experiment.measurements[1].is_efficient);
@@ -44,7 +44,7 @@ TEST(FittedOrder, IsThePowerOfAPowerLaw) {
     for (const double x : {8.0, 16.0, 32.0, 64.0})
         points.push_back({x, 3.0 * std::pow(x, -4.0)});
     EXPECT_NEAR(fitted_order(points).value(), -4.0, 1e-12);
-    points.push_back({128.0, 0.0});  // No logarithm.
+    points.push_back({128.0, 0.0});  // It has no logarithm.
     points.push_back({256.0, std::numeric_limits<double>::quiet_NaN()});
     EXPECT_NEAR(fitted_order(points).value(), -4.0, 1e-12);
 }

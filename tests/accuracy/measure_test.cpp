@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Turns, thread limits and memory of what is measured; never how long something takes.
+// Interleaved rounds, thread limits and memory. No test depends on a measured time.
 #include "relief/accuracy/measure.h"
 
 #include <gmock/gmock.h>
@@ -35,11 +35,11 @@ TEST(MeasureCosts, TakesTurnsAndCountsTheRoundsAskedFor) {
         works, rounds(3), {.one_thread = true, .all_threads = false, .memory = false});
     ASSERT_THAT(costs, SizeIs(2));
     EXPECT_THAT(costs[0].one_thread.value().rounds, SizeIs(3));
-    // Less what two clocks may differ by.
+    // Allow for the difference of two clocks.
     EXPECT_GE(costs[1].one_thread.value().spread().median, 4.9e-3);
     EXPECT_FALSE(costs[0].all_threads);
     EXPECT_FALSE(costs[0].peak_bytes);
-    // Each once to warm up and once to see how long it takes; then one round that does not count.
+    // Each work runs once to warm up and once to estimate its time; then one round is not counted.
     EXPECT_EQ(calls,
               "aabb"
               "ab"
@@ -51,13 +51,13 @@ TEST(MeasureCosts, RepeatsShortWorkWithinARound) {
     const std::vector<std::function<void()>> works = {[&] { ++calls; }};
     const std::vector<Cost> costs = measure_costs(
         works, rounds(2), {.one_thread = true, .all_threads = false, .memory = false});
-    EXPECT_GT(calls, 2U + 3U * 10U);     // More than ten in a round,
-    EXPECT_LE(calls, 2U + 3U * 40000U);  // and no more than a sane clock asks for.
-    EXPECT_LT(costs[0].one_thread.value().spread().p10, 1e-3);  // The time is that of one.
+    EXPECT_GT(calls, 2U + 3U * 10U);     // More than ten per round,
+    EXPECT_LE(calls, 2U + 3U * 40000U);  // and no more than a working clock can demand.
+    EXPECT_LT(costs[0].one_thread.value().spread().p10, 1e-3);  // The time of one call.
 }
 
 TEST(MeasureCosts, OneThreadsTimeIsThatOfTheProcessor) {
-    // Waiting, as for a processor that another program has, takes none of it.
+    // Waiting costs no processor time, just as time that other programs use.
     const std::vector<std::function<void()>> works = {
         [] { std::this_thread::sleep_for(std::chrono::milliseconds(20)); }};
     const std::vector<Cost> costs =
@@ -88,7 +88,7 @@ TEST(PeakBytes, AreWhatWorkHoldsAtTheMost) {
     if (!one) GTEST_SKIP() << "this system does not tell what a process holds";
     EXPECT_GE(*one, size * 9 / 10);
     EXPECT_LE(peak_bytes_of([] {}).value(), size / 10);
-#ifndef __SANITIZE_ADDRESS__  // Keeps what was freed.
+#ifndef __SANITIZE_ADDRESS__  // AddressSanitizer keeps freed memory.
     EXPECT_LE(peak_bytes_of([&] { touch(), touch(); }).value(), size * 11 / 10);
 #endif
 }

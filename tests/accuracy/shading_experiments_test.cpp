@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the experiments on pictures find, in the order in which it is known to lie.
+// The results of the experiments with rendered images.
+#include "shading_experiments.h"
+
 #include <gtest/gtest.h>
 
 #include <memory>
 
 #include "experiment_checks.h"
-#include "measured_methods.h"
-#include "shading/shading_experiments.h"
-#include "shading/shading_plan.h"
+#include "experiment_driver.h"
 
 namespace relief {
 namespace {
@@ -16,39 +16,39 @@ const RunOptions untimed = test::quick_untimed();
 
 class DrawnExperiment : public ::testing::Test {
   protected:
-    static void SetUpTestSuite() { drawing_ = std::make_unique<Drawing>(); }
-    static void TearDownTestSuite() { drawing_.reset(); }
+    static void SetUpTestSuite() { device_ = std::make_unique<GlDevice>(); }
+    static void TearDownTestSuite() { device_.reset(); }
     void SetUp() override {
-        if (!drawing_->is_there()) GTEST_SKIP() << "no OpenGL";
+        if (!device_->is_available()) GTEST_SKIP() << "no OpenGL";
     }
-    [[nodiscard]] static const Drawing& drawing() { return *drawing_; }
+    [[nodiscard]] static const GlDevice& device() { return *device_; }
 
     static double rms(const Experiment& experiment, const std::string& method) {
         return method_in(experiment, method).error.rms;
     }
 
   private:
-    inline static std::unique_ptr<Drawing> drawing_;  ///< One for all tests of the suite.
+    inline static std::unique_ptr<GlDevice> device_;  ///< One for all tests of the suite.
 };
 
 TEST_F(DrawnExperiment, OnInterpolationRanksPhongGouraudFlat) {
-    const Experiment experiment = interpolation_experiment(drawing(), untimed);
+    const Experiment experiment = interpolation_experiment(device(), untimed);
     ASSERT_EQ(experiment.measurements.size(), 15U);
     EXPECT_LT(rms(experiment, "Phong, 2304 triangles"), rms(experiment, "Gouraud, 2304 triangles"));
     EXPECT_LT(rms(experiment, "Gouraud, 2304 triangles"), rms(experiment, "flat, 2304 triangles"));
-    // Finer meshes are better by each of them.
+    // Finer meshes are better with each of the methods.
     for (const Curve& curve : experiment.charts.front().curves) {
         EXPECT_LT(curve.points.back().error, 0.3 * curve.points.front().error) << curve.method;
         EXPECT_LT(curve.order.value(), -0.3) << curve.method;
     }
     EXPECT_LT(rms(experiment, "Phong, 36864 triangles"), 0.02);
     EXPECT_EQ(experiment.pictures.size(), 3U);
-    // Without times, the finding states errors alone.
+    // Without times, the finding contains only errors.
     EXPECT_EQ(experiment.finding.find("frame"), std::string::npos) << experiment.finding;
 }
 
 TEST_F(DrawnExperiment, OnHighlightsFindsTheFactorBetweenExponents) {
-    const Experiment experiment = highlight_experiment(drawing(), untimed);
+    const Experiment experiment = highlight_experiment(device(), untimed);
     EXPECT_LT(rms(experiment, "GGX"), 0.01);
     EXPECT_LT(rms(experiment, "Blinn-Phong"), rms(experiment, "Blinn-Phong, Phong's exponent"));
     EXPECT_LT(rms(experiment, "Phong, a quarter of Blinn's exponent"),
@@ -56,44 +56,44 @@ TEST_F(DrawnExperiment, OnHighlightsFindsTheFactorBetweenExponents) {
 }
 
 TEST_F(DrawnExperiment, OnEdgesRanksSamples) {
-    const Experiment experiment = edge_experiment(drawing(), untimed);
+    const Experiment experiment = edge_experiment(device(), untimed);
     EXPECT_LT(rms(experiment, "MSAA, 4 samples"), 0.6 * rms(experiment, "1 sample"));
     EXPECT_LT(rms(experiment, "4 x 4 pixels"), 0.6 * rms(experiment, "2 x 2 pixels"));
 }
 
 TEST_F(DrawnExperiment, OnSmallHighlightsFindsThatWideningThemHelps) {
-    const Experiment experiment = specular_aliasing_experiment(drawing(), untimed);
+    const Experiment experiment = specular_aliasing_experiment(device(), untimed);
     ASSERT_EQ(experiment.measurements.size(), 6U);
     EXPECT_LT(rms(experiment, "Toksvig"), 0.5 * rms(experiment, "averaged normals"));
     EXPECT_LT(rms(experiment, "Toksvig, 2 x 2 pixels"), rms(experiment, "Toksvig"));
     EXPECT_LT(rms(experiment, "averaged normals, 2 x 2 pixels"),
               0.6 * rms(experiment, "averaged normals"));
     EXPECT_LT(rms(experiment, "averaged normals, 4 x 4 pixels"), 0.5 * rms(experiment, "Toksvig"));
-    // Multisampling shades once a pixel: only edges, of which there are none, get better.
+    // Multisampling shades once per pixel and improves only edges, and there are none.
     EXPECT_NEAR(rms(experiment, "averaged normals, MSAA"), rms(experiment, "averaged normals"),
                 0.01);
     const Chart& chart = experiment.charts.front();
     const Curve& sharp = test::curve_of(chart, "averaged normals");
     const Curve& widened = test::curve_of(chart, "Toksvig");
     ASSERT_EQ(sharp.points.size(), 6U);
-    // A texel to a pixel: nothing was averaged that could be widened.
+    // At one texel per pixel no normals are averaged, so nothing is widened.
     EXPECT_NEAR(widened.points[1].error, sharp.points[1].error, 1e-3);
     for (std::size_t i = 2; i < sharp.points.size(); ++i)
         EXPECT_LT(widened.points[i].error, sharp.points[i].error) << sharp.points[i].x;
-    // The farther away, the more: an error that grows, and one that does not.
+    // With the distance, one error grows and the other does not.
     EXPECT_GT(sharp.points[5].error, 2.0 * sharp.points[2].error);
     EXPECT_LT(widened.points[5].error, 1.3 * widened.points[2].error);
 }
 
 TEST(ShadingExperiments, AreWhole) {
-    if (!Drawing().is_there()) GTEST_SKIP() << "no OpenGL";
+    if (!GlDevice().is_available()) GTEST_SKIP() << "no OpenGL";
     const std::vector<Experiment> all = shading_experiments(untimed);
     EXPECT_EQ(all.size(), 9U);
     test::expect_whole(all, Subject::shading);
     for (const Experiment& one : all) {
         SCOPED_TRACE(one.id);
         EXPECT_TRUE(one.id.starts_with("shading/"));
-        // Pictures are of as many pixels as the experiment says, as are heat maps.
+        // Images and heat maps have the size that the experiment states.
         for (const PicturePair& pair : one.pictures) {
             for (const Image& image : {pair.before, pair.after})
                 EXPECT_EQ(static_cast<double>(image.width) * image.height, one.items);

@@ -1,14 +1,47 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where methods are known to hold, and where they are known to break.
-#include "stability/stability_experiments.h"
+// Sweeps computed by hand, and the values up to which methods are known to work.
+#include "stability_experiments.h"
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "experiment_checks.h"
-#include "stability/stability_plan.h"
 
 namespace relief {
 namespace {
+
+TEST(Sweeps, FindWhereEachMethodBreaks) {
+    Sweeps sweeps({"good", "growing", "lost"}, 1.0);
+    sweeps.add("size", "Larger", "size", 6, 2, [](std::size_t method, double value) {
+        if (method == 0) return std::vector<float>{0.25F, 0.25F};
+        if (method == 1) return std::vector<float>{static_cast<float>(1e-3 * value)};
+        return std::vector<float>{0.0F, value > 50.0 ? NAN : 0.5F};
+    });
+    ASSERT_EQ(sweeps.charts().size(), 1U);
+    const std::vector<Curve>& curves = sweeps.charts().front().curves;
+    ASSERT_EQ(curves[0].points.size(), 4U);
+    EXPECT_EQ(curves[0].points[1].x, 100.0);
+    EXPECT_NEAR(curves[0].points[3].error, 0.25, 1e-7);
+    EXPECT_FALSE(curves[0].breaks_at);
+    EXPECT_EQ(curves[1].breaks_at, 1e4) << "0.1 degrees at 100";
+    EXPECT_EQ(curves[2].breaks_at, 100.0);
+    EXPECT_TRUE(std::isnan(curves[2].points[1].error)) << "half a result is none";
+    EXPECT_EQ(sweeps.breaks(),
+              "Larger (size): lost fails from 100 on, growing fails from 1e+04 on, all others are "
+              "within the limit.");
+    EXPECT_EQ(sweeps.figures(0).count, 8U);
+    EXPECT_EQ(sweeps.figures(2).undefined, 3U);
+}
+
+TEST(Sweeps, SayThatAllAreWithinTheLimitOrNone) {
+    Sweeps sweeps({"a", "b"}, 1.0);
+    sweeps.add("x", "Good", "x", 1, 1, [](std::size_t, double) { return std::vector{0.5F}; });
+    sweeps.add("y", "Bad", "y", 1, 1, [](std::size_t, double) { return std::vector{5.0F}; });
+    EXPECT_EQ(sweeps.breaks(),
+              "Good (x): all are within the limit. Bad (y): a and b fail from 1 on, none is within "
+              "the limit everywhere.");
+}
 
 bool is_plain(const std::string& method) {
     return method.starts_with("plain");
@@ -23,7 +56,7 @@ TEST(NormalsByScale, HoldByReliefAndBreakByPlainCode) {
             EXPECT_EQ(curve.points.size(), 16U);
             EXPECT_EQ(curve.breaks_at.has_value(), is_plain(curve.method));
             if (is_plain(curve.method)) continue;
-            // The same normals at each scale: powers of ten round positions, and nothing else.
+            // The normals are the same at each scale; powers of ten only round positions.
             for (const CurvePoint& point : curve.points)
                 EXPECT_NEAR(point.error, curve.points.front().error, 1e-3);
         }
@@ -38,7 +71,7 @@ TEST(NormalsByOffset, BreakWhenPositionsAreRounded) {
     const Curve& exact = test::curve_of(chart, "angle, float64");
     const Curve& plain = test::curve_of(chart, "plain angle, float32");
     ASSERT_EQ(exact.points.size(), 9U);
-    // Floats are 2^-24 of the distance apart: edges of 0.1 are lost before 1e7.
+    // Floats are 2^-24 of the distance apart, so edges of length 0.1 vanish before 1e7.
     ASSERT_TRUE(exact.breaks_at);
     EXPECT_GE(*exact.breaks_at, 1e4);
     EXPECT_LE(*exact.breaks_at, 1e7);
@@ -57,7 +90,7 @@ TEST(NormalsOfNeedles, HoldInDoubleAndBreakInFloat) {
             ASSERT_TRUE(curve.breaks_at);
             EXPECT_LE(*curve.breaks_at, 1e8);
         } else if (curve.method.ends_with("float64")) {
-            // The rule is that what is narrower than 1e-12 has no normal.
+            // Triangles narrower than 1e-12 have no normal by definition.
             EXPECT_GE(curve.breaks_at.value_or(1e12), 1e12);
         }
     }
@@ -96,13 +129,13 @@ TEST(BumpBySteepness, HoldsByReliefAndBreaksByPlainCode) {
             SCOPED_TRACE(chart.id + ", " + curve.method);
             EXPECT_EQ(curve.points.size(), 16U);
             EXPECT_LT(curve.points.front().error, 0.5);
-            // The square of a slope of 1e20 is no float.
+            // The square of a slope of 1e20 exceeds the range of float.
             const bool breaks = is_plain(curve.method) && chart.id == "steeper";
             ASSERT_EQ(curve.breaks_at.has_value(), breaks);
             EXPECT_EQ(curve.breaks_at.value_or(1e20), 1e20);
         }
     }
-    // What is next to flat is flat, and what is next to upright errs by its direction alone.
+    // A nearly flat map is flat, and for a nearly upright one only the direction counts.
     const Curve& flatter = test::curve_of(experiment.charts[1], "sobel3, float64");
     EXPECT_LT(flatter.points.back().error, 1e-12);
 }

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The experiments on tangents: their numbers are those of docs/tangents.md, their orders those of
-// theory.
-#include "tangents/tangents_experiments.h"
+// Results of the experiments on tangents: the figures of docs/tangents.md, and the expected orders.
+#include "tangents_experiments.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -13,7 +12,7 @@ namespace {
 
 using testing::HasSubstr;
 
-/// Run once for all tests of a process.
+/// The experiments, run once per process.
 const std::vector<Experiment>& quick_experiments() {
     static const std::vector<Experiment> all = tangents_experiments(quick_untimed());
     return all;
@@ -41,7 +40,7 @@ TEST(TangentsExperiments, HaveTheErrorsOfThePage) {
     EXPECT_THAT(plate.finding, HasSubstr("area-weighted is closest"));
 }
 
-/// The slope between two neighbouring points on log axes.
+/// The slope between two neighboring points on logarithmic axes.
 double slope_at(const Curve& curve, std::size_t i) {
     return fitted_order({curve.points[i], curve.points[i + 1]}).value();
 }
@@ -58,7 +57,7 @@ TEST(TangentsExperiments, ErrorsFallAtTheOrderOfTheory) {
         SCOPED_TRACE(curve.method);
         EXPECT_EQ(curve.expected_order, -1.0);
         EXPECT_LE(curve.order.value(), -0.9);
-        // Interpolation's second order fades out.
+        // The second-order error of the interpolation fades.
         EXPECT_GT(slope_at(curve, 1), slope_at(curve, 0) - 0.05);
         EXPECT_NEAR(slope_at(curve, 1), -1.0, 0.4);
     }
@@ -70,7 +69,7 @@ TEST(TangentsExperiments, WiderBevelsLeaveAreaWeightsMoreToErr) {
     const Curve& by_area = curve_of(chart, "area-weighted");
     EXPECT_LT(by_area.points.front().error, 0.1);
     EXPECT_GT(by_area.points.back().error, 1.0);
-    // Angles take no notice of how wide a bevel is.
+    // Angles do not depend on the width of a bevel.
     const Curve& by_angle = curve_of(chart, "mikktspace");
     EXPECT_NEAR(by_angle.points[0].error, by_angle.points[1].error, 0.1);
 }
@@ -83,6 +82,40 @@ TEST(TangentsExperiments, MapsComeBackFromTheirOwnBasisAlone) {
             EXPECT_LE(one.error.max, 1e-5) << one.method;
         else
             EXPECT_GE(one.error.rms, 1e-2) << one.method;
+    }
+}
+
+TEST(DrawnFrames, OnFewTrianglesDerivedOnesAreFartherOff) {
+    const GlDevice device;
+    if (!device.is_available()) GTEST_SKIP() << "no OpenGL";
+    const Experiment experiment = rendered_frames_experiment(device, quick_untimed());
+    const auto rms = [&](const char* method) {
+        return measurement_of(experiment, method).error.rms;
+    };
+    // Frames that jump between facets have a small visible error, which vanishes on many triangles.
+    EXPECT_GT(rms("derived, 576 triangles"), 1.005 * rms("stored, 576 triangles"));
+    EXPECT_LT(rms("derived, 576 triangles"), 1.1 * rms("stored, 576 triangles"));
+    EXPECT_NEAR(rms("derived, 147456 triangles"), rms("stored, 147456 triangles"),
+                0.005 * rms("stored, 147456 triangles"));
+    EXPECT_LT(rms("stored, 147456 triangles"), 0.5 * rms("stored, 576 triangles"));
+    // An image without the normal map has a large error.
+    EXPECT_GT(rms("no normal map, 9216 triangles"), 5.0 * rms("stored, 9216 triangles"));
+    EXPECT_EQ(measurement_of(experiment, "stored, 576 triangles").cost.stored_bytes, 28.0);
+    EXPECT_EQ(measurement_of(experiment, "derived, 576 triangles").cost.stored_bytes, 12.0);
+    EXPECT_EQ(experiment.pictures.size(), 3U);
+}
+
+TEST(DrawnFrames, TakeTimeOfAllThreads) {
+    const GlDevice device;
+    if (!device.is_available()) GTEST_SKIP() << "no OpenGL";
+    RunOptions options = quick_untimed();
+    options.is_timed = true;
+    options.repeats = {3, 0};
+    for (const Measurement& one : rendered_frames_experiment(device, options).measurements) {
+        SCOPED_TRACE(one.method);
+        ASSERT_TRUE(one.cost.all_threads);
+        EXPECT_EQ(one.cost.all_threads->rounds.size(), 3U);
+        EXPECT_GT(one.cost.all_threads->spread().median, 1e-5);
     }
 }
 

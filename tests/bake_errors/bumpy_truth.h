@@ -6,7 +6,7 @@
 
 #include <vector>
 
-#include "bake/bumpy_sphere.h"
+#include "bake_experiments.h"
 
 namespace relief::test {
 

@@ -9,7 +9,7 @@
 #include <numbers>
 #include <vector>
 
-#include "bump/bump_methods.h"
+#include "bump_experiments.h"
 #include "relief/mesh/bump_experiment.h"
 #include "relief/mesh/destaircase.h"
 #include "support/error_page.h"

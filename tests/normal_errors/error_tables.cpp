@@ -6,8 +6,8 @@
 #include <array>
 #include <vector>
 
-#include "analytic_words.h"
-#include "normals/normal_methods.h"
+#include "normals_experiments.h"
+#include "report_names.h"
 #include "support/error_page.h"
 
 namespace relief::test {
@@ -37,7 +37,7 @@ std::string surface_table(const char* title, Triangulation triangulation) {
             ranks.push_back(error.rms);
             entries.push_back(in_digits(error.rms) + " / " + in_digits(error.max));
         }
-        text += table_row(word_of(surface), ranks, entries);
+        text += table_row(name_of(surface), ranks, entries);
     }
     return text;
 }

@@ -5,7 +5,7 @@
 #include <stdexcept>
 
 #include "normal_map_errors/error_tables.h"
-#include "storage/normal_codes.h"
+#include "storage_experiments.h"
 
 namespace relief::test {
 namespace {

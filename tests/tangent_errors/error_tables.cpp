@@ -11,10 +11,9 @@
 
 #include "relief/mesh/analytic_surfaces.h"
 #include "relief/mesh/frame_encoding.h"
-#include "storage/frame_codes.h"
+#include "storage_experiments.h"
 #include "support/random_frames.h"
-#include "tangents/tangent_methods.h"
-#include "tangents/textured_cases.h"
+#include "tangent_methods.h"
 
 namespace relief::test {
 namespace {
@@ -56,7 +55,7 @@ std::string method_table(const std::string& title, bool at_corners, Measured mea
     std::string text = "\n" + title + "\n\n" + table_header(names);
     for (const NamedMesh& mesh : meshes()) {
         const AngleDistribution least =
-            measured(mesh.truth, true_tangents(mesh.truth), ShaderBasis::as_interpolated);
+            measured(mesh.truth, exact_tangents(mesh.truth), ShaderBasis::as_interpolated);
         std::vector<double> ranks = {not_compared};
         std::vector<std::string> cells = {rms_and_max(least)};
         for (const TangentMethod& method : methods()) {
@@ -92,7 +91,7 @@ struct MeasuredCost {
     const char* method;
     const char* computing;
     const char* bytes;
-    const char* drawing;
+    const char* device;
 };
 constexpr std::array measured_costs = {
     MeasuredCost{"mikktspace", "1 (88 ns a triangle, one thread)", "28; 4 or 8", "1"},
@@ -118,7 +117,7 @@ std::string cost_table() {
                 in_digits(texel_errors(truth, method.tangents_of(truth.mesh), method.basis).rms));
         }
         const MeasuredCost& cost = measured_costs.at(i);
-        cells.insert(cells.end(), {cost.computing, cost.bytes, cost.drawing});
+        cells.insert(cells.end(), {cost.computing, cost.bytes, cost.device});
         text += table_row(cost.method, std::vector(cells.size(), not_compared), cells);
     }
     return text + "\n";
@@ -176,7 +175,7 @@ std::string encoding_tables() {
                 mean_and_max(errors.normal),
                 mean_and_max(errors.tangent),
                 mean_and_max(errors.texel),
-                fmt::format("{}", errors.lost_hands)};
+                fmt::format("{}", errors.flipped_frames)};
             text += table_row(fmt::format("`{}`", word_of(encoding)),
                               std::vector(cells.size(), not_compared), cells);
         }

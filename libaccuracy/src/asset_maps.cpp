@@ -1,0 +1,268 @@
+// SPDX-License-Identifier: Apache-2.0
+// Measures the conversion of a user's height map, the storage of a user's normal map, and the bake
+// of a user's pair of meshes.
+#include "asset_report.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <glm/trigonometric.hpp>
+#include <string_view>
+
+#include "bump_experiments.h"
+#include "relief/accuracy/own.h"
+#include "relief/mesh/angle_distribution.h"
+#include "relief/mesh/bake_trials.h"
+#include "relief/mesh/destaircase.h"
+#include "relief/mesh/direction_error.h"
+#include "relief/mesh/height_statistics.h"
+#include "relief/mesh/image_part.h"
+#include "report_names.h"
+#include "storage_experiments.h"
+
+namespace relief {
+namespace {
+
+constexpr std::array measured_arithmetics = {Arithmetic::float32, Arithmetic::float64};
+
+/// The conversion of all parts, as it is timed.
+std::function<void()> work_of(const BumpMethod& method, const BumpSample& sample,
+                              BumpOptions bump) {
+    bump.kernel = method.kernel;
+    bump.gaussian_radius = method.gaussian_radius;
+    bump.arithmetic = method.arithmetic;
+    NormalMapFormat format;
+    format.bits = method.bits;
+    return [=, &sample, map = Image()]() mutable {
+        Report ignored;
+        for (const Image& part : sample.measured) {
+            if (method.destaircased) {
+                normal_map_from_height(destaircase(part, {.wrap = *bump.wrap}).heights, bump,
+                                       format, map, ignored);
+            } else {
+                normal_map_from_height(part, bump, format, map, ignored);
+            }
+        }
+    };
+}
+
+std::string command_of(const BumpMethod& method, const BumpOptions& bump,
+                       const OwnOptions& options) {
+    std::string command =
+        fmt::format("relief-bake bump {} OUT.{} --strength {:g} --kernel {}", options.arguments,
+                    method.bits == 32 ? "exr" : "png", bump.strength, name_of(method.kernel));
+    if (method.kernel == Kernel::gaussian)
+        command += fmt::format(" --kernel-radius {}", method.gaussian_radius);
+    command += " --precision " + name_of(method.arithmetic);
+    if (method.bits != 32) command += fmt::format(" --bits {}", method.bits);
+    if (method.destaircased) command += " --destaircase";
+    return command + " --wrap " + name_of(*bump.wrap) + options.height_arguments;
+}
+
+/// Heights with steps are also smoothed, in one arithmetic and depth, which suffices to show the
+/// effect.
+std::vector<BumpMethod> methods_for(const KernelChoice& choice, const OwnOptions& options) {
+    constexpr int max_bits_with_steps = 12;
+    const int radius = best_gaussian_radius(choice);
+    const std::array as_is = {false};
+    std::vector<BumpMethod> methods =
+        bump_methods(radius, options.map_bits, measured_arithmetics, as_is);
+    const bool has_steps = choice.depth.bits > 0 && choice.depth.bits <= max_bits_with_steps;
+    if (!has_steps || !options.smooths_steps) return methods;
+    const std::array smooth = {true};
+    for (const BumpMethod& method :
+         bump_methods(radius, std::array{16}, std::array{Arithmetic::float32}, smooth))
+        methods.push_back(method);
+    return methods;
+}
+
+}  // namespace
+
+OwnExperiment measure_own_heights(const BumpSample& sample, glm::ivec2 size,
+                                  const BumpOptions& bump, const OwnOptions& options) {
+    OwnExperiment asset = asset_experiment(Subject::bump, "bump", "Normals from heights", options);
+    const KernelChoice choice = choose_kernel(sample.looked_at, bump);
+    const std::vector<BumpMethod> methods = methods_for(choice, options);
+    BumpExperimentOptions how;
+    how.bump = bump;
+    how.repeats = {0, 0};
+    const BumpExperiment result = measure_bump(sample, methods, how);
+    Experiment& experiment = asset.experiment;
+    experiment.question = "Which kernel is truest on this map, and what does it cost?";
+    experiment.truth =
+        fmt::format("The map's own best: {}. {}.", result.reference.words, choice.reason);
+    experiment.reference_error = result.reference.own_degrees;
+    experiment.input = result.is_whole ? fmt::format("{} x {} texels", size.x, size.y)
+                                       : fmt::format("{} texels in nine parts of {} x {}",
+                                                     result.texels, size.x, size.y);
+    experiment.item = "texel";
+    experiment.items = static_cast<double>(result.texels);
+    std::vector<AssetMethod> measured;
+    for (const BumpMeasurement& one : result.measurements) {
+        measured.push_back({measured_method(one.method, figures_of(one.error)),
+                            command_of(one.method, bump, options)});
+        measured.back().measured.work = work_of(one.method, sample, bump);
+        measured.back().natural_cost = cost_of(one.method);
+    }
+    finish(asset, std::move(measured), {.reference = "the map itself"}, options);
+    return asset;
+}
+
+OwnExperiment measure_own_heights(const Image& height, const BumpOptions& bump,
+                                  const OwnOptions& options, std::int64_t most_texels) {
+    BumpOptions with_wrap = bump;
+    if (!bump.wrap) with_wrap.wrap = detect_tiling(height).wraps();
+    return measure_own_heights(sample_of(height, most_texels), {height.width, height.height},
+                               with_wrap, options);
+}
+
+namespace {
+
+void add_angles(const Image& actual, const Image& expected, std::vector<float>& degrees) {
+    const std::span<const float> a = actual.as<float>();
+    const std::span<const float> b = expected.as<float>();
+    for (std::size_t i = 0; i < a.size(); i += 3) {
+        degrees.push_back(static_cast<float>(
+            degrees_between({a[i], a[i + 1], a[i + 2]}, {b[i], b[i + 1], b[i + 2]})));
+    }
+}
+
+/// The RMS angle that rounding to integer codes of `bits` bits adds to a normal, in degrees:
+/// uniformly distributed errors of up to half a code on two axes. 0 for floats.
+double rounding_degrees(int bits) {
+    if (bits >= 32) return 0.0;
+    const double code = 2.0 / (std::exp2(bits) - 1.0);
+    return glm::degrees(code * std::sqrt(2.0 / 12.0));
+}
+
+/// The file itself: without other options, `relief-bake convert` keeps every code.
+AssetMethod as_it_is(const NormalMapOnFile& file, std::size_t texels, const OwnOptions& options) {
+    AssetMethod method;
+    method.measured.name = "as it is";
+    method.measured.choices = {
+        {"layout", "as it is"}, {"bits", fmt::format("{} bit", file.bits)}, {"rounding", "none"}};
+    method.measured.stored_bytes = file.channels * file.bits / 8.0;
+    method.measured.error = figures_of(angle_distribution(std::vector<float>(texels, 0.0F)));
+    method.measured.note = "every code is kept; no time of its own";
+    method.command = fmt::format("relief-bake convert {} OUT{}", options.arguments, file.extension);
+    return method;
+}
+
+}  // namespace
+
+OwnExperiment measure_own_normals(const Image& normals, const NormalMapOnFile& file,
+                                  const OwnOptions& options, std::int64_t most_texels) {
+    OwnExperiment asset =
+        asset_experiment(Subject::storage, "normal-map", "Storage of the normals", options);
+    std::vector<Image> parts;
+    for (const ImagePart& part : parts_to_measure(normals.width, normals.height, most_texels))
+        parts.push_back(part_of(normals, part));
+    Experiment& experiment = asset.experiment;
+    for (const Image& part : parts)
+        experiment.items += static_cast<double>(part.width) * part.height;
+    experiment.question = "In how few bits can these normals be stored?";
+    experiment.truth = fmt::format(
+        "The normals as the file holds them, in {} bits. What was lost before it was written is "
+        "unknown, but for the rounding to these bits.",
+        file.bits);
+    if (file.bits < 32) experiment.reference_error = rounding_degrees(file.bits);
+    experiment.input = fmt::format("{} x {} texels", normals.width, normals.height);
+    if (parts.size() > 1) experiment.input += fmt::format(", {:.0f} of them", experiment.items);
+    experiment.item = "texel";
+    std::vector<AssetMethod> methods = {
+        as_it_is(file, static_cast<std::size_t>(experiment.items), options)};
+    for (const NormalCode& code : normal_codes()) {
+        AssetMethod method;
+        method.measured.name = code.name;
+        method.measured.choices = code.choices;
+        method.measured.stored_bytes = code.bytes;
+        std::vector<float> degrees;
+        for (const Image& part : parts)
+            add_angles(code.stored(part), part, degrees);
+        method.measured.error = figures_of(angle_distribution(std::move(degrees)));
+        method.measured.work = [&parts, code] {
+            for (const Image& part : parts)
+                static_cast<void>(code.stored(part));
+        };
+        if (!code.file_and_options.empty()) {
+            method.command =
+                fmt::format("relief-bake convert {} {}", options.arguments, code.file_and_options);
+        }
+        methods.push_back(std::move(method));
+    }
+    finish(asset, std::move(methods),
+           {CostKind::bytes, invisible_degrees, "the rounding of the file itself"}, options);
+    return asset;
+}
+
+namespace {
+
+constexpr std::size_t max_bake_texels = std::size_t{1} << 16;
+
+std::string samples_name(const BakeWay& way) {
+    return way.sample_degrees ? fmt::format("auto {:g}", *way.sample_degrees)
+                              : fmt::format("{}", way.samples);
+}
+
+AssetMethod method_of(const BakeWay& way, const NormalMapFormat& format, int size,
+                      const OwnOptions& options) {
+    const bool is_dithered = format.dither != Dither::none;
+    const std::string depth = fmt::format("{} bit", format.bits);
+    AssetMethod method;
+    method.measured.name = fmt::format("{} {}, {}{}", samples_name(way),
+                                       samples_name(way) == "1" ? "sample" : "samples", depth,
+                                       is_dithered ? ", dithered" : "");
+    method.measured.choices = {{"samples", samples_name(way)},
+                               {"depth", depth},
+                               {"dither", is_dithered ? "blue-noise" : "none"}};
+    method.measured.stored_bytes = 3.0 * format.bits / 8.0;
+    method.command = fmt::format(
+        "relief-bake mesh {} OUT.{} --size {} --samples {}{}{}{}", options.arguments,
+        format.bits == 32 ? "exr" : "png", size, way.sample_degrees ? "auto" : samples_name(way),
+        way.sample_degrees ? fmt::format(" --sample-angle {:g}", *way.sample_degrees) : "",
+        format.bits == 32 ? "" : fmt::format(" --bits {}", format.bits),
+        is_dithered ? " --dither blue-noise" : "");
+    return method;
+}
+
+}  // namespace
+
+OwnExperiment measure_own_bake(const Baker& baker, int size, const OwnOptions& options) {
+    OwnExperiment asset = asset_experiment(Subject::bake, "bake", "Baked normals", options);
+    BakeMapOptions map;
+    map.width = size;
+    map.height = size;
+    const BakeTrials trials(baker, map, max_bake_texels);
+    const std::span<const BakeWay> ways = usual_bake_ways();
+    const std::vector<NormalMapFormat> formats = usual_map_formats({});
+    const Repeats repeats{options.run.is_timed ? options.run.repeats.counted : 1, 0};
+    const std::vector<TimedBakeTrial> trial_results =
+        measured_in_turns(trials, ways, formats, repeats);
+    Experiment& experiment = asset.experiment;
+    experiment.question = "How many samples and bits does a map of these meshes need?";
+    experiment.truth = fmt::format(
+        "The mean of {} samples a texel of the high mesh's normals, in the low mesh's tangent "
+        "space: what a map of this size can show at best. It says nothing of what a larger map "
+        "would show, nor whether the rays find the right surface.",
+        trials.reference_samples());
+    experiment.input =
+        fmt::format("{} x {} texels{}; {} triangles of the low mesh", size, size,
+                    trials.is_whole() ? "" : fmt::format(", {} of them", trials.texels()),
+                    baker.low().triangles.size());
+    experiment.item = "texel";
+    experiment.items = static_cast<double>(trials.texels());
+    std::vector<AssetMethod> methods;
+    for (std::size_t way = 0; way < ways.size(); ++way) {
+        for (std::size_t f = 0; f < formats.size(); ++f) {
+            methods.push_back(method_of(ways[way], formats[f], size, options));
+            methods.back().measured.error = figures_of(trial_results[way].trial.errors[f]);
+            if (options.run.is_timed)
+                methods.back().known_time = Timing{trial_results[way].seconds[f]};
+        }
+    }
+    finish(asset, std::move(methods), {CostKind::time, invisible_degrees}, options);
+    return asset;
+}
+
+}  // namespace relief

@@ -1,0 +1,514 @@
+// SPDX-License-Identifier: Apache-2.0
+// Measures normals, tangents and stored frames on a user's mesh. No formula of the surface is
+// known: the ground truth is a fitted surface, the file's own normals, or the direction of the
+// texture.
+#include "asset_report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/trigonometric.hpp>
+#include <numbers>
+#include <optional>
+
+#include "normals_experiments.h"
+#include "relief/accuracy/own.h"
+#include "relief/mesh/angle_distribution.h"
+#include "relief/mesh/direction_error.h"
+#include "relief/mesh/error.h"
+#include "relief/mesh/fitted_normals.h"
+#include "relief/mesh/frame_encoding.h"
+#include "relief/mesh/frames.h"
+#include "relief/mesh/stored_creases.h"
+#include "report_names.h"
+#include "storage_experiments.h"
+#include "tangent_methods.h"
+
+namespace relief {
+namespace {
+
+/// A smaller crease angle means that the mesh is stored as facets; it says nothing about its edges.
+constexpr double min_degrees_of_normals = 15.0;
+
+CreaseRule by_angle(double degrees, const std::string& why) {
+    CreaseRule creases;
+    creases.edges.crease_angle = glm::radians(degrees);
+    creases.words = fmt::format("edges sharper than {:g} degrees are hard{}", degrees, why);
+    creases.option = fmt::format(" --crease {:g}", degrees);
+    return creases;
+}
+
+CreaseRule by_normals(const Mesh& mesh) {
+    CreaseRule none;
+    none.words = "no edge is hard";
+    const StoredCreases stored = stored_creases(mesh);
+    if (stored.hard == 0) return none;
+    const double degrees = std::round(glm::degrees(stored.crease_angle));
+    if (degrees < min_degrees_of_normals) {
+        none.words += " (its own normals are those of facets, which says nothing)";
+        return none;
+    }
+    return by_angle(degrees, fmt::format(", which tells {:.3g}% of the edges as its own normals do",
+                                         100.0 * (1.0 - static_cast<double>(stored.misjudged) /
+                                                            static_cast<double>(stored.edges))));
+}
+
+}  // namespace
+
+CreaseRule crease_rule(const Mesh& mesh, const std::optional<double>& crease_angle) {
+    CreaseRule none;
+    none.words = "no edge is hard";
+    if (crease_angle) {
+        const bool has_any = *crease_angle < std::numbers::pi;
+        // A given angle overrides the smoothing groups of the file.
+        const std::string option =
+            mesh.smoothing_groups.empty() ? "" : " --ignore-smoothing-groups";
+        CreaseRule creases = has_any ? by_angle(glm::degrees(*crease_angle), "") : none;
+        creases.option += option;
+        return creases;
+    }
+    if (std::any_of(mesh.smoothing_groups.begin(), mesh.smoothing_groups.end(),
+                    [](std::uint32_t group) { return group != 0; })) {
+        CreaseRule groups;
+        groups.edges.smoothing_groups = mesh.smoothing_groups;
+        groups.words = "edges between the file's smoothing groups are hard";
+        return groups;
+    }
+    return mesh.normals.empty() ? none : by_normals(mesh);
+}
+
+namespace {
+
+/// Normals that the methods are compared with.
+struct CornerGroundTruth {
+    std::vector<std::uint32_t> corners;
+    std::vector<glm::dvec3> normals;
+    std::optional<double> expected_error{};  ///< Of the normals, in degrees, if they are estimates.
+    std::string words;
+    double unjudged = 0.0;  ///< Share of the examined corners without a known normal.
+    bool is_enough = true;  ///< Whether there are enough normals for a recommendation.
+};
+
+CornerGroundTruth by_surface(const Mesh& mesh, const CreaseRule& creases) {
+    FitOptions fit;
+    fit.hard_edges = creases.edges;
+    FittedNormals fitted = fitted_normals(mesh, fit);
+    CornerGroundTruth ground_truth;
+    ground_truth.words = fmt::format(
+        "A smooth surface fitted through the vertices (degree 4, three rings of triangles; {}). "
+        "Known at {} of {} places looked at; at the others there are too few neighbours, or no "
+        "smooth surface. Where it is known, it has an expected error of {:.2g} degrees itself. It "
+        "takes the vertices for points of the surface, and cannot judge models whose vertices are "
+        "not.",
+        creases.words, fitted.corners.size(), fitted.places, fitted.own_degrees);
+    constexpr std::size_t fewest = 16;
+    ground_truth.is_enough = fitted.corners.size() >= std::max(fewest, fitted.places / 10);
+    ground_truth.expected_error = fitted.own_degrees;
+    if (fitted.places > 0) {
+        ground_truth.unjudged =
+            1.0 - static_cast<double>(fitted.corners.size()) / static_cast<double>(fitted.places);
+    }
+    ground_truth.corners = std::move(fitted.corners);
+    ground_truth.normals = std::move(fitted.normals);
+    return ground_truth;
+}
+
+/// The file's normal of each vertex that a triangle uses, at its first corner.
+CornerGroundTruth by_file(const Mesh& mesh, const CreaseRule& creases) {
+    if (mesh.normals.empty()) throw InvalidInput("the mesh has no normals to compare with");
+    CornerGroundTruth ground_truth;
+    ground_truth.words = fmt::format(
+        "The normals that the file holds ({}). They tell which method comes nearest to whatever "
+        "made them, not which is nearest to a surface.",
+        creases.words);
+    std::vector<unsigned char> is_seen(mesh.positions.size(), 0);
+    for (std::uint32_t corner = 0; corner < 3 * mesh.triangles.size(); ++corner) {
+        const std::uint32_t vertex = mesh.triangles[corner / 3][static_cast<int>(corner % 3)];
+        if (is_seen[vertex]++ > 0) continue;
+        ground_truth.corners.push_back(corner);
+        ground_truth.normals.emplace_back(mesh.normals[vertex]);
+        is_seen[vertex] = 1;
+    }
+    return ground_truth;
+}
+
+/// \param normals  one per corner, or one per vertex
+ErrorFigures errors_of(const std::vector<glm::vec3>& normals, bool are_by_corner, const Mesh& mesh,
+                       const CornerGroundTruth& ground_truth) {
+    std::vector<float> degrees;
+    for (std::size_t i = 0; i < ground_truth.corners.size(); ++i) {
+        const std::uint32_t corner = ground_truth.corners[i];
+        const glm::vec3& actual =
+            are_by_corner ? normals[corner]
+                          : normals[mesh.triangles[corner / 3][static_cast<int>(corner % 3)]];
+        degrees.push_back(
+            static_cast<float>(degrees_between(glm::dvec3(actual), ground_truth.normals[i])));
+    }
+    return figures_of(angle_distribution(std::move(degrees)));
+}
+
+std::vector<glm::vec3> with_creases(const NormalMethod& method, const Mesh& mesh,
+                                    const CreaseRule& creases) {
+    Report report;
+    NormalOptions how;
+    how.arithmetic = method.arithmetic;
+    return corner_normals(mesh.positions, mesh.triangles, method.weight, how, creases.edges, report)
+        .normals;
+}
+
+std::vector<AssetMethod> methods_on(const Mesh& mesh, const CreaseRule& creases,
+                                    const CornerGroundTruth& ground_truth,
+                                    const OwnOptions& options) {
+    std::vector<AssetMethod> methods;
+    // Only double: relief-mesh has no option for another arithmetic.
+    for (const NormalMethod& method : normal_methods(std::array{Arithmetic::float64})) {
+        const auto normals = [method, &mesh, &creases] {
+            return creases.has_any() ? with_creases(method, mesh, creases) : method.normals(mesh);
+        };
+        AssetMethod asset;
+        asset.measured = {.name = std::string(method.weighting),
+                          .choices = {{"weighting", std::string(method.weighting)}},
+                          .error = errors_of(normals(), creases.has_any(), mesh, ground_truth),
+                          .work = [normals] { normals(); }};
+        asset.command = fmt::format("relief-mesh process {} -o OUT.glb --normals {}{}",
+                                    options.arguments, method.weighting, creases.option);
+        methods.push_back(std::move(asset));
+    }
+    return methods;
+}
+
+/// Names the methods that the reference cannot distinguish from the recommended one, and the share
+/// of vertices at which no method could be judged.
+void add_caveats(OwnExperiment& asset, const CornerGroundTruth& ground_truth,
+                 const CreaseRule& creases) {
+    if (!asset.recommendation.method) return;
+    std::string& words = asset.recommendation.words;
+    const std::size_t taken = *asset.recommendation.method;
+    const std::vector<Measurement>& all = asset.experiment.measurements;
+    std::vector<std::string> alike;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        const double difference = std::abs(all[i].error.rms - all[taken].error.rms);
+        if (i != taken && !asset.commands[i].empty() &&
+            difference < ground_truth.expected_error.value_or(0.0))
+            alike.push_back(all[i].method);
+    }
+    if (!alike.empty()) {
+        words += fmt::format(
+            "; not told apart from {}, whose errors differ from it by less than the {:.2g} degrees "
+            "of the fitted surface itself",
+            fmt::join(alike, ", "), *ground_truth.expected_error);
+    }
+    constexpr double min_share_reported = 0.05;
+    if (ground_truth.unjudged < min_share_reported) return;
+    words += fmt::format(
+        "; {:.0f} % of the vertices are not judged, as no smooth surface goes "
+        "through them",
+        100.0 * ground_truth.unjudged);
+    if (!creases.has_any()) words += " (if the mesh has hard edges, try --crease 40)";
+}
+
+/// Compares all weightings.
+/// \param whole  describes the selection of triangles: ", eight runs of the mesh's 3000000"
+OwnExperiment measure_normals(const Mesh& mesh, const std::string& whole,
+                              const OwnMeshOptions& mesh_options, const OwnOptions& options) {
+    OwnExperiment asset = asset_experiment(Subject::normals, "normals", "Normals", options);
+    const CreaseRule creases = crease_rule(mesh, mesh_options.crease_angle);
+    const bool is_file = mesh_options.truth == NormalTruth::file;
+    const CornerGroundTruth ground_truth =
+        is_file ? by_file(mesh, creases) : by_surface(mesh, creases);
+    Experiment& experiment = asset.experiment;
+    experiment.question = is_file ? "Which weighting comes nearest to the normals of this file?"
+                                  : "Which weighting is closest to the normals of the surface that "
+                                    "this mesh stands for, and what does it cost?";
+    experiment.truth = ground_truth.words;
+    experiment.input = fmt::format("{} triangles{}", mesh.triangles.size(), whole);
+    experiment.item = "triangle";
+    experiment.items = static_cast<double>(mesh.triangles.size());
+    std::vector<AssetMethod> methods = methods_on(mesh, creases, ground_truth, options);
+    if (!is_file && !mesh.normals.empty()) {
+        methods.push_back({{.name = "the file's own",
+                            .choices = {{"weighting", "file"}},
+                            .error = errors_of(mesh.normals, false, mesh, ground_truth),
+                            .note = "as they are stored; no time"},
+                           {}});
+    }
+    if (!ground_truth.is_enough) {
+        for (AssetMethod& method : methods)
+            method.command.clear();
+    }
+    experiment.reference_error = ground_truth.expected_error;
+    finish(asset, std::move(methods), {.reference = "the fitted surface itself"}, options);
+    if (ground_truth.is_enough) {
+        add_caveats(asset, ground_truth, creases);
+    } else {
+        asset.recommendation.words =
+            "no recommendation: the mesh is too coarse, or too rough, for a smooth surface to be "
+            "fitted through it; its own normals can be the measure (--truth file)";
+    }
+    set_finding(asset);
+    return asset;
+}
+
+constexpr std::size_t max_sampled_triangles = 50'000;
+constexpr std::size_t max_frames = 100'000;
+
+bool is_finite(const glm::dmat3& basis) {
+    return std::isfinite(basis[0].x + basis[0].y + basis[0].z + basis[1].x + basis[2].x);
+}
+
+/// Points in triangles whose texture has a direction, with the derived basis there.
+struct SamplePoints {
+    std::vector<Sample> samples;
+    std::vector<glm::dmat3> derived;
+    std::size_t triangles = 0;
+    std::size_t left_out = 0;
+};
+
+SamplePoints sample_points(const Mesh& mesh) {
+    SamplePoints points;
+    const std::size_t count = mesh.triangles.size();
+    points.triangles = std::min(count, max_sampled_triangles);
+    for (std::size_t i = 0; i < points.triangles; ++i) {
+        const auto triangle = static_cast<std::uint32_t>(i * count / points.triangles);
+        for (int corner = -1; corner < 3; ++corner) {
+            Sample sample{triangle};
+            if (corner >= 0) {
+                sample.barycentric = glm::dvec3(1.0 / 6.0);
+                sample.barycentric[corner] = 2.0 / 3.0;
+            }
+            const glm::dmat3 derived = basis_at(mesh, {}, ShaderBasis::derived, sample);
+            if (!is_finite(derived)) {
+                if (corner < 0) ++points.left_out;
+                break;
+            }
+            points.samples.push_back(sample);
+            points.derived.push_back(derived);
+        }
+    }
+    return points;
+}
+
+/// A basis, and how to compute it.
+struct Basis {
+    std::string name;
+    CornerTangents tangents;
+    ShaderBasis shader = ShaderBasis::as_interpolated;
+    std::function<void()> work{};
+    std::string command{};
+    bool is_convention = false;  ///< The basis that bakers and renderers agree on.
+};
+
+std::vector<Basis> bases_of(const Mesh& mesh, const std::vector<glm::vec4>& stored,
+                            const OwnOptions& options) {
+    std::vector<Basis> bases;
+    for (const TangentMethod& method : tangent_methods()) {
+        Basis basis{method.name, method.tangents_of(mesh), method.basis};
+        if (method.tangents) {
+            basis.work = [method, &mesh] { method.tangents(mesh); };
+            basis.command = fmt::format("relief-mesh process {} -o OUT.glb --tangents {}",
+                                        options.arguments, method.name);
+        }
+        basis.is_convention = bases.empty();
+        bases.push_back(std::move(basis));
+    }
+    if (stored.empty()) return bases;
+    Basis file_basis{"the file's own", {}};
+    for (const glm::uvec3& triangle : mesh.triangles) {
+        for (int corner = 0; corner < 3; ++corner)
+            file_basis.tangents.push_back(stored[triangle[corner]]);
+    }
+    bases.push_back(std::move(file_basis));
+    return bases;
+}
+
+AssetMethod method_of(const Basis& basis, std::vector<float> degrees) {
+    AssetMethod method;
+    method.measured = {.name = basis.name,
+                       .choices = {{"basis", basis.name}},
+                       .error = figures_of(angle_distribution(std::move(degrees))),
+                       .work = basis.work,
+                       .note = basis.work ? "" : "no time of its own"};
+    method.command = basis.command;
+    return method;
+}
+
+void describe(Experiment& experiment, const Mesh& mesh, const SamplePoints& points,
+              const std::string& whole) {
+    experiment.input =
+        fmt::format("{} triangles{}; four points in {} of them", mesh.triangles.size(), whole,
+                    points.triangles - points.left_out);
+    if (points.left_out > 0)
+        experiment.input += fmt::format(" ({} have no direction in the image)", points.left_out);
+    experiment.item = "triangle";
+    experiment.items = static_cast<double>(mesh.triangles.size());
+}
+
+/// The angles between tangents and the direction of growing u on each triangle.
+OwnExperiment from_gradients(const Mesh& mesh, const std::vector<Basis>& bases,
+                             const SamplePoints& points, const std::string& whole,
+                             const OwnOptions& options) {
+    OwnExperiment asset = asset_experiment(Subject::tangents, "tangents", "Tangents", options);
+    Experiment& experiment = asset.experiment;
+    experiment.question = "How far do averaged tangents turn from where the image runs?";
+    experiment.truth =
+        "Where u grows on each triangle, by its own texture coordinates, in the plane of the "
+        "interpolated normal. It tells what averaging does to the frame, not which basis a normal "
+        "map was baked in: that one must be taken, whatever it errs here.";
+    describe(experiment, mesh, points, whole);
+    std::vector<AssetMethod> methods;
+    for (const Basis& basis : bases) {
+        if (basis.shader == ShaderBasis::derived) continue;  // It is the ground truth.
+        std::vector<float> degrees;
+        for (std::size_t i = 0; i < points.samples.size(); ++i) {
+            const glm::dmat3 actual =
+                basis_at(mesh, basis.tangents, basis.shader, points.samples[i]);
+            degrees.push_back(static_cast<float>(degrees_between(actual[0], points.derived[i][0])));
+        }
+        methods.push_back(method_of(basis, std::move(degrees)));
+        // A better average is no reason to leave the basis that bakers and renderers agree on.
+        if (!basis.is_convention) methods.back().command.clear();
+    }
+    finish(asset, std::move(methods), {}, options);
+    if (asset.recommendation.method) {
+        const Measurement& taken = experiment.measurements[*asset.recommendation.method];
+        asset.recommendation.words = fmt::format(
+            "mikktspace: {:.3g} degrees RMS; bakers and renderers agree on it, and no "
+            "other average is worth a seam",
+            taken.error.rms);
+        set_finding(asset);
+    }
+    return asset;
+}
+
+/// The errors of maps that were baked for MikkTSpace and are read in another basis.
+OwnExperiment from_mikktspace(const Mesh& mesh, const std::vector<Basis>& bases,
+                              const SamplePoints& points, const std::string& whole,
+                              const OwnOptions& options) {
+    OwnExperiment asset =
+        asset_experiment(Subject::tangents, "tangent-basis", "Tangent basis", options);
+    Experiment& experiment = asset.experiment;
+    experiment.question = "What does a normal map baked for MikkTSpace show in another basis?";
+    experiment.truth =
+        "The normals that texels tilted by 30 degrees stand for in MikkTSpace's frames, which is "
+        "what most bakers write. A map baked in another basis is right in that one instead.";
+    describe(experiment, mesh, points, whole);
+    const Basis& convention = bases.front();
+    std::vector<AssetMethod> methods;
+    for (const Basis& basis : bases) {
+        std::vector<float> degrees;
+        for (const Sample& sample : points.samples) {
+            const glm::dmat3 expected =
+                basis_at(mesh, convention.tangents, convention.shader, sample);
+            const glm::dmat3 actual = basis_at(mesh, basis.tangents, basis.shader, sample);
+            for (const glm::dvec3& texel : tilted_texels)
+                degrees.push_back(
+                    static_cast<float>(degrees_between(actual * texel, expected * texel)));
+        }
+        methods.push_back(method_of(basis, std::move(degrees)));
+    }
+    finish(asset, std::move(methods), {}, options);
+    const Measurement* nearest = nullptr;
+    for (std::size_t i = 0; i < bases.size(); ++i) {
+        const Measurement& one = experiment.measurements[i];
+        if (bases[i].is_convention || one.error.undefined > 0) continue;
+        if (nearest == nullptr || one.error.rms < nearest->error.rms) nearest = &one;
+    }
+    if (asset.recommendation.method && nearest != nullptr) {
+        asset.recommendation.words = fmt::format(
+            "mikktspace for a map that was baked so; {} shows it {:.2g} degrees off, "
+            "{:.2g} at most",
+            nearest->method, nearest->error.rms, nearest->error.max);
+        set_finding(asset);
+    }
+    return asset;
+}
+
+/// Evenly spread frames of the mesh.
+SampleFrames frames_of(const Mesh& mesh, const CornerTangents& tangents) {
+    std::vector<glm::dvec3> normals;
+    std::vector<glm::dvec3> along_u;
+    const std::size_t count = std::min(tangents.size(), max_frames);
+    for (std::size_t i = 0; i < count; ++i) {
+        const std::size_t corner = i * tangents.size() / count;
+        const std::uint32_t vertex = mesh.triangles[corner / 3][static_cast<int>(corner % 3)];
+        const glm::dvec3 normal = glm::normalize(glm::dvec3(mesh.normals[vertex]));
+        const glm::dvec3 tangent(tangents[corner]);
+        const glm::dvec3 flat = glm::normalize(tangent - normal * glm::dot(normal, tangent));
+        if (!std::isfinite(flat.x + flat.y + flat.z)) continue;
+        normals.push_back(normal);
+        along_u.push_back(flat);
+    }
+    return sample_frames(normals, along_u);
+}
+
+OwnExperiment stored_frames(const Mesh& mesh, const CornerTangents& tangents,
+                            const OwnOptions& options) {
+    OwnExperiment asset =
+        asset_experiment(Subject::storage, "frames", "Frames in few bytes", options);
+    const SampleFrames frames = frames_of(mesh, tangents);
+    Experiment& experiment = asset.experiment;
+    experiment.question = "How many bytes do this mesh's tangent frames need?";
+    experiment.truth =
+        "The mesh's normals and MikkTSpace's tangents in double, right- and left-handed by turns.";
+    experiment.input = fmt::format("{} frames", frames.normals.size());
+    experiment.item = "frame";
+    experiment.items = static_cast<double>(frames.normals.size());
+    std::vector<AssetMethod> methods;
+    for (const FrameCode& code : all_frame_codes()) {
+        AssetMethod method{code.measured(frames)};
+        method.measured.work = [&frames, code] {
+            Report report;
+            encode_frames(frames.float_normals, frames.float_tangents, code.encoding, code.rounding,
+                          report);
+        };
+        method.command = fmt::format(
+            "encode_frames(normals, tangents, FrameEncoding::{}, FrameRounding::{}, report)",
+            word_of(code.encoding), code.rounding_name());
+        methods.push_back(std::move(method));
+    }
+    finish(asset, std::move(methods), {CostKind::bytes, invisible_degrees}, options);
+    return asset;
+}
+
+/// Compares tangent methods and the storage of their frames. A mesh without normals gets averaged
+/// ones.
+/// \param mesh  has texture coordinates
+std::vector<OwnExperiment> measure_tangents(Mesh mesh, const std::string& whole,
+                                            const OwnOptions& options) {
+    const std::vector<glm::vec4> stored = mesh.tangents;
+    FrameOptions frames;
+    frames.repair = true;
+    frames.tangents = TangentMode::none;
+    Report report;
+    mesh = with_frames(std::move(mesh), frames, report).mesh;
+    const std::vector<Basis> bases = bases_of(mesh, stored, options);
+    const SamplePoints points = sample_points(mesh);
+    std::vector<OwnExperiment> all;
+    all.push_back(from_gradients(mesh, bases, points, whole, options));
+    all.push_back(from_mikktspace(mesh, bases, points, whole, options));
+    all.push_back(stored_frames(mesh, bases.front().tangents, options));
+    return all;
+}
+
+}  // namespace
+
+std::vector<OwnExperiment> measure_own_mesh(const Mesh& mesh, const OwnMeshOptions& mesh_options,
+                                            const OwnOptions& options) {
+    validate(mesh);
+    if (mesh.triangles.empty()) throw InvalidInput("the mesh has no triangle to measure on");
+    const Mesh part = part_to_measure(mesh, mesh_options.most_triangles);
+    const std::string whole =
+        part.triangles.size() == mesh.triangles.size()
+            ? ""
+            : fmt::format(", eight runs of the mesh's {}", mesh.triangles.size());
+    std::vector<OwnExperiment> all;
+    all.push_back(measure_normals(part, whole, mesh_options, options));
+    if (!mesh.texcoords.empty()) {
+        for (OwnExperiment& one : measure_tangents(part, whole, options))
+            all.push_back(std::move(one));
+    }
+    return all;
+}
+
+}  // namespace relief

@@ -1,0 +1,274 @@
+// SPDX-License-Identifier: Apache-2.0
+// Begins and finishes experiments on a user's files, and recommends one of their methods: the one
+// of least cost, of least error, or the knee of the Pareto frontier.
+#include "asset_report.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <tuple>
+#include <vector>
+
+#include "experiment_driver.h"
+#include "progress_stage.h"
+#include "relief/accuracy/recommend.h"
+#include "relief/accuracy/words.h"
+#include "relief/mesh/frontier.h"
+#include "relief/mesh/mesh_part.h"
+
+namespace relief {
+namespace {
+
+/// A method that may be recommended.
+struct Candidate {
+    std::size_t index = 0;
+    double error = 0.0;    ///< RMS error of the method alone.
+    double bounded = 0.0;  ///< The error that a limit applies to; includes that of the reference.
+    double cost = 0.0;     ///< Seconds or bytes; 0 for all methods if none was measured.
+    double bytes = 0.0;    ///< Stored bytes.
+    double natural = 0.0;  ///< RecommendationRule::natural_costs.
+};
+
+double cost_of(const Measurement& measurement, CostKind kind) {
+    return kind == CostKind::bytes ? measurement.cost.stored_bytes : median_seconds(measurement);
+}
+
+std::vector<Candidate> candidates_of(const Experiment& experiment, const RecommendationRule& rule) {
+    std::vector<Candidate> all;
+    const double reference = experiment.reference_error.value_or(0.0);
+    bool is_measured = false;
+    for (std::size_t i = 0; i < experiment.measurements.size(); ++i) {
+        const Measurement& one = experiment.measurements[i];
+        if (!rule.choosable.empty() && rule.choosable[i] == 0) continue;
+        if (one.error.undefined > 0 || one.error.count == 0 || !std::isfinite(one.error.rms))
+            continue;
+        all.push_back({i, one.error.rms, std::hypot(reference, one.error.*(rule.wish.figure)),
+                       cost_of(one, rule.cost), one.cost.stored_bytes,
+                       rule.natural_costs.empty() ? 0.0 : rule.natural_costs[i]});
+        is_measured = is_measured || std::isfinite(all.back().cost);
+    }
+    if (is_measured) {
+        std::erase_if(all, [](const Candidate& one) { return !std::isfinite(one.cost); });
+    } else {
+        for (Candidate& one : all)
+            one.cost = 0.0;
+    }
+    return all;
+}
+
+/// The first candidate in the order `less`, or nullptr.
+template <typename Less>
+const Candidate* first_of(const std::vector<Candidate>& all, const Less& less) {
+    const Candidate* best = nullptr;
+    for (const Candidate& one : all) {
+        if (best == nullptr || less(one, *best)) best = &one;
+    }
+    return best;
+}
+
+template <typename Less>
+const Candidate* first_of(const std::vector<Candidate>&& all, const Less& less) = delete;
+
+bool is_more_accurate(const Candidate& a, const Candidate& b) {
+    return a.error != b.error ? a.error < b.error : a.cost < b.cost;
+}
+bool is_cheaper(const Candidate& a, const Candidate& b) {
+    return std::tie(a.cost, a.bytes, a.natural, a.error) <
+           std::tie(b.cost, b.bytes, b.natural, b.error);
+}
+
+/// Times within this factor count as equal, because measured times are hardly more exact.
+constexpr double equal_cost_factor = 1.1;
+
+const Candidate* knee_of(const std::vector<Candidate>& all, double floor) {
+    const auto product = [&](const Candidate& one) {
+        return std::pow(std::hypot(one.error, floor), 3.0) * one.cost;
+    };
+    // If nothing was timed, all products are 0 and the error decides.
+    const auto is_better = [&](const Candidate& a, const Candidate& b) {
+        return product(a) != product(b) ? product(a) < product(b) : is_more_accurate(a, b);
+    };
+    const Candidate* best = first_of(all, is_better);
+    if (best == nullptr || best->cost == 0.0) return best;
+    const Candidate* taken = best;
+    for (const Candidate& one : all) {
+        if (one.bytes < taken->bytes && product(one) <= equal_cost_factor * product(*best))
+            taken = &one;
+    }
+    return taken;
+}
+
+std::vector<Candidate> kept_of(std::vector<Candidate> all, const Wish& wish, CostKind kind) {
+    std::erase_if(all, [&](const Candidate& one) {
+        return (wish.max_error && !(one.bounded <= *wish.max_error)) ||
+               (kind == CostKind::time && wish.max_seconds && !(one.cost <= *wish.max_seconds));
+    });
+    return all;
+}
+
+const Candidate* taken_of(const Experiment& experiment, const std::vector<Candidate>& kept,
+                          const RecommendationRule& rule) {
+    if (rule.wish.max_error) return first_of(kept, is_cheaper);
+    if (rule.wish.max_seconds && rule.cost == CostKind::time)
+        return first_of(kept, is_more_accurate);
+    return knee_of(kept, std::hypot(experiment.reference_error.value_or(0.0), rule.unseen_error));
+}
+
+/// The least accurate of the efficient candidates that are more accurate than `taken`.
+const Candidate* next_more_accurate(const std::vector<Candidate>& all, const Candidate& taken) {
+    std::vector<Price> prices;
+    for (const Candidate& one : all)
+        prices.push_back({one.error, one.cost});
+    const std::vector<bool> marks = efficient(prices);
+    const Candidate* next = nullptr;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        if (!marks[i] || !(all[i].error < taken.error)) continue;
+        if (next == nullptr || all[i].error > next->error) next = &all[i];
+    }
+    return next;
+}
+
+std::string cost_text(double cost, CostKind kind) {
+    return kind == CostKind::bytes ? fmt::format("{:g} bytes", cost) : seconds_in_words(cost);
+}
+
+std::string recommendation_text(const Experiment& experiment, const RecommendationRule& rule,
+                                const Candidate& taken, const Candidate* next) {
+    const auto& all = experiment.measurements;
+    const std::string& unit = experiment.error_unit;
+    std::string text = all[taken.index].method + ": ";
+    if (experiment.reference_error) {
+        text += fmt::format("{:.3g} {} RMS expected ({} {:.3g}, this method adds {:.3g})",
+                            std::hypot(*experiment.reference_error, taken.error), unit,
+                            rule.reference, *experiment.reference_error, taken.error);
+    } else {
+        text += fmt::format("{:.3g} {} RMS", taken.error, unit);
+    }
+    if (taken.cost > 0.0) text += " at " + cost_text(taken.cost, rule.cost);
+    if (next == nullptr) return text + "; no other method is more accurate";
+    const double less = taken.error - next->error;
+    const std::string gain = fmt::format("{:.2g} {} less", less, unit);
+    const std::string& name = all[next->index].method;
+    if (!(taken.cost > 0.0))
+        return text + fmt::format("; the next more accurate ({}): {}", name, gain);
+    const double times = next->cost / taken.cost;
+    const std::string price = rule.cost == CostKind::bytes
+                                  ? fmt::format("takes {}", cost_text(next->cost, rule.cost))
+                              : times < 1.05 ? std::string("takes about as long")
+                                             : fmt::format("takes {:.2g} times as long", times);
+    return text + fmt::format("; the next more accurate ({}) {} for {}", name, price, gain);
+}
+
+std::string refusal_text(const Experiment& experiment, const RecommendationRule& rule,
+                         const std::vector<Candidate>& all) {
+    if (all.empty()) return "nothing could be measured";
+    const Wish& wish = rule.wish;
+    const auto name = [&](const Candidate& one) {
+        return experiment.measurements[one.index].method;
+    };
+    if (wish.max_error) {
+        const Candidate* least = first_of(
+            all, [](const Candidate& a, const Candidate& b) { return a.bounded < b.bounded; });
+        if (!(least->bounded <= *wish.max_error)) {
+            std::string text =
+                fmt::format("no method is within {:g} {}: the least is {:.3g}, with {}",
+                            *wish.max_error, experiment.error_unit, least->bounded, name(*least));
+            if (experiment.reference_error && *experiment.reference_error > 0.0)
+                text += fmt::format(" ({} {:.3g})", rule.reference, *experiment.reference_error);
+            return text;
+        }
+        Wish error_alone = wish;
+        error_alone.max_seconds.reset();
+        const std::vector<Candidate> accurate_enough = kept_of(all, error_alone, rule.cost);
+        const Candidate* cheapest = first_of(accurate_enough, is_cheaper);
+        return fmt::format("no method is within {:g} {} and {}: that error takes {}, with {}",
+                           *wish.max_error, experiment.error_unit,
+                           seconds_in_words(*wish.max_seconds), seconds_in_words(cheapest->cost),
+                           name(*cheapest));
+    }
+    const Candidate* cheapest = first_of(all, is_cheaper);
+    return fmt::format("no method is within {}: the fastest takes {}, with {}",
+                       seconds_in_words(*wish.max_seconds), seconds_in_words(cheapest->cost),
+                       name(*cheapest));
+}
+
+}  // namespace
+
+Recommendation recommended(const Experiment& experiment, const RecommendationRule& rule) {
+    const std::vector<Candidate> all = candidates_of(experiment, rule);
+    const std::vector<Candidate> kept = kept_of(all, rule.wish, rule.cost);
+    Recommendation result;
+    const Candidate* taken = taken_of(experiment, kept, rule);
+    if (taken == nullptr) {
+        result.words = refusal_text(experiment, rule, all);
+        return result;
+    }
+    const Candidate* next = next_more_accurate(all, *taken);
+    result.method = taken->index;
+    if (next != nullptr) result.next = next->index;
+    result.words = recommendation_text(experiment, rule, *taken, next);
+    return result;
+}
+
+OwnExperiment asset_experiment(Subject subject, const std::string& topic, const std::string& title,
+                               const OwnOptions& options) {
+    check_cancelled();
+    OwnExperiment asset;
+    Experiment& experiment = asset.experiment;
+    experiment.id = "own/" + (options.file.empty() ? topic : options.file + "/" + topic);
+    experiment.subject = subject;
+    experiment.title = options.file.empty() ? title : fmt::format("{} of {}", title, options.file);
+    experiment.error_unit = "degrees";
+    experiment.command = options.command;
+    if (options.run.tell) options.run.tell(experiment.title, 0, 1);
+    return asset;
+}
+
+void set_finding(OwnExperiment& asset) {
+    asset.experiment.finding = asset.recommendation.words + ".";
+    if (!asset.command().empty()) asset.experiment.finding += " To do it: " + asset.command();
+}
+
+void finish(OwnExperiment& asset, std::vector<AssetMethod> methods, const AssetRule& rule,
+            const OwnOptions& options) {
+    const ProgressStage stage("measuring");
+    std::vector<MeasuredMethod> measured;
+    std::vector<unsigned char> choosable;
+    std::vector<double> natural_costs;
+    for (AssetMethod& method : methods) {
+        measured.push_back(std::move(method.measured));
+        choosable.push_back(method.command.empty() ? 0 : 1);
+        natural_costs.push_back(method.natural_cost);
+        asset.commands.push_back(std::move(method.command));
+    }
+    measure_methods(measured, options.run, options.costs, asset.experiment);
+    for (std::size_t i = 0; i < methods.size(); ++i) {
+        Measurement& one = asset.experiment.measurements[i];
+        if (methods[i].known_time) one.cost.all_threads = methods[i].known_time;
+        if (asset.experiment.reference_error && one.error.count > 0)
+            one.expected = ExpectedError{*asset.experiment.reference_error, one.error.rms};
+    }
+    mark_efficient(asset.experiment);
+    asset.recommendation = recommended(
+        asset.experiment,
+        {options.wish, rule.cost, rule.unseen_error, choosable, natural_costs, rule.reference});
+    set_finding(asset);
+}
+
+Mesh part_to_measure(const Mesh& mesh, std::size_t max_triangles) {
+    const std::size_t count = mesh.triangles.size();
+    if (count <= max_triangles) return mesh;
+    constexpr std::size_t runs = 8;
+    const std::size_t length = std::max<std::size_t>(max_triangles / runs, 1);
+    std::vector<std::uint32_t> triangles;
+    for (std::size_t run = 0; run < runs; ++run) {
+        const std::size_t first = run * (count - length) / (runs - 1);
+        for (std::size_t t = first; t < first + length; ++t)
+            triangles.push_back(static_cast<std::uint32_t>(t));
+    }
+    return part_of(mesh, triangles);
+}
+
+}  // namespace relief

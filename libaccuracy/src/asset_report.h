@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// The common parts of all experiments on a user's files: the selection of triangles, the rule for
+/// hard edges, and the recommendation at the end.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "experiment_driver.h"
+#include "relief/accuracy/own.h"
+#include "relief/mesh/normals.h"
+
+namespace relief {
+
+/// A smaller error is invisible, and not worth a byte.
+inline constexpr double invisible_degrees = 0.01;
+
+/// A method with the command that applies it.
+struct AssetMethod {
+    MeasuredMethod measured;
+    std::string command{};
+    std::optional<Timing> known_time{};  ///< On all threads, if it was measured elsewhere.
+    double natural_cost = 0.0;           ///< RecommendationRule::natural_costs.
+};
+
+/// How to recommend one of the methods.
+struct AssetRule {
+    CostKind cost = CostKind::time;
+    double unseen_error = 0.0;  ///< Degrees; RecommendationRule::unseen_error.
+    std::string reference{};    ///< Names the source of Experiment::reference_error.
+};
+
+/// Begins an experiment on a file: id "own/FILE/TOPIC", title "TITLE of FILE", unit degrees.
+OwnExperiment asset_experiment(Subject subject, const std::string& topic, const std::string& title,
+                               const OwnOptions& options);
+
+/// Measures the methods, recommends one of those that have a command, and makes that the finding.
+/// Experiment::reference_error must be set before.
+void finish(OwnExperiment& asset, std::vector<AssetMethod> methods, const AssetRule& rule,
+            const OwnOptions& options);
+
+/// Makes the recommendation and its command the finding.
+void set_finding(OwnExperiment& asset);
+
+/// Selects eight evenly spread runs of triangles, `max_triangles` in total; or the whole mesh if it
+/// has no more.
+Mesh part_to_measure(const Mesh& mesh, std::size_t max_triangles);
+
+/// The rule for hard edges of a mesh; the mesh must outlive it.
+struct CreaseRule {
+    HardEdges edges;
+    std::string words;   ///< "edges sharper than 40 degrees are hard"
+    std::string option;  ///< For relief-mesh process, after a space: " --crease 40".
+
+    [[nodiscard]] bool has_any() const {
+        return edges.crease_angle.has_value() || !edges.smoothing_groups.empty();
+    }
+};
+
+/// Determines which edges are hard: by the given angle; else by smoothing groups, if one is not 0;
+/// else by the angle that separates the edges at which the mesh's own normals break. Below 15
+/// degrees that angle only says that the mesh is stored as facets, and no edge is hard.
+///
+/// \param crease_angle  radians; pi: no edge is hard
+CreaseRule crease_rule(const Mesh& mesh, const std::optional<double>& crease_angle);
+
+}  // namespace relief

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// Experiments on normals from height maps: every kernel in both arithmetics, on waves and fields
+/// whose normals are known in closed form.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "experiment_driver.h"
+#include "relief/mesh/analytic_heights.h"
+#include "relief/mesh/angle_distribution.h"
+#include "relief/mesh/bump.h"
+#include "relief/mesh/bump_experiment.h"
+#include "relief/mesh/bump_fields.h"
+
+namespace relief {
+
+struct NamedKernel {
+    std::string name;  ///< "sobel3", "gaussian 4"
+    Kernel kernel = Kernel::sobel3;
+    int radius = 2;  ///< Only for Kernel::gaussian.
+};
+
+/// All kernels; Gaussians of radius 2, 4, 8 and 16 come last.
+std::span<const NamedKernel> named_kernels();
+
+/// The name of a kernel in named_kernels().
+std::string name_of(Kernel kernel, int gaussian_radius);
+
+/// The RMS error in degrees of the unrounded normals in double precision. Texels without a defined
+/// ground truth do not count.
+double rms_error(const BumpField& field, Kernel kernel, int gaussian_radius);
+
+/// A field from one of the sets of bump_fields.h. \throws InvalidInput if none has that name
+const FieldRecipe& recipe_named(const std::string& name);
+
+/// A height map of one oblique wave of slope 1, with its exact normals.
+struct WaveMap {
+    Image heights;  ///< One channel.
+    BumpOptions options;
+    std::vector<glm::dvec3> normals;
+};
+
+/// Texels along each border that are not compared, because kernels need heights beyond the border.
+inline constexpr int wave_margin = 16;
+
+/// Makes a wave that runs two texels to the right for one down, a direction that favors no kernel.
+///
+/// \param bits  of the heights: 8, 16, or 32 for floats
+WaveMap oblique_wave(int side, double wavelength, int bits);
+
+/// The errors of the unrounded normals of a wave map.
+AngleDistribution wave_errors(const WaveMap& wave, const NamedKernel& kernel,
+                              Arithmetic arithmetic);
+
+/// The same surface at several resolutions: waves that tile a square of `side` texels.
+WaveMap surface_at(int side);
+
+/// The name of a kernel in relief-bake: "scharr3", ...
+std::string name_of(Kernel kernel);
+
+/// "repeat", or "repeat,clamp" if the axes differ.
+std::string name_of(const Wraps& wraps);
+
+/// A method named "scharr3, float32, 16 bit", with its choices and the bytes of a texel.
+MeasuredMethod measured_method(const BumpMethod& method, const ErrorFigures& error);
+
+/// Runs bump_plan().
+std::vector<Experiment> bump_experiments(const RunOptions& options);
+
+/// One wave in floats, 16 and 8 bits with charts over the wavelength; fields as files contain them,
+/// with heat maps for one of them; and a large map for time and memory.
+/// \param options  must outlive the plan
+std::vector<PlannedExperiment> bump_plan(const RunOptions& options);
+
+}  // namespace relief

@@ -1,0 +1,442 @@
+// SPDX-License-Identifier: Apache-2.0
+// Encodes normals as normal maps, as half floats, in 10 bits and as octahedral codes. Integer codes
+// are decoded by the library; the other codes exist only here.
+#include "storage_experiments.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/gtc/packing.hpp>
+#include <limits>
+#include <string_view>
+
+#include "error_metrics.h"
+#include "experiment_driver.h"
+#include "octahedral_code.h"
+#include "parallel.h"
+#include "relief/mesh/analytic_heights.h"
+#include "relief/mesh/direction_error.h"
+#include "relief/mesh/error.h"
+#include "relief/mesh/normal_map.h"
+#include "relief/mesh/normal_map_operations.h"
+
+namespace relief {
+namespace {
+
+constexpr std::size_t grain = 4096;  ///< Smaller pieces are not worth a thread.
+
+std::size_t texels_of(const Image& image) {
+    return static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height);
+}
+
+glm::dvec3 normal_at(std::span<const float> samples, std::size_t texel) {
+    return {samples[3 * texel], samples[3 * texel + 1], samples[3 * texel + 2]};
+}
+
+/// Encodes each texel: code(normal, pointer to `channels` samples).
+template <typename Sample, typename Code>
+Image coded(const Image& normals, int channels, Code code) {
+    Image codes =
+        make_image(normals.width, normals.height, channels, 8 * sizeof(Sample), ColorSpace::data);
+    const std::span<const float> from = normals.as<float>();
+    const std::span<Sample> to = codes.as<Sample>();
+    parallel_for(texels_of(normals), grain, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i)
+            code(normal_at(from, i), &to[i * static_cast<std::size_t>(channels)]);
+    });
+    return codes;
+}
+
+/// Decodes each texel: direction(samples) returns a vector of any length.
+template <typename Sample, typename Direction>
+Image decoded(const Image& codes, Direction direction) {
+    Image normals = make_image(codes.width, codes.height, 3, 32, ColorSpace::data);
+    const std::span<const Sample> from = codes.as<Sample>();
+    const std::span<float> to = normals.as<float>();
+    const auto channels = static_cast<std::size_t>(codes.channels);
+    parallel_for(texels_of(codes), grain, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            const glm::dvec3 unit = glm::normalize(direction(&from[i * channels]));
+            for (int axis = 0; axis < 3; ++axis)
+                to[3 * i + static_cast<std::size_t>(axis)] = static_cast<float>(unit[axis]);
+        }
+    });
+    return normals;
+}
+
+std::string name_of(Dither dither) {
+    switch (dither) {
+        case Dither::ordered:
+            return "ordered";
+        case Dither::blue_noise:
+            return "blue-noise";
+        default:
+            return "none";
+    }
+}
+
+/// \param zero  the code of zero in integer maps; "exact" for layouts that represent 0 exactly
+NormalCode named(const std::string& layout, const std::string& bits, const std::string& rounding,
+                 double bytes, const std::string& zero = "exact") {
+    NormalCode code;
+    code.name = layout + " " + bits;
+    if (rounding != "nearest") code.name += ", " + rounding;
+    code.choices = {{"layout", layout}, {"bits", bits}, {"rounding", rounding}, {"zero", zero}};
+    code.bytes = bytes;
+    return code;
+}
+
+std::string rounding_of(const NormalMapFormat& format) {
+    return format.dither == Dither::none ? "nearest" : name_of(format.dither);
+}
+
+std::string zero_of(FlatCode flat, int bits) {
+    const double largest = bits == 8 ? 255.0 : 65535.0;
+    return fmt::format("{}", flat == FlatCode::middle ? (largest + 1.0) / 2.0 : largest / 2.0);
+}
+
+/// A normal map whose decoder takes `decoder` for zero. glTF and engines use FlatCode::half.
+NormalCode as_map(const NormalMapFormat& format, FlatCode decoder) {
+    const bool is_float = format.bits == 32;
+    NormalCode code =
+        named("xyz", is_float ? "float" : fmt::format("{} bit", format.bits), rounding_of(format),
+              3.0 * format.bits / 8.0, is_float ? "exact" : zero_of(format.flat, format.bits));
+    if (format.flat == FlatCode::middle && !is_float) {
+        code.name += ", zero at " + zero_of(format.flat, format.bits);
+        if (decoder == FlatCode::half) code.name += ", read as glTF does";
+    } else if (decoder == FlatCode::middle) {
+        code.name += ", read with zero at " + zero_of(decoder, format.bits);
+    }
+    if (decoder != format.flat)
+        code.choices.back().second += ", read as " + zero_of(decoder, format.bits);
+    code.encode = [format](const Image& normals) {
+        Report report;
+        return encode_normal_map(normals, format, report);
+    };
+    code.decode = [format, decoder](const Image& codes) {
+        Report report;
+        return decode_normal_map(codes, format.green, decoder, report);
+    };
+    return code;
+}
+
+/// A normal map that is encoded and decoded as in glTF and engines.
+NormalCode as_map(const NormalMapFormat& format) {
+    return as_map(format, FlatCode::half);
+}
+
+template <typename Sample>
+Image without_z(const Image& map) {
+    Image two = make_image(map.width, map.height, 2, map.bits(), ColorSpace::data);
+    for (std::size_t i = 0; i < texels_of(map); ++i) {
+        two.as<Sample>()[2 * i] = map.as<Sample>()[3 * i];
+        two.as<Sample>()[2 * i + 1] = map.as<Sample>()[3 * i + 1];
+    }
+    return two;
+}
+
+/// Only x and y of such a map; z is computed from the unit length.
+NormalCode as_xy_map(const NormalMapFormat& format) {
+    NormalCode code = named("xy", fmt::format("{} bit", format.bits), rounding_of(format),
+                            2.0 * format.bits / 8.0, zero_of(format.flat, format.bits));
+    code.encode = [format](const Image& normals) {
+        Report report;
+        const Image map = encode_normal_map(normals, format, report);
+        return format.bits == 8 ? without_z<std::uint8_t>(map) : without_z<std::uint16_t>(map);
+    };
+    code.decode = [format](const Image& codes) {
+        Report report;
+        return decode_xy_map(codes, {}, format.green, format.flat, report);
+    };
+    return code;
+}
+
+/// GL_INT_2_10_10_10_REV: code c represents c / 511.
+NormalCode as_ten_bits() {
+    constexpr int largest = 511;
+    NormalCode code = named("xyz", "10 bit", "nearest", 4.0);
+    code.encode = [](const Image& normals) {
+        return coded<std::uint16_t>(normals, 3, [](const glm::dvec3& n, std::uint16_t* to) {
+            for (int axis = 0; axis < 3; ++axis)
+                to[axis] =
+                    static_cast<std::uint16_t>(rounded_to_int(n[axis] * largest) + largest + 1);
+        });
+    };
+    code.decode = [](const Image& codes) {
+        return decoded<std::uint16_t>(codes, [](const std::uint16_t* from) {
+            return glm::dvec3(from[0], from[1], from[2]) - (largest + 1.0);
+        });
+    };
+    return code;
+}
+
+/// (n + 1) / 2 rounded to half floats, as `relief-bake --half` writes.
+NormalCode as_halves() {
+    NormalCode code = named("xyz", "half", "nearest", 6.0);
+    code.encode = [](const Image& normals) {
+        Report report;
+        const Image map = encode_normal_map(normals, {.bits = 32}, report);
+        return coded<std::uint16_t>(map, 3, [](const glm::dvec3& sample, std::uint16_t* to) {
+            for (int axis = 0; axis < 3; ++axis)
+                to[axis] = glm::packHalf1x16(static_cast<float>(sample[axis]));
+        });
+    };
+    code.decode = [](const Image& codes) {
+        return decoded<std::uint16_t>(codes, [](const std::uint16_t* from) {
+            const glm::dvec3 sample(glm::unpackHalf1x16(from[0]), glm::unpackHalf1x16(from[1]),
+                                    glm::unpackHalf1x16(from[2]));
+            return 2.0 * sample - 1.0;
+        });
+    };
+    return code;
+}
+
+OctahedralCode octahedral_code(const glm::dvec3& normal, int largest, bool best) {
+    const glm::dvec2 place = octahedral_place(normal, largest);
+    if (!best) return nearest_code(place, largest, -1);
+    return best_code(place, largest, -1, [&](OctahedralCode candidate) {
+        const glm::dvec3 actual = octahedral_direction(candidate, largest);
+        return glm::length(glm::cross(actual, normal)) / glm::length(actual);
+    });
+}
+
+NormalCode as_octahedral(int bits, bool best) {
+    const int largest = (1 << (bits - 1)) - 1;
+    // Two codes occupy 16, 24 or 32 bits in existing formats.
+    NormalCode code = named("octahedral", fmt::format("2 x {} bit", bits),
+                            best ? "best" : "nearest", std::ceil(2.0 * bits / 8.0));
+    code.encode = [largest, best](const Image& normals) {
+        return coded<std::uint16_t>(
+            normals, 2, [largest, best](const glm::dvec3& n, std::uint16_t* to) {
+                const OctahedralCode actual = octahedral_code(n, largest, best);
+                to[0] = static_cast<std::uint16_t>(actual.x + largest);
+                to[1] = static_cast<std::uint16_t>(actual.y + largest);
+            });
+    };
+    code.decode = [largest](const Image& codes) {
+        return decoded<std::uint16_t>(codes, [largest](const std::uint16_t* from) {
+            return octahedral_direction({from[0] - largest, from[1] - largest}, largest);
+        });
+    };
+    return code;
+}
+
+}  // namespace
+
+std::vector<NormalCode> normal_codes() {
+    const auto rounded = [](int bits, Dither dither) {
+        return NormalMapFormat{bits, Green::up, FlatCode::half, dither};
+    };
+    const auto zero_is_a_code = [](int bits) {
+        return NormalMapFormat{bits, Green::up, FlatCode::middle, Dither::none};
+    };
+    const auto offered = [](NormalCode code, const char* file_and_options) {
+        code.file_and_options = file_and_options;
+        return code;
+    };
+    std::vector<NormalCode> codes = {
+        offered(as_map(rounded(8, Dither::none)), "OUT.png --bits 8 --zero-code 127.5"),
+        as_map(rounded(8, Dither::none), FlatCode::middle),
+        offered(as_map(zero_is_a_code(8), FlatCode::middle), "OUT.png --bits 8 --zero-code 128"),
+        as_map(zero_is_a_code(8)),
+        offered(as_map(rounded(8, Dither::ordered)),
+                "OUT.png --bits 8 --zero-code 127.5 --dither ordered"),
+        offered(as_map(rounded(8, Dither::blue_noise)),
+                "OUT.png --bits 8 --zero-code 127.5 --dither blue-noise"),
+        as_ten_bits(),
+        offered(as_map(rounded(16, Dither::none)), "OUT.png --bits 16 --zero-code 127.5"),
+        as_map(zero_is_a_code(16), FlatCode::middle),
+        as_map(zero_is_a_code(16)),
+        as_map(rounded(16, Dither::blue_noise)),
+        offered(as_halves(), "OUT.exr --half"),
+        offered(as_map(rounded(32, Dither::none)), "OUT.exr"),
+        as_xy_map(rounded(8, Dither::none)),
+        as_xy_map(rounded(8, Dither::blue_noise)),
+        as_xy_map(rounded(16, Dither::none))};
+    for (const int bits : {8, 10, 12, 16}) {
+        for (const bool best : {false, true})
+            codes.push_back(as_octahedral(bits, best));
+    }
+    return codes;
+}
+
+Image image_of_normals(std::span<const glm::dvec3> directions, int width) {
+    const auto row = static_cast<std::size_t>(width);
+    if (width <= 0 || directions.empty() || directions.size() % row != 0) {
+        throw InvalidInput(
+            fmt::format("{} directions do not fill rows of {} texels", directions.size(), width));
+    }
+    Image image =
+        make_image(width, static_cast<int>(directions.size() / row), 3, 32, ColorSpace::data);
+    for (std::size_t i = 0; i < image.sample_count(); ++i)
+        image.as<float>()[i] = static_cast<float>(directions[i / 3][static_cast<int>(i % 3)]);
+    return image;
+}
+
+std::vector<glm::dvec3> smooth_surface(int side) {
+    return wave_heights(side, side, tiling_waves(side, side, 5, side / 2.0, 0.2, 41)).normals;
+}
+
+AngleDistribution patch_errors(const Image& normals, const Image& ground_truth, int block) {
+    const int columns = ground_truth.width / block;
+    const auto patches = static_cast<std::size_t>(columns * (ground_truth.height / block));
+    const auto sums_of = [&](const Image& map) {
+        std::vector<glm::dvec3> sums(patches, glm::dvec3(0.0));
+        for (int y = 0; y < map.height; ++y) {
+            for (int x = 0; x < map.width; ++x) {
+                sums[static_cast<std::size_t>(y / block * columns + x / block)] +=
+                    normal_at(map.as<float>(), static_cast<std::size_t>(y * map.width + x));
+            }
+        }
+        return sums;
+    };
+    const std::vector<glm::dvec3> actual = sums_of(normals);
+    const std::vector<glm::dvec3> expected = sums_of(ground_truth);
+    std::vector<float> degrees;
+    for (std::size_t i = 0; i < patches; ++i)
+        degrees.push_back(static_cast<float>(degrees_between(actual[i], expected[i])));
+    return angle_distribution(std::move(degrees));
+}
+
+namespace {
+
+MeasuredMethod method_of(const NormalCode& code, const ErrorFigures& error) {
+    MeasuredMethod method;
+    method.name = code.name;
+    method.choices = code.choices;
+    method.error = error;
+    method.stored_bytes = code.bytes;
+    return method;
+}
+
+Experiment of_texels(const std::string& id, std::size_t texels) {
+    Experiment experiment;
+    experiment.id = id;
+    experiment.subject = Subject::storage;
+    experiment.error_unit = "degrees";
+    experiment.item = "texel";
+    experiment.items = static_cast<double>(texels);
+    return experiment;
+}
+
+/// "The least errors: in 2 bytes 'octahedral 2 x 8 bit, best', 0.32 degrees RMS, 0.66 at most; ..."
+std::string best_by_size(const Experiment& experiment) {
+    std::vector<std::string> parts;
+    for (const double bytes : {2.0, 3.0, 4.0, 6.0}) {
+        const Measurement* best = nullptr;
+        for (const Measurement& one : experiment.measurements) {
+            if (one.cost.stored_bytes != bytes) continue;
+            if (best == nullptr || one.error.rms < best->error.rms) best = &one;
+        }
+        parts.push_back(fmt::format("in {} bytes '{}', {:.2g} degrees RMS, {:.2g} at most", bytes,
+                                    best->method, best->error.rms, best->error.max));
+    }
+    return fmt::format("The least errors: {}.", fmt::join(parts, "; "));
+}
+
+/// "8 bits with zero at 128 have an error of 0.18 degrees RMS if they are read so, but of 0.37 ..."
+std::string error_by_decoder(const Experiment& experiment) {
+    const auto rms_of = [&](std::string_view method) {
+        for (const Measurement& one : experiment.measurements) {
+            if (one.method == method) return one.error.rms;
+        }
+        return std::numeric_limits<double>::quiet_NaN();
+    };
+    return fmt::format(
+        " 8 bits with zero at 128 have an error of {:.2g} degrees RMS if they are read so, but of "
+        "{:.2g} by the decoder of glTF and engines, whose zero is 127.5; codes with that zero have "
+        "{:.2g} there.",
+        rms_of("xyz 8 bit, zero at 128"), rms_of("xyz 8 bit, zero at 128, read as glTF does"),
+        rms_of("xyz 8 bit"));
+}
+
+Chart patches_chart(const Image& ground_truth, const std::vector<NormalCode>& codes) {
+    Chart chart;
+    chart.id = "patches";
+    chart.title = "The mean of larger patches";
+    chart.x_label = "side of a patch, texels";
+    chart.y_label = "RMS error of the mean normal, degrees";
+    for (const NormalCode& code : codes) {
+        const Image actual = code.stored(ground_truth);
+        std::vector<CurvePoint> points;
+        for (const int block : {1, 2, 4, 8, 16, 32})
+            points.push_back({static_cast<double>(block),
+                              curve_error(patch_errors(actual, ground_truth, block))});
+        chart.curves.push_back(fitted_curve(code.name, std::move(points), std::nullopt));
+    }
+    return chart;
+}
+
+double error_at(const Chart& chart, const std::string& method, double x) {
+    for (const Curve& curve : chart.curves) {
+        if (curve.method != method) continue;
+        for (const CurvePoint& point : curve.points) {
+            if (point.x == x) return point.error;
+        }
+    }
+    return 0.0;
+}
+
+}  // namespace
+
+Experiment normal_reading_experiment(const RunOptions& options) {
+    const int side = options.is_quick ? 128 : 512;
+    // The upper half, which a map in tangent space can represent.
+    std::vector<glm::dvec3> directions =
+        even_directions(2 * static_cast<std::size_t>(side) * static_cast<std::size_t>(side));
+    directions.resize(directions.size() / 2);
+    const Image normals = image_of_normals(directions, side);
+    const std::vector<NormalCode> codes = normal_codes();
+    Experiment experiment = of_texels("storage/normals", directions.size());
+    experiment.question = "How near does a stored normal come back, by layout and bits?";
+    experiment.truth = "The directions in double: unit by construction, evenly spread.";
+    experiment.input = fmt::format(
+        "{} directions spread evenly over the half sphere above a surface", directions.size());
+    std::vector<MeasuredMethod> measured;
+    for (const NormalCode& code : codes) {
+        const Image stored = code.encode(normals);
+        MeasuredMethod method =
+            method_of(code, figures_of(map_errors(code.decode(stored), directions)));
+        method.work = [stored, decode = code.decode] { decode(stored); };
+        measured.push_back(std::move(method));
+    }
+    measure_methods(measured, options, {.one_thread = true, .all_threads = true, .memory = false},
+                    experiment);
+    experiment.finding = best_by_size(experiment) + error_by_decoder(experiment);
+    return experiment;
+}
+
+Experiment normal_writing_experiment(const RunOptions& options) {
+    constexpr int side = 256;  // The same size as in docs/normal-maps.md.
+    const std::vector<glm::dvec3> surface = smooth_surface(side);
+    const Image ground_truth = image_of_normals(surface, side);
+    const std::vector<NormalCode> codes = normal_codes();
+    Experiment experiment = of_texels("storage/smooth-surface", surface.size());
+    experiment.question =
+        "What does writing a smooth surface take, and does dither keep the mean of a patch?";
+    experiment.truth =
+        "The surface's normals in closed form, single and summed over patches; a test "
+        "differentiates its heights numerically.";
+    experiment.input = fmt::format("{} x {} texels of waves of 128 texels and more", side, side);
+    std::vector<MeasuredMethod> measured;
+    for (const NormalCode& code : codes) {
+        MeasuredMethod method =
+            method_of(code, figures_of(map_errors(code.stored(ground_truth), surface)));
+        method.work = [&ground_truth, encode = code.encode] { encode(ground_truth); };
+        measured.push_back(std::move(method));
+    }
+    measure_methods(measured, options, {.one_thread = true, .all_threads = true, .memory = false},
+                    experiment);
+    Chart chart = patches_chart(ground_truth, codes);
+    experiment.finding = fmt::format(
+        "In 8 bits a texel is {:.2g} degrees off and the mean of 16 x 16 still {:.2g}; blue noise "
+        "makes them {:.2g} and {:.2g}.",
+        error_at(chart, "xyz 8 bit", 1.0), error_at(chart, "xyz 8 bit", 16.0),
+        error_at(chart, "xyz 8 bit, blue-noise", 1.0),
+        error_at(chart, "xyz 8 bit, blue-noise", 16.0));
+    experiment.charts.push_back(std::move(chart));
+    return experiment;
+}
+
+}  // namespace relief

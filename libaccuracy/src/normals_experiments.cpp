@@ -1,0 +1,297 @@
+// SPDX-License-Identifier: Apache-2.0
+// Computes the angular error of every weighting on analytic surfaces, where normals are known in
+// closed form, with the convergence order over the cell size.
+#include "normals_experiments.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "experiment_driver.h"
+#include "relief/accuracy/passes.h"
+#include "relief/mesh/direction_error.h"
+#include "report_names.h"
+
+namespace relief {
+namespace {
+
+NormalMethod weighted(std::string weighting, NormalWeight weight, Arithmetic arithmetic) {
+    return {std::move(weighting), arithmetic, weight, [weight, arithmetic](const Mesh& mesh) {
+                Report report;
+                NormalOptions options;
+                options.weight = weight;
+                options.arithmetic = arithmetic;
+                return vertex_normals(mesh.positions, mesh.triangles, options, report);
+            }};
+}
+
+NormalMethod chosen(Arithmetic arithmetic) {
+    return {"auto", arithmetic, std::nullopt, [arithmetic](const Mesh& mesh) {
+                Report report;
+                NormalOptions options;
+                options.arithmetic = arithmetic;
+                return chosen_normals(mesh.positions, mesh.triangles, options, report).normals;
+            }};
+}
+
+}  // namespace
+
+std::string NormalMethod::name() const {
+    return weighting + ", " + name_of(arithmetic);
+}
+
+std::vector<std::pair<std::string, std::string>> NormalMethod::choices() const {
+    return {{"weighting", weighting}, {"arithmetic", name_of(arithmetic)}};
+}
+
+std::vector<NormalMethod> normal_methods(std::span<const Arithmetic> arithmetics) {
+    using enum NormalWeight;
+    std::vector<NormalMethod> methods;
+    for (const auto& [word, weight] :
+         {std::pair("uniform", uniform), std::pair("area", area), std::pair("angle", angle),
+          std::pair("sine", sine), std::pair("max", max), std::pair("angle-edges", angle_edges),
+          std::pair("area-angle", area_angle)}) {
+        for (const Arithmetic arithmetic : arithmetics)
+            methods.push_back(weighted(word, weight, arithmetic));
+    }
+    for (const Arithmetic arithmetic : arithmetics)
+        methods.push_back(chosen(arithmetic));
+    return methods;
+}
+
+AngleDistribution normal_errors(std::span<const glm::vec3> normals,
+                                const AnalyticMesh& ground_truth) {
+    std::vector<float> degrees;
+    for (std::size_t v = 0; v < normals.size(); ++v) {
+        if (ground_truth.inner[v] == 0) continue;
+        degrees.push_back(
+            static_cast<float>(degrees_between(glm::dvec3(normals[v]), ground_truth.normals[v])));
+    }
+    return angle_distribution(std::move(degrees));
+}
+
+AngleDistribution fan_errors(const NormalMethod& method, int valence, std::uint32_t fans) {
+    constexpr glm::dvec3 up(0.0, 0.0, 1.0);
+    std::vector<float> degrees;
+    for (std::uint32_t seed = 0; seed < fans; ++seed) {
+        const std::vector<glm::vec3> normals = method.normals(cubic_fan(valence, seed));
+        degrees.push_back(static_cast<float>(degrees_between(glm::dvec3(normals.front()), up)));
+    }
+    return angle_distribution(std::move(degrees));
+}
+
+namespace {
+
+constexpr std::array float64_alone = {Arithmetic::float64};
+constexpr std::uint32_t tables_seed = 1;
+constexpr int cells_of_normal_tables = 64;  ///< The same number as in docs/normals.md.
+
+struct Case {
+    AnalyticSurface surface;
+    Triangulation triangulation;
+};
+
+std::string name_of(const Case& one) {
+    return fmt::format("{}, {}", name_of(one.surface), name_of(one.triangulation));
+}
+
+std::vector<Case> cases(bool is_quick) {
+    using enum AnalyticSurface;
+    using enum Triangulation;
+    if (is_quick) {
+        return {{torus, regular},
+                {sphere, jittered},
+                {torus, jittered},
+                {ellipsoid, anisotropic},
+                {cubic, folded}};
+    }
+    std::vector<Case> all;
+    for (const Triangulation triangulation : all_triangulations) {
+        for (const AnalyticSurface surface : all_surfaces)
+            all.push_back({surface, triangulation});
+    }
+    return all;
+}
+
+/// The expected exponent of the error over the number of cells. On a regular grid, contributions
+/// from opposite sides of a vertex cancel up to the second order. With jittered vertices the first
+/// order stays. There is no expectation if only rounding remains (Max's weights on spheres and
+/// regular tori, area on a regular saddle), if normals follow flipped triangles, and for Max's
+/// weights on anisotropic cells, whose first order is so small that the second order dominates at
+/// these sizes.
+std::optional<double> expected_order(const Case& one, const NormalMethod& method) {
+    using enum AnalyticSurface;
+    // The automatic choice takes Max's weights, except on folded triangles.
+    const bool is_max = !method.weight || method.weight == NormalWeight::max;
+    const bool is_area = method.weight == NormalWeight::area;
+    switch (one.triangulation) {
+        case Triangulation::regular:
+            if ((one.surface == sphere || one.surface == torus) && is_max) return std::nullopt;
+            if (one.surface == saddle && is_area) return std::nullopt;
+            return -2.0;
+        case Triangulation::jittered:
+            return one.surface == sphere && is_max ? std::nullopt : std::optional(-1.0);
+        case Triangulation::anisotropic:
+            return is_max ? std::nullopt : std::optional(-1.0);
+        default:
+            return is_area || !method.weight ? std::optional(-1.0) : std::nullopt;
+    }
+}
+
+Chart cells_chart(const Case& one, bool is_quick) {
+    Chart chart;
+    chart.id = "cells";
+    chart.title = "Finer cells";
+    chart.x_label = "cells along each parameter";
+    chart.y_label = "RMS error, degrees";
+    std::vector<int> sizes = {16, 32, 64};
+    // Anisotropic cells are 4 times as long, so 8 cells would leave two around a sphere.
+    if (one.triangulation != Triangulation::anisotropic) sizes.insert(sizes.begin(), 8);
+    if (!is_quick) sizes.insert(sizes.end(), {128, 256});
+    const std::vector<NormalMethod> methods = normal_methods(float64_alone);
+    std::vector<std::vector<CurvePoint>> points(methods.size());
+    for (const int cells : sizes) {
+        const AnalyticMesh ground_truth =
+            analytic_mesh(one.surface, one.triangulation, cells, tables_seed);
+        for (std::size_t m = 0; m < methods.size(); ++m) {
+            const auto errors = normal_errors(methods[m].normals(ground_truth.mesh), ground_truth);
+            points[m].push_back({static_cast<double>(cells), curve_error(errors)});
+        }
+    }
+    for (std::size_t m = 0; m < methods.size(); ++m) {
+        chart.curves.push_back(
+            fitted_curve(methods[m].name(), std::move(points[m]), expected_order(one, methods[m])));
+    }
+    return chart;
+}
+
+/// "max, float64 is closest, 0.453 degrees RMS; area, float64 is farthest, 1.28."
+std::string normals_finding(const Experiment& experiment) {
+    const Measurement& best = *most_accurate(experiment);
+    const auto& all = experiment.measurements;
+    const auto by_rms = [](const Measurement& a, const Measurement& b) {
+        return a.error.rms < b.error.rms;
+    };
+    const Measurement& worst = *std::max_element(all.begin(), all.end(), by_rms);
+    std::string text = fmt::format("{} is closest, {:.3g} degrees RMS; {} is farthest, {:.3g}.",
+                                   value_of(best, "weighting"), best.error.rms,
+                                   value_of(worst, "weighting"), worst.error.rms);
+    return text + " " + arithmetic_finding(experiment, {"weighting"}, "weightings");
+}
+
+Experiment on_mesh(const std::string& id, const AnalyticMesh& ground_truth,
+                   const std::string& input, const CostChoice& costs, const RunOptions& options) {
+    Experiment experiment;
+    experiment.id = id;
+    experiment.subject = Subject::normals;
+    experiment.truth =
+        "The surface's own normals in closed form, at its inner vertices before they were rounded "
+        "to float; tests differentiate the surface numerically as well.";
+    experiment.input = fmt::format("{}: {} triangles", input, ground_truth.mesh.triangles.size());
+    experiment.error_unit = "degrees";
+    experiment.item = "triangle";
+    experiment.items = static_cast<double>(ground_truth.mesh.triangles.size());
+    std::vector<MeasuredMethod> measured;
+    for (const NormalMethod& method : normal_methods(both_arithmetics)) {
+        measured.push_back(
+            {.name = method.name(),
+             .choices = method.choices(),
+             .error = figures_of(normal_errors(method.normals(ground_truth.mesh), ground_truth)),
+             .work = [normals = method.normals, &ground_truth] { normals(ground_truth.mesh); }});
+    }
+    measure_methods(measured, options, costs, experiment);
+    experiment.finding = normals_finding(experiment);
+    return experiment;
+}
+
+Experiment on_case(const Case& one, const RunOptions& options) {
+    const AnalyticMesh ground_truth =
+        analytic_mesh(one.surface, one.triangulation, cells_of_normal_tables, tables_seed);
+    Experiment experiment =
+        on_mesh(fmt::format("normals/{}-{}", name_of(one.surface), name_of(one.triangulation)),
+                ground_truth,
+                fmt::format("{}, {} x {} cells", name_of(one), cells_of_normal_tables,
+                            cells_of_normal_tables),
+                {.one_thread = true, .all_threads = true, .memory = false}, options);
+    experiment.question = fmt::format(
+        "Which weighting is closest to the normals of a surface ({}), and what does it cost?",
+        name_of(one));
+    experiment.charts.push_back(
+        made_once(options, [&] { return cells_chart(one, options.is_quick); }));
+    return experiment;
+}
+
+Experiment normals_on_large_mesh(const RunOptions& options) {
+    const int cells = options.is_quick ? 160 : 512;
+    const AnalyticMesh ground_truth =
+        analytic_mesh(AnalyticSurface::torus, Triangulation::jittered, cells, tables_seed);
+    Experiment experiment =
+        on_mesh("normals/large", ground_truth,
+                fmt::format("torus, jittered, {} x {} cells", cells, cells), {}, options);
+    experiment.question = "What do normals of a large mesh cost, in time and in memory?";
+    return experiment;
+}
+
+Experiment on_fans(const RunOptions& options) {
+    const std::uint32_t fans = options.is_quick ? 2000 : 20000;
+    constexpr int usual_valence = 6;
+    Experiment experiment;
+    experiment.id = "normals/fans";
+    experiment.subject = Subject::normals;
+    experiment.question =
+        "How close is each weighting around a single vertex, by the number of its neighbours?";
+    experiment.truth =
+        "The normal of a random cubic at the origin, (0, 0, 1) by construction [Max 1999]; a test "
+        "fits the cubic to its fan and differentiates it numerically.";
+    experiment.input =
+        fmt::format("{} fans of random cubic surfaces, {} neighbours each", fans, usual_valence);
+    experiment.error_unit = "degrees";
+    experiment.item = "fan";
+    experiment.items = fans;
+    Chart chart;
+    chart.id = "neighbours";
+    chart.title = "More neighbours";
+    chart.x_label = "neighbours of the vertex";
+    chart.is_x_log = false;
+    chart.y_label = "RMS error, degrees";
+    std::vector<MeasuredMethod> measured;
+    for (const NormalMethod& method : normal_methods(float64_alone)) {
+        std::vector<CurvePoint> points;
+        for (int valence = 3; valence <= 9; ++valence) {
+            const AngleDistribution errors = fan_errors(method, valence, fans);
+            points.push_back({static_cast<double>(valence), curve_error(errors)});
+            if (valence == usual_valence)
+                measured.push_back({.name = method.name(),
+                                    .choices = method.choices(),
+                                    .error = figures_of(errors)});
+        }
+        chart.curves.emplace_back().method = method.name();
+        chart.curves.back().points = std::move(points);
+    }
+    measure_methods(measured, options, {}, experiment);
+    experiment.charts.push_back(std::move(chart));
+    const Measurement& best = *most_accurate(experiment);
+    experiment.finding = fmt::format("With {} neighbours {} is closest, {:.3g} degrees RMS.",
+                                     usual_valence, value_of(best, "weighting"), best.error.rms);
+    return experiment;
+}
+
+}  // namespace
+
+std::vector<PlannedExperiment> normals_plan(const RunOptions& options) {
+    std::vector<PlannedExperiment> plan;
+    for (const Case& one : cases(options.is_quick))
+        plan.push_back(
+            {"Normals: " + name_of(one), [&options, one] { return on_case(one, options); }});
+    plan.push_back(
+        {"Normals: a large mesh", [&options] { return normals_on_large_mesh(options); }});
+    plan.push_back({"Normals: single fans", [&options] { return on_fans(options); }});
+    return plan;
+}
+
+std::vector<Experiment> normals_experiments(const RunOptions& options) {
+    return run_planned(normals_plan(options), options);
+}
+
+}  // namespace relief

@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// Renders several variants of a scene with OpenGL, times them in interleaved rounds, and computes
+/// their errors against a reference image. Also holds the scenes that several experiments share.
+#pragma once
+
+#include <sched.h>
+
+#include <cstddef>
+#include <initializer_list>
+#include <memory>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "relief/accuracy/experiment.h"
+#include "relief/mesh/image.h"
+#include "relief/mesh/mesh.h"
+#include "relief/shade/context.h"
+#include "relief/shade/scene.h"
+
+namespace relief {
+
+/// An OpenGL context, or the reason why there is none.
+class GlDevice {
+  public:
+    explicit GlDevice(Backend backend = Backend::automatic);
+
+    /// Returns whether OpenGL is available. If not, sets the experiment's finding to the reason.
+    bool is_available_for(Experiment& experiment) const;
+
+    [[nodiscard]] const Context& context() const { return *context_; }
+    [[nodiscard]] bool is_available() const { return context_ != nullptr; }
+
+  private:
+    std::unique_ptr<Context> context_;
+    std::string absence_;
+};
+
+/// One way to render the scene.
+struct RenderedMethod {
+    std::string name;
+    std::vector<std::pair<std::string, std::string>> choices;
+    Scene scene;
+    int samples = 1;  ///< Per pixel: 1, or 4 with OpenGL's multisampling.
+    /// Rendered pixels along each side of an output pixel; they are averaged afterwards.
+    int pixels_per_side = 1;
+    double stored_bytes = 0.0;
+    std::string note = {};
+};
+
+/// The image of one method, and its error.
+struct RenderedImage {
+    Image picture;  ///< 8-bit sRGB, three channels.
+    Image errors;   ///< FLIP per pixel.
+};
+
+/// Renders all methods, and adds a measurement of each to the experiment.
+///
+/// \param ground_truth  three float channels, linear light; it determines the size of the images
+/// \return one result per method, in their order
+///
+/// Times are whole frames, from the first command to the last pixel, without reading back and
+/// without the averaging of `pixels_per_side`. The time on all threads uses the threads of the
+/// driver. The time on one thread is measured only with software OpenGL: the same threads on one
+/// processor.
+std::vector<RenderedImage> measure_rendered(const GlDevice& device,
+                                            std::span<const RenderedMethod> methods,
+                                            const Image& ground_truth, const RunOptions& options,
+                                            Experiment& experiment);
+
+/// The RMS error of one method without timing, for a point of a curve.
+double rendered_error(const GlDevice& device, const RenderedMethod& method,
+                      const Image& ground_truth);
+
+/// The image of a method beside the reference image.
+PicturePair image_pair(const std::string& title, const std::string& method, const Image& picture,
+                       const Image& ground_truth);
+
+/// Adds the image of a method beside the reference image, and a heat map of its errors.
+/// \param brightest  the FLIP error that is shown at full brightness
+void add_images(const std::string& title, const RenderedMethod& method, const RenderedImage& image,
+                const Image& ground_truth, double brightest, Experiment& experiment);
+
+/// A measurement with the name that a sentence gives to it.
+struct NamedMeasurement {
+    std::string name;
+    const Measurement& measurement;
+};
+
+/// " Median frame times: 1.2 ms (stored), 3.4 ms (derived)."; empty if one was not timed. Uses the
+/// time on one thread if it was measured, like mark_efficient().
+std::string frame_times(std::initializer_list<NamedMeasurement> methods);
+
+/// Direction in which the light of lit_scene() travels; not unit length.
+inline constexpr glm::vec3 light_direction_world{-0.5F, -0.8F, -0.6F};
+inline constexpr float light_irradiance = 0.9F;
+inline constexpr float lit_ambient = 0.08F;
+/// Linear color, opaque.
+inline constexpr glm::vec4 lit_background{0.03F, 0.04F, 0.06F, 1.0F};
+
+/// A mesh under one directional light and weak ambient light before a dark background. The camera
+/// is 30 degrees to the right and 35 degrees above; the image is square.
+Scene lit_scene(Mesh mesh, Material material);
+
+/// lit_scene() with a repeated normal map.
+Scene bumpy_scene(Mesh mesh, Material material, Image normal_map);
+
+/// A smooth reddish material with a highlight of shininess 40.
+Material glossy_plastic();
+
+/// Renders a reference image with the CPU reference shader in double precision.
+///
+/// \param scene        has a camera and an opaque background; no tone mapping
+/// \param size         width and height in pixels
+/// \param rays_per_side  rays along each side of a pixel, at the centers of a regular grid
+/// \return three float channels, linear light. Each ray is clamped to [0,1] before the average, as
+/// a
+///         renderer with as many samples does
+Image supersampled_reference(const Scene& scene, int size, int rays_per_side);
+
+/// Keeps all threads of this process on one processor during its lifetime. A software OpenGL driver
+/// starts its threads only once, so this is the only way to time it on one thread. The destructor
+/// restores the affinity that the calling thread had.
+class SingleProcessor {
+  public:
+    SingleProcessor();
+    ~SingleProcessor();
+    SingleProcessor(const SingleProcessor&) = delete;
+    SingleProcessor& operator=(const SingleProcessor&) = delete;
+
+    /// Whether the system allowed it; if not, nothing has changed.
+    [[nodiscard]] bool is_active() const { return is_active_; }
+
+  private:
+    ::cpu_set_t before_;
+    bool is_active_ = false;
+};
+
+/// Slices around the circle of the torus; the tube has half as many. With this number the torus
+/// stands for the smooth surface.
+inline constexpr int smooth_torus_slices = 768;
+
+std::size_t torus_triangles(int slices);
+
+/// "flat, 576 triangles"
+std::string name_on_torus(const std::string& method, int slices);
+
+/// The camera at which the smooth torus fills the image.
+Camera torus_camera();
+
+/// A chart of the error by triangle count, with one curve per method.
+/// \throws std::out_of_range if a measurement is missing
+Chart torus_chart(const Experiment& experiment, std::span<const std::string> methods,
+                  std::span<const int> slices);
+
+}  // namespace relief

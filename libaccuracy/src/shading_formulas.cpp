@@ -1,0 +1,430 @@
+// SPDX-License-Identifier: Apache-2.0
+// Experiments on formulas of shading, without images: approximations of Fresnel's reflectance, and
+// the light of interpolated normals that are not normalized.
+#include "shading_experiments.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <memory>
+#include <numbers>
+
+#include "experiment_driver.h"
+#include "reference/shading.h"
+
+namespace relief {
+
+ErrorFigures formula_error(const FormulaMethod& method, std::span<const double> ground_truth) {
+    std::vector<float> results(ground_truth.size());
+    method.compute(results);
+    for (std::size_t i = 0; i < ground_truth.size(); ++i)
+        results[i] =
+            static_cast<float>(std::abs(static_cast<double>(results[i]) - ground_truth[i]));
+    return figures_of(angle_distribution(std::move(results)));
+}
+
+void measure_formulas(std::span<const FormulaMethod> methods, std::span<const double> ground_truth,
+                      const RunOptions& options, Experiment& experiment) {
+    std::vector<float> results(ground_truth.size());
+    std::vector<MeasuredMethod> measured;
+    for (const FormulaMethod& method : methods) {
+        measured.push_back({method.name, method.choices, formula_error(method, ground_truth),
+                            [&method, &results] { method.compute(results); }});
+    }
+    measure_methods(measured, options, {.all_threads = false, .memory = false}, experiment);
+}
+
+namespace {
+
+/// A method that evaluates a formula of one cosine for each input.
+template <typename Formula>
+FormulaMethod method_of(const char* name, const char* reflectance, std::span<const float> cosines,
+                        Formula formula) {
+    return {name, {{"reflectance", reflectance}}, [cosines, formula](std::span<float> results) {
+                for (std::size_t i = 0; i < results.size(); ++i)
+                    results[i] = formula(cosines[i]);
+            }};
+}
+
+float fifth_power(float x) {
+    const float squared = x * x;
+    return squared * squared * x;
+}
+
+/// The reflectance at normal incidence, and the correction that makes Schlick's approximation exact
+/// at a cosine of 1/7.
+struct Fit {
+    explicit Fit(std::complex<double> index)
+        : f0(static_cast<float>(reference::fresnel(index, 1.0))) {
+        constexpr double at = 1.0 / 7.0;
+        const double there = f0 + (1.0 - f0) * std::pow(1.0 - at, 5.0);
+        excess = static_cast<float>((there - reference::fresnel(index, at)) /
+                                    (at * std::pow(1.0 - at, 6.0)));
+    }
+    float f0;
+    float excess = 0.0F;
+};
+
+/// [Born and Wolf 1999], 1.5.2, for a real index, in float.
+float dielectric(float index, float cosine) {
+    const float inside = std::sqrt(std::max(index * index - 1.0F + cosine * cosine, 0.0F));
+    const float across = (cosine - inside) / (cosine + inside);
+    const float squared = index * index * cosine;
+    const float along = (squared - inside) / (squared + inside);
+    return 0.5F * (across * across + along * along);
+}
+
+/// [Born and Wolf 1999], 14.2, for n + ik without complex numbers: a and b are the real and
+/// imaginary part of the square root of index^2 - sine^2.
+float conductor(float n, float k, float cosine) {
+    const float sine2 = 1.0F - cosine * cosine;
+    const float real = n * n - k * k - sine2;
+    const float length = std::sqrt(real * real + 4.0F * n * n * k * k);
+    const float a = std::sqrt(std::max(0.5F * (length + real), 0.0F));
+    const float sum = length + cosine * cosine;
+    const float across = (sum - 2.0F * a * cosine) / (sum + 2.0F * a * cosine);
+    const float first = cosine * cosine * length + sine2 * sine2;
+    const float second = 2.0F * a * cosine * sine2;
+    const float along = across * (first - second) / (first + second);
+    return 0.5F * (across + along);
+}
+
+FormulaMethod table_of(std::complex<double> index, std::span<const float> cosines) {
+    constexpr std::size_t entries = 64;
+    auto table = std::make_shared<std::vector<float>>();
+    for (std::size_t i = 0; i <= entries; ++i) {
+        table->push_back(static_cast<float>(
+            reference::fresnel(index, static_cast<double>(i) / static_cast<double>(entries))));
+    }
+    return method_of("table of 65", "tabulated", cosines, [table](float cosine) {
+        const float place = cosine * static_cast<float>(entries);
+        const std::size_t before = std::min(static_cast<std::size_t>(place), entries - 1);
+        const float share = place - static_cast<float>(before);
+        return (*table)[before] + share * ((*table)[before + 1] - (*table)[before]);
+    });
+}
+
+}  // namespace
+
+std::vector<FormulaMethod> fresnel_methods(std::complex<double> index,
+                                           std::span<const float> cosines) {
+    const Fit fit(index);
+    const auto n = static_cast<float>(index.real());
+    const auto k = static_cast<float>(index.imag());
+    const auto schlick = [fit](float cosine) {
+        return fit.f0 + (1.0F - fit.f0) * fifth_power(1.0F - cosine);
+    };
+    std::vector<FormulaMethod> methods = {
+        method_of("constant", "that of normal incidence", cosines, [fit](float) { return fit.f0; }),
+        method_of("Schlick", "Schlick's", cosines, schlick),
+        method_of("Schlick, power of two", "Schlick's", cosines,
+                  [fit](float cosine) {
+                      return fit.f0 +
+                             (1.0F - fit.f0) * std::exp2((-5.55473F * cosine - 6.98316F) * cosine);
+                  }),
+        method_of("Schlick, right at 82 degrees", "Schlick's and a third number", cosines,
+                  [schlick, fit](float cosine) {
+                      const float away = 1.0F - cosine;
+                      return schlick(cosine) - fit.excess * cosine * fifth_power(away) * away;
+                  }),
+        table_of(index, cosines)};
+    if (k == 0.0F) {
+        methods.push_back(method_of("Fresnel, float32", "Fresnel's", cosines,
+                                    [n](float cosine) { return dielectric(n, cosine); }));
+    } else {
+        methods.push_back(method_of("Fresnel, float32", "Fresnel's", cosines,
+                                    [n, k](float cosine) { return conductor(n, k, cosine); }));
+    }
+    return methods;
+}
+
+std::vector<double> exact_reflectances(std::complex<double> index, std::span<const float> cosines) {
+    std::vector<double> ground_truth;
+    for (const float cosine : cosines)
+        ground_truth.push_back(reference::fresnel(index, static_cast<double>(cosine)));
+    return ground_truth;
+}
+
+std::vector<float> cosines_of_angles(std::size_t count) {
+    std::vector<float> cosines;
+    for (std::size_t i = 0; i < count; ++i) {
+        const double angle =
+            0.5 * std::numbers::pi * static_cast<double>(i) / static_cast<double>(count - 1);
+        cosines.push_back(static_cast<float>(std::max(std::cos(angle), 0.0)));
+    }
+    cosines.back() = 0.0F;
+    return cosines;
+}
+
+namespace {
+
+struct Boundary {
+    const char* name;
+    std::complex<double> index;
+};
+/// The indices of metals are for green light.
+const std::array boundaries = {Boundary{"water, 1.33", 1.33},
+                               Boundary{"glass, 1.5", 1.5},
+                               Boundary{"diamond, 2.42", 2.42},
+                               Boundary{"silicon, 4.1", 4.1},
+                               Boundary{"gold, 0.43 + 2.46i", {0.43, 2.46}},
+                               Boundary{"aluminium, 0.96 + 6.69i", {0.96, 6.69}},
+                               Boundary{"iron, 2.95 + 2.93i", {2.95, 2.93}}};
+
+/// Statistics of the error of Schlick's approximation.
+ErrorFigures schlick_error(std::complex<double> index, std::span<const float> cosines) {
+    const std::vector<FormulaMethod> methods = fresnel_methods(index, cosines);
+    return formula_error(methods.at(1), exact_reflectances(index, cosines));
+}
+
+/// The error of Schlick's approximation by angle, with one curve per boundary.
+Chart chart_by_incidence() {
+    Chart chart{.id = "angle",
+                .title = "Schlick's error by angle",
+                .x_label = "angle of incidence, degrees",
+                .y_label = "reflectance",
+                .is_x_log = false};
+    const std::vector<float> cosines = cosines_of_angles(91);
+    for (const Boundary& boundary : boundaries) {
+        std::vector<float> actual(cosines.size());
+        fresnel_methods(boundary.index, cosines).at(1).compute(actual);
+        const std::vector<double> ground_truth = exact_reflectances(boundary.index, cosines);
+        Curve curve{.method = boundary.name};
+        for (std::size_t i = 0; i < actual.size(); ++i) {
+            curve.points.push_back({static_cast<double>(i),
+                                    std::abs(static_cast<double>(actual[i]) - ground_truth[i])});
+        }
+        chart.curves.push_back(std::move(curve));
+    }
+    return chart;
+}
+
+Chart index_chart(std::span<const float> cosines) {
+    Chart chart{.id = "index",
+                .title = "Error by index of refraction",
+                .x_label = "index of refraction",
+                .y_label = "reflectance",
+                .is_x_log = false};
+    for (const FormulaMethod& method : fresnel_methods(1.5, cosines))
+        chart.curves.push_back({.method = method.name});
+    for (const double index : {1.1, 1.2, 1.33, 1.4, 1.5, 1.6, 1.8, 2.0, 2.42, 3.0, 3.5, 4.0}) {
+        const std::vector<FormulaMethod> methods = fresnel_methods(index, cosines);
+        const std::vector<double> ground_truth = exact_reflectances(index, cosines);
+        for (std::size_t i = 0; i < methods.size(); ++i)
+            chart.curves[i].points.push_back(
+                {index, curve_error(formula_error(methods[i], ground_truth))});
+    }
+    return chart;
+}
+
+Experiment described(const Boundary& boundary, std::size_t angles) {
+    return {.question = "What does Schlick's fit give away, and what does Fresnel's formula cost?",
+            .truth =
+                "Fresnel's formulas for unpolarised light in double; tests hold them to "
+                "normal incidence, Brewster's angle and grazing incidence in closed form",
+            .input = fmt::format("{}: {} angles from 0 to 90 degrees", boundary.name, angles),
+            .error_unit = "reflectance",
+            .item = "angle",
+            .items = static_cast<double>(angles)};
+}
+
+std::string figures(const Experiment& experiment, const char* method) {
+    const ErrorFigures& error = method_in(experiment, method).error;
+    return fmt::format("{:.2g} (RMS; at most {:.2g})", error.rms, error.max);
+}
+
+Experiment measured(const Boundary& boundary, const RunOptions& options) {
+    const std::vector<float> cosines = cosines_of_angles(4096);
+    Experiment experiment = described(boundary, cosines.size());
+    measure_formulas(fresnel_methods(boundary.index, cosines),
+                     exact_reflectances(boundary.index, cosines), options, experiment);
+    return experiment;
+}
+
+}  // namespace
+
+Experiment glass_experiment(const RunOptions& options) {
+    Experiment experiment = measured(boundaries[1], options);
+    experiment.id = "shading/fresnel-glass";
+    const std::vector<float> cosines = cosines_of_angles(901);
+    experiment.charts = {chart_by_incidence(), index_chart(cosines)};
+    experiment.finding = fmt::format(
+        "For glass, Schlick's fit is {} off, the reflectance of normal incidence taken everywhere "
+        "{}. The fit is made for indices around 1.5: at 2.42 it is off by up to {:.2g}, at 3.5 by "
+        "up to {:.2g}.",
+        figures(experiment, "Schlick"), figures(experiment, "constant"),
+        schlick_error(2.42, cosines).max, schlick_error(3.5, cosines).max);
+    return experiment;
+}
+
+Experiment metal_experiment(const RunOptions& options) {
+    Experiment experiment = measured(boundaries[6], options);
+    experiment.id = "shading/fresnel-metal";
+    experiment.finding = fmt::format(
+        "For iron, Schlick's fit is {} off: metals dim towards grazing angles before they "
+        "brighten, which it cannot show. One more number, by which it is right at 82 degrees, "
+        "leaves {}.",
+        figures(experiment, "Schlick"), figures(experiment, "Schlick, right at 82 degrees"));
+    return experiment;
+}
+
+namespace {
+
+constexpr double diffuse = 0.55;
+constexpr double specular = 0.45;
+
+/// Blinn-Phong with shininess 40 [Blinn 1977], by products: 40 = 32 + 8.
+template <typename Number>
+Number radiance(Number n_dot_l, Number n_dot_h) {
+    const Number h = std::max(n_dot_h, Number(0));
+    const Number h2 = h * h;
+    const Number h4 = h2 * h2;
+    const Number h8 = h4 * h4;
+    const Number h16 = h8 * h8;
+    return static_cast<Number>(diffuse) * std::max(n_dot_l, Number(0)) +
+           static_cast<Number>(specular) * h16 * h16 * h8;
+}
+
+/// \param shaded  returns the radiance of an interpolated normal
+template <typename Shaded>
+FormulaMethod method_of(const char* name, const char* unit, const NormalSamples& samples,
+                        Shaded shaded) {
+    return {name, {{"made unit", unit}}, [&samples, shaded](std::span<float> results) {
+                for (std::size_t i = 0; i < results.size(); ++i)
+                    results[i] = shaded(samples.interpolated()[i]);
+            }};
+}
+
+/// The radiance of the interpolated normal multiplied by `scale`.
+float scaled_radiance(const glm::vec3& n, float scale) {
+    return radiance(scale * glm::dot(n, NormalSamples::light()),
+                    scale * glm::dot(n, NormalSamples::half()));
+}
+
+double exact_radiance(const glm::vec3& interpolated) {
+    const glm::dvec3 n = glm::normalize(glm::dvec3(interpolated));
+    return radiance(glm::dot(n, glm::dvec3(NormalSamples::light())),
+                    glm::dot(n, glm::dvec3(NormalSamples::half())));
+}
+
+}  // namespace
+
+NormalSamples::NormalSamples(double degrees, int side) {
+    // The corners are on a circle around +z, 120 degrees apart; their distance is sqrt(3) sine.
+    const double sine = 2.0 * std::sin(glm::radians(degrees) * 0.5) / std::numbers::sqrt3;
+    std::array<glm::dvec3, 3> corners;
+    for (std::size_t i = 0; i < 3; ++i) {
+        const double turn = 2.0 * std::numbers::pi * static_cast<double>(i) / 3.0;
+        corners.at(i) = {sine * std::cos(turn), sine * std::sin(turn),
+                         std::sqrt(1.0 - sine * sine)};
+    }
+    for (int y = 0; y < side; ++y) {
+        for (int x = 0; x + y < side; ++x) {
+            const double a = (x + 1.0 / 3.0) / side;
+            const double b = (y + 1.0 / 3.0) / side;
+            interpolated_.emplace_back(a * corners[0] + b * corners[1] +
+                                       (1.0 - a - b) * corners[2]);
+        }
+    }
+}
+
+std::vector<double> NormalSamples::exact_radiances() const {
+    std::vector<double> ground_truth;
+    for (const glm::vec3& normal : interpolated_)
+        ground_truth.push_back(exact_radiance(normal));
+    return ground_truth;
+}
+
+double NormalSamples::brightest() const {
+    const std::vector<double> ground_truth = exact_radiances();
+    return *std::max_element(ground_truth.begin(), ground_truth.end());
+}
+
+const glm::vec3& NormalSamples::light() {
+    static const glm::vec3 unit = glm::normalize(glm::vec3(0.3F, 0.1F, 1.0F));
+    return unit;
+}
+
+const glm::vec3& NormalSamples::half() {
+    static const glm::vec3 unit = glm::normalize(light() + glm::vec3(0.0F, 0.0F, 1.0F));
+    return unit;
+}
+
+std::vector<FormulaMethod> unit_normal_methods(const NormalSamples& samples) {
+    return {method_of("as interpolated", "no", samples,
+                      [](const glm::vec3& n) { return scaled_radiance(n, 1.0F); }),
+            method_of("one step of Newton's", "nearly", samples,
+                      [](const glm::vec3& n) {
+                          return scaled_radiance(n, 1.5F - 0.5F * glm::dot(n, n));
+                      }),
+            method_of("square root, float32", "in float", samples,
+                      [](const glm::vec3& n) {
+                          return scaled_radiance(n, 1.0F / std::sqrt(glm::dot(n, n)));
+                      }),
+            method_of("square root, float64", "in double", samples,
+                      [](const glm::vec3& n) { return static_cast<float>(exact_radiance(n)); })};
+}
+
+namespace {
+
+Chart chart_by_turn() {
+    Chart chart{.id = "angle",
+                .title = "Error by the angle between neighbouring normals",
+                .x_label = "degrees between the normals of a triangle's corners",
+                .y_label = "radiance"};
+    const NormalSamples first(1.0, 32);
+    for (const FormulaMethod& method : unit_normal_methods(first))
+        chart.curves.push_back({.method = method.name});
+    for (const double degrees : {1.0, 2.0, 4.0, 8.0, 15.0, 30.0, 60.0, 90.0}) {
+        const NormalSamples samples(degrees, 32);
+        const std::vector<FormulaMethod> methods = unit_normal_methods(samples);
+        const std::vector<double> ground_truth = samples.exact_radiances();
+        for (std::size_t i = 0; i < methods.size(); ++i)
+            chart.curves[i].points.push_back(
+                {degrees, formula_error(methods[i], ground_truth).rms});
+    }
+    // The length of a chord is too short by the square of its angle, and a Newton step squares that
+    // error again. Both hold for small angles, as long as rounding to float is negligible.
+    chart.curves[0].expected_order = 2.0;
+    chart.curves[1].expected_order = 4.0;
+    for (std::size_t i = 0; i < 2; ++i) {
+        std::vector<CurvePoint> small = chart.curves[i].points;
+        std::erase_if(small, [](const CurvePoint& p) { return p.x < 2.0 || p.x > 8.0; });
+        chart.curves[i].order = fitted_order(small);
+    }
+    return chart;
+}
+
+}  // namespace
+
+Experiment unit_normal_experiment(const RunOptions& options) {
+    constexpr double degrees = 30.0;
+    const NormalSamples samples(degrees, 96);
+    Experiment experiment{
+        .id = "shading/unit-normal",
+        .question = "Does the interpolated normal have to be made unit?",
+        .truth =
+            "the same light in double, from the normal made unit; tests hold it to a formula in "
+            "angles, and the length in the triangle's middle to its closed form",
+        .input = fmt::format("{} places on a triangle whose corners' normals are {} degrees apart; "
+                             "diffuse light and a highlight of shininess 40, lamp of irradiance 1",
+                             samples.count(), degrees),
+        .error_unit = "radiance",
+        .item = "place",
+        .items = static_cast<double>(samples.count())};
+    measure_formulas(unit_normal_methods(samples), samples.exact_radiances(), options, experiment);
+    experiment.charts = {chart_by_turn()};
+    experiment.finding = fmt::format(
+        "Where corners' normals are {} degrees apart, the interpolated normal without "
+        "normalization gives light with an RMS error of {:.2g} (at most {:.2g}), where the "
+        "brightest light is {:.2g}; one Newton step reduces the RMS error to {:.2g}, a square root "
+        "to {:.1g}.",
+        degrees, experiment.measurements[0].error.rms, experiment.measurements[0].error.max,
+        samples.brightest(), experiment.measurements[1].error.rms,
+        experiment.measurements[2].error.rms);
+    return experiment;
+}
+
+}  // namespace relief

@@ -1,0 +1,582 @@
+// SPDX-License-Identifier: Apache-2.0
+// Measures normals, tangents and bump maps while their input grows or shrinks by powers of ten. The
+// ground truth stays known in closed form. Textbook code without guards is measured for contrast.
+#include "stability_experiments.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <map>
+
+#include "bump_experiments.h"
+#include "error_metrics.h"
+#include "experiment_driver.h"
+#include "normals_experiments.h"
+#include "relief/mesh/direction_error.h"
+#include "report_names.h"
+#include "stability_inputs.h"
+#include "tangent_methods.h"
+
+namespace relief {
+namespace {
+
+/// A larger RMS error than this is a failure.
+constexpr double broken_degrees = 1.0;
+
+/// Lists the methods that fail from each value on.
+std::string breaks_of(const Chart& chart) {
+    std::map<double, std::vector<std::string>> broken;
+    for (const Curve& curve : chart.curves) {
+        if (curve.breaks_at) broken[*curve.breaks_at].push_back(curve.method);
+    }
+    std::string text = fmt::format("{} ({}): ", chart.title, chart.x_label);
+    if (broken.empty()) return text + "all are within the limit";
+    std::size_t count = 0;
+    for (const auto& [value, methods] : broken) {
+        count += methods.size();
+        const bool is_many = methods.size() > 4;
+        text += is_many ? fmt::format("{} methods", methods.size())
+                        : fmt::format("{}", fmt::join(methods, " and "));
+        // Small values are counts, which are not written as powers of ten.
+        const std::string where =
+            value < 1e4 ? fmt::format("{:g}", value) : fmt::format("{:.0e}", value);
+        text += fmt::format(" fail{} from {} on, ", methods.size() == 1 ? "s" : "", where);
+    }
+    if (count == chart.curves.size()) return text + "none is within the limit everywhere";
+    return text + "all others are within the limit";
+}
+
+}  // namespace
+
+Sweeps::Sweeps(std::vector<std::string> methods, double bound)
+    : methods_(std::move(methods)), bound_(bound), degrees_(methods_.size()) {}
+
+void Sweeps::add(const std::string& id, const std::string& title, const std::string& x_label,
+                 int decades, int step, const Errors& errors) {
+    Chart chart{.id = id,
+                .title = title,
+                .x_label = x_label,
+                .y_label = "RMS error, degrees",
+                .bound = bound_};
+    for (std::size_t method = 0; method < methods_.size(); ++method) {
+        Curve curve{.method = methods_[method]};
+        for (int decade = 0; decade <= decades; decade += step) {
+            const double value = std::pow(10.0, decade);
+            const std::vector<float> degrees = errors(method, value);
+            degrees_[method].insert(degrees_[method].end(), degrees.begin(), degrees.end());
+            const double error = curve_error(angle_distribution(degrees));
+            curve.points.push_back({value, error});
+            if (!curve.breaks_at && !(error <= bound_)) curve.breaks_at = value;
+        }
+        chart.curves.push_back(std::move(curve));
+    }
+    charts_.push_back(std::move(chart));
+}
+
+ErrorFigures Sweeps::figures(std::size_t method) const {
+    return figures_of(angle_distribution(degrees_[method]));
+}
+
+std::string Sweeps::breaks() const {
+    std::string text;
+    for (const Chart& chart : charts_)
+        text += (text.empty() ? "" : ". ") + breaks_of(chart);
+    return text + ".";
+}
+
+namespace {
+
+template <typename Method>
+struct Swept {
+    Method method;
+    bool is_textbook = false;  ///< Code without guards, measured for contrast.
+};
+
+/// Adds a measurement of each method with its errors in all sweeps and its time on one thread, the
+/// charts, and the values at which methods fail.
+///
+/// \param methods  in the order of the sweeps
+void measure_swept(std::vector<Swept<MeasuredMethod>> methods, const Sweeps& sweeps,
+                   const RunOptions& options, Experiment& experiment) {
+    std::vector<MeasuredMethod> measured;
+    for (std::size_t i = 0; i < methods.size(); ++i) {
+        MeasuredMethod& method = measured.emplace_back(std::move(methods[i].method));
+        const bool is_textbook = methods[i].is_textbook;
+        method.error = sweeps.figures(i);
+        method.choices.emplace_back("guarded", is_textbook ? "no" : "yes");
+        if (is_textbook) method.note = "Not of relief: what plain code does, for contrast.";
+    }
+    experiment.error_unit = "degrees";
+    measure_methods(measured, options, {.all_threads = false, .memory = false}, experiment);
+    experiment.charts = sweeps.charts();
+    experiment.finding = fmt::format("A method fails where its RMS error exceeds {} degree. {}",
+                                     broken_degrees, sweeps.breaks());
+}
+
+constexpr const char* torus_ground_truth =
+    "the torus's own normals in closed form, which neither scale nor place change; tests "
+    "differentiate the surface numerically as well";
+constexpr std::uint32_t torus_seed = 1;
+constexpr std::uint32_t needles_seed = 1;
+
+int torus_cells(const RunOptions& options) {
+    return options.is_quick ? 32 : 64;
+}
+
+AnalyticMesh swept_torus(const RunOptions& options) {
+    return analytic_mesh(AnalyticSurface::torus, Triangulation::regular, torus_cells(options),
+                         torus_seed);
+}
+
+using SweptNormals = Swept<NormalMethod>;
+
+SweptNormals textbook_normals(const char* name, std::vector<glm::vec3> (*normals)(const Mesh&)) {
+    NormalMethod method;
+    method.weighting = name;
+    method.arithmetic = Arithmetic::float32;
+    method.normals = normals;
+    return {std::move(method), true};
+}
+
+/// The methods of the library in both arithmetics, and textbook code.
+std::vector<SweptNormals> swept_normal_methods() {
+    std::vector<SweptNormals> methods;
+    for (NormalMethod& method : normal_methods(both_arithmetics))
+        methods.push_back({std::move(method)});
+    methods.push_back(textbook_normals("plain area", textbook_area_normals));
+    methods.push_back(textbook_normals("plain angle", textbook_angle_normals));
+    return methods;
+}
+
+std::vector<std::string> names_of(const std::vector<SweptNormals>& methods) {
+    std::vector<std::string> names;
+    for (const SweptNormals& one : methods)
+        names.push_back(one.method.name());
+    return names;
+}
+
+/// The errors of the first normals; `normals` may have more elements than `ground_truth`.
+std::vector<float> normal_degrees(const std::vector<glm::vec3>& normals,
+                                  const std::vector<glm::dvec3>& ground_truth) {
+    std::vector<float> degrees;
+    for (std::size_t v = 0; v < ground_truth.size(); ++v)
+        degrees.push_back(
+            static_cast<float>(degrees_between(glm::dvec3(normals[v]), ground_truth[v])));
+    return degrees;
+}
+
+/// Measures all methods; times are those on `mesh`.
+void measure_normals(const std::vector<SweptNormals>& methods, const Sweeps& sweeps,
+                     const Mesh& mesh, const RunOptions& options, Experiment& experiment) {
+    std::vector<Swept<MeasuredMethod>> swept;
+    for (const auto& [method, is_textbook] : methods) {
+        swept.push_back({{.name = method.name(),
+                          .choices = method.choices(),
+                          .error = {},
+                          .work = [&mesh, normals = method.normals] { normals(mesh); }},
+                         is_textbook});
+    }
+    experiment.item = "triangle";
+    experiment.items = static_cast<double>(mesh.triangles.size());
+    measure_swept(std::move(swept), sweeps, options, experiment);
+}
+
+/// Scales and moves positions or texture coordinates in double, then rounds them to float, as a
+/// file would.
+struct Change {
+    double scale = 1.0;
+    double offset = 0.0;
+
+    template <typename Vector>
+    void apply(std::vector<Vector>& values) const {
+        for (Vector& value : values) {
+            for (glm::length_t i = 0; i < Vector::length(); ++i)
+                value[i] = static_cast<float>(static_cast<double>(value[i]) * scale + offset);
+        }
+    }
+};
+
+Mesh with_positions(Mesh mesh, const Change& change) {
+    change.apply(mesh.positions);
+    return mesh;
+}
+
+}  // namespace
+
+Experiment normals_by_scale(const RunOptions& options) {
+    const AnalyticMesh ground_truth = swept_torus(options);
+    const std::vector<SweptNormals> methods = swept_normal_methods();
+    Sweeps sweeps(names_of(methods), broken_degrees);
+    const auto scaled = [&](bool is_larger) {
+        return [&, is_larger](std::size_t method, double value) {
+            const Mesh mesh =
+                with_positions(ground_truth.mesh, {.scale = is_larger ? value : 1.0 / value});
+            return normal_degrees(methods[method].method.normals(mesh), ground_truth.normals);
+        };
+    };
+    sweeps.add("smaller", "Smaller", "times smaller than radius 1", 30, 2, scaled(false));
+    sweeps.add("larger", "Larger", "times larger than radius 1", 30, 2, scaled(true));
+    Experiment experiment{
+        .id = "stability/normals-scale",
+        .question = "In which units may a mesh be, before its normals are wrong?",
+        .truth = torus_ground_truth,
+        .input = fmt::format("torus of {} triangles at 31 scales from 1e-30 to 1e30; errors of all "
+                             "together, times at scale 1",
+                             ground_truth.mesh.triangles.size())};
+    measure_normals(methods, sweeps, ground_truth.mesh, options, experiment);
+    return experiment;
+}
+
+Experiment normals_by_offset(const RunOptions& options) {
+    const AnalyticMesh ground_truth = swept_torus(options);
+    const std::vector<SweptNormals> methods = swept_normal_methods();
+    Sweeps sweeps(names_of(methods), broken_degrees);
+    sweeps.add("offset", "Farther away", "distance along each axis, in radii of the torus", 8, 1,
+               [&](std::size_t method, double value) {
+                   const Mesh mesh = with_positions(ground_truth.mesh, {.offset = value});
+                   return normal_degrees(methods[method].method.normals(mesh),
+                                         ground_truth.normals);
+               });
+    Experiment experiment{
+        .id = "stability/normals-offset",
+        .question = "How far from the origin may a mesh be, before its normals are wrong?",
+        .truth = torus_ground_truth,
+        .input = fmt::format("torus of {} triangles at 9 distances from 1 to 1e8; errors of all "
+                             "together, times without one",
+                             ground_truth.mesh.triangles.size())};
+    measure_normals(methods, sweeps, ground_truth.mesh, options, experiment);
+    experiment.finding +=
+        " float64 is exact for the positions that it is given: what it errs is what rounding these "
+        "to float has done, which no method can undo. Move meshes to the origin before they are "
+        "stored.";
+    return experiment;
+}
+
+Experiment normals_of_needles(const RunOptions& options) {
+    const std::size_t count = options.is_quick ? 1000 : 4000;
+    const std::vector<SweptNormals> methods = swept_normal_methods();
+    Sweeps sweeps(names_of(methods), broken_degrees);
+    sweeps.add(
+        "width", "Narrower", "length over width", 12, 1, [&](std::size_t method, double value) {
+            const Needles needles = make_needles(count, 1.0 / value, needles_seed);
+            return normal_degrees(methods[method].method.normals(needles.mesh), needles.normals);
+        });
+    const Needles wide = make_needles(count, 1.0, needles_seed);
+    Experiment experiment{
+        .id = "stability/normals-needles",
+        .question = "How narrow may a triangle be, before its normal is wrong?",
+        .truth =
+            "the cross product of the float corners in double, of two of which lie so near "
+            "the origin that nothing cancels; a test has the same from integers",
+        .input = fmt::format("{} single triangles at 13 widths from 1 to 1e-12 of their length; "
+                             "errors of all together, times at width 1",
+                             count)};
+    measure_normals(methods, sweeps, wide.mesh, options, experiment);
+    return experiment;
+}
+
+Experiment normals_beside_hard_triangles(const RunOptions& options) {
+    const AnalyticMesh ground_truth = swept_torus(options);
+    const std::vector<SweptNormals> methods = swept_normal_methods();
+    Sweeps sweeps(names_of(methods), broken_degrees);
+    for (const HardTriangleName& one : hard_triangle_names) {
+        sweeps.add(
+            one.id, one.title, "how many of them", 3, 1, [&](std::size_t method, double count) {
+                const Mesh mesh = with_hard_triangles(ground_truth.mesh, one.kind,
+                                                      static_cast<std::size_t>(count));
+                return normal_degrees(methods[method].method.normals(mesh), ground_truth.normals);
+            });
+    }
+    Experiment experiment{
+        .id = "stability/normals-hard-triangles",
+        .question =
+            "How many triangles of the hard-case catalogue may a mesh have, before the "
+            "normals around them are wrong?",
+        .truth = fmt::format("{}; what is added has no area, no place or two sides, and so is no "
+                             "part of the surface",
+                             torus_ground_truth),
+        .input = fmt::format("torus of {} triangles with 1 to 1000 hard ones more, of five kinds; "
+                             "errors of all together, times without them",
+                             ground_truth.mesh.triangles.size())};
+    measure_normals(methods, sweeps, ground_truth.mesh, options, experiment);
+    return experiment;
+}
+
+namespace {
+
+using SweptTangents = Swept<TangentMethod>;
+
+/// The methods with stored tangents, and textbook code.
+std::vector<SweptTangents> swept_tangent_methods() {
+    std::vector<SweptTangents> methods;
+    for (TangentMethod& method : tangent_methods()) {
+        if (method.tangents) methods.push_back({std::move(method)});
+    }
+    methods.push_back({{"plain", textbook_tangents}, true});
+    return methods;
+}
+
+std::vector<std::string> names_of(const std::vector<SweptTangents>& methods) {
+    std::vector<std::string> names;
+    for (const SweptTangents& one : methods)
+        names.push_back(one.method.name);
+    return names;
+}
+
+TexturedMesh textured_torus(const RunOptions& options) {
+    return textured_mesh(AnalyticSurface::torus, Triangulation::regular, TextureLayout::upright,
+                         torus_cells(options), 1);
+}
+
+/// The errors of a method on a mesh with changed positions and texture coordinates.
+std::vector<float> tangent_degrees(const TangentMethod& method, const TexturedMesh& ground_truth,
+                                   const Change& positions, const Change& texcoords) {
+    Mesh mesh = ground_truth.mesh;
+    positions.apply(mesh.positions);
+    texcoords.apply(mesh.texcoords);
+    const CornerTangents actual = method.tangents_of(mesh);
+    const CornerTangents expected = exact_tangents(ground_truth);
+    std::vector<float> degrees;
+    for (std::size_t corner = 0; corner < actual.size(); ++corner) {
+        const std::uint32_t vertex =
+            ground_truth.mesh.triangles[corner / 3][static_cast<glm::length_t>(corner % 3)];
+        if (ground_truth.inner[vertex] == 0) continue;
+        degrees.push_back(static_cast<float>(
+            degrees_between(glm::dvec3(actual[corner]), glm::dvec3(expected[corner]))));
+    }
+    return degrees;
+}
+
+void measure_tangents(const std::vector<SweptTangents>& methods, const Sweeps& sweeps,
+                      const TexturedMesh& ground_truth, const RunOptions& options,
+                      Experiment& experiment) {
+    experiment.truth =
+        "the directions along which the image lies on the torus, in closed form, which neither "
+        "scale nor place change; tests differentiate the surface numerically as well";
+    std::vector<Swept<MeasuredMethod>> swept;
+    for (const auto& [method, is_textbook] : methods) {
+        swept.push_back(
+            {{.name = method.name,
+              .choices = {{"frames", method.name}},
+              .error = {},
+              .work = [&ground_truth, tangents = method.tangents] { tangents(ground_truth.mesh); }},
+             is_textbook});
+    }
+    experiment.item = "triangle";
+    experiment.items = static_cast<double>(ground_truth.mesh.triangles.size());
+    measure_swept(std::move(swept), sweeps, options, experiment);
+}
+
+}  // namespace
+
+Experiment tangents_by_scale(const RunOptions& options) {
+    const TexturedMesh ground_truth = textured_torus(options);
+    const std::vector<SweptTangents> methods = swept_tangent_methods();
+    Sweeps sweeps(names_of(methods), broken_degrees);
+    const auto add = [&](const char* id, const char* title, const char* label, bool is_image,
+                         bool is_larger) {
+        sweeps.add(id, title, label, 30, 2, [&, is_image, is_larger](std::size_t i, double value) {
+            const Change change{.scale = is_larger ? value : 1.0 / value};
+            return is_image ? tangent_degrees(methods[i].method, ground_truth, {}, change)
+                            : tangent_degrees(methods[i].method, ground_truth, change, {});
+        });
+    };
+    add("smaller", "Smaller meshes", "times smaller than radius 1", false, false);
+    add("larger", "Larger meshes", "times larger than radius 1", false, true);
+    add("smaller-image", "Smaller texture coordinates", "times smaller than one image", true,
+        false);
+    add("larger-image", "Larger texture coordinates", "times larger than one image", true, true);
+    Experiment experiment{
+        .id = "stability/tangents-scale",
+        .question =
+            "In which units may a mesh and its texture coordinates be, before tangents are "
+            "wrong?",
+        .input = fmt::format("torus of {} triangles, its positions and its texture coordinates at "
+                             "31 scales each from 1e-30 to 1e30; errors of all together, times at "
+                             "scale 1",
+                             ground_truth.mesh.triangles.size())};
+    measure_tangents(methods, sweeps, ground_truth, options, experiment);
+    return experiment;
+}
+
+Experiment tangents_by_offset(const RunOptions& options) {
+    const TexturedMesh ground_truth = textured_torus(options);
+    const std::vector<SweptTangents> methods = swept_tangent_methods();
+    Sweeps sweeps(names_of(methods), broken_degrees);
+    sweeps.add("offset", "Meshes farther away", "distance along each axis, in radii", 8, 1,
+               [&](std::size_t i, double value) {
+                   return tangent_degrees(methods[i].method, ground_truth, {.offset = value}, {});
+               });
+    sweeps.add("offset-image", "Texture coordinates farther away",
+               "distance along each axis, in images", 8, 1, [&](std::size_t i, double value) {
+                   return tangent_degrees(methods[i].method, ground_truth, {}, {.offset = value});
+               });
+    Experiment experiment{
+        .id = "stability/tangents-offset",
+        .question =
+            "How far from the origin may a mesh and its texture coordinates be, before "
+            "tangents are wrong?",
+        .input = fmt::format("torus of {} triangles, its positions and its texture coordinates at "
+                             "9 distances each from 1 to 1e8; errors of all together, times "
+                             "without one",
+                             ground_truth.mesh.triangles.size())};
+    measure_tangents(methods, sweeps, ground_truth, options, experiment);
+    return experiment;
+}
+
+namespace {
+
+constexpr double swept_wavelength = 32.0;
+
+/// One way to compute unit normals from heights.
+struct SlopeMethod {
+    std::string name;
+    std::vector<std::pair<std::string, std::string>> choices;
+    std::function<Image(const WaveMap& wave)> normals;
+    bool is_textbook = false;
+};
+
+SlopeMethod by_kernel(Kernel kernel, Arithmetic arithmetic) {
+    const std::string name = name_of(kernel, 0);
+    return {fmt::format("{}, {}", name, name_of(arithmetic)),
+            {{"kernel", name}, {"arithmetic", name_of(arithmetic)}},
+            [=](const WaveMap& wave) {
+                BumpOptions options = wave.options;
+                options.kernel = kernel;
+                options.arithmetic = arithmetic;
+                Report report;
+                return normals_from_height(wave.heights, options, report);
+            }};
+}
+
+std::vector<SlopeMethod> swept_slope_methods() {
+    std::vector<SlopeMethod> methods;
+    for (const Kernel kernel : {Kernel::sobel3, Kernel::central7}) {
+        for (const Arithmetic arithmetic : {Arithmetic::float64, Arithmetic::float32})
+            methods.push_back(by_kernel(kernel, arithmetic));
+    }
+    methods.push_back({"plain sobel3",
+                       {{"kernel", "sobel3"}, {"arithmetic", "float32"}},
+                       [](const WaveMap& wave) {
+                           return textbook_sobel_normals(wave.heights,
+                                                         static_cast<float>(wave.options.strength));
+                       },
+                       true});
+    return methods;
+}
+
+std::vector<std::string> names_of(const std::vector<SlopeMethod>& methods) {
+    std::vector<std::string> names;
+    for (const SlopeMethod& method : methods)
+        names.push_back(method.name);
+    return names;
+}
+
+int map_side(const RunOptions& options) {
+    return (options.is_quick ? 64 : 192) + 2 * wave_margin;
+}
+
+std::vector<float> slope_degrees(const SlopeMethod& method, const WaveMap& wave) {
+    return inner_angles(method.normals(wave), wave.normals, wave_margin);
+}
+
+/// The wave with its heights multiplied by `times`.
+WaveMap steeper(WaveMap wave, double times) {
+    wave.options.strength *= times;
+    for (glm::dvec3& normal : wave.normals)
+        normal = glm::normalize(normal * glm::dvec3(times, times, 1.0));
+    return wave;
+}
+
+/// The wave with `by` added to its heights in double, then rounded to float, as a file would.
+WaveMap higher(WaveMap wave, double by) {
+    for (float& texel : wave.heights.as<float>())
+        texel = static_cast<float>(double{texel} + by);
+    return wave;
+}
+
+/// Measures all methods; times are those on `wave`.
+void measure_slopes(const std::vector<SlopeMethod>& methods, const Sweeps& sweeps,
+                    const WaveMap& wave, const RunOptions& options, Experiment& experiment) {
+    std::vector<Swept<MeasuredMethod>> swept;
+    for (const SlopeMethod& method : methods) {
+        swept.push_back({{.name = method.name,
+                          .choices = method.choices,
+                          .error = {},
+                          .work = [&wave, normals = method.normals] { normals(wave); }},
+                         method.is_textbook});
+    }
+    experiment.item = "texel";
+    experiment.items = static_cast<double>(wave.normals.size());
+    measure_swept(std::move(swept), sweeps, options, experiment);
+}
+
+}  // namespace
+
+Experiment bump_by_steepness(const RunOptions& options) {
+    const WaveMap wave = oblique_wave(map_side(options), swept_wavelength, 32);
+    const std::vector<SlopeMethod> methods = swept_slope_methods();
+    Sweeps sweeps(names_of(methods), broken_degrees);
+    sweeps.add("steeper", "Steeper", "slope", 30, 2, [&](std::size_t method, double value) {
+        return slope_degrees(methods[method], steeper(wave, value));
+    });
+    sweeps.add("flatter", "Flatter", "1 / slope", 30, 2, [&](std::size_t method, double value) {
+        return slope_degrees(methods[method], steeper(wave, 1.0 / value));
+    });
+    Experiment experiment{
+        .id = "stability/bump-steepness",
+        .question = "How steep or flat may a height map be, before its normals are wrong?",
+        .truth =
+            "the wave's slopes in closed form, times the same factor; tests differentiate it "
+            "numerically as well",
+        .input = fmt::format("{0} x {0} texels of a wave {1} texels long, at 31 slopes from 1e-30 "
+                             "to 1e30; errors of all together, times at slope 1",
+                             map_side(options), swept_wavelength)};
+    measure_slopes(methods, sweeps, wave, options, experiment);
+    return experiment;
+}
+
+Experiment bump_by_offset(const RunOptions& options) {
+    const WaveMap wave = oblique_wave(map_side(options), swept_wavelength, 32);
+    const std::vector<SlopeMethod> methods = swept_slope_methods();
+    Sweeps sweeps(names_of(methods), broken_degrees);
+    sweeps.add("offset", "Higher", "height above zero, texels", 8, 1,
+               [&](std::size_t method, double value) {
+                   return slope_degrees(methods[method], higher(wave, value));
+               });
+    Experiment experiment{
+        .id = "stability/bump-offset",
+        .question = "How far above zero may heights lie, before their normals are wrong?",
+        .truth =
+            "the wave's slopes in closed form, which its zero does not change; tests "
+            "differentiate it numerically as well",
+        .input =
+            fmt::format("{0} x {0} texels of a wave {1} texels long and 10 high, slope 1, at 9 "
+                        "heights from 1 to 1e8; errors of all together, times at 0",
+                        map_side(options), swept_wavelength)};
+    measure_slopes(methods, sweeps, wave, options, experiment);
+    experiment.finding +=
+        " What double errs is what rounding these heights to float has done, which no method can "
+        "undo: store heights from their own zero.";
+    return experiment;
+}
+
+std::vector<Experiment> stability_experiments(const RunOptions& options) {
+    const std::vector<PlannedExperiment> plan = {
+        {"Normals: scale", [&] { return normals_by_scale(options); }},
+        {"Normals: distance from the origin", [&] { return normals_by_offset(options); }},
+        {"Normals: needles", [&] { return normals_of_needles(options); }},
+        {"Normals: hard triangles", [&] { return normals_beside_hard_triangles(options); }},
+        {"Tangents: scale", [&] { return tangents_by_scale(options); }},
+        {"Tangents: distance from the origin", [&] { return tangents_by_offset(options); }},
+        {"Bump: steepness", [&] { return bump_by_steepness(options); }},
+        {"Bump: height above zero", [&] { return bump_by_offset(options); }}};
+    std::vector<Experiment> experiments = run_planned(plan, options);
+    for (Experiment& experiment : experiments) {
+        experiment.subject = Subject::stability;
+        experiment.finding += " Single hard inputs, each with its outcome: docs/hard-cases.md.";
+    }
+    return experiments;
+}
+
+}  // namespace relief

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// Experiments on storage: unit normals of maps, and tangent frames of vertices, in few bits.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <glm/glm.hpp>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "experiment_driver.h"
+#include "relief/accuracy/experiment.h"
+#include "relief/mesh/angle_distribution.h"
+#include "relief/mesh/frame_encoding.h"
+#include "relief/mesh/image.h"
+
+namespace relief {
+
+/// One way to encode and decode the normals of a map.
+struct NormalCode {
+    std::string name;  ///< "xyz 8 bit, blue-noise"
+    std::vector<std::pair<std::string, std::string>> choices;
+    double bytes = 0.0;  ///< Per texel, in an existing texture format.
+    /// Takes three float channels with unit normals. Dithering depends on the position of a texel.
+    std::function<Image(const Image& normals)> encode;
+    std::function<Image(const Image& codes)> decode;
+    /// Arguments of relief-bake convert that write this code; empty if it cannot.
+    std::string file_and_options{};
+
+    [[nodiscard]] Image stored(const Image& normals) const { return decode(encode(normals)); }
+};
+
+/// x, y, z in 8, 10 and 16 bits, half and float (stored as (n + 1) / 2); x and y alone; octahedral
+/// in 2 x 8 to 2 x 16 bits, rounded to the nearest code of each coordinate or to the best of four;
+/// and with dithering for the codes that relief dithers.
+std::vector<NormalCode> normal_codes();
+
+/// Rounds directions to float as the texels of a map. \throws InvalidInput if the rows are not full
+Image image_of_normals(std::span<const glm::dvec3> directions, int width);
+
+/// The normals of a smooth surface of waves, row by row, y up. Its slopes change by an 8-bit code
+/// only every few texels, which is hard for codes.
+std::vector<glm::dvec3> smooth_surface(int side);
+
+/// The angles between sums of normals over squares of `block` texels and the exact sums, in
+/// degrees. A mip level or the eye averages a patch in the same way.
+/// \param ground_truth  of the same size; `block` divides it
+AngleDistribution patch_errors(const Image& normals, const Image& ground_truth, int block);
+
+/// Frames before and after rounding to float; the error of float itself therefore counts.
+struct SampleFrames {
+    std::vector<glm::dvec3> normals;  ///< Unit.
+    std::vector<glm::dvec3> tangents;
+    std::vector<glm::vec3> float_normals;
+    std::vector<glm::vec4> float_tangents;  ///< Alternately right- and left-handed.
+};
+
+/// Frames from equally many normals and tangents.
+SampleFrames sample_frames(std::span<const glm::dvec3> normals,
+                           std::span<const glm::dvec3> tangents);
+
+/// Directions on a spiral of equal areas from (0, 0, 1) to (0, 0, -1).
+std::vector<glm::dvec3> even_directions(std::size_t count);
+
+/// Frames at even_directions(); the tangents rotate around the normals in another rhythm.
+SampleFrames even_frames(std::size_t count);
+
+/// Angles to the frames in double, in degrees.
+struct FrameCodeErrors {
+    AngleDistribution normal;
+    AngleDistribution tangent;
+    AngleDistribution both;          ///< Normals and tangents together.
+    AngleDistribution texel;         ///< Normals of texels tilted by 30 degrees.
+    std::size_t flipped_frames = 0;  ///< Number of frames whose handedness changed.
+};
+
+/// Encodes and decodes frames, and computes their errors.
+FrameCodeErrors frame_code_errors(const SampleFrames& ground_truth, FrameEncoding encoding,
+                                  FrameRounding rounding);
+
+/// The errors of decoded frames.
+FrameCodeErrors frame_errors(const SampleFrames& ground_truth, const Frames& actual);
+
+/// An encoding with a rounding mode.
+struct FrameCode {
+    FrameEncoding encoding = FrameEncoding::float32;
+    FrameRounding rounding = FrameRounding::nearest;
+
+    [[nodiscard]] std::string rounding_name() const;
+    /// Name, choices, bytes, and errors on these frames, without work to time.
+    [[nodiscard]] MeasuredMethod measured(const SampleFrames& frames) const;
+};
+
+/// Every encoding with both rounding modes.
+std::vector<FrameCode> all_frame_codes();
+
+/// Runs the four experiments below.
+std::vector<Experiment> storage_experiments(const RunOptions& options);
+
+/// Unit normals in maps and vertex buffers: their errors, and the time of decoding.
+Experiment normal_reading_experiment(const RunOptions& options);
+
+/// A smooth surface: the time of encoding, and the effect of dithering on the mean of a patch.
+Experiment normal_writing_experiment(const RunOptions& options);
+
+/// Tangent frames in vertex buffers: their errors, and the time of decoding.
+Experiment frame_reading_experiment(const RunOptions& options);
+
+/// Tangent frames in vertex buffers: the time of encoding.
+Experiment frame_writing_experiment(const RunOptions& options);
+
+}  // namespace relief

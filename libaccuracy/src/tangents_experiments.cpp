@@ -1,0 +1,379 @@
+// SPDX-License-Identifier: Apache-2.0
+// Measures tangent methods by the normal that a tilted texel stands for in each basis, compared
+// with the frames of the surface in closed form.
+#include "tangents_experiments.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+#include "experiment_driver.h"
+#include "relief/accuracy/passes.h"
+#include "relief/mesh/analytic_heights.h"
+#include "relief/mesh/bump.h"
+#include "relief/mesh/frames.h"
+#include "relief/mesh/shapes.h"
+#include "rendered_methods.h"
+#include "tangent_methods.h"
+
+namespace relief {
+namespace {
+
+constexpr std::array rendered_slices = {24, 96, 384};
+constexpr int middle_slices = 96;
+
+struct FrameChoice {
+    const char* frames;
+    TangentFrame frame;
+    double stored_bytes;  ///< Per vertex: normal, tangent and w as floats, or only the normal.
+};
+constexpr std::array frame_choices = {FrameChoice{"stored", TangentFrame::stored, 28.0},
+                                      FrameChoice{"derived", TangentFrame::derivatives, 12.0}};
+
+/// Waves of at least a quarter of the map, so that its smaller mip levels lose nothing.
+Image wavy_normals() {
+    constexpr int side = 64;
+    const AnalyticHeights field =
+        wave_heights(side, side, tiling_waves(side, side, 12, side / 4.0, 0.5, 1));
+    Report report;
+    BumpOptions bump;
+    bump.strength = 1.0;
+    bump.wrap = Wrap::repeat;
+    return normal_map_from_height(field.heights, bump, {.bits = 8}, report);
+}
+
+/// Repeats the texture so that texels are square halfway between the inner and outer equator.
+Mesh repeating_torus(int around, TangentFrame frame) {
+    Mesh mesh = make_torus(0.4F, around, around / 2);
+    for (glm::vec2& texcoord : mesh.texcoords)
+        texcoord *= glm::vec2(5.0F, 2.0F);
+    if (frame == TangentFrame::derivatives) return mesh;
+    Report report;
+    return with_frames(std::move(mesh), {.tangents = TangentMode::mikktspace}, report).mesh;
+}
+
+Scene bumpy_torus(int around, TangentFrame frame) {
+    Material material = glossy_plastic();
+    material.tangent_frame = frame;
+    Scene scene = bumpy_scene(repeating_torus(around, frame), material, wavy_normals());
+    scene.camera = torus_camera();
+    return scene;
+}
+
+std::vector<RenderedMethod> frame_methods() {
+    std::vector<RenderedMethod> all;
+    for (const FrameChoice& choice : frame_choices) {
+        for (const int around : rendered_slices) {
+            all.push_back({name_on_torus(choice.frames, around),
+                           {{"frames", choice.frames},
+                            {"triangles", fmt::format("{}", torus_triangles(around))}},
+                           bumpy_torus(around, choice.frame),
+                           1,
+                           1,
+                           choice.stored_bytes});
+        }
+    }
+    RenderedMethod smooth{
+        name_on_torus("no normal map", middle_slices),
+        {{"frames", "none"}, {"triangles", fmt::format("{}", torus_triangles(middle_slices))}},
+        bumpy_torus(middle_slices, TangentFrame::derivatives),
+        1,
+        1,
+        12.0,
+        "What a frame takes before there is a map to read."};
+    smooth.scene.materials.front().normal_map.reset();
+    all.push_back(std::move(smooth));
+    return all;
+}
+
+std::string frames_finding(const Experiment& experiment) {
+    const auto at = [&](const char* frames, int around) -> const Measurement& {
+        return method_in(experiment, name_on_torus(frames, around));
+    };
+    return fmt::format(
+               "With {} triangles pictures are off by FLIP {:.3f} (RMS) with stored frames and "
+               "{:.3f} with derived ones, with {} by {:.3f} and {:.3f}.",
+               torus_triangles(rendered_slices[0]), at("stored", rendered_slices[0]).error.rms,
+               at("derived", rendered_slices[0]).error.rms, torus_triangles(rendered_slices[2]),
+               at("stored", rendered_slices[2]).error.rms,
+               at("derived", rendered_slices[2]).error.rms) +
+           frame_times({{fmt::format("stored, {} triangles", torus_triangles(middle_slices)),
+                         at("stored", middle_slices)},
+                        {fmt::format("derived, {} triangles", torus_triangles(middle_slices)),
+                         at("derived", middle_slices)},
+                        {"no normal map", at("no normal map", middle_slices)}});
+}
+
+}  // namespace
+
+Experiment rendered_frames_experiment(const GlDevice& device, const RunOptions& options) {
+    const int size = options.is_quick ? 160 : 320;
+    Experiment experiment{
+        .id = "tangents/drawn",
+        .subject = Subject::tangents,
+        .question = "What do frames that shaders derive cost, where stored ones cost memory?",
+        .truth = fmt::format(
+            "the reference shader in double on a torus of {} triangles with MikkTSpace's tangents, "
+            "one ray through the centre of each pixel; tests hold that shader to closed forms",
+            torus_triangles(smooth_torus_slices)),
+        .input = fmt::format("torus with a normal map of waves, {0} x {0} pixels", size),
+        .error_unit = "FLIP",
+        .item = "pixel",
+        .items = static_cast<double>(size) * size};
+    if (!device.is_available_for(experiment)) return experiment;
+    const Image ground_truth =
+        supersampled_reference(bumpy_torus(smooth_torus_slices, TangentFrame::stored), size, 1);
+    const std::vector<RenderedMethod> all = frame_methods();
+    const std::vector<RenderedImage> pictures =
+        measure_rendered(device, all, ground_truth, options, experiment);
+    std::vector<std::string> names;
+    for (const FrameChoice& choice : frame_choices)
+        names.emplace_back(choice.frames);
+    experiment.charts = {torus_chart(experiment, names, rendered_slices)};
+    for (std::size_t i = 0; i < all.size(); i += rendered_slices.size()) {
+        add_images("A normal map on few triangles", all[i], pictures[i], ground_truth, 0.5,
+                   experiment);
+    }
+    mark_efficient(experiment);
+    experiment.finding = frames_finding(experiment);
+    return experiment;
+}
+
+namespace {
+
+constexpr int cells_of_tangent_tables = 64;  ///< The same number as in docs/tangents.md.
+constexpr const char* ground_truth_text =
+    "The surface's own frames in closed form, by which its image is laid on it; tests "
+    "differentiate the surface numerically as well.";
+
+/// All methods; the first one also with a shader that normalizes its vectors.
+std::vector<TangentMethod> compared_tangent_methods() {
+    std::vector<TangentMethod> methods = tangent_methods();
+    methods.insert(methods.begin() + 1, made_unit(methods.front()));
+    return methods;
+}
+
+std::vector<std::pair<std::string, std::string>> choices_of(const TangentMethod& method) {
+    const std::string frames = method.name.substr(0, method.name.find(','));
+    switch (method.basis) {
+        case ShaderBasis::made_unit:
+            return {{"frames", frames}, {"shader", "made unit"}};
+        case ShaderBasis::derived:
+            return {{"frames", frames}, {"shader", "derived"}};
+        default:
+            return {{"frames", frames}, {"shader", "as interpolated"}};
+    }
+}
+
+/// Normal, tangent and w as floats; without a tangent only the normal.
+double stored_bytes_of(const TangentMethod& method) {
+    return method.tangents ? 28.0 : 12.0;
+}
+
+MeasuredMethod exact_frames(const TexturedMesh& ground_truth) {
+    MeasuredMethod method;
+    method.name = "surface's own";
+    method.choices = {{"frames", "surface's own"}, {"shader", "as interpolated"}};
+    method.error = figures_of(
+        texel_errors(ground_truth, exact_tangents(ground_truth), ShaderBasis::as_interpolated));
+    method.stored_bytes = 28.0;
+    method.note = "No method: true frames at the vertices. What is left is interpolation's.";
+    return method;
+}
+
+std::vector<MeasuredMethod> measured_on(const TexturedMesh& ground_truth) {
+    std::vector<MeasuredMethod> measured = {exact_frames(ground_truth)};
+    for (const TangentMethod& method : compared_tangent_methods()) {
+        MeasuredMethod one;
+        one.name = method.name;
+        one.choices = choices_of(method);
+        one.error = figures_of(
+            texel_errors(ground_truth, method.tangents_of(ground_truth.mesh), method.basis));
+        one.stored_bytes = stored_bytes_of(method);
+        if (method.tangents)
+            one.work = [tangents = method.tangents, &ground_truth] { tangents(ground_truth.mesh); };
+        else
+            one.note =
+                "Nothing to compute for the mesh: shaders derive frames for each pixel. What that "
+                "takes, tangents/drawn measures.";
+        measured.push_back(std::move(one));
+    }
+    return measured;
+}
+
+/// The expected exponent of the error over the number of cells. The error of a single triangle is
+/// of first order. If the errors of opposite triangles cancel, the RMS is of second order.
+/// Anisotropic cells have no expectation: the second-order error of the interpolation dominates at
+/// these sizes.
+std::optional<double> expected_order(const TexturedCase& one, const TangentMethod& method) {
+    if (one.triangulation == Triangulation::anisotropic) return std::nullopt;
+    return one.triangulation == Triangulation::regular && method.tangents ? -2.0 : -1.0;
+}
+
+/// A chart with the errors of all methods over a varying mesh.
+Chart chart_over(const std::vector<std::pair<double, TexturedMesh>>& meshes) {
+    Chart chart;
+    chart.y_label = "RMS error, degrees";
+    for (const TangentMethod& method : compared_tangent_methods()) {
+        Curve& curve = chart.curves.emplace_back();
+        curve.method = method.name;
+        for (const auto& [x, ground_truth] : meshes) {
+            const CornerTangents tangents = method.tangents_of(ground_truth.mesh);
+            curve.points.push_back(
+                {x, curve_error(texel_errors(ground_truth, tangents, method.basis))});
+        }
+    }
+    return chart;
+}
+
+Chart cells_chart(const TexturedCase& one, bool is_quick) {
+    std::vector<std::pair<double, TexturedMesh>> meshes;
+    for (const int cells : is_quick ? std::vector{16, 32, 64} : std::vector{16, 32, 64, 128})
+        meshes.emplace_back(cells, one.mesh(cells));
+    Chart chart = chart_over(meshes);
+    chart.id = "cells";
+    chart.title = "Finer cells";
+    chart.x_label = "cells along each parameter";
+    const std::vector<TangentMethod> methods = compared_tangent_methods();
+    for (std::size_t m = 0; m < methods.size(); ++m) {
+        Curve& curve = chart.curves[m];
+        curve = fitted_curve(curve.method, curve.points, expected_order(one, methods[m]));
+    }
+    return chart;
+}
+
+Chart bevels_chart() {
+    std::vector<std::pair<double, TexturedMesh>> meshes;
+    for (const double width : {0.01, 0.02, 0.05, 0.1, 0.2, 0.5})
+        meshes.emplace_back(width, bevelled_plate(width));
+    Chart chart = chart_over(meshes);
+    chart.id = "bevels";
+    chart.title = "Wider bevels";
+    chart.x_label = "width of the bevels, half the plate's being 1";
+    return chart;
+}
+
+/// "Of stored frames mikktspace is closest, ...; frames derived in the shader are ... off."
+/// \param experiment  has the measurement of the exact frames first, then those of the methods
+std::string tangents_finding(const Experiment& experiment) {
+    const Measurement* best = nullptr;
+    const Measurement* derived = nullptr;
+    const std::vector<TangentMethod> methods = compared_tangent_methods();
+    for (std::size_t i = 0; i < methods.size(); ++i) {
+        const Measurement& one = experiment.measurements[i + 1];
+        if (methods[i].basis == ShaderBasis::derived) derived = &one;
+        if (methods[i].basis != ShaderBasis::as_interpolated) continue;
+        if (best == nullptr || one.error.rms < best->error.rms) best = &one;
+    }
+    return fmt::format(
+        "Of stored frames {} is closest, {:.3g} degrees RMS, where the surface's own would leave "
+        "{:.3g}; frames derived in the shader are {:.3g} off.",
+        best->method, best->error.rms, experiment.measurements.front().error.rms,
+        derived->error.rms);
+}
+
+Experiment on_mesh(const std::string& id, const std::string& input,
+                   const TexturedMesh& ground_truth, const CostChoice& costs,
+                   const RunOptions& options) {
+    Experiment experiment;
+    experiment.id = id;
+    experiment.subject = Subject::tangents;
+    experiment.truth = ground_truth_text;
+    experiment.input = fmt::format("{}: {} triangles", input, ground_truth.mesh.triangles.size());
+    experiment.error_unit = "degrees";
+    experiment.item = "triangle";
+    experiment.items = static_cast<double>(ground_truth.mesh.triangles.size());
+    measure_methods(measured_on(ground_truth), options, costs, experiment);
+    experiment.finding = tangents_finding(experiment);
+    return experiment;
+}
+
+Experiment on_case(const TexturedCase& one, const RunOptions& options) {
+    const TexturedMesh ground_truth = one.mesh(cells_of_tangent_tables);
+    const std::string input = one.triangulation
+                                  ? fmt::format("{}, {} x {} cells", one.name,
+                                                cells_of_tangent_tables, cells_of_tangent_tables)
+                                  : one.name;
+    Experiment experiment =
+        on_mesh("tangents/" + one.id, input, ground_truth,
+                {.one_thread = true, .all_threads = true, .memory = false}, options);
+    experiment.question = fmt::format(
+        "Where does a texel tilted by 30 degrees point, by each way of getting frames ({})?",
+        one.name);
+    experiment.charts.push_back(made_once(options, [&] {
+        return one.triangulation ? cells_chart(one, options.is_quick) : bevels_chart();
+    }));
+    return experiment;
+}
+
+Experiment tangents_on_large_mesh(const RunOptions& options) {
+    const int cells = options.is_quick ? 128 : 400;
+    const TexturedMesh ground_truth = textured_mesh(AnalyticSurface::torus, Triangulation::jittered,
+                                                    TextureLayout::upright, cells, 1);
+    Experiment experiment =
+        on_mesh("tangents/large", fmt::format("torus, jittered, {} x {} cells", cells, cells),
+                ground_truth, {}, options);
+    experiment.question = "What do tangents of a large mesh cost, in time and in memory?";
+    return experiment;
+}
+
+Experiment mismatches(const RunOptions& options) {
+    const TexturedMesh ground_truth =
+        textured_mesh(AnalyticSurface::torus, Triangulation::jittered, TextureLayout::upright,
+                      options.is_quick ? 32 : cells_of_tangent_tables, 1);
+    Experiment experiment;
+    experiment.id = "tangents/mismatch";
+    experiment.subject = Subject::tangents;
+    experiment.question = "What does a map show that is baked in one basis and read in another?";
+    experiment.truth = "The normal that was baked: in a basis of its own it comes back exactly.";
+    experiment.input =
+        fmt::format("normals tilted by 30 degrees on a jittered torus of {} triangles",
+                    ground_truth.mesh.triangles.size());
+    experiment.error_unit = "degrees";
+    experiment.item = "triangle";
+    experiment.items = static_cast<double>(ground_truth.mesh.triangles.size());
+    std::vector<MeasuredMethod> measured;
+    for (const TangentMethod& baker : compared_tangent_methods()) {
+        for (const TangentMethod& reader : compared_tangent_methods()) {
+            measured.push_back(
+                {.name = fmt::format("baked in {}, read in {}", baker.name, reader.name),
+                 .choices = {{"baked in", baker.name}, {"read in", reader.name}},
+                 .error = figures_of(mismatch_errors(ground_truth, baker, reader))});
+        }
+    }
+    measure_methods(measured, options, {}, experiment);
+    const auto by_rms = [](const Measurement& a, const Measurement& b) {
+        return a.error.rms < b.error.rms;
+    };
+    const auto& all = experiment.measurements;
+    const Measurement& worst = *std::max_element(all.begin(), all.end(), by_rms);
+    experiment.finding = fmt::format(
+        "A map read in its own basis is exact to {:.1g} degrees; the worst pair is off by {:.3g} "
+        "RMS, {:.3g} at most: {}.",
+        most_accurate(experiment)->error.rms, worst.error.rms, worst.error.max, worst.method);
+    return experiment;
+}
+
+}  // namespace
+
+std::vector<PlannedExperiment> tangents_plan(const RunOptions& options) {
+    std::vector<PlannedExperiment> plan;
+    for (const TexturedCase& one : textured_cases()) {
+        if (options.is_quick && !one.is_quick) continue;
+        plan.push_back(
+            {"Tangents: " + one.name, [&options, one] { return on_case(one, options); }});
+    }
+    plan.push_back(
+        {"Tangents: a large mesh", [&options] { return tangents_on_large_mesh(options); }});
+    plan.push_back({"Tangents: bases that differ", [&options] { return mismatches(options); }});
+    plan.push_back({"Tangents: frames stored and derived, drawn",
+                    [&options] { return rendered_frames_experiment(GlDevice(), options); }});
+    return plan;
+}
+
+std::vector<Experiment> tangents_experiments(const RunOptions& options) {
+    return run_planned(tangents_plan(options), options);
+}
+
+}  // namespace relief

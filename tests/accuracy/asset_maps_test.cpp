@@ -1,0 +1,356 @@
+// SPDX-License-Identifier: Apache-2.0
+// Experiments on height maps, normal maps and bakes with a known ground truth.
+#include "relief/accuracy/own.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+#include <vector>
+
+#include "bump_experiments.h"
+#include "experiment_checks.h"
+#include "experiment_driver.h"
+#include "relief/mesh/analytic_heights.h"
+#include "relief/mesh/bake.h"
+#include "relief/mesh/bump_fields.h"
+#include "relief/mesh/direction_error.h"
+#include "relief/mesh/error.h"
+#include "storage_experiments.h"
+#include "support/shapes.h"
+
+namespace relief {
+namespace {
+
+using test::found;
+using testing::HasSubstr;
+using testing::Not;
+using testing::SizeIs;
+
+OwnOptions untimed_map() {
+    OwnOptions options;
+    options.run.is_timed = false;
+    options.file = "map.png";
+    options.arguments = "map.png";
+    return options;
+}
+
+BumpField waves(FieldCoding coding) {
+    FieldRecipe recipe;
+    recipe.shape = FieldShape::waves;
+    recipe.shortest = 16.0;
+    recipe.coding = coding;
+    return make_bump_field(recipe, 96, 96);
+}
+
+TEST(OwnHeights, AreThoseOfTheBumpExperiment) {
+    const BumpField field = waves(FieldCoding::float32);
+    const OwnExperiment own = measure_own_heights(field.heights, field.options, untimed_map());
+    EXPECT_THAT(own.experiment.measurements, SizeIs(60));  // Kernels x arithmetics x depths.
+    BumpExperimentOptions how;
+    how.bump = field.options;
+    how.repeats = {0, 0};
+    const BumpMethod method{Kernel::sobel3, 2, Arithmetic::float32, 8, false};
+    const BumpExperiment same = measure_bump(sample_of(field.heights), std::span(&method, 1), how);
+    EXPECT_EQ(found(own, "sobel3, float32, 8 bit").error, figures_of(same.measurements[0].error));
+    // Smooth waves in floats: the kernel of the highest order, in double, is the reference.
+    EXPECT_THAT(own.recommendation.words, HasSubstr("central7, float64, 32 bit: "));
+    EXPECT_THAT(own.command(), HasSubstr("relief-bake bump map.png OUT.exr --strength "));
+    EXPECT_THAT(own.command(), HasSubstr(" --kernel central7 --precision float64 --wrap repeat"));
+    EXPECT_THAT(own.experiment.truth, HasSubstr("nothing can know exactly"));
+    EXPECT_EQ(own.experiment.reference_error, same.reference.own_degrees);
+    const ExpectedError expected = found(own, "sobel3, float32, 8 bit").expected.value();
+    EXPECT_EQ(expected.map, same.reference.own_degrees);
+    EXPECT_EQ(expected.added, found(own, "sobel3, float32, 8 bit").error.rms);
+}
+
+/// Waves in 8 bits with noise: the map itself has an error of several degrees.
+BumpField noisy_waves() {
+    FieldRecipe recipe;
+    recipe.shape = FieldShape::waves;
+    recipe.shortest = 16.0;
+    recipe.coding = FieldCoding::bits8;
+    recipe.noise = 0.1;
+    return make_bump_field(recipe, 128, 128);
+}
+
+TEST(OwnHeights, AreHeldToABoundWithTheErrorOfTheMapItself) {
+    const BumpField field = noisy_waves();
+    OwnOptions options = untimed_map();
+    options.wish.max_error = 0.5;
+    const OwnExperiment own = measure_own_heights(field.heights, field.options, options);
+    const double map_error = own.experiment.reference_error.value();
+    ASSERT_GT(map_error, 0.5) << "the field must be noisy enough for this test";
+    // Methods are within half a degree of the reference, but the reference has a larger error.
+    EXPECT_LT(most_accurate(own.experiment)->error.rms, 0.5);
+    EXPECT_EQ(own.recommendation.method, std::nullopt);
+    EXPECT_THAT(own.recommendation.words, HasSubstr("no method is within 0.5 degrees: the least "));
+    EXPECT_THAT(own.recommendation.words, HasSubstr(" (the map itself "));
+}
+
+TEST(OwnHeights, WithoutTimesAreHeldToABoundByTheFewestBytes) {
+    const BumpField field = waves(FieldCoding::bits8);
+    OwnOptions options = untimed_map();
+    options.wish.max_error = 5.0;
+    const OwnExperiment own = measure_own_heights(field.heights, field.options, options);
+    ASSERT_TRUE(own.recommendation.method.has_value()) << own.recommendation.words;
+    const Measurement& taken = own.experiment.measurements[*own.recommendation.method];
+    EXPECT_EQ(taken.cost.stored_bytes, 3.0);
+    EXPECT_THAT(taken.method, HasSubstr("float32, 8 bit"));
+}
+
+TEST(OwnHeights, OfFewBitsAreAlsoSmoothed) {
+    const BumpField field = waves(FieldCoding::bits8);
+    const OwnExperiment own = measure_own_heights(field.heights, field.options, untimed_map());
+    EXPECT_THAT(own.experiment.measurements, SizeIs(70));
+    EXPECT_GE(found(own, "scharr3, float32, 16 bit, steps smoothed").error.count, 96U * 96U);
+}
+
+TEST(OwnHeights, AreTriedInTheBitsAskedForAlone) {
+    const BumpField field = waves(FieldCoding::bits8);
+    OwnOptions options = untimed_map();
+    options.map_bits = {16};
+    options.smooths_steps = false;
+    const OwnExperiment own = measure_own_heights(field.heights, field.options, options);
+    EXPECT_THAT(own.experiment.measurements, SizeIs(20));  // Ten kernels in two arithmetics.
+    for (const Measurement& one : own.experiment.measurements)
+        EXPECT_THAT(one.method, ::testing::EndsWith(", 16 bit"));
+}
+
+TEST(OwnHeights, OfLargeMapsAreMeasuredOnParts) {
+    const BumpField field = waves(FieldCoding::float32);
+    const OwnExperiment own =
+        measure_own_heights(field.heights, field.options, untimed_map(), 48 * 48);
+    EXPECT_EQ(own.experiment.input, "2304 texels in nine parts of 96 x 96");
+}
+
+/// The RMS angle between the slopes of forward differences and those of the wave, in degrees: the
+/// difference of two sines that are half a texel apart.
+double error_half_a_texel_off(const HeightWave& wave, int side) {
+    double squares = 0.0;
+    for (int y = 0; y < side; ++y) {
+        for (int x = 0; x < side; ++x) {
+            const double angle = glm::dot(wave.frequency, glm::dvec2(x, y)) + wave.phase;
+            const glm::dvec2 true_slope = wave.amplitude * wave.frequency * std::cos(angle);
+            const glm::dvec2 half = wave.frequency / 2.0;
+            const glm::dvec2 found(
+                2.0 * wave.amplitude * std::sin(half.x) * std::cos(angle + half.x),
+                2.0 * wave.amplitude * std::sin(half.y) * std::cos(angle + half.y));
+            squares += std::pow(
+                degrees_between({-true_slope.x, true_slope.y, 1.0}, {-found.x, found.y, 1.0}), 2.0);
+        }
+    }
+    return std::sqrt(squares / (side * side));
+}
+
+TEST(OwnHeights, OfAKernelHalfATexelOffAreThatFarOff) {
+    constexpr int side = 128;
+    const double turn = 2.0 * std::numbers::pi / side;
+    const HeightWave wave{2.0, {4.0 * turn, -2.0 * turn}, 0.7};  // 29 texels long, slope 0.4.
+    BumpOptions options;
+    options.strength = 1.0;
+    options.wrap = Wrap::repeat;
+    const OwnExperiment own =
+        measure_own_heights(wave_heights(side, side, {&wave, 1}).heights, options, untimed_map());
+    const double expected = error_half_a_texel_off(wave, side);
+    EXPECT_GT(expected, 1.0);
+    for (const char* arithmetic : {"float32", "float64"}) {
+        // The reference (central7) has a thousandth of this error.
+        EXPECT_NEAR(found(own, std::string("forward, ") + arithmetic + ", 32 bit").error.rms,
+                    expected, 1e-3 * expected);
+    }
+    EXPECT_LT(found(own, "central5, float64, 32 bit").error.rms, 0.01 * expected);
+}
+
+TEST(OwnHeights, AreTimedWhereThatIsWished) {
+    const BumpField field = waves(FieldCoding::bits8);
+    OwnOptions options = untimed_map();
+    options.run.is_timed = true;
+    options.run.repeats = {1, 0};
+    options.costs = {.one_thread = false, .all_threads = true, .memory = false};
+    const OwnExperiment own = measure_own_heights(field.heights, field.options, options);
+    for (const Measurement& one : own.experiment.measurements)
+        EXPECT_GT(one.cost.all_threads.value().spread().median, 0.0) << one.method;
+    EXPECT_TRUE(own.recommendation.method.has_value());
+}
+
+Image normals_of(const BumpField& field) {
+    Report report;
+    return normals_from_height(field.heights, field.options, report);
+}
+
+TEST(OwnNormalMaps, AreComparedWithWhatTheFileHolds) {
+    Report report;
+    NormalMapFormat format;
+    format.bits = 8;
+    const Image map = encode_normal_map(normals_of(waves(FieldCoding::float32)), format, report);
+    const Image normals = decode_normal_map(map, Green::up, FlatCode::half, report);
+    const OwnExperiment own = measure_own_normals(normals, {.bits = 8}, untimed_map());
+    EXPECT_LE(found(own, "xyz float").error.max, 1e-4);
+    // Vectors are normalized before they are encoded again, so not all codes stay.
+    EXPECT_GT(found(own, "xyz 8 bit").error.rms, 0.0);
+    EXPECT_LT(found(own, "xyz 8 bit").error.rms, 0.1);
+    EXPECT_GT(found(own, "xy 8 bit").error.rms, found(own, "xyz 8 bit").error.rms);
+    // Keeping the file costs nothing: no method that writes more bytes is recommended.
+    EXPECT_EQ(found(own, "as it is").error.max, 0.0);
+    EXPECT_EQ(found(own, "as it is").error.count, 96U * 96U);
+    EXPECT_EQ(found(own, "as it is").cost.stored_bytes, 3.0);
+    EXPECT_EQ(own.command(), "relief-bake convert map.png OUT.png");
+    EXPECT_THAT(own.experiment.truth, HasSubstr("in 8 bits"));
+    // Rounding to codes of 2 / 255: errors of up to half a code, evenly distributed on two axes.
+    const double rounding = 180.0 / std::numbers::pi / 127.5 / std::sqrt(6.0);
+    EXPECT_NEAR(own.experiment.reference_error.value(), rounding, 1e-12);
+    EXPECT_THAT(own.recommendation.words,
+                HasSubstr("as it is: 0.183 degrees RMS expected (the rounding of the file itself "
+                          "0.183, this method adds 0) at 3 bytes"));
+}
+
+TEST(OwnNormalMaps, AreOffByWhatTheirBitsHold) {
+    const OwnExperiment own =
+        measure_own_normals(normals_of(waves(FieldCoding::float32)), {.bits = 32}, untimed_map());
+    // An 8-bit code is 2 / 255, so the error per axis is at most half of it, and 257 times less
+    // with 16 bits.
+    const double eight = found(own, "xyz 8 bit").error.rms;
+    EXPECT_NEAR(found(own, "xyz 16 bit").error.rms, eight * 255.0 / 65535.0, 0.05 * eight / 256.0);
+    EXPECT_LT(eight, 0.4);
+    EXPECT_GT(eight, 0.1);
+    EXPECT_GT(found(own, "xyz 8 bit, blue-noise").error.rms, eight);
+    EXPECT_EQ(found(own, "xy 16 bit").cost.stored_bytes, 4.0);
+}
+
+TEST(OwnNormalMaps, OfCodesThatCannotHoldThemAreAsFarOffAsTheyMustBe) {
+    // Normals that point 10 degrees below the surface. Without the sign of z they point above it.
+    constexpr double below = 10.0;
+    std::vector<glm::dvec3> directions;
+    for (int i = 0; i < 32 * 32; ++i) {
+        const double around = 0.37 * i;
+        directions.emplace_back(std::cos(glm::radians(below)) * std::cos(around),
+                                std::cos(glm::radians(below)) * std::sin(around),
+                                -std::sin(glm::radians(below)));
+    }
+    const OwnExperiment own =
+        measure_own_normals(image_of_normals(directions, 32), {.bits = 32}, untimed_map());
+    // x and y in 16 bits have an error of 2^-16, which leaves 0.01 degrees in the computed z so
+    // near to the horizon.
+    const ErrorFigures lost = found(own, "xy 16 bit").error;
+    EXPECT_NEAR(lost.rms, 2.0 * below, 0.01);
+    EXPECT_NEAR(lost.mean, 2.0 * below, 0.01);
+    EXPECT_NEAR(lost.max, 2.0 * below, 0.02);
+    for (const char* whole : {"xyz 16 bit", "octahedral 2 x 16 bit", "xyz float"})
+        EXPECT_LT(found(own, whole).error.max, 0.01) << whole;
+    EXPECT_THAT(own.recommendation.words, Not(HasSubstr("xy 16 bit")));
+}
+
+TEST(BumpWords, AreThoseOfTheTools) {
+    EXPECT_EQ(name_of(Kernel::forward), "forward");
+    EXPECT_EQ(name_of(Kernel::gaussian), "gaussian");
+    EXPECT_EQ(name_of(Wraps(Wrap::mirror)), "mirror");
+    EXPECT_EQ(name_of(Wraps(Wrap::repeat, Wrap::clamp)), "repeat,clamp");
+}
+
+using test::found;
+using testing::HasSubstr;
+using testing::SizeIs;
+using testing::StartsWith;
+
+OwnOptions quick(bool is_timed) {
+    OwnOptions options;
+    options.run.is_timed = is_timed;
+    options.run.repeats = {2, 0};
+    options.file = "high.obj and low.obj";
+    options.arguments = "high.obj low.obj";
+    return options;
+}
+
+/// Waves over the unit square, several per texel of a map of 32 x 32.
+Mesh waves() {
+    Mesh mesh = test::grid(160);
+    mesh.normals.clear();
+    for (glm::vec3& position : mesh.positions)
+        position.z = 0.004F * std::sin(90.0F * position.x);
+    return mesh;
+}
+
+OwnExperiment measured(const Mesh& high, bool is_timed) {
+    Report report;
+    const Mesh low = test::grid(1);
+    const Baker baker(std::span(&high, 1), low, {}, report);
+    return measure_own_bake(baker, 32, quick(is_timed));
+}
+
+TEST(OwnBake, GetsTruerWithSamplesAndBits) {
+    const OwnExperiment own = measured(waves(), false);
+    EXPECT_THAT(own.experiment.measurements, SizeIs(28));
+    const double one = found(own, "1 sample, 16 bit").error.rms;
+    const double four = found(own, "4 samples, 16 bit").error.rms;
+    const double many = found(own, "64 samples, 16 bit").error.rms;
+    EXPECT_GT(one, four);
+    EXPECT_GT(four, many);
+    EXPECT_LT(many, found(own, "64 samples, 8 bit").error.rms);
+    EXPECT_EQ(found(own, "1 sample, 16 bit").error.count, 32U * 32U);
+    EXPECT_THAT(own.experiment.truth, HasSubstr("mean of 256 samples"));
+    EXPECT_THAT(own.command(), StartsWith("relief-bake mesh high.obj low.obj OUT."));
+    EXPECT_THAT(own.command(), HasSubstr(" --size 32 --samples 64"));
+}
+
+TEST(OwnBake, OfAFlatSurfaceIsExactWithOneSample) {
+    const OwnExperiment own = measured(test::grid(4), true);
+    EXPECT_LE(found(own, "1 sample, 16 bit").error.max, 0.0013);
+    // Zero is halfway between two codes, so both axes have an error of half a code.
+    EXPECT_NEAR(found(own, "1 sample, 8 bit").error.max, glm::degrees(std::sqrt(2.0) / 255.0),
+                1e-4);
+    EXPECT_THAT(found(own, "1 sample, 8 bit").cost.all_threads.value().rounds, SizeIs(2));
+    EXPECT_FALSE(found(own, "1 sample, 8 bit").cost.one_thread);
+    EXPECT_TRUE(own.recommendation.method.has_value());
+}
+
+constexpr int striped_texels = 32;
+
+/// A flat unit square whose normals lean right in the middle half of each column of texels, and
+/// left beside it. The stripes are a 64th of a texel off the quarters, so that no sample is on a
+/// border.
+Mesh striped(double degrees) {
+    constexpr double texel = 1.0 / striped_texels;
+    const double lean = glm::radians(degrees);
+    Mesh mesh;
+    const auto add_stripe = [&](double begin, double end, double side) {
+        const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+        for (const glm::dvec2& corner :
+             {glm::dvec2(begin, 0.0), {end, 0.0}, {end, 1.0}, {begin, 1.0}}) {
+            mesh.positions.emplace_back(corner.x, corner.y, 0.0);
+            mesh.normals.emplace_back(side * std::sin(lean), 0.0, std::cos(lean));
+        }
+        mesh.triangles.emplace_back(first, first + 1, first + 2);
+        mesh.triangles.emplace_back(first, first + 2, first + 3);
+    };
+    for (int column = 0; column < striped_texels; ++column) {
+        constexpr double aside = 1.0 / 64.0;
+        add_stripe(column * texel, (column + 0.25 - aside) * texel, -1.0);
+        add_stripe((column + 0.25 - aside) * texel, (column + 0.75 - aside) * texel, 1.0);
+        add_stripe((column + 0.75 - aside) * texel, (column + 1.0) * texel, -1.0);
+    }
+    return mesh;
+}
+
+TEST(OwnBake, OfSamplesThatAreADegreeOffIsADegreeOff) {
+    // One sample in the middle meets only normals that lean right. The means of 4 and of 256
+    // samples meet both kinds and point straight up.
+    for (const double degrees : {1.0, 5.0}) {
+        const OwnExperiment own = measured(striped(degrees), false);
+        // 16 bits resolve 2^-15: 0.0017 degrees.
+        constexpr double code = 0.0017;
+        const ErrorFigures& one = found(own, "1 sample, 16 bit").error;
+        EXPECT_NEAR(one.rms, degrees, code);
+        EXPECT_NEAR(one.mean, degrees, code);
+        EXPECT_NEAR(one.p99, degrees, code + degrees / 64.0) << "binned";
+        EXPECT_NEAR(one.max, degrees, code);
+        EXPECT_EQ(one.count, static_cast<std::size_t>(striped_texels) * striped_texels);
+        for (const char* both : {"4 samples, 16 bit", "64 samples, 16 bit"})
+            EXPECT_LE(found(own, both).error.max, code) << both;
+    }
+}
+
+}  // namespace
+}  // namespace relief

@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: Apache-2.0
+// Recommendations for invented measurements, computed by hand.
+#include "relief/accuracy/recommend.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace relief {
+namespace {
+
+using testing::HasSubstr;
+
+Measurement measured(const std::string& name, double error, double seconds) {
+    Measurement one;
+    one.method = name;
+    one.error = {.count = 100,
+                 .undefined = 0,
+                 .rms = error,
+                 .mean = error,
+                 .p99 = 2.0 * error,
+                 .max = 3.0 * error,
+                 .psnr = {}};
+    one.cost.one_thread = Timing{{seconds, seconds, seconds}};
+    return one;
+}
+
+Experiment experiment_of(std::vector<Measurement> measurements) {
+    Experiment experiment;
+    experiment.error_unit = "degrees";
+    experiment.measurements = std::move(measurements);
+    return experiment;
+}
+
+/// Methods from 1 degree in 10 ms to 0.04 degrees in 123 ms.
+Experiment usual() {
+    return experiment_of({measured("rough", 1.0, 0.010), measured("poor", 1.2, 0.020),
+                          measured("good", 0.05, 0.041), measured("best", 0.04, 0.123)});
+}
+
+TEST(Recommended, IsTheKnee) {
+    // error^3 x cost: 1e-2, 3.5e-2, 5.1e-6, 7.9e-6.
+    const Recommendation found = recommended(usual(), {});
+    EXPECT_EQ(found.method, 2U);
+    EXPECT_EQ(found.next, 3U);
+    EXPECT_EQ(found.words,
+              "good: 0.05 degrees RMS at 41.0 ms; the next more accurate (best) takes 3 times as "
+              "long for 0.01 degrees less");
+}
+
+TEST(Recommended, TakesTheTruerAsLongAsTheCubeOfTheGainPaysForIt) {
+    // Half the error is worth eight times the time, but not more.
+    const auto second_for = [](double seconds) {
+        return recommended(experiment_of({measured("a", 1.0, 0.01), measured("b", 0.5, seconds)}),
+                           {});
+    };
+    EXPECT_EQ(second_for(0.079).method, 1U);
+    EXPECT_EQ(second_for(0.081).method, 0U);
+    EXPECT_EQ(second_for(0.079).next, std::nullopt);
+    EXPECT_THAT(second_for(0.079).words, HasSubstr("no other method is more accurate"));
+}
+
+TEST(Recommended, OfAlikeOnesTheSmallestIsTaken) {
+    Experiment experiment =
+        experiment_of({measured("wide", 0.5, 0.010), measured("narrow", 0.505, 0.0105),
+                       measured("flat", 0.5, 0.012)});
+    experiment.measurements[0].cost.stored_bytes = 12;
+    experiment.measurements[1].cost.stored_bytes = 6;  // Its product is 8% larger.
+    experiment.measurements[2].cost.stored_bytes = 3;  // Its product is 20% larger.
+    EXPECT_EQ(recommended(experiment, {}).method, 1U);
+}
+
+TEST(Recommended, ANextOneThatCostsTheSameIsSaidToTakeAboutAsLong) {
+    RecommendationRule rule;
+    rule.wish.max_error = 0.5;
+    EXPECT_EQ(
+        recommended(experiment_of({measured("a", 0.5, 0.0100), measured("b", 0.4, 0.0101)}), rule)
+            .words,
+        "a: 0.5 degrees RMS at 10.0 ms; the next more accurate (b) takes about as long for 0.1 "
+        "degrees less");
+}
+
+TEST(Recommended, WhatTheTruthIsNotKnownBetterThanIsNotPaidFor) {
+    RecommendationRule rule;
+    // Errors become 2.24 and 2.0004, worth 1.4 times the cost at most; "good" costs 4.1 times as
+    // much.
+    rule.unseen_error = 2.0;
+    EXPECT_EQ(recommended(usual(), rule).method, 0U);
+}
+
+TEST(Recommended, KeepsWithinAnError) {
+    RecommendationRule rule;
+    rule.wish.max_error = 0.045;
+    EXPECT_EQ(recommended(usual(), rule).method, 3U);
+    rule.wish.max_error = 2.0;
+    EXPECT_EQ(recommended(usual(), rule).method, 0U);
+    rule.wish.figure = &ErrorFigures::max;  // 3, 3.6, 0.15, 0.12
+    EXPECT_EQ(recommended(usual(), rule).method, 2U);
+    rule.wish.max_error = 0.01;
+    const Recommendation none = recommended(usual(), rule);
+    EXPECT_EQ(none.method, std::nullopt);
+    EXPECT_EQ(none.words, "no method is within 0.01 degrees: the least is 0.12, with best");
+}
+
+TEST(Recommended, KeepsWithinATime) {
+    RecommendationRule rule;
+    rule.wish.max_seconds = 0.1;
+    EXPECT_EQ(recommended(usual(), rule).method, 2U);
+    rule.wish.max_seconds = 0.03;
+    EXPECT_EQ(recommended(usual(), rule).method, 0U);
+    rule.wish.max_seconds = 0.001;
+    EXPECT_EQ(recommended(usual(), rule).words,
+              "no method is within 1.00 ms: the fastest takes 10.0 ms, with rough");
+    rule.wish.max_seconds = 0.1;
+    rule.wish.max_error = 0.045;
+    EXPECT_EQ(recommended(usual(), rule).words,
+              "no method is within 0.045 degrees and 100 ms: that error takes 123 ms, with best");
+}
+
+TEST(Recommended, LeavesOutWhatCannotBeTaken) {
+    Experiment experiment = usual();
+    const std::vector<unsigned char> choosable = {1, 1, 0, 1};
+    RecommendationRule rule;
+    rule.choosable = choosable;
+    EXPECT_EQ(recommended(experiment, rule).method, 3U);
+    experiment.measurements[3].error.undefined = 1;
+    EXPECT_EQ(recommended(experiment, rule).method, 0U);
+    EXPECT_EQ(recommended(experiment_of({}), {}).method, std::nullopt);
+    EXPECT_EQ(recommended(experiment_of({}), {}).words, "nothing could be measured");
+}
+
+TEST(Recommended, GoesByBytesWhereThoseAreDear) {
+    Experiment experiment = usual();
+    experiment.measurements[0].cost.stored_bytes = 4;
+    experiment.measurements[1].cost.stored_bytes = 4;
+    experiment.measurements[2].cost.stored_bytes = 8;
+    experiment.measurements[3].cost.stored_bytes = 28;
+    RecommendationRule rule;
+    rule.cost = CostKind::bytes;
+    rule.wish.max_seconds = 1e-9;  // Has no effect on bytes.
+    const Recommendation found = recommended(experiment, rule);
+    EXPECT_EQ(found.words,
+              "good: 0.05 degrees RMS at 8 bytes; the next more accurate (best) takes 28 bytes for "
+              "0.01 degrees less");
+}
+
+TEST(Recommended, CountsTheErrorOfTheReferenceToo) {
+    Experiment experiment = usual();
+    experiment.reference_error = 0.12;
+    RecommendationRule rule;
+    rule.reference = "the map itself";
+    // "good" has 0.05 and "best" 0.04, with the reference 0.13 and 0.1265.
+    rule.wish.max_error = 0.131;
+    Recommendation found = recommended(experiment, rule);
+    EXPECT_EQ(found.method, 2U);
+    EXPECT_EQ(found.words,
+              "good: 0.13 degrees RMS expected (the map itself 0.12, this method adds 0.05) at "
+              "41.0 ms; the next more accurate (best) takes 3 times as long for 0.01 degrees less");
+    rule.wish.max_error = 0.128;
+    EXPECT_EQ(recommended(experiment, rule).method, 3U);
+    // The limit exceeds the error of each method, but not the expected error.
+    rule.wish.max_error = 0.125;
+    found = recommended(experiment, rule);
+    EXPECT_EQ(found.method, std::nullopt);
+    EXPECT_EQ(found.words,
+              "no method is within 0.125 degrees: the least is 0.126, with best (the map itself "
+              "0.12)");
+    // As an invisible error, it reduces the value of the accurate methods.
+    experiment.reference_error = 2.0;
+    EXPECT_EQ(recommended(experiment, {}).method, 0U);
+}
+
+TEST(Recommended, WithoutTimesTakesTheFewestBytesThenTheLeastWork) {
+    Experiment experiment =
+        experiment_of({measured("large", 0.01, 0.1), measured("work", 0.2, 0.1),
+                       measured("least", 0.3, 0.1), measured("rough", 2.0, 0.1)});
+    const std::vector<double> bytes = {6.0, 3.0, 3.0, 3.0};
+    for (std::size_t i = 0; i < bytes.size(); ++i) {
+        experiment.measurements[i].cost = {};
+        experiment.measurements[i].cost.stored_bytes = bytes[i];
+    }
+    const std::vector<double> natural_costs = {5.0, 20.0, 10.0, 1.0};
+    RecommendationRule rule;
+    rule.natural_costs = natural_costs;
+    rule.wish.max_error = 0.5;
+    EXPECT_EQ(recommended(experiment, rule).method, 2U);
+    rule.wish.max_error = 0.25;
+    EXPECT_EQ(recommended(experiment, rule).method, 1U);
+    rule.wish.max_error = 0.1;
+    EXPECT_EQ(recommended(experiment, rule).method, 0U);
+}
+
+TEST(Recommended, WithoutTimesAndBoundsIsTheMostAccurate) {
+    Experiment experiment = usual();
+    for (Measurement& one : experiment.measurements)
+        one.cost = {};
+    EXPECT_EQ(recommended(experiment, {}).method, 3U);
+    EXPECT_EQ(recommended(experiment, {}).words,
+              "best: 0.04 degrees RMS; no other method is more accurate");
+}
+
+}  // namespace
+}  // namespace relief

@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: Apache-2.0
+// Error metrics of maps and images with known errors.
+#include "error_metrics.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "relief/mesh/error.h"
+
+namespace relief {
+namespace {
+
+/// A map of 4 x 4 texels whose normals lean to the right by an angle in degrees.
+Image leaning_map(double degrees) {
+    const double angle = degrees * std::numbers::pi / 180.0;
+    Image map = make_image(4, 4, 3, 32, ColorSpace::data);
+    for (std::size_t i = 0; i < 16; ++i) {
+        map.as<float>()[3 * i] = static_cast<float>(std::sin(angle));
+        map.as<float>()[3 * i + 2] = static_cast<float>(std::cos(angle));
+    }
+    return map;
+}
+
+const std::vector<glm::dvec3> level(16, glm::dvec3(0.0, 0.0, 1.0));
+
+TEST(MapErrors, AreTheLeanOfEachTexel) {
+    Image map = leaning_map(1.0);
+    map.as<float>()[0] = map.as<float>()[2];  // 45 degrees in the upper left corner.
+    const Image angles = angles_of(map, level);
+    EXPECT_EQ(angles.channels, 1);
+    EXPECT_NEAR(static_cast<double>(angles.as<float>()[0]), 45.0, 1e-5);
+    EXPECT_NEAR(static_cast<double>(angles.as<float>()[5]), 1.0, 1e-5);
+    EXPECT_NEAR(map_errors(map, level).max, 45.0, 1e-5);
+    EXPECT_NEAR(map_errors(map, level).mean, (45.0 + 15.0) / 16.0, 1e-5);
+    EXPECT_NEAR(map_errors(map, level, 1).max, 1.0, 1e-5);
+    EXPECT_EQ(map_errors(map, level, 1).count, 4U);
+}
+
+TEST(MapErrors, CountWhatHasNoDirectionAndRefuseOtherSizes) {
+    Image map = leaning_map(1.0);
+    map.as<float>()[2] = 0.0F;
+    map.as<float>()[0] = 0.0F;
+    EXPECT_EQ(map_errors(map, level).undefined, 1U);
+    EXPECT_EQ(map_errors(map, level).count, 15U);
+    EXPECT_THROW(map_errors(make_image(4, 5, 3, 32, ColorSpace::data), level), InvalidInput);
+    EXPECT_THROW(map_errors(make_image(4, 4, 3, 16, ColorSpace::data), level), InvalidInput);
+}
+
+/// An image of one gray code.
+Image grey(int code, int size = 32) {
+    Image image = make_image(size, size, 3, 8, ColorSpace::srgb);
+    for (std::uint8_t& sample : image.as<std::uint8_t>())
+        sample = static_cast<std::uint8_t>(code);
+    return image;
+}
+
+TEST(PictureError, OfTheSamePictureIsNone) {
+    const Image picture = grey(100);
+    const PictureError error = picture_error(to_linear(picture), picture);
+    EXPECT_EQ(error.figures.count, 32U * 32U);
+    EXPECT_EQ(error.figures.max, 0.0);
+    EXPECT_EQ(error.figures.psnr.value(), std::numeric_limits<double>::infinity());
+}
+
+TEST(PictureError, IsInDecibelsOfCodes) {
+    // Ten codes of 255 everywhere.
+    const PictureError error = picture_error(to_linear(grey(100)), grey(110));
+    EXPECT_NEAR(error.figures.psnr.value(), 20.0 * std::log10(255.0 / 10.0), 0.01);
+    // All pixels are equal, so all statistics are.
+    EXPECT_NEAR(error.figures.rms, error.figures.max, 1e-3);
+    EXPECT_NEAR(error.figures.mean, error.figures.p99, 1e-3);
+    EXPECT_GT(error.figures.mean, 0.02);
+}
+
+TEST(PictureError, OfBlackForWhiteIsNearlyAllThereIs) {
+    const PictureError error = picture_error(to_linear(grey(255)), grey(0));
+    EXPECT_GT(error.figures.mean, 0.95);
+    EXPECT_LE(error.figures.max, 1.0);
+    EXPECT_NEAR(error.figures.psnr.value(), 0.0, 1e-4);
+}
+
+TEST(PictureError, IsOfWhatAScreenShows) {
+    // The difference is less than half a code everywhere, so the codes are equal.
+    Image truth = to_linear(grey(100));
+    for (float& sample : truth.as<float>())
+        sample = linear_from_srgb(100.4F / 255.0F);
+    EXPECT_EQ(picture_error(truth, grey(100)).figures.max, 0.0);
+    // One sample in three differs by one code.
+    Image picture = grey(100);
+    for (std::size_t i = 0; i < picture.sample_count(); i += 3)
+        picture.as<std::uint8_t>()[i] = 101;
+    const ErrorFigures figures = picture_error(truth, picture).figures;
+    EXPECT_NEAR(figures.psnr.value(), 20.0 * std::log10(255.0 * std::sqrt(3.0)), 1e-6);
+    EXPECT_GT(figures.mean, 0.0);
+}
+
+TEST(Averaged, IsTheMeanOfEachSquare) {
+    Image image = make_image(4, 2, 1, 32, ColorSpace::linear);
+    for (std::size_t i = 0; i < 8; ++i)
+        image.as<float>()[i] = static_cast<float>(i * i);
+    const Image mean = averaged(image, 2);
+    ASSERT_EQ(mean.width, 2);
+    ASSERT_EQ(mean.height, 1);
+    EXPECT_EQ(mean.as<float>()[0], (0.0F + 1.0F + 16.0F + 25.0F) / 4.0F);
+    EXPECT_EQ(mean.as<float>()[1], (4.0F + 9.0F + 36.0F + 49.0F) / 4.0F);
+    EXPECT_THROW(averaged(image, 3), InvalidInput);
+}
+
+TEST(WithoutAlpha, KeepsTheColours) {
+    Image image = make_image(2, 1, 4, 8, ColorSpace::srgb);
+    for (std::size_t i = 0; i < 8; ++i)
+        image.as<std::uint8_t>()[i] = static_cast<std::uint8_t>(i);
+    const Image colors = without_alpha(image);
+    EXPECT_EQ(colors.channels, 3);
+    EXPECT_EQ(std::get<std::vector<std::uint8_t>>(colors.samples),
+              (std::vector<std::uint8_t>{0, 1, 2, 4, 5, 6}));
+}
+
+}  // namespace
+}  // namespace relief

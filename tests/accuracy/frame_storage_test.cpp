@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+// Errors of tangent frames that are rotated by known angles, and the results of the experiments.
+#include "storage_experiments.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "experiment_checks.h"
+
+namespace relief::test {
+namespace {
+
+using testing::HasSubstr;
+
+/// Rounding to float: 2^-24 of a component, 3.4e-6 degrees each.
+constexpr double rounding = 1e-5;
+
+/// Frames that are rotated about their normals.
+Frames turned(const SampleFrames& truth, double degrees) {
+    const double angle = degrees * std::numbers::pi / 180.0;
+    Frames found{truth.float_normals, truth.float_tangents};
+    for (std::size_t i = 0; i < found.normals.size(); ++i) {
+        const glm::dvec3 bitangent = glm::cross(truth.normals[i], truth.tangents[i]);
+        const glm::dvec3 tangent =
+            std::cos(angle) * truth.tangents[i] + std::sin(angle) * bitangent;
+        found.tangents[i] = glm::vec4(glm::vec3(tangent), truth.float_tangents[i].w);
+    }
+    return found;
+}
+
+TEST(SampleFrames, EvenOnesAreFramesSpreadEvenly) {
+    const SampleFrames frames = even_frames(1000);
+    glm::dvec3 sum(0.0);
+    glm::dmat3 moments(0.0);
+    for (std::size_t i = 0; i < 1000; ++i) {
+        EXPECT_NEAR(glm::length(frames.normals[i]), 1.0, 1e-14);
+        EXPECT_NEAR(glm::length(frames.tangents[i]), 1.0, 1e-14);
+        EXPECT_NEAR(glm::dot(frames.normals[i], frames.tangents[i]), 0.0, 1e-14);
+        sum += frames.normals[i];
+        moments += glm::outerProduct(frames.normals[i], frames.normals[i]) / 1000.0;
+    }
+    EXPECT_LE(glm::length(sum), 1.0);  // Of 1000 directions.
+    // The squares of evenly spread directions are distributed equally over the axes.
+    for (int i = 0; i < 3; ++i)
+        EXPECT_NEAR(moments[i][i], 1.0 / 3.0, 1e-3);
+    EXPECT_EQ(frames.float_tangents[0].w, 1.0F);
+    EXPECT_EQ(frames.float_tangents[1].w, -1.0F);
+}
+
+TEST(FrameErrors, OfTurnedFramesAreTheTurn) {
+    const SampleFrames truth = even_frames(500);
+    EXPECT_LE(frame_errors(truth, turned(truth, 0.0)).both.max, rounding);
+    const FrameCodeErrors errors = frame_errors(truth, turned(truth, 1.0));
+    EXPECT_LE(errors.normal.max, rounding);
+    EXPECT_NEAR(errors.tangent.rms, 1.0, rounding);
+    EXPECT_NEAR(errors.tangent.max, 1.0, rounding);
+    EXPECT_NEAR(errors.both.rms, std::sqrt(0.5), rounding);
+    // A direction at 30 degrees to the axis moves on a circle of half the radius.
+    const double half = std::numbers::pi / 360.0;
+    const double texel = 2.0 * std::asin(0.5 * std::sin(half)) * 180.0 / std::numbers::pi;
+    EXPECT_NEAR(errors.texel.rms, texel, rounding);
+    EXPECT_EQ(errors.flipped_frames, 0U);
+}
+
+TEST(FrameErrors, CountHandsThatAreLost) {
+    const SampleFrames truth = even_frames(10);
+    Frames found = turned(truth, 0.0);
+    found.tangents[3].w = -found.tangents[3].w;
+    found.tangents[4].w = -found.tangents[4].w;
+    EXPECT_EQ(frame_errors(truth, found).flipped_frames, 2U);
+}
+
+TEST(FrameExperiments, AreWhole) {
+    expect_whole(storage_experiments(quick_untimed()), Subject::storage);
+}
+
+TEST(FrameExperiments, ErrorsAreThoseOfTheEncodings) {
+    const Experiment experiment = frame_reading_experiment(quick_untimed());
+    ASSERT_EQ(experiment.measurements.size(), 2 * all_frame_encodings.size() - 1);
+    for (const Measurement& one : experiment.measurements) {
+        SCOPED_TRACE(one.method);
+        EXPECT_EQ(one.error.count, 2 * static_cast<std::size_t>(experiment.items));
+        EXPECT_EQ(one.note, "");
+    }
+    for (const int bits : {8, 10, 16}) {
+        // A sphere has 41253 square degrees. A code of 2 x 8 bits covers about 0.63 of them: a
+        // square with a side of 0.79 degrees, whose points have an RMS distance of 0.79 / sqrt(6) =
+        // 0.32 from its center. The tangent has one bit less. The factor allows for the unequal
+        // sizes of octahedral codes.
+        const double size = std::pow(2.0, 8.0 - bits);
+        const std::string name = "octahedral" + std::to_string(bits);
+        const double nearest = measurement_of(experiment, name + ", nearest").error.rms;
+        EXPECT_NEAR(nearest, 0.4 * size, 0.15 * size);
+        EXPECT_LT(measurement_of(experiment, name + ", best").error.rms, nearest);
+    }
+    const Measurement& floats = measurement_of(experiment, "float32, nearest");
+    EXPECT_LT(floats.error.max, rounding);
+    EXPECT_GT(floats.error.max, 1e-7) << "float has an error too";
+    EXPECT_EQ(floats.cost.stored_bytes, 28.0);
+    EXPECT_THAT(experiment.finding,
+                HasSubstr("in 4 bytes 'angle10, best' has the least error, 0.082 degrees"));
+    EXPECT_THAT(experiment.finding,
+                HasSubstr("in 8 bytes 'quaternion16, best' has the least error, 0.0005"));
+}
+
+TEST(FrameExperiments, WritingSaysWhatTheBestCodesBring) {
+    const Experiment experiment = frame_writing_experiment(quick_untimed());
+    EXPECT_THAT(
+        experiment.finding,
+        HasSubstr("changes the error in 4 bytes, degrees RMS: octahedral8 0.44 to 0.35; quat"));
+}
+
+}  // namespace
+}  // namespace relief::test

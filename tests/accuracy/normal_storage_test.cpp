@@ -1,0 +1,284 @@
+// SPDX-License-Identifier: Apache-2.0
+// Codes of normals against known errors and published figures, and the results of the experiments.
+#include "storage_experiments.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <numbers>
+#include <span>
+#include <vector>
+
+#include "error_metrics.h"
+#include "experiment_checks.h"
+#include "relief/mesh/analytic_heights.h"
+#include "relief/mesh/direction_error.h"
+#include "relief/mesh/error.h"
+#include "relief/mesh/image_file.h"
+#include "relief/mesh/normal_map.h"
+
+namespace relief::test {
+namespace {
+
+using testing::HasSubstr;
+
+NormalCode code_named(const std::string& name) {
+    for (const NormalCode& code : normal_codes()) {
+        if (code.name == name) return code;
+    }
+    throw std::runtime_error("no code " + name);
+}
+
+/// Normals that lean along x, more and more from left to right, rotated by an angle in degrees.
+std::vector<glm::dvec3> leaning(double degrees) {
+    std::vector<glm::dvec3> normals;
+    for (int i = 0; i < 16 * 16; ++i) {
+        const double angle = (i % 16 + degrees) * std::numbers::pi / 180.0;
+        normals.emplace_back(std::sin(angle), 0.0, std::cos(angle));
+    }
+    return normals;
+}
+
+TEST(PatchErrors, OfTurnedNormalsAreTheTurnWhateverThePatch) {
+    const Image truth = image_of_normals(leaning(0.0), 16);
+    const Image turned = image_of_normals(leaning(1.0), 16);
+    for (const int block : {1, 2, 4, 8, 16}) {
+        const AngleDistribution errors = patch_errors(turned, truth, block);
+        EXPECT_EQ(errors.count, static_cast<std::size_t>(256 / (block * block)));
+        EXPECT_NEAR(errors.rms, 1.0, 1e-5);  // Normals are rounded to float.
+        EXPECT_NEAR(errors.max, 1.0, 1e-5);
+        EXPECT_EQ(patch_errors(truth, truth, block).max, 0.0);
+    }
+    EXPECT_THROW(image_of_normals(leaning(0.0), 15), InvalidInput);
+}
+
+std::string choice_of(const NormalCode& code, const std::string& name) {
+    for (const auto& [key, value] : code.choices) {
+        if (key == name) return value;
+    }
+    return {};
+}
+
+TEST(NormalCodes, FlatComesBackFlatUnlessItsZeroIsNoCode) {
+    const std::vector<glm::dvec3> flat(16, glm::dvec3(0.0, 0.0, 1.0));
+    const Image normals = image_of_normals(flat, 4);
+    for (const NormalCode& code : normal_codes()) {
+        const double error = map_errors(code.stored(normals), flat).max;
+        const std::string zero = choice_of(code, "zero");
+        // Half a code in x and y, which are written as 128 and read as 127.5, or the opposite.
+        if (zero == "127.5" || zero == "128, read as 127.5")
+            EXPECT_NEAR(error, 0.318, 1e-3) << code.name;
+        else if (zero == "32767.5" || zero == "32768, read as 32767.5")
+            EXPECT_NEAR(error, 0.00124, 1e-5) << code.name;
+        else
+            EXPECT_EQ(error, 0.0) << code.name;
+    }
+}
+
+/// Decodes an 8-bit texture as glTF 2.0 and engines do: 2 c / 255 - 1.
+AngleDistribution errors_by_gltf(const Image& codes, std::span<const glm::dvec3> truth) {
+    Image read = make_image(codes.width, codes.height, 3, 32, ColorSpace::data);
+    for (std::size_t i = 0; i < read.sample_count(); ++i)
+        read.as<float>()[i] =
+            2.0F * static_cast<float>(codes.as<std::uint8_t>()[i]) / 255.0F - 1.0F;
+    return map_errors(read, truth);
+}
+
+TEST(NormalCodes, RowsTellWhatEitherDecoderReads) {
+    std::vector<glm::dvec3> directions = even_directions(2 * 256 * 256);
+    directions.resize(directions.size() / 2);
+    const Image normals = image_of_normals(directions, 256);
+    const auto row = [&](const char* name) {
+        return map_errors(code_named(name).stored(normals), directions);
+    };
+    Report report;
+    const AngleDistribution by_default =
+        errors_by_gltf(encode_normal_map(normals, {.bits = 8}, report), directions);
+    EXPECT_NEAR(row("xyz 8 bit").rms, by_default.rms, 1e-5);
+    EXPECT_NEAR(by_default.rms, 0.184, 0.002);
+    EXPECT_LT(by_default.max, 0.40);
+    const AngleDistribution misread = errors_by_gltf(
+        encode_normal_map(normals, {.bits = 8, .flat = FlatCode::middle}, report), directions);
+    EXPECT_NEAR(row("xyz 8 bit, zero at 128, read as glTF does").rms, misread.rms, 1e-5);
+    EXPECT_NEAR(misread.rms, 0.368, 0.004);
+    EXPECT_NEAR(misread.max, 0.739, 0.03);
+    // The opposite mistake has the same error; the matching decoder has half of it.
+    EXPECT_NEAR(row("xyz 8 bit, read with zero at 128").rms, misread.rms, 0.005);
+    EXPECT_NEAR(row("xyz 8 bit, zero at 128").rms, by_default.rms, 0.005);
+    EXPECT_NEAR(row("xyz 16 bit, zero at 32768, read as glTF does").rms,
+                2.0 * row("xyz 16 bit").rms, 5e-5);
+}
+
+using LongReal = long double;
+
+/// The height of smooth_surface(), by an independent formula.
+LongReal smooth_height_at(std::span<const HeightWave> waves, LongReal x, LongReal y) {
+    LongReal sum = 0;
+    for (const HeightWave& wave : waves) {
+        sum += static_cast<LongReal>(wave.amplitude) *
+               std::sin(static_cast<LongReal>(wave.frequency.x) * x +
+                        static_cast<LongReal>(wave.frequency.y) * y +
+                        static_cast<LongReal>(wave.phase));
+    }
+    return sum;
+}
+
+/// Central differences of two widths, extrapolated; the error is O(h^4).
+template <typename Function>
+LongReal slope_of(const Function& function) {
+    const auto central = [&](LongReal h) { return (function(h) - function(-h)) / (2 * h); };
+    return (4 * central(0.05L) - central(0.1L)) / 3;
+}
+
+TEST(SmoothSurface, HasTheNormalsOfNumericDerivatives) {
+    constexpr int map_side = 256;  // The same size as in the experiment.
+    const std::vector<HeightWave> waves = tiling_waves(map_side, map_side, 5, 128.0, 0.2, 41);
+    const std::vector<glm::dvec3> normals = smooth_surface(map_side);
+    ASSERT_EQ(normals.size(), 256U * 256U);
+    double squared_slopes = 0.0;
+    for (std::size_t i = 0; i < normals.size(); ++i) {
+        squared_slopes += 1.0 / (normals[i].z * normals[i].z) - 1.0;
+        if (i % 31 != 0) continue;
+        const LongReal x = static_cast<LongReal>(i % map_side);
+        const LongReal y = static_cast<LongReal>(i / map_side);
+        const LongReal dx = slope_of([&](LongReal h) { return smooth_height_at(waves, x + h, y); });
+        const LongReal dy = slope_of([&](LongReal h) { return smooth_height_at(waves, x, y + h); });
+        // Rows run downwards, the y of normals upwards.
+        const glm::dvec3 expected(static_cast<double>(-dx), static_cast<double>(dy), 1.0);
+        // For waves of 128 texels and more, the term of h^4 is 1e-11 degrees.
+        ASSERT_LE(degrees_between(normals[i], expected), 1e-10) << i;
+    }
+    EXPECT_GT(std::sqrt(squared_slopes / 65536.0), 0.1) << "codes of 8 bits change with the slope";
+}
+
+/// Mean and RMS angle of evenly spread directions of which half lose the sign of x: twice the arc
+/// sine of |x|, and |x| is evenly distributed.
+TEST(NormalCodes, ThatLoseASignAreAsFarOffAsTheyMustBe) {
+    std::vector<glm::dvec3> directions = even_directions(2 * 128 * 128);
+    directions.resize(directions.size() / 2);
+    const Image normals = image_of_normals(directions, 128);
+    const NormalCode right = code_named("xyz 16 bit");
+    NormalCode broken = right;
+    broken.decode = [right](const Image& codes) {
+        Image decoded = right.decode(codes);
+        for (std::size_t i = 0; i < decoded.sample_count(); i += 3)
+            decoded.as<float>()[i] = std::abs(decoded.as<float>()[i]);
+        return decoded;
+    };
+    EXPECT_LT(map_errors(right.stored(normals), directions).max, 0.002);
+    const AngleDistribution errors = map_errors(broken.stored(normals), directions);
+    constexpr double half_turn_degrees = 180.0;
+    // The integrals of 2 asin(x) and its square over 0 to 1, halved; 16384 directions approximate
+    // the integral to a few thousandths.
+    const double mean = (std::numbers::pi / 2.0 - 1.0) / std::numbers::pi * half_turn_degrees;
+    const double square = std::numbers::pi * std::numbers::pi / 2.0 - 4.0;
+    EXPECT_NEAR(errors.mean, mean, 0.01);
+    EXPECT_NEAR(errors.rms, std::sqrt(square) / std::numbers::pi * half_turn_degrees, 0.01);
+    EXPECT_GT(errors.max, 175.0);
+    EXPECT_NEAR(errors.median, 0.0, 0.1) << "half of all are right";
+    EXPECT_EQ(errors.undefined, 0U);
+    // The means of patches show the defect as well.
+    EXPECT_GT(patch_errors(broken.stored(normals), normals, 8).rms, 20.0);
+    EXPECT_LT(patch_errors(right.stored(normals), normals, 8).rms, 0.001);
+}
+
+struct Published {
+    const char* code;
+    double mean;
+    double max;
+};
+
+TEST(NormalCodes, ErrAsPublished) {
+    // Measured by another program on random directions. The largest errors depend on the
+    // directions, and if z is computed from x and y, on their distance from the horizon.
+    constexpr int side = 512;
+    std::vector<glm::dvec3> directions = even_directions(2 * side * side);
+    directions.resize(directions.size() / 2);
+    const Image normals = image_of_normals(directions, side);
+    for (const Published& row : {Published{"xyz 8 bit", 0.170, 0.386},
+                                 {"xyz 16 bit", 0.0007, 0.0015},
+
+                                 {"octahedral 2 x 8 bit", 0.337, 0.949},
+                                 {"octahedral 2 x 10 bit", 0.084, 0.236},
+                                 {"octahedral 2 x 12 bit", 0.021, 0.059},
+                                 {"octahedral 2 x 16 bit", 0.0013, 0.0037},
+                                 {"xy 8 bit", 0.468, 5.89}}) {
+        const AngleDistribution errors =
+            map_errors(code_named(row.code).stored(normals), directions);
+        EXPECT_NEAR(errors.mean, row.mean, 0.04 * row.mean + 5e-5) << row.code;
+        EXPECT_NEAR(errors.max, row.max, 0.1 * row.max) << row.code;
+        EXPECT_EQ(errors.undefined, 0U);
+    }
+}
+
+TEST(NormalCodes, TheBestOfFourCodesIsNoFartherThanTheNearest) {
+    const std::vector<glm::dvec3> directions = even_directions(64 * 64);
+    const Image normals = image_of_normals(directions, 64);
+    for (const char* bits : {"8", "10", "12", "16"}) {
+        const std::string name = std::string("octahedral 2 x ") + bits + " bit";
+        const Image nearest = angles_of(code_named(name).stored(normals), directions);
+        const Image best = angles_of(code_named(name + ", best").stored(normals), directions);
+        for (std::size_t i = 0; i < nearest.sample_count(); ++i)
+            ASSERT_LE(best.as<float>()[i], nearest.as<float>()[i] + 1e-5F) << name;
+    }
+}
+
+TEST(NormalCodes, HalvesHaveTheErrorsOfTheFilesThatAreWritten) {
+    // (n + 1) / 2 is in 0.5 to 1, where half floats are 2^-11 apart, so n has steps of 2^-10.
+    std::vector<glm::dvec3> directions = even_directions(2 * 256 * 256);
+    directions.resize(directions.size() / 2);
+    const Image normals = image_of_normals(directions, 256);
+    const AngleDistribution errors = map_errors(code_named("xyz half").stored(normals), directions);
+    const std::filesystem::path file =
+        std::filesystem::path(testing::TempDir()) / "relief_normal_codes_half.exr";
+    Report report;
+    write_image(file, encode_normal_map(normals, {.bits = 32}, report), {}, {.half = true});
+    const Image read = read_image(file, ImageUse::data);
+    std::filesystem::remove(file);
+    const AngleDistribution written =
+        map_errors(decode_normal_map(read, Green::up, FlatCode::half, report), directions);
+    // Numbers halfway between two half floats are rounded up here and to even in files.
+    EXPECT_NEAR(errors.rms, written.rms, 1e-4 * written.rms);
+    EXPECT_NEAR(errors.max, written.max, 1e-4 * written.max);
+    // Half a step in each of three components: rounding errors along the two directions that rotate
+    // the normal.
+    const double turn = std::sqrt(2.0) * 0x1p-11 * 180.0 / std::numbers::pi;
+    EXPECT_GT(errors.max, 0.95 * turn);
+    EXPECT_LT(errors.max, 1.25 * turn);
+    EXPECT_NEAR(errors.rms, 0.0195, 0.0002);
+    EXPECT_TRUE(report.empty());
+}
+
+TEST(NormalCodes, BytesAreThoseOfTheCodes) {
+    EXPECT_EQ(code_named("xyz 8 bit").bytes, 3.0);
+    EXPECT_EQ(code_named("xyz 10 bit").bytes, 4.0);
+    EXPECT_EQ(code_named("xyz float").bytes, 12.0);
+    EXPECT_EQ(code_named("xy 16 bit").bytes, 4.0);
+    EXPECT_EQ(code_named("octahedral 2 x 8 bit, best").bytes, 2.0);
+    EXPECT_EQ(code_named("octahedral 2 x 12 bit").bytes, 3.0);
+}
+
+TEST(NormalCodeExperiments, HaveTheErrorsOfThePage) {
+    const Experiment surface = normal_writing_experiment(quick_untimed());
+    const Chart& chart = surface.charts.front();
+    EXPECT_NEAR(curve_of(chart, "xyz 8 bit").points[0].error, 0.18230, 5e-6);
+    EXPECT_NEAR(curve_of(chart, "xyz 8 bit").points[2].error, 0.06117, 5e-6);
+    EXPECT_NEAR(curve_of(chart, "xyz 8 bit, blue-noise").points[4].error, 0.01101, 5e-6);
+    EXPECT_NEAR(curve_of(chart, "xyz 16 bit").points[0].error, 0.00071, 5e-6);
+    EXPECT_NEAR(measurement_of(surface, "xyz 8 bit").error.rms, 0.18230, 5e-6);
+    EXPECT_THAT(surface.finding,
+                HasSubstr("a texel is 0.18 degrees off and the mean of 16 x 16 still 0.025; blue "
+                          "noise makes them 0.26 and 0.011."));
+}
+
+TEST(NormalCodeExperiments, SayWhatIsNearestInSoManyBytes) {
+    const Experiment sphere = normal_reading_experiment(quick_untimed());
+    EXPECT_EQ(sphere.measurements.size(), normal_codes().size());
+    EXPECT_THAT(sphere.finding, HasSubstr("in 2 bytes 'octahedral 2 x 8 bit, best', 0.3"));
+    EXPECT_THAT(sphere.finding, HasSubstr("in 4 bytes 'octahedral 2 x 16 bit, best', 0.001"));
+}
+
+}  // namespace
+}  // namespace relief::test

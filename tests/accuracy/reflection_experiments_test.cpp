@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: Apache-2.0
+// The environment formula, the mirror ball in closed form, and the results of the experiments.
+#include "shading_experiments.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "experiment_checks.h"
+#include "relief/mesh/image.h"
+#include "relief/shade/image_compare.h"
+#include "rendered_methods.h"
+
+namespace relief {
+namespace {
+
+constexpr int cube_side = 24;
+
+double furthest(const Image& a, const Image& b) {
+    return compare(a, b).max;
+}
+
+glm::dvec3 slope(const glm::dvec3& direction, double strength) {
+    return glm::dvec3(0.5 + strength * (0.4 * direction.y + 0.2 * direction.x));
+}
+
+/// The factor by which GGX, viewed along the normal, reduces an environment that grows linearly
+/// along a direction: the mean of l.r over the directions l that the facets h reflect r to,
+/// weighted by l.r. Integrates over the angle of the facets by Simpson's rule.
+double left_of_slope(double roughness) {
+    const double alpha = roughness * roughness;
+    constexpr int steps = 200000;
+    double above = 0.0;
+    double below = 0.0;
+    for (int i = 0; i <= steps; ++i) {
+        const double angle = 0.25 * std::numbers::pi * i / steps;
+        const double cosine = std::cos(angle);
+        const double spread = cosine * cosine * (alpha * alpha - 1.0) + 1.0;
+        const double facets = alpha * alpha / (spread * spread) * cosine * std::sin(angle);
+        const double mirrored = std::cos(2.0 * angle);
+        const double weight = i == 0 || i == steps ? 1.0 : i % 2 == 1 ? 4.0 : 2.0;
+        above += weight * facets * mirrored * mirrored;
+        below += weight * facets * mirrored;
+    }
+    return above / below;
+}
+
+TEST(TrueMirror, IsWhatTheReferenceShaderDraws) {
+    const Scene ball = mirror_ball(cube_map_of(waves_and_lights, 512), 0.0);
+    const Image traced = supersampled_reference(ball, cube_side, 4);
+    EXPECT_LT(furthest(traced, exact_mirror(waves_and_lights, cube_side, 4)), 0.006);
+    // A mirrored environment is detected.
+    const auto turned = [](const glm::dvec3& d) { return waves_and_lights({-d.x, d.y, d.z}); };
+    EXPECT_GT(furthest(traced, exact_mirror(turned, cube_side, 4)), 0.1);
+}
+
+TEST(RoughMirror, OfConstantSurroundingsIsThose) {
+    const auto constant = [](const glm::dvec3&) { return glm::dvec3(0.25, 0.5, 0.75); };
+    for (const double roughness : {0.1, 0.5, 1.0}) {
+        const Image blurred =
+            supersampled_reference(mirror_ball(cube_map_of(constant, 8), roughness), 8, 1);
+        EXPECT_LT(furthest(blurred, exact_mirror(constant, 8, 1)), 1e-6) << roughness;
+    }
+}
+
+TEST(RoughMirror, OfASlopeIsFlatterAsTheClosedFormSays) {
+    const Environment environment =
+        cube_map_of([](const glm::dvec3& d) { return slope(d, 1.0); }, 64);
+    for (const double roughness : {0.2, 0.5, 0.9}) {
+        const double left = left_of_slope(roughness);
+        const Image blurred =
+            supersampled_reference(mirror_ball(environment, roughness), cube_side, 1);
+        const Image expected =
+            exact_mirror([&](const glm::dvec3& d) { return slope(d, left); }, cube_side, 1);
+        EXPECT_LT(furthest(blurred, expected), 0.002) << roughness << ", " << left;
+        EXPECT_LT(left, 1.0);
+    }
+    EXPECT_LT(left_of_slope(0.9), 0.8) << "rough enough to tell";
+}
+
+TEST(CubeMapSize, LargerMapsErrLessUntilTexelsAreFinerThanPixels) {
+    const GlDevice device;
+    if (!device.is_available()) GTEST_SKIP() << "no OpenGL";
+    const Experiment experiment = reflection_experiment(device, test::quick_untimed());
+    ASSERT_EQ(experiment.measurements.size(), 5U);
+    const std::vector<CurvePoint>& by_size = experiment.charts.front().curves.front().points;
+    ASSERT_EQ(by_size.size(), 5U);
+    EXPECT_EQ(by_size.front().x, 16.0);
+    EXPECT_EQ(by_size.back().x, 256.0);
+    EXPECT_LT(by_size[1].error, 0.65 * by_size[0].error);
+    EXPECT_LT(by_size[2].error, 0.6 * by_size[1].error);
+    EXPECT_LT(by_size[3].error, 0.9 * by_size[2].error);
+    // The remaining error is that of one sample per pixel, at any size.
+    EXPECT_NEAR(by_size[4].error, by_size[3].error, 0.1 * by_size[3].error);
+    for (std::size_t i = 0; i < by_size.size(); ++i) {
+        const Measurement& one = experiment.measurements[i];
+        EXPECT_EQ(one.error.rms, by_size[i].error);
+        // Doubling the side quadruples the texels; 6 faces of 256 texels of 8 bytes, and a third
+        // more.
+        EXPECT_NEAR(one.cost.stored_bytes, 16384.0 * std::pow(4.0, static_cast<double>(i)), 1e-6);
+    }
+}
+
+TEST(CubeMapSize, WithMoreSamplesAPixelTheLargestMapsDiffer) {
+    const GlDevice device;
+    if (!device.is_available()) GTEST_SKIP() << "no OpenGL";
+    constexpr int ball_side = 160;
+    const Image truth = exact_mirror(waves_and_lights, ball_side, 4);
+    const auto error_with = [&](const EnvironmentFormula& shown, int map_side) {
+        return rendered_error(
+            device, {"", {}, mirror_ball(cube_map_of(shown, map_side), 0.0), 1, 4}, truth);
+    };
+    const double of_large = error_with(waves_and_lights, 256);
+    EXPECT_LT(of_large, 0.02);
+    EXPECT_LT(of_large, 0.7 * error_with(waves_and_lights, 128));
+    // An environment that is mirrored, or a tenth too dark, is detected.
+    EXPECT_GT(error_with(
+                  [](const glm::dvec3& d) {
+                      return waves_and_lights({-d.x, d.y, d.z});
+                  },
+                  64),
+              10.0 * of_large);
+    EXPECT_GT(error_with([](const glm::dvec3& d) { return 0.9 * waves_and_lights(d); }, 256),
+              4.0 * of_large);
+}
+
+double error_at(const Curve& curve, double roughness) {
+    for (const CurvePoint& point : curve.points) {
+        if (point.x == roughness) return point.error;
+    }
+    throw std::runtime_error("no such roughness");
+}
+
+double sum_of_errors(const Curve& curve) {
+    double sum = 0.0;
+    for (const CurvePoint& point : curve.points)
+        sum += point.error;
+    return sum;
+}
+
+TEST(GlossyLevels, MoreOfThemErrLessAndEachIsRightWhereItLies) {
+    const GlDevice device;
+    if (!device.is_available()) GTEST_SKIP() << "no OpenGL";
+    const Experiment experiment = glossy_experiment(device, test::quick_untimed());
+    ASSERT_EQ(experiment.measurements.size(), 3U);
+    const double sharp = test::measurement_of(experiment, "not blurred").error.rms;
+    for (const char* levels : {"5 levels, 128 texels", "6 levels, 256 texels"})
+        EXPECT_LT(test::measurement_of(experiment, levels).error.rms, 0.3 * sharp) << levels;
+    const Chart& chart = experiment.charts.front();
+    const Curve& none = test::curve_of(chart, "not blurred");
+    const Curve& five = test::curve_of(chart, "5 levels, 128 texels");
+    const Curve& six = test::curve_of(chart, "6 levels, 256 texels");
+    EXPECT_LT(sum_of_errors(six), 0.95 * sum_of_errors(five));
+    // Of six levels one has roughness 1/5, of five one has 1/2. No levels are mixed there; between
+    // them two are, of which the rougher one is far too rough.
+    EXPECT_LT(error_at(six, 0.2), 0.012);
+    EXPECT_LT(error_at(five, 0.5), 0.012);
+    EXPECT_LT(error_at(six, 0.2), 0.4 * error_at(five, 0.2));
+    EXPECT_LT(error_at(five, 0.5), 0.7 * error_at(six, 0.5));
+    // The last level of both has roughness 1, which is far from a perfect mirror.
+    EXPECT_NEAR(error_at(six, 1.0), error_at(five, 1.0), 1e-3);
+    EXPECT_GT(error_at(none, 1.0), 10.0 * error_at(six, 1.0));
+    for (std::size_t i = 1; i < none.points.size(); ++i)
+        EXPECT_GT(none.points[i].error, none.points[i - 1].error) << none.points[i].x;
+}
+
+TEST(GlossyLevels, OfAnotherRoughnessOrOtherSurroundingsAreFarOff) {
+    const GlDevice device;
+    if (!device.is_available()) GTEST_SKIP() << "no OpenGL";
+    constexpr int ball_side = 32;
+    constexpr double roughness = 0.5;  // That of the middle one of five levels: none are mixed.
+    constexpr int map_side = 128;
+    const Environment right = cube_map_of(waves_and_lights, map_side);
+    const Image truth = supersampled_reference(mirror_ball(right, roughness), ball_side, 1);
+    const auto error_of = [&](const Environment& shown, double drawn_roughness) {
+        return rendered_error(device, {"", {}, mirror_ball(shown, drawn_roughness)}, truth);
+    };
+    EXPECT_LT(error_of(right, roughness), 0.012);
+    EXPECT_GT(error_of(right, 0.75), 0.05);
+    EXPECT_GT(error_of(right, 0.25), 0.05);
+    const auto dimmed = [](const glm::dvec3& d) { return 0.9 * waves_and_lights(d); };
+    EXPECT_GT(error_of(cube_map_of(dimmed, map_side), roughness), 0.05);
+    const auto turned = [](const glm::dvec3& d) { return waves_and_lights({-d.x, d.y, d.z}); };
+    EXPECT_GT(error_of(cube_map_of(turned, map_side), roughness), 0.05);
+}
+
+}  // namespace
+}  // namespace relief
