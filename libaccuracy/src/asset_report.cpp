@@ -100,10 +100,11 @@ const Candidate* knee_of(const std::vector<Candidate>& all, double floor) {
     return taken;
 }
 
-std::vector<Candidate> kept_of(std::vector<Candidate> all, const Wish& wish, CostKind kind) {
+std::vector<Candidate> kept_of(std::vector<Candidate> all, const Wish& request, CostKind kind) {
     std::erase_if(all, [&](const Candidate& one) {
-        return (wish.max_error && !(one.bounded <= *wish.max_error)) ||
-               (kind == CostKind::time && wish.max_seconds && !(one.cost <= *wish.max_seconds));
+        return (request.max_error && !(one.bounded <= *request.max_error)) ||
+               (kind == CostKind::time && request.max_seconds &&
+                !(one.cost <= *request.max_seconds));
     });
     return all;
 }
@@ -164,33 +165,33 @@ std::string recommendation_text(const Experiment& experiment, const Recommendati
 std::string refusal_text(const Experiment& experiment, const RecommendationRule& rule,
                          const std::vector<Candidate>& all) {
     if (all.empty()) return "nothing could be measured";
-    const Wish& wish = rule.wish;
+    const Wish& request = rule.wish;
     const auto name = [&](const Candidate& one) {
         return experiment.measurements[one.index].method;
     };
-    if (wish.max_error) {
+    if (request.max_error) {
         const Candidate* least = first_of(
             all, [](const Candidate& a, const Candidate& b) { return a.bounded < b.bounded; });
-        if (!(least->bounded <= *wish.max_error)) {
-            std::string text =
-                fmt::format("no method is within {:g} {}: the least is {:.3g}, with {}",
-                            *wish.max_error, experiment.error_unit, least->bounded, name(*least));
+        if (!(least->bounded <= *request.max_error)) {
+            std::string text = fmt::format(
+                "no method is within {:g} {}: the least is {:.3g}, with {}", *request.max_error,
+                experiment.error_unit, least->bounded, name(*least));
             if (experiment.reference_error && *experiment.reference_error > 0.0)
                 text += fmt::format(" ({} {:.3g})", rule.reference, *experiment.reference_error);
             return text;
         }
-        Wish error_alone = wish;
+        Wish error_alone = request;
         error_alone.max_seconds.reset();
         const std::vector<Candidate> accurate_enough = kept_of(all, error_alone, rule.cost);
         const Candidate* cheapest = first_of(accurate_enough, is_cheaper);
         return fmt::format("no method is within {:g} {} and {}: that error takes {}, with {}",
-                           *wish.max_error, experiment.error_unit,
-                           seconds_in_words(*wish.max_seconds), seconds_in_words(cheapest->cost),
+                           *request.max_error, experiment.error_unit,
+                           seconds_in_words(*request.max_seconds), seconds_in_words(cheapest->cost),
                            name(*cheapest));
     }
     const Candidate* cheapest = first_of(all, is_cheaper);
     return fmt::format("no method is within {}: the fastest takes {}, with {}",
-                       seconds_in_words(*wish.max_seconds), seconds_in_words(cheapest->cost),
+                       seconds_in_words(*request.max_seconds), seconds_in_words(cheapest->cost),
                        name(*cheapest));
 }
 

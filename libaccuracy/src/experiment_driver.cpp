@@ -115,8 +115,13 @@ Curve fitted_curve(std::string method, std::vector<CurvePoint> points,
 
 void EarlierPasses::begin_pass() {
     ++begun_;
-    next_group_ = 0;
-    next_result_ = 0;
+    for (auto& [id, record] : records_)
+        record.next_group = record.next_result = 0;
+    id_.clear();
+}
+
+void EarlierPasses::begin_experiment(const std::string& id) {
+    id_ = id;
 }
 
 std::size_t EarlierPasses::share_of(std::size_t rounds) const {
@@ -125,8 +130,9 @@ std::size_t EarlierPasses::share_of(std::size_t rounds) const {
 }
 
 std::vector<Timing>& EarlierPasses::next_group(std::size_t methods) {
-    if (next_group_ == groups_.size()) groups_.emplace_back(methods);
-    std::vector<Timing>& group = groups_[next_group_++];
+    Record& record = records_[id_];
+    if (record.next_group == record.groups.size()) record.groups.emplace_back(methods);
+    std::vector<Timing>& group = record.groups[record.next_group++];
     // The methods of an experiment can change if OpenGL becomes unavailable.
     if (group.size() != methods)
         throw std::runtime_error("an experiment times other methods than in the pass before");
@@ -134,8 +140,9 @@ std::vector<Timing>& EarlierPasses::next_group(std::size_t methods) {
 }
 
 const std::any& EarlierPasses::next_result(const std::function<std::any()>& make) {
-    if (next_result_ == results_.size()) results_.push_back(make());
-    return results_[next_result_++];
+    Record& record = records_[id_];
+    if (record.next_result == record.results.size()) record.results.push_back(make());
+    return record.results[record.next_result++];
 }
 
 std::vector<Experiment> run_in_passes(
@@ -160,9 +167,11 @@ std::vector<Experiment> run_planned(std::span<const PlannedExperiment> plan,
     std::vector<Experiment> experiments;
     for (const PlannedExperiment& planned : plan) {
         if (options.tell) options.tell(planned.title, experiments.size(), plan.size());
+        if (options.earlier) options.earlier->begin_experiment(planned.title);
         experiments.push_back(planned.run());
         experiments.back().title = planned.title;
     }
+    if (options.earlier) options.earlier->begin_experiment({});
     return experiments;
 }
 

@@ -219,6 +219,25 @@ TEST(Passes, OfOtherMethodsAreRefused) {
     EXPECT_THROW(run_in_passes(2, counted_rounds(4), timed_methods), std::runtime_error);
 }
 
+TEST(Passes, FindTheRoundsOfAPlannedExperimentInAnyOrder) {
+    const auto planned_with = [](const RunOptions& options, const std::string& title,
+                                 std::size_t methods, double seconds) {
+        return PlannedExperiment{
+            title,
+            [=] { return timed_by(options, methods, [=](std::size_t) { return seconds; }); }};
+    };
+    const std::vector<Experiment> last =
+        run_in_passes(2, counted_rounds(4), [&](const RunOptions& options, std::size_t pass) {
+            std::vector<PlannedExperiment> plan = {planned_with(options, "one", 1, 1.0),
+                                                   planned_with(options, "two", 2, 2.0)};
+            if (pass == 1) std::swap(plan[0], plan[1]);
+            return run_planned(plan, options);
+        });
+    EXPECT_EQ(last[0].title, "two");
+    EXPECT_THAT(rounds_of(last[0], 1), ElementsAre(2.0, 2.0, 2.0, 2.0));
+    EXPECT_THAT(rounds_of(last[1], 0), ElementsAre(1.0, 1.0, 1.0, 1.0));
+}
+
 TEST(Passes, EndWithWhatAnExperimentThrows) {
     std::size_t runs = 0;
     EXPECT_THROW(run_in_passes(3, counted_rounds(9),

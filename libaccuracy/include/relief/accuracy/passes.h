@@ -6,27 +6,34 @@
 /// may lie within a second, and if the machine is busy in that second, the methods look slower.
 /// Passes spread the rounds of each method over the whole run, so that the median ignores such a
 /// second. Memory is also allocated anew in each pass, which averages effects of its layout.
-/// Tests: tests/accuracy/passes_test.cpp.
+/// Tests: tests/accuracy/experiment_driver_test.cpp.
 #pragma once
 
 #include <any>
 #include <cstddef>
 #include <functional>
+#include <map>
+#include <string>
 #include <vector>
 
 #include "relief/accuracy/experiment.h"
 
 namespace relief {
 
-/// The rounds of each group of methods in earlier passes. A group is a set of methods that are
-/// timed together; groups are identified by their order, which is the same in every pass.
+/// The rounds of earlier passes, by experiment. A group is a set of methods that are timed
+/// together. An experiment has the same groups in the same order in every pass; the order and the
+/// number of experiments do not matter.
 class EarlierPasses {
   public:
     /// \param passes  at least 1
     explicit EarlierPasses(std::size_t passes) : passes_(passes) {}
 
-    /// Starts the next pass: groups are counted from the first one again.
+    /// Starts the next pass, outside of all experiments.
     void begin_pass();
+
+    /// Selects the experiment of the following calls. Its groups and results are counted from the
+    /// first one in each pass. The empty id stands for calls outside of all experiments.
+    void begin_experiment(const std::string& id);
 
     /// Returns the number of `rounds` in this pass; if they cannot be divided evenly, the first
     /// passes have one more.
@@ -42,12 +49,17 @@ class EarlierPasses {
     const std::any& next_result(const std::function<std::any()>& make);
 
   private:
+    struct Record {
+        std::vector<std::vector<Timing>> groups{};
+        std::vector<std::any> results{};
+        std::size_t next_group = 0;
+        std::size_t next_result = 0;
+    };
+
     std::size_t passes_;
     std::size_t begun_ = 0;
-    std::size_t next_group_ = 0;
-    std::size_t next_result_ = 0;
-    std::vector<std::vector<Timing>> groups_;
-    std::vector<std::any> results_;
+    std::map<std::string, Record> records_;  ///< By id of the experiment.
+    std::string id_;
 };
 
 /// Returns the result of `make`, which is called only in the first pass: for ground truths and
