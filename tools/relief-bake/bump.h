@@ -11,7 +11,7 @@
 #include <string>
 
 #include "commands.h"
-#include "common/wrap_option.h"
+#include "common/choices.h"
 #include "relief/mesh/bump_experiment.h"
 #include "relief/mesh/bump_file.h"
 

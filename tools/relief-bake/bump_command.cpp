@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "bump.h"
-#include "common/map_choices.h"
+#include "common/choices.h"
 
 namespace relief::tools {
 namespace {

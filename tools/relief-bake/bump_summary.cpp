@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "bump.h"
-#include "common/map_choices.h"
+#include "common/choices.h"
 #include "common/text.h"
 
 namespace relief::tools {

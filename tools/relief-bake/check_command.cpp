@@ -9,9 +9,8 @@
 #include <nlohmann/json.hpp>
 
 #include "commands.h"
+#include "common/choices.h"
 #include "common/findings.h"
-#include "common/map_choices.h"
-#include "common/quoted.h"
 #include "common/text.h"
 #include "mesh_bake.h"
 #include "relief/mesh/image_file.h"

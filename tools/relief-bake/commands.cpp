@@ -10,7 +10,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "common/map_choices.h"
+#include "common/choices.h"
 #include "common/text.h"
 #include "relief/mesh/threads.h"
 

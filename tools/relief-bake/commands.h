@@ -14,8 +14,8 @@
 #include "common/batch.h"
 #include "common/command.h"
 #include "common/file_jobs.h"
+#include "common/findings.h"
 #include "common/options.h"
-#include "common/report_options.h"
 #include "relief/mesh/image_file.h"
 #include "relief/mesh/normal_map.h"
 

@@ -6,9 +6,7 @@
 #include <map>
 #include <memory>
 
-#include "common/frame_choices.h"
-#include "common/map_choices.h"
-#include "common/wrap_option.h"
+#include "common/choices.h"
 #include "convert.h"
 
 namespace relief::tools {

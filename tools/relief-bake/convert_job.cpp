@@ -8,7 +8,7 @@
 #include <cmath>
 #include <functional>
 
-#include "common/map_choices.h"
+#include "common/choices.h"
 #include "common/map_models.h"
 #include "common/text.h"
 #include "convert.h"

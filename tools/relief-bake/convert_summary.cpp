@@ -5,7 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "common/map_choices.h"
+#include "common/choices.h"
 #include "common/text.h"
 #include "convert.h"
 

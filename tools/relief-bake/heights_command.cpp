@@ -11,10 +11,9 @@
 #include <nlohmann/json.hpp>
 
 #include "commands.h"
-#include "common/map_choices.h"
+#include "common/choices.h"
 #include "common/normal_map_input.h"
 #include "common/text.h"
-#include "common/wrap_option.h"
 #include "relief/mesh/heights_from_normals.h"
 #include "relief/mesh/image_channels.h"
 #include "relief/mesh/normal_map_check.h"

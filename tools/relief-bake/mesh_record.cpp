@@ -9,7 +9,7 @@
 #include <array>
 #include <sstream>
 
-#include "common/map_choices.h"
+#include "common/choices.h"
 #include "mesh_bake.h"
 
 namespace relief::tools {

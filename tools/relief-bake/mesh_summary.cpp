@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "common/map_choices.h"
+#include "common/choices.h"
 #include "common/text.h"
 #include "mesh_bake.h"
 

@@ -10,7 +10,6 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "common/quoted.h"
 #include "common/text.h"
 #include "mesh_bake.h"
 #include "relief/mesh/heat_picture.h"

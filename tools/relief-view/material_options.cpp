@@ -7,7 +7,7 @@
 #include <array>
 #include <utility>
 
-#include "common/map_choices.h"
+#include "common/choices.h"
 #include "common/text.h"
 #include "field_options.h"
 #include "near_names.h"
