@@ -555,6 +555,26 @@ TEST(BumpAccuracyCommand, ALimitIncludesTheErrorOfTheMap) {
                 0.4);
 }
 
+TEST(BumpAccuracyCommand, ALimitWithinTheRangeOfTheExpectedErrorIsAFinding) {
+    const Workplace workplace;
+    const std::string line =
+        "relief-bake bump data/bricks-height.png --strength 12 --report out/r.json";
+    const ProgramResult within = workplace.run(line + " out/a.png --max-error 2 --strict");
+    EXPECT_EQ(within.exit_code, 3);
+    EXPECT_THAT(within.out, HasSubstr("error limit that may be exceeded"));
+    EXPECT_THAT(within.out, HasSubstr("and --max-error is 2: the map does not show "));
+    const json report = json::parse(workplace.read("out/r.json"));
+    const json expected = report["kept"]["expected_degrees"];
+    EXPECT_LE(expected["total"].get<double>(), 2.0);
+    EXPECT_GT(expected["total_upper"].get<double>(), 2.0);
+    // Above the upper end there is no doubt.
+    const double limit = 1.1 * expected["total_upper"].get<double>();
+    const ProgramResult above =
+        workplace.run(line + fmt::format(" out/b.png --max-error {} --strict", limit));
+    EXPECT_EQ(above.exit_code, 0) << above.out;
+    EXPECT_THAT(above.out, testing::Not(HasSubstr("error limit")));
+}
+
 TEST(BumpAccuracyCommand, ReportsTheResultIfGrainIsDetail) {
     const Workplace workplace;
     const BumpField field =

@@ -80,7 +80,8 @@ void add_accuracy_options(CLI::App& app, BumpAccuracyRequest& request) {
     add_number(app, "--max-error", "DEG", request.max_error, {0.0, 180.0, "degrees"},
                "Choose the fastest kernel, precision and bit depth whose expected error is at most "
                "DEG degrees; fail if there is none. The expected error is the root sum of squares "
-               "of the error of the map (noise, rounding) and the error that the conversion adds.")
+               "of the error of the map (noise, rounding) and the error that the conversion adds. "
+               "If it is a range, the lower end counts, and an upper end above DEG is a finding.")
         .group(group);
     add_number(app, "--max-added-error", "DEG", request.max_added_error, {0.0, 180.0, "degrees"},
                "The same limit for only the error that the conversion adds: its distance from the "

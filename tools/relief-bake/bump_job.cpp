@@ -120,13 +120,35 @@ void report_grain(const KernelChoice& choice, Report& report) {
                 {0}});
 }
 
+/// Reports that the limit is between the ends of the range of the expected error.
+void report_range(const BumpAccuracyRequest& request, const BumpExperiment& experiment,
+                  const BumpMeasurement& selected, ErrorKind kind, Report& report) {
+    if (!request.max_error) return;
+    const double upper = expected_error_upper(experiment.reference, selected, kind).total();
+    if (upper <= *request.max_error) return;
+    const char* const unknown = experiment.choice.noise > 0.0
+                                    ? "how much detail the noise hides"
+                                    : "whether its fine detail is real, and how fine it is";
+    report.add(
+        {"error limit that may be exceeded",
+         "map",
+         fmt::format("the expected error is {:.2g} to {:.2g} degrees ({}), and --max-error "
+                     "is {:g}: the map does not show {}",
+                     expected_error(experiment.reference, selected, kind).total(), upper,
+                     kind == ErrorKind::rms ? "RMS" : "maximum", *request.max_error, unknown),
+         1,
+         {0}});
+}
+
 /// Selects the fastest method within the limits. \throws InvalidInput if there is none
-void select_within_limit(const BumpAccuracyRequest& request, BumpConversion& conversion) {
+void select_within_limit(const BumpAccuracyRequest& request, BumpConversion& conversion,
+                         Report& report) {
     BumpAccuracy& accuracy = conversion.accuracy;
     const ErrorKind kind = request.max_error_kind.value_or(ErrorKind::rms);
     const BumpMeasurement* selected =
         cheapest_within(*accuracy.experiment, {request.max_error, request.max_added_error, kind});
     if (selected == nullptr) throw InvalidInput(limit_message(request, *accuracy.experiment, kind));
+    report_range(request, *accuracy.experiment, *selected, kind, report);
     accuracy.selected = *selected;
     conversion.bump.kernel = selected->method.kernel;
     conversion.bump.gaussian_radius = selected->method.gaussian_radius;
@@ -164,7 +186,7 @@ void choose_method(const BumpAccuracyRequest& request, const std::vector<Image>&
                            accuracy.choice->depth.bits <= 12 && request.compare;
     accuracy.experiment =
         measure_bump(sample, methods_for(request, radius, measured_depths, has_steps), options);
-    if (request.has_limit()) select_within_limit(request, conversion);
+    if (request.has_limit()) select_within_limit(request, conversion, report);
 }
 
 /// Smooths the quantization steps of the map. \throws InvalidInput if the map is not in memory
