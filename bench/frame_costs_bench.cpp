@@ -26,7 +26,7 @@ namespace relief::bench {
 namespace {
 
 double median(const Contender& contender, std::size_t elements) {
-    return spread_of(contender.nanoseconds).median / static_cast<double>(elements);
+    return time_statistics(contender.nanoseconds).median / static_cast<double>(elements);
 }
 
 using TangentFunction = std::vector<glm::vec4> (*)(std::span<const glm::vec3>,
@@ -104,12 +104,12 @@ void compare_encodings(const Mesh& mesh, std::size_t rounds) {
     for (std::size_t i = 0; i < all_frame_encodings.size(); ++i) {
         const FrameEncoding encoding = all_frame_encodings[i];
         for (const FrameRounding rounding : {FrameRounding::nearest, FrameRounding::best}) {
-            all.push_back({std::string(word_of(encoding)), [&frames, &report, encoding, rounding] {
+            all.push_back({std::string(name_of(encoding)), [&frames, &report, encoding, rounding] {
                                encode_frames(frames.normals, frames.tangents, encoding, rounding,
                                              report);
                            }});
         }
-        all.push_back({std::string(word_of(encoding)), [&codes, &report, encoding, i] {
+        all.push_back({std::string(name_of(encoding)), [&codes, &report, encoding, i] {
                            decode_frames(codes[i], encoding, report);
                        }});
     }
@@ -124,7 +124,7 @@ void compare_encodings(const Mesh& mesh, std::size_t rounds) {
         const auto taken = [&](std::size_t what) {
             return median(all[3 * i + what], frames.normals.size());
         };
-        fmt::print("| `{}` | {} | {:.0f} | {:.0f} | {:.0f} |\n", word_of(all_frame_encodings[i]),
+        fmt::print("| `{}` | {} | {:.0f} | {:.0f} | {:.0f} |\n", name_of(all_frame_encodings[i]),
                    4 * words_per_frame(all_frame_encodings[i]), taken(0), taken(1), taken(2));
     }
 }
@@ -153,8 +153,8 @@ void compare_drawing(std::size_t rounds) {
         for (std::size_t i = 0; i < series[0].draw.size(); ++i)
             ratios.push_back(series[1].draw[i] / series[0].draw[i]);
         fmt::print("| {} | {:.1f} | {:.1f} | {:.2f} |\n", typical.name,
-                   spread_of(series[0].draw).median, spread_of(series[1].draw).median,
-                   spread_of(ratios).median);
+                   time_statistics(series[0].draw).median, time_statistics(series[1].draw).median,
+                   time_statistics(ratios).median);
     }
 }
 

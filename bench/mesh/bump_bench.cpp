@@ -118,13 +118,13 @@ int run(int argc, char** argv) {
     std::vector<Contender> all = contenders(in, triad, map);
     measure(all, rounds);
 
-    const double bandwidth = Triad::bytes / spread_of(all.back().nanoseconds).median;
+    const double bandwidth = Triad::bytes / time_statistics(all.back().nanoseconds).median;
     const double texels = static_cast<double>(side) * side;
     fmt::print("{0} x {0} texels; median of {1} rounds in turns; triad {2:.1f} GB/s\n\n", side,
                rounds, bandwidth);
     fmt::print("| who | MPixel/s | p10 to p90 | of the triad |\n|---|---|---|---|\n");
     for (std::size_t i = 0; i + 1 < all.size(); ++i) {
-        const Spread spread = spread_of(all[i].nanoseconds);
+        const TimeStatistics spread = time_statistics(all[i].nanoseconds);
         fmt::print("| {} | {:.0f} | {:.0f} to {:.0f} | {:.0f} % |\n", all[i].name,
                    1e3 * texels / spread.median, 1e3 * texels / spread.p90,
                    1e3 * texels / spread.p10,

@@ -69,7 +69,7 @@ void sniff(benchmark::State& state) {
     const Mesh mesh = sphere();
     set_thread_limit(static_cast<unsigned>(state.range(0)));
     for (auto _ : state)
-        benchmark::DoNotOptimize(sniff_tangents(mesh));
+        benchmark::DoNotOptimize(identify_tangents(mesh));
     set_thread_limit(0);
     state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(mesh.triangles.size()));
 }

@@ -116,8 +116,8 @@ void compare(const Map& map, const fs::path& folder, std::size_t rounds) {
     for (std::size_t i = 0; i < files.size(); ++i) {
         const auto size = static_cast<double>(fs::file_size(files[i]));
         fmt::print("| {} | {} | {:.3f} | {:.3f} | {:.1f} % | {:.2f} |\n", map.name, all[2 * i].name,
-                   spread_of(all[2 * i].nanoseconds).median / 1e9,
-                   spread_of(all[2 * i + 1].nanoseconds).median / 1e9, 100 * size / raw,
+                   time_statistics(all[2 * i].nanoseconds).median / 1e9,
+                   time_statistics(all[2 * i + 1].nanoseconds).median / 1e9, 100 * size / raw,
                    size / least);
     }
 }

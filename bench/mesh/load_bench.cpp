@@ -102,7 +102,7 @@ int run(int argc, char** argv) {
         const auto bytes = std::filesystem::file_size(folder / (std::string("sphere.") + format));
         for (const Reading& reading : all) {
             if (reading.format != format) continue;
-            const Spread spread = spread_of(reading.seconds);
+            const TimeStatistics spread = time_statistics(reading.seconds);
             fmt::print("| {} | {:.0f} | {} | {:.3f} | {:.3f} to {:.3f} |\n", format,
                        static_cast<double>(bytes) / 1e6, reading.who, spread.median, spread.p10,
                        spread.p90);

@@ -92,7 +92,7 @@ int main(int argc, char** argv) {
         if (counted) times[thing].push_back(1e9 * taken / (double{side} * side));
     });
     for (std::size_t i = 0; i < things.size(); ++i) {
-        const Spread spread = spread_of(times[i]);
+        const TimeStatistics spread = time_statistics(times[i]);
         fmt::print("{:32} {:6.2f} ns a texel (p10 {:.2f}, p90 {:.2f})\n", things[i].name,
                    spread.median, spread.p10, spread.p90);
     }

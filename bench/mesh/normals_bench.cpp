@@ -89,15 +89,15 @@ int run(int argc, char** argv) {
     fmt::print("{} triangles, {} vertices; median of {} rounds in turns\n\n", mesh.triangles.size(),
                mesh.positions.size(), rounds);
     fmt::print("| who | ns/triangle | p10 to p90 | times the naive loop |\n|---|---|---|---|\n");
-    const double naive = spread_of(all[0].nanoseconds).median;
+    const double naive = time_statistics(all[0].nanoseconds).median;
     const auto count = static_cast<double>(mesh.triangles.size());
     for (std::size_t i = 0; i + 1 < all.size(); ++i) {
-        const Spread spread = spread_of(all[i].nanoseconds);
+        const TimeStatistics spread = time_statistics(all[i].nanoseconds);
         fmt::print("| {} | {:.1f} | {:.1f} to {:.1f} | {:.2f} |\n", all[i].name,
                    spread.median / count, spread.p10 / count, spread.p90 / count,
                    spread.median / naive);
     }
-    const double bandwidth = Triad::bytes / spread_of(all.back().nanoseconds).median;
+    const double bandwidth = Triad::bytes / time_statistics(all.back().nanoseconds).median;
     // Indices and positions once, sums written and read once, normals written.
     const double least = 12.0 * count + 24.0 * static_cast<double>(mesh.positions.size());
     fmt::print(

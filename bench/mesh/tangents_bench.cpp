@@ -101,18 +101,18 @@ void print_table(const std::string& title, const Mesh& mesh, std::size_t rounds)
     measure(all, rounds, 1);
 
     const auto count = static_cast<double>(mesh.triangles.size());
-    const double plain = spread_of(all[0].nanoseconds).median;
+    const double plain = time_statistics(all[0].nanoseconds).median;
     fmt::print(
         "\n{}, {} triangles, {} vertices\n\n| who | ns/triangle | p10 to p90 | times the "
         "plain loop |\n|---|---|---|---|\n",
         title, mesh.triangles.size(), mesh.positions.size());
     for (std::size_t i = 0; i + 1 < all.size(); ++i) {
-        const Spread spread = spread_of(all[i].nanoseconds);
+        const TimeStatistics spread = time_statistics(all[i].nanoseconds);
         fmt::print("| {} | {:.1f} | {:.1f} to {:.1f} | {:.2f} |\n", all[i].name,
                    spread.median / count, spread.p10 / count, spread.p90 / count,
                    spread.median / plain);
     }
-    const double bandwidth = Triad::bytes / spread_of(all.back().nanoseconds).median;
+    const double bandwidth = Triad::bytes / time_statistics(all.back().nanoseconds).median;
     const double vertex_bytes = 32.0 * static_cast<double>(mesh.positions.size());
     const double input = 12.0 * count + vertex_bytes;
     const double output = 48.0 * count;
@@ -141,7 +141,7 @@ void print_shapes() {
             Contender contender = ours(shape.mesh, "", method, threads);
             for (int round = 0; round < 5; ++round)
                 contender.nanoseconds.push_back(1e9 * seconds_of(contender.run));
-            return spread_of(contender.nanoseconds).median * 1e-9;
+            return time_statistics(contender.nanoseconds).median * 1e-9;
         };
         fmt::print("| {} | {:.3f} | {:.3f} | {:.3f} |\n", shape.name,
                    seconds(mikktspace_tangents, 1), seconds(mikktspace_tangents, 2),

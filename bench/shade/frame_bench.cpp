@@ -82,12 +82,12 @@ void measure(const Context& context, const TypicalScene& typical, const Repeats&
     const std::vector<FrameSeries> series = time_frames(renderers, *typical.scene.camera, repeats);
     std::array<double, 3> medians{};
     for (std::size_t i = 0; i < medians.size(); ++i)
-        medians[i] = spread_of(series[i].draw).median;
+        medians[i] = time_statistics(series[i].draw).median;
     const auto median_ratio = [&](std::size_t of, std::size_t to) {
         std::vector<double> ratios;
         for (std::size_t i = 0; i < series[of].draw.size(); ++i)
             ratios.push_back(series[of].draw[i] / series[to].draw[i]);
-        return spread_of(ratios).median;
+        return time_statistics(ratios).median;
     };
     fmt::print("{:<20} {:8.2f} {:8.2f} {:8.2f}   {:5.3f}   {:5.2f}   {:3.0f} {:3.0f}\n",
                typical.name, medians[0], medians[1], medians[2], median_ratio(0, 1),

@@ -11,7 +11,7 @@
 #include <string_view>
 
 #include "bump_experiments.h"
-#include "relief/accuracy/own.h"
+#include "relief/accuracy/asset.h"
 #include "relief/mesh/angle_distribution.h"
 #include "relief/mesh/bake_trials.h"
 #include "relief/mesh/destaircase.h"
@@ -48,7 +48,7 @@ std::function<void()> work_of(const BumpMethod& method, const BumpSample& sample
 }
 
 std::string command_of(const BumpMethod& method, const BumpOptions& bump,
-                       const OwnOptions& options) {
+                       const AssetOptions& options) {
     std::string command =
         fmt::format("relief-bake bump {} OUT.{} --strength {:g} --kernel {}", options.arguments,
                     method.bits == 32 ? "exr" : "png", bump.strength, name_of(method.kernel));
@@ -62,7 +62,7 @@ std::string command_of(const BumpMethod& method, const BumpOptions& bump,
 
 /// Heights with steps are also smoothed, in one arithmetic and depth, which suffices to show the
 /// effect.
-std::vector<BumpMethod> methods_for(const KernelChoice& choice, const OwnOptions& options) {
+std::vector<BumpMethod> methods_for(const KernelChoice& choice, const AssetOptions& options) {
     constexpr int max_bits_with_steps = 12;
     const int radius = best_gaussian_radius(choice);
     const std::array as_is = {false};
@@ -79,10 +79,11 @@ std::vector<BumpMethod> methods_for(const KernelChoice& choice, const OwnOptions
 
 }  // namespace
 
-OwnExperiment measure_own_heights(const BumpSample& sample, glm::ivec2 size,
-                                  const BumpOptions& bump, const OwnOptions& options) {
-    OwnExperiment asset = asset_experiment(Subject::bump, "bump", "Normals from heights", options);
-    const KernelChoice choice = choose_kernel(sample.looked_at, bump);
+AssetExperiment measure_asset_heights(const BumpSample& sample, glm::ivec2 size,
+                                      const BumpOptions& bump, const AssetOptions& options) {
+    AssetExperiment asset =
+        asset_experiment(Subject::bump, "bump", "Normals from heights", options);
+    const KernelChoice choice = choose_kernel(sample.analyzed, bump);
     const std::vector<BumpMethod> methods = methods_for(choice, options);
     BumpExperimentOptions how;
     how.bump = bump;
@@ -90,9 +91,9 @@ OwnExperiment measure_own_heights(const BumpSample& sample, glm::ivec2 size,
     const BumpExperiment result = measure_bump(sample, methods, how);
     Experiment& experiment = asset.experiment;
     experiment.question = "Which kernel is truest on this map, and what does it cost?";
-    experiment.truth =
+    experiment.ground_truth =
         fmt::format("The map's own best: {}. {}.", result.reference.words, choice.reason);
-    experiment.reference_error = result.reference.own_degrees;
+    experiment.reference_error = result.reference.reference_degrees;
     experiment.input = result.is_whole ? fmt::format("{} x {} texels", size.x, size.y)
                                        : fmt::format("{} texels in nine parts of {} x {}",
                                                      result.texels, size.x, size.y);
@@ -103,18 +104,18 @@ OwnExperiment measure_own_heights(const BumpSample& sample, glm::ivec2 size,
         measured.push_back({measured_method(one.method, figures_of(one.error)),
                             command_of(one.method, bump, options)});
         measured.back().measured.work = work_of(one.method, sample, bump);
-        measured.back().natural_cost = cost_of(one.method);
+        measured.back().natural_cost = nominal_cost(one.method);
     }
     finish(asset, std::move(measured), {.reference = "the map itself"}, options);
     return asset;
 }
 
-OwnExperiment measure_own_heights(const Image& height, const BumpOptions& bump,
-                                  const OwnOptions& options, std::int64_t most_texels) {
+AssetExperiment measure_asset_heights(const Image& height, const BumpOptions& bump,
+                                      const AssetOptions& options, std::int64_t max_texels) {
     BumpOptions with_wrap = bump;
     if (!bump.wrap) with_wrap.wrap = detect_tiling(height).wraps();
-    return measure_own_heights(sample_of(height, most_texels), {height.width, height.height},
-                               with_wrap, options);
+    return measure_asset_heights(sample_of(height, max_texels), {height.width, height.height},
+                                 with_wrap, options);
 }
 
 namespace {
@@ -137,7 +138,8 @@ double rounding_degrees(int bits) {
 }
 
 /// The file itself: without other options, `relief-bake convert` keeps every code.
-AssetMethod as_it_is(const NormalMapOnFile& file, std::size_t texels, const OwnOptions& options) {
+AssetMethod as_it_is(const NormalMapStorage& file, std::size_t texels,
+                     const AssetOptions& options) {
     AssetMethod method;
     method.measured.name = "as it is";
     method.measured.choices = {
@@ -151,18 +153,18 @@ AssetMethod as_it_is(const NormalMapOnFile& file, std::size_t texels, const OwnO
 
 }  // namespace
 
-OwnExperiment measure_own_normals(const Image& normals, const NormalMapOnFile& file,
-                                  const OwnOptions& options, std::int64_t most_texels) {
-    OwnExperiment asset =
+AssetExperiment measure_asset_normals(const Image& normals, const NormalMapStorage& file,
+                                      const AssetOptions& options, std::int64_t max_texels) {
+    AssetExperiment asset =
         asset_experiment(Subject::storage, "normal-map", "Storage of the normals", options);
     std::vector<Image> parts;
-    for (const ImagePart& part : parts_to_measure(normals.width, normals.height, most_texels))
+    for (const ImagePart& part : parts_to_measure(normals.width, normals.height, max_texels))
         parts.push_back(part_of(normals, part));
     Experiment& experiment = asset.experiment;
     for (const Image& part : parts)
         experiment.items += static_cast<double>(part.width) * part.height;
     experiment.question = "In how few bits can these normals be stored?";
-    experiment.truth = fmt::format(
+    experiment.ground_truth = fmt::format(
         "The normals as the file holds them, in {} bits. What was lost before it was written is "
         "unknown, but for the rounding to these bits.",
         file.bits);
@@ -200,13 +202,13 @@ namespace {
 
 constexpr std::size_t max_bake_texels = std::size_t{1} << 16;
 
-std::string samples_name(const BakeWay& way) {
+std::string samples_name(const BakeSampling& way) {
     return way.sample_degrees ? fmt::format("auto {:g}", *way.sample_degrees)
                               : fmt::format("{}", way.samples);
 }
 
-AssetMethod method_of(const BakeWay& way, const NormalMapFormat& format, int size,
-                      const OwnOptions& options) {
+AssetMethod method_of(const BakeSampling& way, const NormalMapFormat& format, int size,
+                      const AssetOptions& options) {
     const bool is_dithered = format.dither != Dither::none;
     const std::string depth = fmt::format("{} bit", format.bits);
     AssetMethod method;
@@ -228,20 +230,20 @@ AssetMethod method_of(const BakeWay& way, const NormalMapFormat& format, int siz
 
 }  // namespace
 
-OwnExperiment measure_own_bake(const Baker& baker, int size, const OwnOptions& options) {
-    OwnExperiment asset = asset_experiment(Subject::bake, "bake", "Baked normals", options);
+AssetExperiment measure_asset_bake(const Baker& baker, int size, const AssetOptions& options) {
+    AssetExperiment asset = asset_experiment(Subject::bake, "bake", "Baked normals", options);
     BakeMapOptions map;
     map.width = size;
     map.height = size;
-    const BakeTrials trials(baker, map, max_bake_texels);
-    const std::span<const BakeWay> ways = usual_bake_ways();
-    const std::vector<NormalMapFormat> formats = usual_map_formats({});
+    const BakeBenchmark trials(baker, map, max_bake_texels);
+    const std::span<const BakeSampling> ways = default_bake_samplings();
+    const std::vector<NormalMapFormat> formats = default_map_formats({});
     const Repeats repeats{options.run.is_timed ? options.run.repeats.counted : 1, 0};
-    const std::vector<TimedBakeTrial> trial_results =
-        measured_in_turns(trials, ways, formats, repeats);
+    const std::vector<TimedBakeMeasurement> trial_results =
+        measure_interleaved(trials, ways, formats, repeats);
     Experiment& experiment = asset.experiment;
     experiment.question = "How many samples and bits does a map of these meshes need?";
-    experiment.truth = fmt::format(
+    experiment.ground_truth = fmt::format(
         "The mean of {} samples a texel of the high mesh's normals, in the low mesh's tangent "
         "space: what a map of this size can show at best. It says nothing of what a larger map "
         "would show, nor whether the rays find the right surface.",

@@ -13,14 +13,14 @@
 #include <optional>
 
 #include "normals_experiments.h"
-#include "relief/accuracy/own.h"
+#include "relief/accuracy/asset.h"
 #include "relief/mesh/angle_distribution.h"
 #include "relief/mesh/direction_error.h"
 #include "relief/mesh/error.h"
 #include "relief/mesh/fitted_normals.h"
 #include "relief/mesh/frame_encoding.h"
 #include "relief/mesh/frames.h"
-#include "relief/mesh/stored_creases.h"
+#include "relief/mesh/inferred_creases.h"
 #include "report_names.h"
 #include "storage_experiments.h"
 #include "tangent_methods.h"
@@ -42,7 +42,7 @@ CreaseRule by_angle(double degrees, const std::string& why) {
 CreaseRule by_normals(const Mesh& mesh) {
     CreaseRule none;
     none.words = "no edge is hard";
-    const StoredCreases stored = stored_creases(mesh);
+    const InferredCreases stored = inferred_creases(mesh);
     if (stored.hard == 0) return none;
     const double degrees = std::round(glm::degrees(stored.crease_angle));
     if (degrees < min_degrees_of_normals) {
@@ -50,7 +50,7 @@ CreaseRule by_normals(const Mesh& mesh) {
         return none;
     }
     return by_angle(degrees, fmt::format(", which tells {:.3g}% of the edges as its own normals do",
-                                         100.0 * (1.0 - static_cast<double>(stored.misjudged) /
+                                         100.0 * (1.0 - static_cast<double>(stored.misclassified) /
                                                             static_cast<double>(stored.edges))));
 }
 
@@ -101,10 +101,10 @@ CornerGroundTruth by_surface(const Mesh& mesh, const CreaseRule& creases) {
         "smooth surface. Where it is known, it has an expected error of {:.2g} degrees itself. It "
         "takes the vertices for points of the surface, and cannot judge models whose vertices are "
         "not.",
-        creases.words, fitted.corners.size(), fitted.places, fitted.own_degrees);
+        creases.words, fitted.corners.size(), fitted.places, fitted.reference_degrees);
     constexpr std::size_t fewest = 16;
     ground_truth.is_enough = fitted.corners.size() >= std::max(fewest, fitted.places / 10);
-    ground_truth.expected_error = fitted.own_degrees;
+    ground_truth.expected_error = fitted.reference_degrees;
     if (fitted.places > 0) {
         ground_truth.unjudged =
             1.0 - static_cast<double>(fitted.corners.size()) / static_cast<double>(fitted.places);
@@ -159,7 +159,7 @@ std::vector<glm::vec3> with_creases(const NormalMethod& method, const Mesh& mesh
 
 std::vector<AssetMethod> methods_on(const Mesh& mesh, const CreaseRule& creases,
                                     const CornerGroundTruth& ground_truth,
-                                    const OwnOptions& options) {
+                                    const AssetOptions& options) {
     std::vector<AssetMethod> methods;
     // Only double: relief-mesh has no option for another arithmetic.
     for (const NormalMethod& method : normal_methods(std::array{Arithmetic::float64})) {
@@ -180,7 +180,7 @@ std::vector<AssetMethod> methods_on(const Mesh& mesh, const CreaseRule& creases,
 
 /// Names the methods that the reference cannot distinguish from the recommended one, and the share
 /// of vertices at which no method could be judged.
-void add_caveats(OwnExperiment& asset, const CornerGroundTruth& ground_truth,
+void add_caveats(AssetExperiment& asset, const CornerGroundTruth& ground_truth,
                  const CreaseRule& creases) {
     if (!asset.recommendation.method) return;
     std::string& words = asset.recommendation.words;
@@ -210,18 +210,18 @@ void add_caveats(OwnExperiment& asset, const CornerGroundTruth& ground_truth,
 
 /// Compares all weightings.
 /// \param whole  describes the selection of triangles: ", eight runs of the mesh's 3000000"
-OwnExperiment measure_normals(const Mesh& mesh, const std::string& whole,
-                              const OwnMeshOptions& mesh_options, const OwnOptions& options) {
-    OwnExperiment asset = asset_experiment(Subject::normals, "normals", "Normals", options);
+AssetExperiment measure_normals(const Mesh& mesh, const std::string& whole,
+                                const AssetMeshOptions& mesh_options, const AssetOptions& options) {
+    AssetExperiment asset = asset_experiment(Subject::normals, "normals", "Normals", options);
     const CreaseRule creases = crease_rule(mesh, mesh_options.crease_angle);
-    const bool is_file = mesh_options.truth == NormalTruth::file;
+    const bool is_file = mesh_options.reference == NormalReference::file;
     const CornerGroundTruth ground_truth =
         is_file ? by_file(mesh, creases) : by_surface(mesh, creases);
     Experiment& experiment = asset.experiment;
     experiment.question = is_file ? "Which weighting comes nearest to the normals of this file?"
                                   : "Which weighting is closest to the normals of the surface that "
                                     "this mesh stands for, and what does it cost?";
-    experiment.truth = ground_truth.words;
+    experiment.reference = ground_truth.words;
     experiment.input = fmt::format("{} triangles{}", mesh.triangles.size(), whole);
     experiment.item = "triangle";
     experiment.items = static_cast<double>(mesh.triangles.size());
@@ -300,7 +300,7 @@ struct Basis {
 };
 
 std::vector<Basis> bases_of(const Mesh& mesh, const std::vector<glm::vec4>& stored,
-                            const OwnOptions& options) {
+                            const AssetOptions& options) {
     std::vector<Basis> bases;
     for (const TangentMethod& method : tangent_methods()) {
         Basis basis{method.name, method.tangents_of(mesh), method.basis};
@@ -345,13 +345,13 @@ void describe(Experiment& experiment, const Mesh& mesh, const SamplePoints& poin
 }
 
 /// The angles between tangents and the direction of growing u on each triangle.
-OwnExperiment from_gradients(const Mesh& mesh, const std::vector<Basis>& bases,
-                             const SamplePoints& points, const std::string& whole,
-                             const OwnOptions& options) {
-    OwnExperiment asset = asset_experiment(Subject::tangents, "tangents", "Tangents", options);
+AssetExperiment from_gradients(const Mesh& mesh, const std::vector<Basis>& bases,
+                               const SamplePoints& points, const std::string& whole,
+                               const AssetOptions& options) {
+    AssetExperiment asset = asset_experiment(Subject::tangents, "tangents", "Tangents", options);
     Experiment& experiment = asset.experiment;
     experiment.question = "How far do averaged tangents turn from where the image runs?";
-    experiment.truth =
+    experiment.reference =
         "Where u grows on each triangle, by its own texture coordinates, in the plane of the "
         "interpolated normal. It tells what averaging does to the frame, not which basis a normal "
         "map was baked in: that one must be taken, whatever it errs here.";
@@ -382,14 +382,14 @@ OwnExperiment from_gradients(const Mesh& mesh, const std::vector<Basis>& bases,
 }
 
 /// The errors of maps that were baked for MikkTSpace and are read in another basis.
-OwnExperiment from_mikktspace(const Mesh& mesh, const std::vector<Basis>& bases,
-                              const SamplePoints& points, const std::string& whole,
-                              const OwnOptions& options) {
-    OwnExperiment asset =
+AssetExperiment from_mikktspace(const Mesh& mesh, const std::vector<Basis>& bases,
+                                const SamplePoints& points, const std::string& whole,
+                                const AssetOptions& options) {
+    AssetExperiment asset =
         asset_experiment(Subject::tangents, "tangent-basis", "Tangent basis", options);
     Experiment& experiment = asset.experiment;
     experiment.question = "What does a normal map baked for MikkTSpace show in another basis?";
-    experiment.truth =
+    experiment.reference =
         "The normals that texels tilted by 30 degrees stand for in MikkTSpace's frames, which is "
         "what most bakers write. A map baked in another basis is right in that one instead.";
     describe(experiment, mesh, points, whole);
@@ -442,14 +442,14 @@ SampleFrames frames_of(const Mesh& mesh, const CornerTangents& tangents) {
     return sample_frames(normals, along_u);
 }
 
-OwnExperiment stored_frames(const Mesh& mesh, const CornerTangents& tangents,
-                            const OwnOptions& options) {
-    OwnExperiment asset =
+AssetExperiment stored_frames(const Mesh& mesh, const CornerTangents& tangents,
+                              const AssetOptions& options) {
+    AssetExperiment asset =
         asset_experiment(Subject::storage, "frames", "Frames in few bytes", options);
     const SampleFrames frames = frames_of(mesh, tangents);
     Experiment& experiment = asset.experiment;
     experiment.question = "How many bytes do this mesh's tangent frames need?";
-    experiment.truth =
+    experiment.reference =
         "The mesh's normals and MikkTSpace's tangents in double, right- and left-handed by turns.";
     experiment.input = fmt::format("{} frames", frames.normals.size());
     experiment.item = "frame";
@@ -464,7 +464,7 @@ OwnExperiment stored_frames(const Mesh& mesh, const CornerTangents& tangents,
         };
         method.command = fmt::format(
             "encode_frames(normals, tangents, FrameEncoding::{}, FrameRounding::{}, report)",
-            word_of(code.encoding), code.rounding_name());
+            name_of(code.encoding), code.rounding_name());
         methods.push_back(std::move(method));
     }
     finish(asset, std::move(methods), {CostKind::bytes, invisible_degrees}, options);
@@ -474,8 +474,8 @@ OwnExperiment stored_frames(const Mesh& mesh, const CornerTangents& tangents,
 /// Compares tangent methods and the storage of their frames. A mesh without normals gets averaged
 /// ones.
 /// \param mesh  has texture coordinates
-std::vector<OwnExperiment> measure_tangents(Mesh mesh, const std::string& whole,
-                                            const OwnOptions& options) {
+std::vector<AssetExperiment> measure_tangents(Mesh mesh, const std::string& whole,
+                                              const AssetOptions& options) {
     const std::vector<glm::vec4> stored = mesh.tangents;
     FrameOptions frames;
     frames.repair = true;
@@ -484,7 +484,7 @@ std::vector<OwnExperiment> measure_tangents(Mesh mesh, const std::string& whole,
     mesh = with_frames(std::move(mesh), frames, report).mesh;
     const std::vector<Basis> bases = bases_of(mesh, stored, options);
     const SamplePoints points = sample_points(mesh);
-    std::vector<OwnExperiment> all;
+    std::vector<AssetExperiment> all;
     all.push_back(from_gradients(mesh, bases, points, whole, options));
     all.push_back(from_mikktspace(mesh, bases, points, whole, options));
     all.push_back(stored_frames(mesh, bases.front().tangents, options));
@@ -493,19 +493,20 @@ std::vector<OwnExperiment> measure_tangents(Mesh mesh, const std::string& whole,
 
 }  // namespace
 
-std::vector<OwnExperiment> measure_own_mesh(const Mesh& mesh, const OwnMeshOptions& mesh_options,
-                                            const OwnOptions& options) {
+std::vector<AssetExperiment> measure_asset_mesh(const Mesh& mesh,
+                                                const AssetMeshOptions& mesh_options,
+                                                const AssetOptions& options) {
     validate(mesh);
     if (mesh.triangles.empty()) throw InvalidInput("the mesh has no triangle to measure on");
-    const Mesh part = part_to_measure(mesh, mesh_options.most_triangles);
+    const Mesh part = part_to_measure(mesh, mesh_options.max_triangles);
     const std::string whole =
         part.triangles.size() == mesh.triangles.size()
             ? ""
             : fmt::format(", eight runs of the mesh's {}", mesh.triangles.size());
-    std::vector<OwnExperiment> all;
+    std::vector<AssetExperiment> all;
     all.push_back(measure_normals(part, whole, mesh_options, options));
     if (!mesh.texcoords.empty()) {
-        for (OwnExperiment& one : measure_tangents(part, whole, options))
+        for (AssetExperiment& one : measure_tangents(part, whole, options))
             all.push_back(std::move(one));
     }
     return all;

@@ -13,8 +13,8 @@
 
 #include "experiment_driver.h"
 #include "progress_stage.h"
+#include "relief/accuracy/duration.h"
 #include "relief/accuracy/recommend.h"
-#include "relief/accuracy/words.h"
 #include "relief/mesh/frontier.h"
 #include "relief/mesh/mesh_part.h"
 
@@ -28,10 +28,10 @@ struct Candidate {
     double bounded = 0.0;  ///< The error that a limit applies to; includes that of the reference.
     double cost = 0.0;     ///< Seconds or bytes; 0 for all methods if none was measured.
     double bytes = 0.0;    ///< Stored bytes.
-    double natural = 0.0;  ///< RecommendationRule::natural_costs.
+    double natural = 0.0;  ///< RecommendationRule::nominal_costs.
 };
 
-double cost_of(const Measurement& measurement, CostKind kind) {
+double nominal_cost(const Measurement& measurement, CostKind kind) {
     return kind == CostKind::bytes ? measurement.cost.stored_bytes : median_seconds(measurement);
 }
 
@@ -44,9 +44,9 @@ std::vector<Candidate> candidates_of(const Experiment& experiment, const Recomme
         if (!rule.choosable.empty() && rule.choosable[i] == 0) continue;
         if (one.error.undefined > 0 || one.error.count == 0 || !std::isfinite(one.error.rms))
             continue;
-        all.push_back({i, one.error.rms, std::hypot(reference, one.error.*(rule.wish.figure)),
-                       cost_of(one, rule.cost), one.cost.stored_bytes,
-                       rule.natural_costs.empty() ? 0.0 : rule.natural_costs[i]});
+        all.push_back({i, one.error.rms, std::hypot(reference, one.error.*(rule.request.figure)),
+                       nominal_cost(one, rule.cost), one.cost.stored_bytes,
+                       rule.nominal_costs.empty() ? 0.0 : rule.nominal_costs[i]});
         is_measured = is_measured || std::isfinite(all.back().cost);
     }
     if (is_measured) {
@@ -100,7 +100,8 @@ const Candidate* knee_of(const std::vector<Candidate>& all, double floor) {
     return taken;
 }
 
-std::vector<Candidate> kept_of(std::vector<Candidate> all, const Wish& request, CostKind kind) {
+std::vector<Candidate> kept_of(std::vector<Candidate> all, const MethodRequest& request,
+                               CostKind kind) {
     std::erase_if(all, [&](const Candidate& one) {
         return (request.max_error && !(one.bounded <= *request.max_error)) ||
                (kind == CostKind::time && request.max_seconds &&
@@ -111,18 +112,19 @@ std::vector<Candidate> kept_of(std::vector<Candidate> all, const Wish& request, 
 
 const Candidate* taken_of(const Experiment& experiment, const std::vector<Candidate>& kept,
                           const RecommendationRule& rule) {
-    if (rule.wish.max_error) return first_of(kept, is_cheaper);
-    if (rule.wish.max_seconds && rule.cost == CostKind::time)
+    if (rule.request.max_error) return first_of(kept, is_cheaper);
+    if (rule.request.max_seconds && rule.cost == CostKind::time)
         return first_of(kept, is_more_accurate);
-    return knee_of(kept, std::hypot(experiment.reference_error.value_or(0.0), rule.unseen_error));
+    return knee_of(kept,
+                   std::hypot(experiment.reference_error.value_or(0.0), rule.negligible_error));
 }
 
 /// The least accurate of the efficient candidates that are more accurate than `taken`.
 const Candidate* next_more_accurate(const std::vector<Candidate>& all, const Candidate& taken) {
-    std::vector<Price> prices;
+    std::vector<MethodCost> prices;
     for (const Candidate& one : all)
         prices.push_back({one.error, one.cost});
-    const std::vector<bool> marks = efficient(prices);
+    const std::vector<bool> marks = pareto_optimal(prices);
     const Candidate* next = nullptr;
     for (std::size_t i = 0; i < all.size(); ++i) {
         if (!marks[i] || !(all[i].error < taken.error)) continue;
@@ -132,7 +134,7 @@ const Candidate* next_more_accurate(const std::vector<Candidate>& all, const Can
 }
 
 std::string cost_text(double cost, CostKind kind) {
-    return kind == CostKind::bytes ? fmt::format("{:g} bytes", cost) : seconds_in_words(cost);
+    return kind == CostKind::bytes ? fmt::format("{:g} bytes", cost) : format_seconds(cost);
 }
 
 std::string recommendation_text(const Experiment& experiment, const RecommendationRule& rule,
@@ -165,7 +167,7 @@ std::string recommendation_text(const Experiment& experiment, const Recommendati
 std::string refusal_text(const Experiment& experiment, const RecommendationRule& rule,
                          const std::vector<Candidate>& all) {
     if (all.empty()) return "nothing could be measured";
-    const Wish& request = rule.wish;
+    const MethodRequest& request = rule.request;
     const auto name = [&](const Candidate& one) {
         return experiment.measurements[one.index].method;
     };
@@ -180,18 +182,18 @@ std::string refusal_text(const Experiment& experiment, const RecommendationRule&
                 text += fmt::format(" ({} {:.3g})", rule.reference, *experiment.reference_error);
             return text;
         }
-        Wish error_alone = request;
+        MethodRequest error_alone = request;
         error_alone.max_seconds.reset();
         const std::vector<Candidate> accurate_enough = kept_of(all, error_alone, rule.cost);
         const Candidate* cheapest = first_of(accurate_enough, is_cheaper);
         return fmt::format("no method is within {:g} {} and {}: that error takes {}, with {}",
                            *request.max_error, experiment.error_unit,
-                           seconds_in_words(*request.max_seconds), seconds_in_words(cheapest->cost),
+                           format_seconds(*request.max_seconds), format_seconds(cheapest->cost),
                            name(*cheapest));
     }
     const Candidate* cheapest = first_of(all, is_cheaper);
     return fmt::format("no method is within {}: the fastest takes {}, with {}",
-                       seconds_in_words(*request.max_seconds), seconds_in_words(cheapest->cost),
+                       format_seconds(*request.max_seconds), format_seconds(cheapest->cost),
                        name(*cheapest));
 }
 
@@ -199,7 +201,7 @@ std::string refusal_text(const Experiment& experiment, const RecommendationRule&
 
 Recommendation recommended(const Experiment& experiment, const RecommendationRule& rule) {
     const std::vector<Candidate> all = candidates_of(experiment, rule);
-    const std::vector<Candidate> kept = kept_of(all, rule.wish, rule.cost);
+    const std::vector<Candidate> kept = kept_of(all, rule.request, rule.cost);
     Recommendation result;
     const Candidate* taken = taken_of(experiment, kept, rule);
     if (taken == nullptr) {
@@ -213,10 +215,10 @@ Recommendation recommended(const Experiment& experiment, const RecommendationRul
     return result;
 }
 
-OwnExperiment asset_experiment(Subject subject, const std::string& topic, const std::string& title,
-                               const OwnOptions& options) {
+AssetExperiment asset_experiment(Subject subject, const std::string& topic,
+                                 const std::string& title, const AssetOptions& options) {
     check_cancelled();
-    OwnExperiment asset;
+    AssetExperiment asset;
     Experiment& experiment = asset.experiment;
     experiment.id = "own/" + (options.file.empty() ? topic : options.file + "/" + topic);
     experiment.subject = subject;
@@ -227,21 +229,21 @@ OwnExperiment asset_experiment(Subject subject, const std::string& topic, const 
     return asset;
 }
 
-void set_finding(OwnExperiment& asset) {
+void set_finding(AssetExperiment& asset) {
     asset.experiment.finding = asset.recommendation.words + ".";
     if (!asset.command().empty()) asset.experiment.finding += " To do it: " + asset.command();
 }
 
-void finish(OwnExperiment& asset, std::vector<AssetMethod> methods, const AssetRule& rule,
-            const OwnOptions& options) {
+void finish(AssetExperiment& asset, std::vector<AssetMethod> methods, const AssetRule& rule,
+            const AssetOptions& options) {
     const ProgressStage stage("measuring");
     std::vector<MeasuredMethod> measured;
     std::vector<unsigned char> choosable;
-    std::vector<double> natural_costs;
+    std::vector<double> nominal_costs;
     for (AssetMethod& method : methods) {
         measured.push_back(std::move(method.measured));
         choosable.push_back(method.command.empty() ? 0 : 1);
-        natural_costs.push_back(method.natural_cost);
+        nominal_costs.push_back(method.natural_cost);
         asset.commands.push_back(std::move(method.command));
     }
     measure_methods(measured, options.run, options.costs, asset.experiment);
@@ -251,10 +253,10 @@ void finish(OwnExperiment& asset, std::vector<AssetMethod> methods, const AssetR
         if (asset.experiment.reference_error && one.error.count > 0)
             one.expected = ExpectedError{*asset.experiment.reference_error, one.error.rms};
     }
-    mark_efficient(asset.experiment);
-    asset.recommendation = recommended(
-        asset.experiment,
-        {options.wish, rule.cost, rule.unseen_error, choosable, natural_costs, rule.reference});
+    mark_pareto_optimal(asset.experiment);
+    asset.recommendation =
+        recommended(asset.experiment, {options.request, rule.cost, rule.negligible_error, choosable,
+                                       nominal_costs, rule.reference});
     set_finding(asset);
 }
 

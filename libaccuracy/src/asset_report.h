@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "experiment_driver.h"
-#include "relief/accuracy/own.h"
+#include "relief/accuracy/asset.h"
 #include "relief/mesh/normals.h"
 
 namespace relief {
@@ -22,27 +22,27 @@ struct AssetMethod {
     MeasuredMethod measured;
     std::string command{};
     std::optional<Timing> known_time{};  ///< On all threads, if it was measured elsewhere.
-    double natural_cost = 0.0;           ///< RecommendationRule::natural_costs.
+    double natural_cost = 0.0;           ///< RecommendationRule::nominal_costs.
 };
 
 /// How to recommend one of the methods.
 struct AssetRule {
     CostKind cost = CostKind::time;
-    double unseen_error = 0.0;  ///< Degrees; RecommendationRule::unseen_error.
-    std::string reference{};    ///< Names the source of Experiment::reference_error.
+    double negligible_error = 0.0;  ///< Degrees; RecommendationRule::negligible_error.
+    std::string reference{};        ///< Names the source of Experiment::reference_error.
 };
 
 /// Begins an experiment on a file: id "own/FILE/TOPIC", title "TITLE of FILE", unit degrees.
-OwnExperiment asset_experiment(Subject subject, const std::string& topic, const std::string& title,
-                               const OwnOptions& options);
+AssetExperiment asset_experiment(Subject subject, const std::string& topic,
+                                 const std::string& title, const AssetOptions& options);
 
 /// Measures the methods, recommends one of those that have a command, and makes that the finding.
 /// Experiment::reference_error must be set before.
-void finish(OwnExperiment& asset, std::vector<AssetMethod> methods, const AssetRule& rule,
-            const OwnOptions& options);
+void finish(AssetExperiment& asset, std::vector<AssetMethod> methods, const AssetRule& rule,
+            const AssetOptions& options);
 
 /// Makes the recommendation and its command the finding.
-void set_finding(OwnExperiment& asset);
+void set_finding(AssetExperiment& asset);
 
 /// Selects eight evenly spread runs of triangles, `max_triangles` in total; or the whole mesh if it
 /// has no more.

@@ -157,7 +157,7 @@ BakeMapOptions square_map(int side) {
 
 }  // namespace
 
-std::string name_of(const BakeWay& way) {
+std::string name_of(const BakeSampling& way) {
     if (way.sample_degrees)
         return fmt::format("up to {} rays beyond {:g}°", way.samples, *way.sample_degrees);
     return way.samples == 1 ? "1 ray" : fmt::format("{} rays", way.samples);
@@ -184,7 +184,7 @@ const std::vector<NormalMapFormat>& BumpyBake::formats() {
     return all;
 }
 
-Image BumpyBake::map_by(const BakeWay& way, const NormalMapFormat& format) const {
+Image BumpyBake::map_by(const BakeSampling& way, const NormalMapFormat& format) const {
     BakeMapOptions map = map_;
     map.samples = way.samples;
     if (way.sample_degrees) map.sample_angle = glm::radians(*way.sample_degrees);
@@ -201,17 +201,17 @@ Image BumpyBake::map_by(const BakeWay& way, const NormalMapFormat& format) const
     return encode_normal_map(normals, format, ignored);
 }
 
-std::vector<BakeWayResult> BumpyBake::measured(std::span<const BakeWay> ways,
+std::vector<BakeWayResult> BumpyBake::measured(std::span<const BakeSampling> ways,
                                                const RunOptions& options) const {
     std::vector<BakeWayResult> results;
-    for (const BakeWay& way : ways)
+    for (const BakeSampling& way : ways)
         results.push_back({trials_.measure(way, formats())});
     if (!options.is_timed) return results;
     // One cast serves all formats of a way, which are consecutive here.
     const std::size_t depths = formats().size();
-    BakeTrial trial;
+    BakeMeasurement trial;
     const auto timings = [&] {
-        return rounds_in_turns(ways.size() * depths, options, [&](std::size_t i) {
+        return measure_interleaved_rounds(ways.size() * depths, options, [&](std::size_t i) {
             if (i % depths == 0) trial = trials_.measure(ways[i / depths], formats());
             return trial.cast_seconds + trial.code_seconds[i % depths];
         });
@@ -229,7 +229,7 @@ namespace {
 
 /// One finished map.
 struct BakedMap {
-    BakeWay way;
+    BakeSampling way;
     NormalMapFormat format;
 };
 
@@ -275,7 +275,7 @@ double rays_per_texel(const BakeWayResult& result, const BumpyBake& bake) {
     return static_cast<double>(result.trial.rays) / bake.texels();
 }
 
-Cost cost_of(const BakeWayResult& result, std::size_t format) {
+Cost nominal_cost(const BakeWayResult& result, std::size_t format) {
     Cost cost{.stored_bytes = 3.0 * BumpyBake::formats()[format].bits / 8.0};
     if (result.one_thread.empty()) return cost;
     cost.one_thread = result.one_thread[format];
@@ -284,12 +284,12 @@ Cost cost_of(const BakeWayResult& result, std::size_t format) {
 }
 
 /// The common part of both experiments, and a measurement of each way in each of `formats`.
-Experiment measured(const BumpyBake& bake, std::span<const BakeWay> ways,
+Experiment measured(const BumpyBake& bake, std::span<const BakeSampling> ways,
                     const std::vector<BakeWayResult>& results,
                     std::span<const std::size_t> formats) {
     Experiment experiment{
         .subject = Subject::bake,
-        .truth = fmt::format(
+        .reference = fmt::format(
             "the mean of {} rays a texel, not rounded to codes; a test holds bakes to the formula "
             "of the surface, without the baker's rays",
             bake.trials().reference_samples()),
@@ -304,11 +304,11 @@ Experiment measured(const BumpyBake& bake, std::span<const BakeWay> ways,
                 {.method = fmt::format("{}, {}", name_of(ways[i]), depth_name(depth.bits)),
                  .choices = {{"rays", name_of(ways[i])}, {"depth", depth_name(depth.bits)}},
                  .error = figures_of(results[i].trial.errors[format]),
-                 .cost = cost_of(results[i], format),
+                 .cost = nominal_cost(results[i], format),
                  .note = fmt::format("{:.2f} rays a texel.", rays_per_texel(results[i], bake))});
         }
     }
-    mark_efficient(experiment);
+    mark_pareto_optimal(experiment);
     return experiment;
 }
 
@@ -333,7 +333,7 @@ std::string speed_of(const BakeWayResult& result) {
 }
 
 Experiment by_samples(const BumpyBake& bake, const RunOptions& options) {
-    std::vector<BakeWay> ways = {{1}, {4}, {16}};
+    std::vector<BakeSampling> ways = {{1}, {4}, {16}};
     if (!options.is_quick) ways.push_back({64});
     const std::vector<BakeWayResult> results = bake.measured(ways, options);
     constexpr std::array<std::size_t, 3> formats = {0, 1, 2};
@@ -364,14 +364,14 @@ Experiment by_samples(const BumpyBake& bake, const RunOptions& options) {
         "rounded. 8 bits alone are {:.3f} off, 16 bits {:.4f}: with {} the former make {:.3f}, the "
         "latter {:.4f}.{}",
         name_of(ways[0]), rms(0, 2), name_of(ways[1]), rms(1, 2), name_of(ways[last]), rms(last, 2),
-        results[0].trial.quantisation[0].rms, results[0].trial.quantisation[1].rms,
+        results[0].trial.quantization[0].rms, results[0].trial.quantization[1].rms,
         name_of(ways[last]), rms(last, 0), rms(last, 1), speed_of(results[last]));
     return experiment;
 }
 
 Experiment by_threshold(const BumpyBake& bake, const RunOptions& options) {
     const int max_rays = options.is_quick ? 16 : 64;
-    std::vector<BakeWay> ways;
+    std::vector<BakeSampling> ways;
     for (const double degrees : {16.0, 8.0, 4.0, 2.0, 1.0, 0.5})
         ways.push_back({max_rays, degrees});
     const auto adaptive = static_cast<std::ptrdiff_t>(ways.size());
@@ -418,7 +418,7 @@ Experiment by_threshold(const BumpyBake& bake, const RunOptions& options) {
 }  // namespace
 
 std::vector<Experiment> bake_experiments(const RunOptions& options) {
-    const std::shared_ptr<const BumpyBake> bake = made_once(options, [&] {
+    const std::shared_ptr<const BumpyBake> bake = computed_once(options, [&] {
         return std::make_shared<const BumpyBake>(options.is_quick ? 120 : 200,
                                                  options.is_quick ? 128 : 256);
     });

@@ -43,11 +43,11 @@ class BumpySphere {
     Mesh mesh_;
 };
 
-std::string name_of(const BakeWay& way);  ///< "16 rays", "up to 64 rays beyond 2°"
+std::string name_of(const BakeSampling& way);  ///< "16 rays", "up to 64 rays beyond 2°"
 
 /// The results of one way to bake.
 struct BakeWayResult {
-    BakeTrial trial;  ///< Errors by format.
+    BakeMeasurement trial;  ///< Errors by format.
     /// By format, for casting rays and encoding together; empty if not timed.
     std::vector<Timing> one_thread{};
     std::vector<Timing> all_threads{};
@@ -64,7 +64,7 @@ class BumpyBake {
 
     [[nodiscard]] const Baker& baker() const { return baker_; }
     [[nodiscard]] const BakeMapOptions& map() const { return map_; }
-    [[nodiscard]] const BakeTrials& trials() const { return trials_; }
+    [[nodiscard]] const BakeBenchmark& trials() const { return trials_; }
     [[nodiscard]] std::string description() const;  ///< Of the meshes and the map.
     [[nodiscard]] double texels() const;
 
@@ -73,11 +73,11 @@ class BumpyBake {
 
     /// Measures all ways in interleaved rounds. Times include ray casting and encoding, not the
     /// preparation of the meshes.
-    [[nodiscard]] std::vector<BakeWayResult> measured(std::span<const BakeWay> ways,
+    [[nodiscard]] std::vector<BakeWayResult> measured(std::span<const BakeSampling> ways,
                                                       const RunOptions& options) const;
 
     /// Bakes a map.
-    [[nodiscard]] Image map_by(const BakeWay& way, const NormalMapFormat& format) const;
+    [[nodiscard]] Image map_by(const BakeSampling& way, const NormalMapFormat& format) const;
     [[nodiscard]] const BumpySphere& high() const { return high_; }
 
   private:
@@ -85,7 +85,7 @@ class BumpyBake {
     Report report_;
     Baker baker_;
     BakeMapOptions map_;
-    BakeTrials trials_;
+    BakeBenchmark trials_;
 };
 
 /// Compares fixed numbers of rays per texel, and additional rays only in texels whose first rays

@@ -56,7 +56,7 @@ double rms_error(const BumpField& field, Kernel kernel, int gaussian_radius) {
 }
 
 const FieldRecipe& recipe_named(const std::string& name) {
-    for (const auto& set : {tuning_fields(), judging_fields()}) {
+    for (const auto& set : {tuning_fields(), evaluation_fields()}) {
         for (const FieldRecipe& recipe : set) {
             if (name == recipe.name) return recipe;
         }
@@ -247,7 +247,7 @@ Experiment on_wave(int bits, const RunOptions& options) {
     experiment.question =
         fmt::format("Which kernel finds the normals of a wave, by its length, from heights in {}?",
                     depth_name(bits));
-    experiment.truth =
+    experiment.ground_truth =
         "The wave's slopes in closed form; a kernel's response in closed form gives the same "
         "errors, which a test checks.";
     experiment.input =
@@ -271,7 +271,7 @@ Experiment on_wave(int bits, const RunOptions& options) {
                     experiment);
     experiment.finding = bump_finding(experiment);
     experiment.charts.push_back(
-        made_once(options, [&] { return wavelength_chart(bits, side, options.is_quick); }));
+        computed_once(options, [&] { return wavelength_chart(bits, side, options.is_quick); }));
     return experiment;
 }
 
@@ -307,7 +307,7 @@ Experiment on_recipe(const std::string& id, const FieldRecipe& recipe, int side,
                      const CostChoice& costs, const RunOptions& options) {
     const BumpField field = make_bump_field(recipe, side, side);
     Experiment experiment = of_texels(id, static_cast<double>(side) * side);
-    experiment.truth =
+    experiment.ground_truth =
         "The field's normals in closed form, before noise and rounding came to its heights; tests "
         "differentiate it numerically as well.";
     const int bits = recipe.coding == FieldCoding::float32 ? 32 : 16;
@@ -393,7 +393,7 @@ Experiment on_large_map(const RunOptions& options) {
     experiment.question =
         "What does a large normal map cost, in time and in memory, and what do finer texels bring?";
     experiment.charts.push_back(
-        made_once(options, [&] { return resolution_chart(options.is_quick); }));
+        computed_once(options, [&] { return resolution_chart(options.is_quick); }));
     return experiment;
 }
 

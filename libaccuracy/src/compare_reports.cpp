@@ -212,7 +212,7 @@ double ratio_of(const TimedPair& pair) {
 
 /// The ratio of the median round to the fastest round.
 double relative_median(const std::vector<double>& rounds) {
-    return spread_of(rounds).median / fastest(rounds);
+    return time_statistics(rounds).median / fastest(rounds);
 }
 
 TimeVerdict verdict_of(double ratio, double resolution, const std::optional<double>& max_ratio) {

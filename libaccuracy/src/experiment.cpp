@@ -9,7 +9,7 @@
 #include <limits>
 
 #include "experiment_driver.h"
-#include "relief/accuracy/words.h"
+#include "relief/accuracy/duration.h"
 #include "relief/mesh/frontier.h"
 
 namespace relief {
@@ -54,13 +54,13 @@ double curve_error(const AngleDistribution& angles) {
     return curve_error(figures_of(angles));
 }
 
-void mark_efficient(Experiment& experiment) {
-    std::vector<Price> prices;
+void mark_pareto_optimal(Experiment& experiment) {
+    std::vector<MethodCost> prices;
     for (const Measurement& one : experiment.measurements)
         prices.push_back({curve_error(one.error), median_seconds(one)});
-    const std::vector<bool> marks = efficient(prices);
+    const std::vector<bool> marks = pareto_optimal(prices);
     for (std::size_t i = 0; i < marks.size(); ++i)
-        experiment.measurements[i].is_efficient = marks[i];
+        experiment.measurements[i].is_pareto_optimal = marks[i];
 }
 
 std::optional<double> fitted_order(const std::vector<CurvePoint>& points) {
@@ -84,7 +84,7 @@ std::optional<double> fitted_order(const std::vector<CurvePoint>& points) {
     return (count * sum_xy - sum_x * sum_y) / spread;
 }
 
-std::string seconds_in_words(double seconds) {
+std::string format_seconds(double seconds) {
     struct Unit {
         double seconds;
         const char* name;

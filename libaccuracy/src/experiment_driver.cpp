@@ -43,7 +43,7 @@ void measure_methods(std::span<const MeasuredMethod> methods, const RunOptions& 
         measurement.note = method.note;
         experiment.measurements.push_back(std::move(measurement));
     }
-    mark_efficient(experiment);
+    mark_pareto_optimal(experiment);
 }
 
 const Measurement* most_accurate(const Experiment& experiment) {
@@ -99,7 +99,7 @@ std::string arithmetic_finding(const Experiment& experiment,
         fmt::format("float32 changes no RMS by more than {:.2g} degrees", difference);
     if (!ratios.empty())
         text += fmt::format(" and takes {:.2f} times as long (median of the {})",
-                            spread_of(ratios).median, plural);
+                            time_statistics(ratios).median, plural);
     return text + ".";
 }
 
@@ -113,23 +113,23 @@ Curve fitted_curve(std::string method, std::vector<CurvePoint> points,
     return curve;
 }
 
-void EarlierPasses::begin_pass() {
+void PassHistory::begin_pass() {
     ++begun_;
     for (auto& [id, record] : records_)
         record.next_group = record.next_result = 0;
     id_.clear();
 }
 
-void EarlierPasses::begin_experiment(const std::string& id) {
+void PassHistory::begin_experiment(const std::string& id) {
     id_ = id;
 }
 
-std::size_t EarlierPasses::share_of(std::size_t rounds) const {
+std::size_t PassHistory::share_of(std::size_t rounds) const {
     const std::size_t passes_before = begun_ > 0 ? begun_ - 1 : 0;
     return rounds / passes_ + (passes_before < rounds % passes_ ? 1 : 0);
 }
 
-std::vector<Timing>& EarlierPasses::next_group(std::size_t methods) {
+std::vector<Timing>& PassHistory::next_group(std::size_t methods) {
     Record& record = records_[id_];
     if (record.next_group == record.groups.size()) record.groups.emplace_back(methods);
     std::vector<Timing>& group = record.groups[record.next_group++];
@@ -139,7 +139,7 @@ std::vector<Timing>& EarlierPasses::next_group(std::size_t methods) {
     return group;
 }
 
-const std::any& EarlierPasses::next_result(const std::function<std::any()>& make) {
+const std::any& PassHistory::next_result(const std::function<std::any()>& make) {
     Record& record = records_[id_];
     if (record.next_result == record.results.size()) record.results.push_back(make());
     return record.results[record.next_result++];
@@ -153,7 +153,7 @@ std::vector<Experiment> run_in_passes(
     // A pass without rounds would measure nothing.
     const std::size_t needed =
         options.is_timed ? std::clamp<std::size_t>(options.repeats.counted, 1, passes) : 1;
-    with_rounds.earlier = std::make_shared<EarlierPasses>(needed);
+    with_rounds.earlier = std::make_shared<PassHistory>(needed);
     std::vector<Experiment> experiments;
     for (std::size_t pass = 0; pass < needed; ++pass) {
         with_rounds.earlier->begin_pass();
@@ -209,11 +209,11 @@ std::vector<Subject> subjects_with_experiments() {
     return subjects;
 }
 
-bool is_drawn(Subject subject) {
+bool uses_opengl(Subject subject) {
     return entry_of(subject).is_rendered;
 }
 
-std::string_view word_of(Subject subject) {
+std::string_view name_of(Subject subject) {
     return entry_of(subject).name;
 }
 

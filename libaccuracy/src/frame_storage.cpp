@@ -98,8 +98,8 @@ std::string FrameCode::rounding_name() const {
 
 MeasuredMethod FrameCode::measured(const SampleFrames& frames) const {
     MeasuredMethod method;
-    method.name = fmt::format("{}, {}", word_of(encoding), rounding_name());
-    method.choices = {{"encoding", std::string(word_of(encoding))}, {"rounding", rounding_name()}};
+    method.name = fmt::format("{}, {}", name_of(encoding), rounding_name());
+    method.choices = {{"encoding", std::string(name_of(encoding))}, {"rounding", rounding_name()}};
     const FrameCodeErrors errors = frame_code_errors(frames, encoding, rounding);
     method.error = figures_of(errors.both);
     method.stored_bytes = 4.0 * static_cast<double>(words_per_frame(encoding));
@@ -158,7 +158,7 @@ std::string price_of_best(const Experiment& experiment) {
 Experiment on_even_frames(std::size_t count) {
     Experiment experiment;
     experiment.subject = Subject::storage;
-    experiment.truth =
+    experiment.reference =
         "The frames in double, before they were stored: perpendicular and unit by construction.";
     experiment.input = fmt::format("{} frames spread evenly over the sphere", count);
     experiment.error_unit = "degrees";

@@ -66,7 +66,7 @@ std::vector<Timing> timings(std::span<const std::function<void()>> works, const 
         work();  // The first run fills caches and is slower.
         times.push_back(repeats_per_round(work));
     }
-    return rounds_in_turns(works.size(), options, [&](std::size_t i) {
+    return measure_interleaved_rounds(works.size(), options, [&](std::size_t i) {
         const double seconds = clock([&] {
             for (std::size_t repeat = 0; repeat < times[i]; ++repeat)
                 works[i]();
@@ -93,7 +93,7 @@ std::vector<Timing> on_one_thread(const RunOptions& options,
     return measured();
 }
 
-std::vector<Timing> rounds_in_turns(
+std::vector<Timing> measure_interleaved_rounds(
     std::size_t things, const RunOptions& options,
     const std::function<double(std::size_t thing)>& seconds_of_round) {
     std::vector<Timing> of_one_pass(things);

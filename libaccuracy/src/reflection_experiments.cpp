@@ -147,10 +147,11 @@ Experiment reflection_experiment(const GlDevice& device, const RunOptions& optio
     Experiment experiment{
         .id = "shading/cube-map-size",
         .question = "How large must a cube map be for a mirror?",
-        .truth = fmt::format("the formula of the surroundings in the directions that a ball in "
-                             "closed form mirrors, mean of {} rays a pixel; a test draws the same "
-                             "with the reference shader",
-                             rays * rays),
+        .reference =
+            fmt::format("the formula of the surroundings in the directions that a ball in "
+                        "closed form mirrors, mean of {} rays a pixel; a test draws the same "
+                        "with the reference shader",
+                        rays * rays),
         .input = fmt::format("mirroring ball, surroundings with details of 3 degrees, {0} x {0} "
                              "pixels, about 0.7 degrees of the surroundings in each",
                              size),
@@ -249,7 +250,7 @@ Experiment glossy_experiment(const GlDevice& device, const RunOptions& options) 
     Experiment experiment{
         .id = "shading/glossy-levels",
         .question = "How well do a few blurred levels stand for a rough mirror?",
-        .truth =
+        .reference =
             "the reference shader in double, mean of 1024 facets of GGX for each pixel; tests "
             "hold it to constant surroundings, and to linear ones, whose blur has a closed "
             "form",
@@ -260,12 +261,12 @@ Experiment glossy_experiment(const GlDevice& device, const RunOptions& options) 
     if (!device.is_available_for(experiment)) return experiment;
     const Balls balls;
     const std::vector<RenderedMethod> methods = balls.methods(shown);
-    const Image ground_truth = made_once(
+    const Image ground_truth = computed_once(
         options, [&] { return supersampled_reference(mirror_ball(balls.finest, shown), size, 1); });
     const std::vector<RenderedImage> pictures =
         measure_rendered(device, methods, ground_truth, options, experiment);
     experiment.charts = {
-        made_once(options, [&] { return roughness_chart(device, balls, options.is_quick); })};
+        computed_once(options, [&] { return roughness_chart(device, balls, options.is_quick); })};
     for (const std::size_t i : {0U, 2U}) {
         experiment.pictures.push_back(
             image_pair("A rough mirror", methods[i].name, pictures[i].picture, ground_truth));

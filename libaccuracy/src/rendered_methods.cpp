@@ -89,8 +89,9 @@ double seconds_of_frames(Renderer& renderer, const Camera& camera) {
 /// Interleaved frame times of all methods, with the driver's threads.
 std::vector<Timing> frame_timings(std::span<const std::unique_ptr<Renderer>> renderers,
                                   const Camera& camera, const RunOptions& options) {
-    return rounds_in_turns(renderers.size(), options,
-                           [&](std::size_t i) { return seconds_of_frames(*renderers[i], camera); });
+    return measure_interleaved_rounds(renderers.size(), options, [&](std::size_t i) {
+        return seconds_of_frames(*renderers[i], camera);
+    });
 }
 
 std::string note_of(const RenderedMethod& method, const GlDevice& device) {

@@ -90,7 +90,7 @@ struct NamedMeasurement {
 };
 
 /// " Median frame times: 1.2 ms (stored), 3.4 ms (derived)."; empty if one was not timed. Uses the
-/// time on one thread if it was measured, like mark_efficient().
+/// time on one thread if it was measured, like mark_pareto_optimal().
 std::string frame_times(std::initializer_list<NamedMeasurement> methods);
 
 /// Direction in which the light of lit_scene() travels; not unit length.

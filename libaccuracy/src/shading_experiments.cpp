@@ -72,7 +72,7 @@ Experiment interpolation_experiment(const GlDevice& device, const RunOptions& op
         .question =
             "How many triangles does it take until it no longer shows where light is "
             "computed?",
-        .truth = fmt::format(
+        .reference = fmt::format(
             "the reference shader in double on a torus of {} triangles with the true normals, one "
             "ray through the centre of each pixel; a test holds that shader to the closed form of "
             "a lit sphere",
@@ -188,7 +188,7 @@ Experiment highlight_experiment(const GlDevice& device, const RunOptions& option
     Experiment experiment{
         .id = "shading/highlights",
         .question = "How near do Phong's and Blinn's highlights come to those of a rough metal?",
-        .truth =
+        .reference =
             "a metal of GGX facets, by the reference shader in double, one ray through the "
             "centre of each pixel; tests hold its GGX to the closed form in another notation, and "
             "its facets to how many there are within 45 degrees",
@@ -204,7 +204,7 @@ Experiment highlight_experiment(const GlDevice& device, const RunOptions& option
     const std::vector<RenderedImage> pictures =
         measure_rendered(device, methods, ground_truth, options, experiment);
     experiment.charts = {
-        made_once(options, [&] { return chart_of(device, options.is_quick ? 96 : size); })};
+        computed_once(options, [&] { return chart_of(device, options.is_quick ? 96 : size); })};
     for (const std::size_t i : {0U, 2U}) {
         add_images("Highlights of a rough metal", methods[i], pictures[i], ground_truth, 0.5,
                    experiment);
@@ -325,9 +325,9 @@ Experiment specular_aliasing_experiment(const GlDevice& device, const RunOptions
     Experiment experiment{
         .id = "shading/specular-antialiasing",
         .question = "What keeps highlights right where many texels of a normal map share a pixel?",
-        .truth = fmt::format("the reference shader in double with the normal map at full size, "
-                             "mean of {} rays a pixel in linear light",
-                             rays * rays),
+        .reference = fmt::format("the reference shader in double with the normal map at full size, "
+                                 "mean of {} rays a pixel in linear light",
+                                 rays * rays),
         .input = fmt::format("shiny plane, shininess 120, {1} texels along a pixel, {0} x {0} "
                              "pixels",
                              size, shown),
@@ -339,11 +339,11 @@ Experiment specular_aliasing_experiment(const GlDevice& device, const RunOptions
     std::vector<RenderedMethod> methods;
     for (const AliasingChoice& choice : aliasing_choices)
         methods.push_back(method_of(choice, map, distance_for(shown, size)));
-    const Image ground_truth = made_once(
+    const Image ground_truth = computed_once(
         options, [&] { return supersampled_reference(methods.front().scene, size, rays); });
     const std::vector<RenderedImage> pictures =
         measure_rendered(device, methods, ground_truth, options, experiment);
-    experiment.charts = {made_once(options, [&] {
+    experiment.charts = {computed_once(options, [&] {
         return distance_chart(device, map, options.is_quick ? size / 2 : size, rays);
     })};
     for (const std::size_t i : {0U, 4U}) {
@@ -395,9 +395,10 @@ Experiment edge_experiment(const GlDevice& device, const RunOptions& options) {
     Experiment experiment{
         .id = "shading/edges",
         .question = "What do smooth edges cost?",
-        .truth = fmt::format("the reference shader in double, mean of {} rays a pixel in linear "
-                             "light; a test holds its coverage to the closed form of a disc",
-                             rays * rays),
+        .reference =
+            fmt::format("the reference shader in double, mean of {} rays a pixel in linear "
+                        "light; a test holds its coverage to the closed form of a disc",
+                        rays * rays),
         .input = fmt::format("ring and cube before a dark background, {0} x {0} pixels", size),
         .error_unit = "FLIP",
         .item = "pixel",
@@ -440,7 +441,7 @@ std::vector<Experiment> shading_experiments(const RunOptions& options) {
     std::vector<Experiment> experiments = run_planned(plan, options);
     for (Experiment& experiment : experiments) {
         experiment.subject = Subject::shading;
-        mark_efficient(experiment);
+        mark_pareto_optimal(experiment);
     }
     return experiments;
 }

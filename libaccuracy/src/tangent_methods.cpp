@@ -241,7 +241,7 @@ std::vector<TexturedCase> textured_cases() {
     cases.push_back({.id = "plate",
                      .name = "plate with thin bevels, image sheared on those",
                      .is_quick = true,
-                     .mesh = [](int) { return bevelled_plate(0.02); }});
+                     .mesh = [](int) { return beveled_plate(0.02); }});
     return cases;
 }
 

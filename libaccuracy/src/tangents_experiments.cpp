@@ -113,7 +113,7 @@ Experiment rendered_frames_experiment(const GlDevice& device, const RunOptions& 
         .id = "tangents/drawn",
         .subject = Subject::tangents,
         .question = "What do frames that shaders derive cost, where stored ones cost memory?",
-        .truth = fmt::format(
+        .reference = fmt::format(
             "the reference shader in double on a torus of {} triangles with MikkTSpace's tangents, "
             "one ray through the centre of each pixel; tests hold that shader to closed forms",
             torus_triangles(smooth_torus_slices)),
@@ -135,7 +135,7 @@ Experiment rendered_frames_experiment(const GlDevice& device, const RunOptions& 
         add_images("A normal map on few triangles", all[i], pictures[i], ground_truth, 0.5,
                    experiment);
     }
-    mark_efficient(experiment);
+    mark_pareto_optimal(experiment);
     experiment.finding = frames_finding(experiment);
     return experiment;
 }
@@ -246,7 +246,7 @@ Chart cells_chart(const TexturedCase& one, bool is_quick) {
 Chart bevels_chart() {
     std::vector<std::pair<double, TexturedMesh>> meshes;
     for (const double width : {0.01, 0.02, 0.05, 0.1, 0.2, 0.5})
-        meshes.emplace_back(width, bevelled_plate(width));
+        meshes.emplace_back(width, beveled_plate(width));
     Chart chart = chart_over(meshes);
     chart.id = "bevels";
     chart.title = "Wider bevels";
@@ -279,7 +279,7 @@ Experiment on_mesh(const std::string& id, const std::string& input,
     Experiment experiment;
     experiment.id = id;
     experiment.subject = Subject::tangents;
-    experiment.truth = ground_truth_text;
+    experiment.reference = ground_truth_text;
     experiment.input = fmt::format("{}: {} triangles", input, ground_truth.mesh.triangles.size());
     experiment.error_unit = "degrees";
     experiment.item = "triangle";
@@ -301,7 +301,7 @@ Experiment on_case(const TexturedCase& one, const RunOptions& options) {
     experiment.question = fmt::format(
         "Where does a texel tilted by 30 degrees point, by each way of getting frames ({})?",
         one.name);
-    experiment.charts.push_back(made_once(options, [&] {
+    experiment.charts.push_back(computed_once(options, [&] {
         return one.triangulation ? cells_chart(one, options.is_quick) : bevels_chart();
     }));
     return experiment;
@@ -326,7 +326,8 @@ Experiment mismatches(const RunOptions& options) {
     experiment.id = "tangents/mismatch";
     experiment.subject = Subject::tangents;
     experiment.question = "What does a map show that is baked in one basis and read in another?";
-    experiment.truth = "The normal that was baked: in a basis of its own it comes back exactly.";
+    experiment.reference =
+        "The normal that was baked: in a basis of its own it comes back exactly.";
     experiment.input =
         fmt::format("normals tilted by 30 degrees on a jittered torus of {} triangles",
                     ground_truth.mesh.triangles.size());

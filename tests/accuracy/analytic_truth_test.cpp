@@ -83,7 +83,7 @@ Formula cubic_through(std::span<const glm::vec3> points, Real reach) {
     };
 }
 
-Formula formula_of(AnalyticSurface surface, const TexturedMesh& truth) {
+Formula formula_of(AnalyticSurface surface, const TexturedMesh& ground_truth) {
     switch (surface) {
         case AnalyticSurface::sphere:
             return ellipsoid(1.0L, 1.0L, 1.0L);
@@ -94,7 +94,7 @@ Formula formula_of(AnalyticSurface surface, const TexturedMesh& truth) {
         case AnalyticSurface::saddle:
             return on_saddle;
         default:
-            return cubic_through(truth.mesh.positions, 1);
+            return cubic_through(ground_truth.mesh.positions, 1);
     }
 }
 
@@ -118,35 +118,37 @@ double tolerance_for(AnalyticSurface surface) {
     return surface == AnalyticSurface::cubic ? 1e-5 : 1e-9;
 }
 
-TEST(AnalyticTruth, MeshesLieOnTheSurfacesOfTheseFormulas) {
+TEST(AnalyticReference, MeshesLieOnTheSurfacesOfTheseFormulas) {
     for (const AnalyticSurface surface : all_surfaces) {
-        const TexturedMesh truth =
+        const TexturedMesh ground_truth =
             textured_mesh(surface, Triangulation::jittered, TextureLayout::upright, 16, 1);
-        const Formula formula = formula_of(surface, truth);
-        for (std::size_t v = 0; v < truth.parameters.size(); ++v) {
-            const glm::dvec2 at = truth.parameters[v];
+        const Formula formula = formula_of(surface, ground_truth);
+        for (std::size_t v = 0; v < ground_truth.parameters.size(); ++v) {
+            const glm::dvec2 at = ground_truth.parameters[v];
             const Point expected = formula(static_cast<Real>(at.x), static_cast<Real>(at.y));
-            EXPECT_LE(glm::length(glm::dvec3(truth.mesh.positions[v]) - glm::dvec3(expected)), 2e-7)
+            EXPECT_LE(
+                glm::length(glm::dvec3(ground_truth.mesh.positions[v]) - glm::dvec3(expected)),
+                2e-7)
                 << name_of(surface);
         }
     }
 }
 
-TEST(AnalyticTruth, FramesAreThoseOfNumericDerivatives) {
+TEST(AnalyticReference, FramesAreThoseOfNumericDerivatives) {
     for (const AnalyticSurface surface : all_surfaces) {
         for (const TextureLayout layout : {TextureLayout::upright, TextureLayout::sheared}) {
-            const TexturedMesh truth =
+            const TexturedMesh ground_truth =
                 textured_mesh(surface, Triangulation::jittered, layout, 16, 1);
-            const Formula formula = formula_of(surface, truth);
+            const Formula formula = formula_of(surface, ground_truth);
             // v is constant along u if t compensates the effect of s.
             const Real slant = layout == TextureLayout::sheared ? 0.5L : 0.0L;
-            for (const glm::dvec2& at : truth.parameters) {
+            for (const glm::dvec2& at : ground_truth.parameters) {
                 const Real s = static_cast<Real>(at.x);
                 const Real t = static_cast<Real>(at.y);
                 const Point along_s = derivative(formula, s, t, 1, 0);
                 const Point along_t = derivative(formula, s, t, 0, 1);
                 const Point along_u = derivative(formula, s, t, 1, slant);
-                const SurfaceFrame frame = truth.frame_at(at);
+                const SurfaceFrame frame = ground_truth.frame_at(at);
                 const Point cross = glm::cross(along_s, along_t);
                 // The normal points outwards or up, like the triangles of the mesh.
                 const Point normal =
@@ -160,7 +162,7 @@ TEST(AnalyticTruth, FramesAreThoseOfNumericDerivatives) {
     }
 }
 
-TEST(AnalyticTruth, VertexNormalsAreThoseOfTheFrames) {
+TEST(AnalyticReference, VertexNormalsAreThoseOfTheFrames) {
     for (const AnalyticSurface surface : all_surfaces) {
         const AnalyticMesh bare = analytic_mesh(surface, Triangulation::regular, 16, 1);
         const TexturedMesh textured =
@@ -198,7 +200,7 @@ glm::dvec3 normal_at_origin(const Formula& surface) {
         glm::cross(derivative(surface, 0.5L, 0.5L, 1, 0), derivative(surface, 0.5L, 0.5L, 0, 1)));
 }
 
-TEST(AnalyticTruth, FansLieOnACubicWhoseNormalAtTheOriginIsUp) {
+TEST(AnalyticReference, FansLieOnACubicWhoseNormalAtTheOriginIsUp) {
     // Heights below 1/16 are rounded by 2^-29, and x and y by 2^-27, where the surface rises by
     // half of that. At a distance of 0.05 or more this is 2e-6 degrees for one point, and less for
     // all.
@@ -222,7 +224,7 @@ TEST(AnalyticTruth, FansLieOnACubicWhoseNormalAtTheOriginIsUp) {
     EXPECT_GT(furthest_bend, 0.03) << "fans that were flat would show nothing";
 }
 
-TEST(AnalyticTruth, FansThatLeanAreFoundToLean) {
+TEST(AnalyticReference, FansThatLeanAreFoundToLean) {
     constexpr double lean = 1e-3;  // Of z, along x: 0.0573 degrees.
     std::vector<glm::vec3> points = points_of_fans(1);
     for (glm::vec3& p : points)

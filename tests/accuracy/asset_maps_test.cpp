@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Experiments on height maps, normal maps and bakes with a known ground truth.
-#include "relief/accuracy/own.h"
+#include "relief/accuracy/asset.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -29,8 +29,8 @@ using testing::HasSubstr;
 using testing::Not;
 using testing::SizeIs;
 
-OwnOptions untimed_map() {
-    OwnOptions options;
+AssetOptions untimed_map() {
+    AssetOptions options;
     options.run.is_timed = false;
     options.file = "map.png";
     options.arguments = "map.png";
@@ -45,9 +45,9 @@ BumpField waves(FieldCoding coding) {
     return make_bump_field(recipe, 96, 96);
 }
 
-TEST(OwnHeights, AreThoseOfTheBumpExperiment) {
+TEST(AssetHeights, AreThoseOfTheBumpExperiment) {
     const BumpField field = waves(FieldCoding::float32);
-    const OwnExperiment own = measure_own_heights(field.heights, field.options, untimed_map());
+    const AssetExperiment own = measure_asset_heights(field.heights, field.options, untimed_map());
     EXPECT_THAT(own.experiment.measurements, SizeIs(60));  // Kernels x arithmetics x depths.
     BumpExperimentOptions how;
     how.bump = field.options;
@@ -59,10 +59,10 @@ TEST(OwnHeights, AreThoseOfTheBumpExperiment) {
     EXPECT_THAT(own.recommendation.words, HasSubstr("central7, float64, 32 bit: "));
     EXPECT_THAT(own.command(), HasSubstr("relief-bake bump map.png OUT.exr --strength "));
     EXPECT_THAT(own.command(), HasSubstr(" --kernel central7 --precision float64 --wrap repeat"));
-    EXPECT_THAT(own.experiment.truth, HasSubstr("nothing can know exactly"));
-    EXPECT_EQ(own.experiment.reference_error, same.reference.own_degrees);
+    EXPECT_THAT(own.experiment.ground_truth, HasSubstr("nothing can know exactly"));
+    EXPECT_EQ(own.experiment.reference_error, same.reference.reference_degrees);
     const ExpectedError expected = found(own, "sobel3, float32, 8 bit").expected.value();
-    EXPECT_EQ(expected.map, same.reference.own_degrees);
+    EXPECT_EQ(expected.map, same.reference.reference_degrees);
     EXPECT_EQ(expected.added, found(own, "sobel3, float32, 8 bit").error.rms);
 }
 
@@ -76,11 +76,11 @@ BumpField noisy_waves() {
     return make_bump_field(recipe, 128, 128);
 }
 
-TEST(OwnHeights, AreHeldToABoundWithTheErrorOfTheMapItself) {
+TEST(AssetHeights, AreHeldToABoundWithTheErrorOfTheMapItself) {
     const BumpField field = noisy_waves();
-    OwnOptions options = untimed_map();
-    options.wish.max_error = 0.5;
-    const OwnExperiment own = measure_own_heights(field.heights, field.options, options);
+    AssetOptions options = untimed_map();
+    options.request.max_error = 0.5;
+    const AssetExperiment own = measure_asset_heights(field.heights, field.options, options);
     const double map_error = own.experiment.reference_error.value();
     ASSERT_GT(map_error, 0.5) << "the field must be noisy enough for this test";
     // Methods are within half a degree of the reference, but the reference has a larger error.
@@ -90,39 +90,39 @@ TEST(OwnHeights, AreHeldToABoundWithTheErrorOfTheMapItself) {
     EXPECT_THAT(own.recommendation.words, HasSubstr(" (the map itself "));
 }
 
-TEST(OwnHeights, WithoutTimesAreHeldToABoundByTheFewestBytes) {
+TEST(AssetHeights, WithoutTimesAreHeldToABoundByTheFewestBytes) {
     const BumpField field = waves(FieldCoding::bits8);
-    OwnOptions options = untimed_map();
-    options.wish.max_error = 5.0;
-    const OwnExperiment own = measure_own_heights(field.heights, field.options, options);
+    AssetOptions options = untimed_map();
+    options.request.max_error = 5.0;
+    const AssetExperiment own = measure_asset_heights(field.heights, field.options, options);
     ASSERT_TRUE(own.recommendation.method.has_value()) << own.recommendation.words;
     const Measurement& taken = own.experiment.measurements[*own.recommendation.method];
     EXPECT_EQ(taken.cost.stored_bytes, 3.0);
     EXPECT_THAT(taken.method, HasSubstr("float32, 8 bit"));
 }
 
-TEST(OwnHeights, OfFewBitsAreAlsoSmoothed) {
+TEST(AssetHeights, OfFewBitsAreAlsoSmoothed) {
     const BumpField field = waves(FieldCoding::bits8);
-    const OwnExperiment own = measure_own_heights(field.heights, field.options, untimed_map());
+    const AssetExperiment own = measure_asset_heights(field.heights, field.options, untimed_map());
     EXPECT_THAT(own.experiment.measurements, SizeIs(70));
     EXPECT_GE(found(own, "scharr3, float32, 16 bit, steps smoothed").error.count, 96U * 96U);
 }
 
-TEST(OwnHeights, AreTriedInTheBitsAskedForAlone) {
+TEST(AssetHeights, AreTriedInTheBitsAskedForAlone) {
     const BumpField field = waves(FieldCoding::bits8);
-    OwnOptions options = untimed_map();
+    AssetOptions options = untimed_map();
     options.map_bits = {16};
     options.smooths_steps = false;
-    const OwnExperiment own = measure_own_heights(field.heights, field.options, options);
+    const AssetExperiment own = measure_asset_heights(field.heights, field.options, options);
     EXPECT_THAT(own.experiment.measurements, SizeIs(20));  // Ten kernels in two arithmetics.
     for (const Measurement& one : own.experiment.measurements)
         EXPECT_THAT(one.method, ::testing::EndsWith(", 16 bit"));
 }
 
-TEST(OwnHeights, OfLargeMapsAreMeasuredOnParts) {
+TEST(AssetHeights, OfLargeMapsAreMeasuredOnParts) {
     const BumpField field = waves(FieldCoding::float32);
-    const OwnExperiment own =
-        measure_own_heights(field.heights, field.options, untimed_map(), 48 * 48);
+    const AssetExperiment own =
+        measure_asset_heights(field.heights, field.options, untimed_map(), 48 * 48);
     EXPECT_EQ(own.experiment.input, "2304 texels in nine parts of 96 x 96");
 }
 
@@ -145,15 +145,15 @@ double error_half_a_texel_off(const HeightWave& wave, int side) {
     return std::sqrt(squares / (side * side));
 }
 
-TEST(OwnHeights, OfAKernelHalfATexelOffAreThatFarOff) {
+TEST(AssetHeights, OfAKernelHalfATexelOffAreThatFarOff) {
     constexpr int side = 128;
     const double turn = 2.0 * std::numbers::pi / side;
     const HeightWave wave{2.0, {4.0 * turn, -2.0 * turn}, 0.7};  // 29 texels long, slope 0.4.
     BumpOptions options;
     options.strength = 1.0;
     options.wrap = Wrap::repeat;
-    const OwnExperiment own =
-        measure_own_heights(wave_heights(side, side, {&wave, 1}).heights, options, untimed_map());
+    const AssetExperiment own =
+        measure_asset_heights(wave_heights(side, side, {&wave, 1}).heights, options, untimed_map());
     const double expected = error_half_a_texel_off(wave, side);
     EXPECT_GT(expected, 1.0);
     for (const char* arithmetic : {"float32", "float64"}) {
@@ -164,13 +164,13 @@ TEST(OwnHeights, OfAKernelHalfATexelOffAreThatFarOff) {
     EXPECT_LT(found(own, "central5, float64, 32 bit").error.rms, 0.01 * expected);
 }
 
-TEST(OwnHeights, AreTimedWhereThatIsWished) {
+TEST(AssetHeights, AreTimedWhereThatIsWished) {
     const BumpField field = waves(FieldCoding::bits8);
-    OwnOptions options = untimed_map();
+    AssetOptions options = untimed_map();
     options.run.is_timed = true;
     options.run.repeats = {1, 0};
     options.costs = {.one_thread = false, .all_threads = true, .memory = false};
-    const OwnExperiment own = measure_own_heights(field.heights, field.options, options);
+    const AssetExperiment own = measure_asset_heights(field.heights, field.options, options);
     for (const Measurement& one : own.experiment.measurements)
         EXPECT_GT(one.cost.all_threads.value().spread().median, 0.0) << one.method;
     EXPECT_TRUE(own.recommendation.method.has_value());
@@ -181,13 +181,13 @@ Image normals_of(const BumpField& field) {
     return normals_from_height(field.heights, field.options, report);
 }
 
-TEST(OwnNormalMaps, AreComparedWithWhatTheFileHolds) {
+TEST(AssetNormalMaps, AreComparedWithWhatTheFileHolds) {
     Report report;
     NormalMapFormat format;
     format.bits = 8;
     const Image map = encode_normal_map(normals_of(waves(FieldCoding::float32)), format, report);
     const Image normals = decode_normal_map(map, Green::up, FlatCode::half, report);
-    const OwnExperiment own = measure_own_normals(normals, {.bits = 8}, untimed_map());
+    const AssetExperiment own = measure_asset_normals(normals, {.bits = 8}, untimed_map());
     EXPECT_LE(found(own, "xyz float").error.max, 1e-4);
     // Vectors are normalized before they are encoded again, so not all codes stay.
     EXPECT_GT(found(own, "xyz 8 bit").error.rms, 0.0);
@@ -198,7 +198,7 @@ TEST(OwnNormalMaps, AreComparedWithWhatTheFileHolds) {
     EXPECT_EQ(found(own, "as it is").error.count, 96U * 96U);
     EXPECT_EQ(found(own, "as it is").cost.stored_bytes, 3.0);
     EXPECT_EQ(own.command(), "relief-bake convert map.png OUT.png");
-    EXPECT_THAT(own.experiment.truth, HasSubstr("in 8 bits"));
+    EXPECT_THAT(own.experiment.ground_truth, HasSubstr("in 8 bits"));
     // Rounding to codes of 2 / 255: errors of up to half a code, evenly distributed on two axes.
     const double rounding = 180.0 / std::numbers::pi / 127.5 / std::sqrt(6.0);
     EXPECT_NEAR(own.experiment.reference_error.value(), rounding, 1e-12);
@@ -207,9 +207,9 @@ TEST(OwnNormalMaps, AreComparedWithWhatTheFileHolds) {
                           "0.183, this method adds 0) at 3 bytes"));
 }
 
-TEST(OwnNormalMaps, AreOffByWhatTheirBitsHold) {
-    const OwnExperiment own =
-        measure_own_normals(normals_of(waves(FieldCoding::float32)), {.bits = 32}, untimed_map());
+TEST(AssetNormalMaps, AreOffByWhatTheirBitsHold) {
+    const AssetExperiment own =
+        measure_asset_normals(normals_of(waves(FieldCoding::float32)), {.bits = 32}, untimed_map());
     // An 8-bit code is 2 / 255, so the error per axis is at most half of it, and 257 times less
     // with 16 bits.
     const double eight = found(own, "xyz 8 bit").error.rms;
@@ -220,7 +220,7 @@ TEST(OwnNormalMaps, AreOffByWhatTheirBitsHold) {
     EXPECT_EQ(found(own, "xy 16 bit").cost.stored_bytes, 4.0);
 }
 
-TEST(OwnNormalMaps, OfCodesThatCannotHoldThemAreAsFarOffAsTheyMustBe) {
+TEST(AssetNormalMaps, OfCodesThatCannotHoldThemAreAsFarOffAsTheyMustBe) {
     // Normals that point 10 degrees below the surface. Without the sign of z they point above it.
     constexpr double below = 10.0;
     std::vector<glm::dvec3> directions;
@@ -230,8 +230,8 @@ TEST(OwnNormalMaps, OfCodesThatCannotHoldThemAreAsFarOffAsTheyMustBe) {
                                 std::cos(glm::radians(below)) * std::sin(around),
                                 -std::sin(glm::radians(below)));
     }
-    const OwnExperiment own =
-        measure_own_normals(image_of_normals(directions, 32), {.bits = 32}, untimed_map());
+    const AssetExperiment own =
+        measure_asset_normals(image_of_normals(directions, 32), {.bits = 32}, untimed_map());
     // x and y in 16 bits have an error of 2^-16, which leaves 0.01 degrees in the computed z so
     // near to the horizon.
     const ErrorFigures lost = found(own, "xy 16 bit").error;
@@ -255,8 +255,8 @@ using testing::HasSubstr;
 using testing::SizeIs;
 using testing::StartsWith;
 
-OwnOptions quick(bool is_timed) {
-    OwnOptions options;
+AssetOptions quick(bool is_timed) {
+    AssetOptions options;
     options.run.is_timed = is_timed;
     options.run.repeats = {2, 0};
     options.file = "high.obj and low.obj";
@@ -273,15 +273,15 @@ Mesh waves() {
     return mesh;
 }
 
-OwnExperiment measured(const Mesh& high, bool is_timed) {
+AssetExperiment measured(const Mesh& high, bool is_timed) {
     Report report;
     const Mesh low = test::grid(1);
     const Baker baker(std::span(&high, 1), low, {}, report);
-    return measure_own_bake(baker, 32, quick(is_timed));
+    return measure_asset_bake(baker, 32, quick(is_timed));
 }
 
-TEST(OwnBake, GetsTruerWithSamplesAndBits) {
-    const OwnExperiment own = measured(waves(), false);
+TEST(AssetBake, GetsTruerWithSamplesAndBits) {
+    const AssetExperiment own = measured(waves(), false);
     EXPECT_THAT(own.experiment.measurements, SizeIs(28));
     const double one = found(own, "1 sample, 16 bit").error.rms;
     const double four = found(own, "4 samples, 16 bit").error.rms;
@@ -290,13 +290,13 @@ TEST(OwnBake, GetsTruerWithSamplesAndBits) {
     EXPECT_GT(four, many);
     EXPECT_LT(many, found(own, "64 samples, 8 bit").error.rms);
     EXPECT_EQ(found(own, "1 sample, 16 bit").error.count, 32U * 32U);
-    EXPECT_THAT(own.experiment.truth, HasSubstr("mean of 256 samples"));
+    EXPECT_THAT(own.experiment.ground_truth, HasSubstr("mean of 256 samples"));
     EXPECT_THAT(own.command(), StartsWith("relief-bake mesh high.obj low.obj OUT."));
     EXPECT_THAT(own.command(), HasSubstr(" --size 32 --samples 64"));
 }
 
-TEST(OwnBake, OfAFlatSurfaceIsExactWithOneSample) {
-    const OwnExperiment own = measured(test::grid(4), true);
+TEST(AssetBake, OfAFlatSurfaceIsExactWithOneSample) {
+    const AssetExperiment own = measured(test::grid(4), true);
     EXPECT_LE(found(own, "1 sample, 16 bit").error.max, 0.0013);
     // Zero is halfway between two codes, so both axes have an error of half a code.
     EXPECT_NEAR(found(own, "1 sample, 8 bit").error.max, glm::degrees(std::sqrt(2.0) / 255.0),
@@ -334,11 +334,11 @@ Mesh striped(double degrees) {
     return mesh;
 }
 
-TEST(OwnBake, OfSamplesThatAreADegreeOffIsADegreeOff) {
+TEST(AssetBake, OfSamplesThatAreADegreeOffIsADegreeOff) {
     // One sample in the middle meets only normals that lean right. The means of 4 and of 256
     // samples meet both kinds and point straight up.
     for (const double degrees : {1.0, 5.0}) {
-        const OwnExperiment own = measured(striped(degrees), false);
+        const AssetExperiment own = measured(striped(degrees), false);
         // 16 bits resolve 2^-15: 0.0017 degrees.
         constexpr double code = 0.0017;
         const ErrorFigures& one = found(own, "1 sample, 16 bit").error;

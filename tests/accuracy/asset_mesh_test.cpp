@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Experiments on a mesh whose exact surface is known: their results must agree with it.
-#include "relief/accuracy/own.h"
+#include "relief/accuracy/asset.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -27,53 +27,54 @@ using testing::IsEmpty;
 using testing::Not;
 using testing::SizeIs;
 
-OwnOptions untimed_mesh() {
-    OwnOptions options;
+AssetOptions untimed_mesh() {
+    AssetOptions options;
     options.run.is_timed = false;
     options.file = "vase.obj";
     options.arguments = "vase.obj";
     return options;
 }
 
-OwnExperiment normals_of(const Mesh& mesh, const OwnMeshOptions& how = {}) {
-    return measure_own_mesh(mesh, how, untimed_mesh()).front();
+AssetExperiment normals_of(const Mesh& mesh, const AssetMeshOptions& how = {}) {
+    return measure_asset_mesh(mesh, how, untimed_mesh()).front();
 }
 
-TEST(OwnNormals, AreJudgedAsByTheTruthThatNobodyTold) {
-    const AnalyticMesh truth =
+TEST(AssetNormals, AreJudgedAsByTheTruthThatNobodyTold) {
+    const AnalyticMesh ground_truth =
         analytic_mesh(AnalyticSurface::torus, Triangulation::jittered, 48, 1);
-    const OwnExperiment own = normals_of(truth.mesh);
+    const AssetExperiment own = normals_of(ground_truth.mesh);
     for (const NormalMethod& method : normal_methods(std::array{Arithmetic::float64})) {
-        const double exact = normal_errors(method.normals(truth.mesh), truth).rms;
+        const double exact = normal_errors(method.normals(ground_truth.mesh), ground_truth).rms;
         EXPECT_NEAR(found(own, method.weighting).error.rms, exact, 0.02 * exact) << method.name();
     }
-    EXPECT_EQ(found(own, "max").error.count, truth.mesh.positions.size());
+    EXPECT_EQ(found(own, "max").error.count, ground_truth.mesh.positions.size());
     EXPECT_EQ(own.command(), "relief-mesh process vase.obj -o OUT.glb --normals max");
-    EXPECT_THAT(own.experiment.truth, HasSubstr("2304 of 2304 places"));
+    EXPECT_THAT(own.experiment.ground_truth, HasSubstr("2304 of 2304 places"));
     EXPECT_THAT(own.experiment.finding, HasSubstr(". To do it: relief-mesh process"));
 }
 
-TEST(OwnNormals, OfAMethodThatIsOffAreOffByThat) {
-    AnalyticMesh truth = analytic_mesh(AnalyticSurface::saddle, Triangulation::regular, 48, 1);
+TEST(AssetNormals, OfAMethodThatIsOffAreOffByThat) {
+    AnalyticMesh ground_truth =
+        analytic_mesh(AnalyticSurface::saddle, Triangulation::regular, 48, 1);
     // The file's normals: exact ones, each rotated by one degree about a perpendicular axis.
-    for (const glm::dvec3& normal : truth.normals) {
+    for (const glm::dvec3& normal : ground_truth.normals) {
         const glm::dvec3 across = glm::normalize(glm::cross(normal, glm::dvec3(0.3, 0.5, 0.7)));
-        truth.mesh.normals.emplace_back(std::cos(glm::radians(1.0)) * normal +
-                                        std::sin(glm::radians(1.0)) * across);
+        ground_truth.mesh.normals.emplace_back(std::cos(glm::radians(1.0)) * normal +
+                                               std::sin(glm::radians(1.0)) * across);
     }
-    const OwnExperiment own = normals_of(truth.mesh);
+    const AssetExperiment own = normals_of(ground_truth.mesh);
     EXPECT_NEAR(found(own, "the file's own").error.rms, 1.0, 0.001);
     EXPECT_NEAR(found(own, "the file's own").error.max, 1.0, 0.03);
     EXPECT_FALSE(own.command().empty());
 }
 
-TEST(OwnNormals, OfTheFileCanBeTheTruth) {
+TEST(AssetNormals, OfTheFileCanBeTheTruth) {
     Mesh mesh = test::sphere(24, 16);
     Report report;
     mesh.normals = vertex_normals(mesh.positions, mesh.triangles, NormalWeight::area, report);
-    OwnMeshOptions how;
-    how.truth = NormalTruth::file;
-    const OwnExperiment own = normals_of(mesh, how);
+    AssetMeshOptions how;
+    how.ground_truth = NormalReference::file;
+    const AssetExperiment own = normals_of(mesh, how);
     EXPECT_EQ(found(own, "area").error.max, 0.0);
     EXPECT_GT(found(own, "uniform").error.rms, 0.01);
     EXPECT_EQ(own.command(), "relief-mesh process vase.obj -o OUT.glb --normals area");
@@ -114,13 +115,13 @@ Mesh capped_cylinder(int sides, int rings) {
     return mesh;
 }
 
-TEST(OwnNormals, SayWhereNoMethodWasJudged) {
-    const OwnExperiment smooth = normals_of(capped_cylinder(32, 16));
+TEST(AssetNormals, SayWhereNoMethodWasJudged) {
+    const AssetExperiment smooth = normals_of(capped_cylinder(32, 16));
     EXPECT_THAT(smooth.recommendation.words, HasSubstr("of the vertices are not judged"));
     EXPECT_THAT(smooth.recommendation.words,
                 HasSubstr("(if the mesh has hard edges, try --crease 40)"));
     EXPECT_THAT(smooth.experiment.finding, HasSubstr("of the vertices are not judged"));
-    OwnMeshOptions how;
+    AssetMeshOptions how;
     how.crease_angle = glm::radians(40.0);
     EXPECT_THAT(normals_of(capped_cylinder(32, 16), how).recommendation.words,
                 Not(HasSubstr("try --crease")));
@@ -129,11 +130,11 @@ TEST(OwnNormals, SayWhereNoMethodWasJudged) {
     EXPECT_THAT(normals_of(whole.mesh).recommendation.words, Not(HasSubstr("not judged")));
 }
 
-TEST(OwnNormals, SayWhichMethodsTheReferenceCannotTellApart) {
+TEST(AssetNormals, SayWhichMethodsTheReferenceCannotTellApart) {
     // On a coarse mesh, the error of the fitted surface exceeds the differences of some methods.
     const AnalyticMesh coarse =
         analytic_mesh(AnalyticSurface::torus, Triangulation::jittered, 12, 1);
-    const OwnExperiment own = normals_of(coarse.mesh);
+    const AssetExperiment own = normals_of(coarse.mesh);
     ASSERT_TRUE(own.recommendation.method.has_value());
     const double reference = own.experiment.reference_error.value();
     EXPECT_GT(reference, 0.0);
@@ -151,13 +152,13 @@ TEST(OwnNormals, SayWhichMethodsTheReferenceCannotTellApart) {
                 HasSubstr(" degrees RMS expected (the fitted surface itself "));
 }
 
-TEST(OwnNormals, AreThoseThatTheToolComputes) {
+TEST(AssetNormals, AreThoseThatTheToolComputes) {
     for (const Measurement& one : normals_of(test::sphere(24, 16)).experiment.measurements)
         EXPECT_THAT(one.method, Not(HasSubstr("float"))) << "relief-mesh has no such option";
 }
 
-TEST(OwnNormals, RecommendNothingWhereThereIsNoSurface) {
-    const OwnExperiment own = normals_of(test::cube());
+TEST(AssetNormals, RecommendNothingWhereThereIsNoSurface) {
+    const AssetExperiment own = normals_of(test::cube());
     EXPECT_EQ(own.recommendation.method, std::nullopt);
     EXPECT_THAT(own.recommendation.words, HasSubstr("too coarse"));
     EXPECT_TRUE(own.command().empty());
@@ -185,10 +186,11 @@ TEST(CreaseRule, AreTheOnesToldOrThoseOfTheFile) {
     EXPECT_FALSE(crease_rule(mesh, std::nullopt).has_any());
 }
 
-TEST(OwnTangents, AreFromTheImagesOwnDirectionAndFromMikktspace) {
-    const TexturedMesh truth = textured_mesh(AnalyticSurface::torus, Triangulation::jittered,
-                                             TextureLayout::upright, 24, 1);
-    const std::vector<OwnExperiment> all = measure_own_mesh(truth.mesh, {}, untimed_mesh());
+TEST(AssetTangents, AreFromTheImagesOwnDirectionAndFromMikktspace) {
+    const TexturedMesh ground_truth = textured_mesh(AnalyticSurface::torus, Triangulation::jittered,
+                                                    TextureLayout::upright, 24, 1);
+    const std::vector<AssetExperiment> all =
+        measure_asset_mesh(ground_truth.mesh, {}, untimed_mesh());
     ASSERT_THAT(all, SizeIs(4));
     EXPECT_EQ(all[1].experiment.id, "own/vase.obj/tangents");
     EXPECT_GT(found(all[1], "mikktspace").error.rms, 0.1);
@@ -203,59 +205,59 @@ TEST(OwnTangents, AreFromTheImagesOwnDirectionAndFromMikktspace) {
     EXPECT_THAT(all[3].command(), HasSubstr("encode_frames("));
 }
 
-TEST(OwnTangents, OnAFlatImageAreAllTheSame) {
+TEST(AssetTangents, OnAFlatImageAreAllTheSame) {
     Mesh mesh = test::grid(6);
     mesh.tangents.assign(mesh.positions.size(), glm::vec4(1.0F, 0.0F, 0.0F, 1.0F));
-    const std::vector<OwnExperiment> all = measure_own_mesh(mesh, {}, untimed_mesh());
+    const std::vector<AssetExperiment> all = measure_asset_mesh(mesh, {}, untimed_mesh());
     for (const Measurement& one : all[1].experiment.measurements)
         EXPECT_LE(one.error.max, 1e-5) << one.method;
     EXPECT_LE(found(all[2], "the file's own").error.max, 1e-5);
     for (glm::vec4& tangent : mesh.tangents)
         tangent = {0.0F, 1.0F, 0.0F, 1.0F};
-    EXPECT_NEAR(found(measure_own_mesh(mesh, {}, untimed_mesh())[1], "the file's own").error.rms,
+    EXPECT_NEAR(found(measure_asset_mesh(mesh, {}, untimed_mesh())[1], "the file's own").error.rms,
                 90.0, 1e-4);
 }
 
-TEST(OwnTangents, LeaveOutTrianglesWithoutADirection) {
+TEST(AssetTangents, LeaveOutTrianglesWithoutADirection) {
     Mesh mesh = test::grid(4);
     mesh.texcoords.assign(mesh.positions.size(), glm::vec2(0.5F));
-    const std::vector<OwnExperiment> all = measure_own_mesh(mesh, {}, untimed_mesh());
+    const std::vector<AssetExperiment> all = measure_asset_mesh(mesh, {}, untimed_mesh());
     EXPECT_THAT(all[1].experiment.input, HasSubstr("(32 have no direction in the image)"));
     EXPECT_EQ(all[1].recommendation.method, std::nullopt);
 }
 
-TEST(OwnMesh, OfManyTrianglesIsMeasuredOnEightRuns) {
+TEST(AssetMesh, OfManyTrianglesIsMeasuredOnEightRuns) {
     const Mesh mesh = test::grid(32);
     EXPECT_THAT(part_to_measure(mesh, 10000).triangles, SizeIs(2048));
     const Mesh part = part_to_measure(mesh, 160);
     EXPECT_THAT(part.triangles, SizeIs(160));
     EXPECT_EQ(part.positions[part.triangles.back().z], mesh.positions[mesh.triangles.back().z]);
-    OwnMeshOptions how;
-    how.most_triangles = 160;
+    AssetMeshOptions how;
+    how.max_triangles = 160;
     EXPECT_EQ(normals_of(mesh, how).experiment.input,
               "160 triangles, eight runs of the mesh's 2048");
 }
 
-TEST(OwnMesh, IsTimedAndRecommendedByTime) {
-    OwnOptions options = untimed_mesh();
+TEST(AssetMesh, IsTimedAndRecommendedByTime) {
+    AssetOptions options = untimed_mesh();
     options.run.is_timed = true;
     options.run.repeats = {3, 0};
     options.costs = {.one_thread = true, .all_threads = false, .memory = false};
-    const AnalyticMesh truth =
+    const AnalyticMesh ground_truth =
         analytic_mesh(AnalyticSurface::torus, Triangulation::jittered, 16, 1);
-    options.wish.max_error = 1e-6;
-    const OwnExperiment own = measure_own_mesh(truth.mesh, {}, options).front();
+    options.request.max_error = 1e-6;
+    const AssetExperiment own = measure_asset_mesh(ground_truth.mesh, {}, options).front();
     EXPECT_THAT(found(own, "max").cost.one_thread.value().rounds, SizeIs(3));
     EXPECT_EQ(own.recommendation.method, std::nullopt);
     EXPECT_THAT(own.recommendation.words, HasSubstr("no method is within 1e-06 degrees"));
 }
 
-TEST(OwnMesh, EndsWhenThatIsWished) {
+TEST(AssetMesh, EndsWhenThatIsWished) {
     Progress progress;
     const ProgressScope scope(progress);
     progress.cancel();
-    EXPECT_THROW(measure_own_mesh(test::grid(4), {}, untimed_mesh()), Cancelled);
-    EXPECT_THROW(measure_own_mesh(Mesh{}, {}, untimed_mesh()), InvalidInput);
+    EXPECT_THROW(measure_asset_mesh(test::grid(4), {}, untimed_mesh()), Cancelled);
+    EXPECT_THROW(measure_asset_mesh(Mesh{}, {}, untimed_mesh()), InvalidInput);
 }
 
 }  // namespace

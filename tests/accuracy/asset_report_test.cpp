@@ -71,7 +71,7 @@ TEST(Recommended, OfAlikeOnesTheSmallestIsTaken) {
 
 TEST(Recommended, ANextOneThatCostsTheSameIsSaidToTakeAboutAsLong) {
     RecommendationRule rule;
-    rule.wish.max_error = 0.5;
+    rule.request.max_error = 0.5;
     EXPECT_EQ(
         recommended(experiment_of({measured("a", 0.5, 0.0100), measured("b", 0.4, 0.0101)}), rule)
             .words,
@@ -83,19 +83,19 @@ TEST(Recommended, WhatTheTruthIsNotKnownBetterThanIsNotPaidFor) {
     RecommendationRule rule;
     // Errors become 2.24 and 2.0004, worth 1.4 times the cost at most; "good" costs 4.1 times as
     // much.
-    rule.unseen_error = 2.0;
+    rule.negligible_error = 2.0;
     EXPECT_EQ(recommended(usual(), rule).method, 0U);
 }
 
 TEST(Recommended, KeepsWithinAnError) {
     RecommendationRule rule;
-    rule.wish.max_error = 0.045;
+    rule.request.max_error = 0.045;
     EXPECT_EQ(recommended(usual(), rule).method, 3U);
-    rule.wish.max_error = 2.0;
+    rule.request.max_error = 2.0;
     EXPECT_EQ(recommended(usual(), rule).method, 0U);
-    rule.wish.figure = &ErrorFigures::max;  // 3, 3.6, 0.15, 0.12
+    rule.request.figure = &ErrorFigures::max;  // 3, 3.6, 0.15, 0.12
     EXPECT_EQ(recommended(usual(), rule).method, 2U);
-    rule.wish.max_error = 0.01;
+    rule.request.max_error = 0.01;
     const Recommendation none = recommended(usual(), rule);
     EXPECT_EQ(none.method, std::nullopt);
     EXPECT_EQ(none.words, "no method is within 0.01 degrees: the least is 0.12, with best");
@@ -103,15 +103,15 @@ TEST(Recommended, KeepsWithinAnError) {
 
 TEST(Recommended, KeepsWithinATime) {
     RecommendationRule rule;
-    rule.wish.max_seconds = 0.1;
+    rule.request.max_seconds = 0.1;
     EXPECT_EQ(recommended(usual(), rule).method, 2U);
-    rule.wish.max_seconds = 0.03;
+    rule.request.max_seconds = 0.03;
     EXPECT_EQ(recommended(usual(), rule).method, 0U);
-    rule.wish.max_seconds = 0.001;
+    rule.request.max_seconds = 0.001;
     EXPECT_EQ(recommended(usual(), rule).words,
               "no method is within 1.00 ms: the fastest takes 10.0 ms, with rough");
-    rule.wish.max_seconds = 0.1;
-    rule.wish.max_error = 0.045;
+    rule.request.max_seconds = 0.1;
+    rule.request.max_error = 0.045;
     EXPECT_EQ(recommended(usual(), rule).words,
               "no method is within 0.045 degrees and 100 ms: that error takes 123 ms, with best");
 }
@@ -136,7 +136,7 @@ TEST(Recommended, GoesByBytesWhereThoseAreDear) {
     experiment.measurements[3].cost.stored_bytes = 28;
     RecommendationRule rule;
     rule.cost = CostKind::bytes;
-    rule.wish.max_seconds = 1e-9;  // Has no effect on bytes.
+    rule.request.max_seconds = 1e-9;  // Has no effect on bytes.
     const Recommendation found = recommended(experiment, rule);
     EXPECT_EQ(found.words,
               "good: 0.05 degrees RMS at 8 bytes; the next more accurate (best) takes 28 bytes for "
@@ -149,16 +149,16 @@ TEST(Recommended, CountsTheErrorOfTheReferenceToo) {
     RecommendationRule rule;
     rule.reference = "the map itself";
     // "good" has 0.05 and "best" 0.04, with the reference 0.13 and 0.1265.
-    rule.wish.max_error = 0.131;
+    rule.request.max_error = 0.131;
     Recommendation found = recommended(experiment, rule);
     EXPECT_EQ(found.method, 2U);
     EXPECT_EQ(found.words,
               "good: 0.13 degrees RMS expected (the map itself 0.12, this method adds 0.05) at "
               "41.0 ms; the next more accurate (best) takes 3 times as long for 0.01 degrees less");
-    rule.wish.max_error = 0.128;
+    rule.request.max_error = 0.128;
     EXPECT_EQ(recommended(experiment, rule).method, 3U);
     // The limit exceeds the error of each method, but not the expected error.
-    rule.wish.max_error = 0.125;
+    rule.request.max_error = 0.125;
     found = recommended(experiment, rule);
     EXPECT_EQ(found.method, std::nullopt);
     EXPECT_EQ(found.words,
@@ -178,14 +178,14 @@ TEST(Recommended, WithoutTimesTakesTheFewestBytesThenTheLeastWork) {
         experiment.measurements[i].cost = {};
         experiment.measurements[i].cost.stored_bytes = bytes[i];
     }
-    const std::vector<double> natural_costs = {5.0, 20.0, 10.0, 1.0};
+    const std::vector<double> nominal_costs = {5.0, 20.0, 10.0, 1.0};
     RecommendationRule rule;
-    rule.natural_costs = natural_costs;
-    rule.wish.max_error = 0.5;
+    rule.nominal_costs = nominal_costs;
+    rule.request.max_error = 0.5;
     EXPECT_EQ(recommended(experiment, rule).method, 2U);
-    rule.wish.max_error = 0.25;
+    rule.request.max_error = 0.25;
     EXPECT_EQ(recommended(experiment, rule).method, 1U);
-    rule.wish.max_error = 0.1;
+    rule.request.max_error = 0.1;
     EXPECT_EQ(recommended(experiment, rule).method, 0U);
 }
 

@@ -37,22 +37,22 @@ Image baked(const BumpyBake& bake, int samples) {
     return object_from_tangent(normals, bake.baker().low(), {}, report).normals;
 }
 
-std::vector<test::TexelTruth> truths(const BumpyBake& bake) {
+std::vector<test::TexelReference> references(const BumpyBake& bake) {
     Report report;
     Mesh rays = bake.baker().low();  // Rays run along smoothed normals.
     rays.normals = vertex_normals(rays.positions, rays.triangles, NormalWeight::angle, report);
-    return test::texel_truths(BumpySphere(stacks), rays,
-                              {BumpyBake::low_slices, BumpyBake::low_stacks}, side);
+    return test::texel_references(BumpySphere(stacks), rays,
+                                  {BumpyBake::low_slices, BumpyBake::low_stacks}, side);
 }
 
 /// The RMS angle between a map and the formula, in degrees. Can negate x to simulate a defect.
-double rms_of(const Image& map, const std::vector<test::TexelTruth>& all,
-              glm::dvec3 test::TexelTruth::*which, double x_sign = 1.0) {
+double rms_of(const Image& map, const std::vector<test::TexelReference>& all,
+              glm::dvec3 test::TexelReference::*which, double x_sign = 1.0) {
     double squares = 0.0;
-    for (const test::TexelTruth& truth : all) {
-        const float* const n = &map.as<float>()[3 * truth.texel];
+    for (const test::TexelReference& ground_truth : all) {
+        const float* const n = &map.as<float>()[3 * ground_truth.texel];
         const double degrees =
-            degrees_between(glm::dvec3(x_sign * double{n[0]}, n[1], n[2]), truth.*which);
+            degrees_between(glm::dvec3(x_sign * double{n[0]}, n[1], n[2]), ground_truth.*which);
         squares += degrees * degrees;
     }
     return std::sqrt(squares / static_cast<double>(all.size()));
@@ -95,22 +95,22 @@ double rms_between(const Image& a, const Image& b) {
 
 TEST(BakeTruth, OfManyRaysIsThatOfTheFormula) {
     const BumpyBake bake(stacks, side);
-    const std::vector<test::TexelTruth> all = truths(bake);
+    const std::vector<test::TexelReference> all = references(bake);
     ASSERT_GT(all.size(), 150U);
     const Image many = baked(bake, 256);
     const Image one = baked(bake, 1);
     // 256 rays of the baker, and 256 exact intersections in the same squares.
-    EXPECT_LT(rms_of(many, all, &test::TexelTruth::mesh), 0.1);
+    EXPECT_LT(rms_of(many, all, &test::TexelReference::mesh), 0.1);
     // One ray has the exact normal in the middle, but only approximates the mean.
-    EXPECT_LT(rms_of(one, all, &test::TexelTruth::mesh_middle), 0.1);
-    EXPECT_GT(rms_of(one, all, &test::TexelTruth::mesh), 0.3);
+    EXPECT_LT(rms_of(one, all, &test::TexelReference::mesh_middle), 0.1);
+    EXPECT_GT(rms_of(one, all, &test::TexelReference::mesh), 0.3);
     // The experiments use such a bake with 256 rays over all texels, including the poles.
-    const std::vector<BakeWay> ways = {{1}};
+    const std::vector<BakeSampling> ways = {{1}};
     const std::vector<BakeWayResult> found = bake.measured(ways, test::quick_untimed());
     const double between = rms_between(one, many);
     EXPECT_NEAR(found[0].trial.errors[2].rms, between, 0.1 * between);
     // A map with negated x is detected.
-    EXPECT_GT(rms_of(many, all, &test::TexelTruth::mesh, -1.0), 20.0);
+    EXPECT_GT(rms_of(many, all, &test::TexelReference::mesh, -1.0), 20.0);
 }
 
 /// The experiments, run once per process.

@@ -210,7 +210,7 @@ TEST(SurfaceAt, HasTheNormalsOfNumericDerivatives) {
     for (const int texels : {64, 128, 256}) {
         const WaveMap surface = surface_at(texels);
         const Real scale = static_cast<Real>(texels) / 64;
-        double steepest = 0.0;
+        double max_slope = 0.0;
         // Compare all texels of the coarsest map, and an irregular selection of those of finer
         // maps.
         for (std::size_t i = 0; i < surface.normals.size(); i += texels == 64 ? 1 : 97) {
@@ -223,9 +223,9 @@ TEST(SurfaceAt, HasTheNormalsOfNumericDerivatives) {
             ASSERT_LE(degrees_between(surface.normals[i], expected), 1e-10) << texels << " " << i;
             ASSERT_FLOAT_EQ(surface.heights.as<float>()[i],
                             static_cast<float>(enlarged_height_at(x, y, scale)));
-            steepest = std::max(steepest, degrees(std::acos(surface.normals[i].z)));
+            max_slope = std::max(max_slope, degrees(std::acos(surface.normals[i].z)));
         }
-        EXPECT_GT(steepest, 20.0) << "slopes of 0.3 (RMS), as in every size";
+        EXPECT_GT(max_slope, 20.0) << "slopes of 0.3 (RMS), as in every size";
     }
 }
 

@@ -50,7 +50,7 @@ TEST(MapErrors, CountWhatHasNoDirectionAndRefuseOtherSizes) {
 }
 
 /// An image of one gray code.
-Image grey(int code, int size = 32) {
+Image gray(int code, int size = 32) {
     Image image = make_image(size, size, 3, 8, ColorSpace::srgb);
     for (std::uint8_t& sample : image.as<std::uint8_t>())
         sample = static_cast<std::uint8_t>(code);
@@ -58,7 +58,7 @@ Image grey(int code, int size = 32) {
 }
 
 TEST(PictureError, OfTheSamePictureIsNone) {
-    const Image picture = grey(100);
+    const Image picture = gray(100);
     const PictureError error = picture_error(to_linear(picture), picture);
     EXPECT_EQ(error.figures.count, 32U * 32U);
     EXPECT_EQ(error.figures.max, 0.0);
@@ -67,7 +67,7 @@ TEST(PictureError, OfTheSamePictureIsNone) {
 
 TEST(PictureError, IsInDecibelsOfCodes) {
     // Ten codes of 255 everywhere.
-    const PictureError error = picture_error(to_linear(grey(100)), grey(110));
+    const PictureError error = picture_error(to_linear(gray(100)), gray(110));
     EXPECT_NEAR(error.figures.psnr.value(), 20.0 * std::log10(255.0 / 10.0), 0.01);
     // All pixels are equal, so all statistics are.
     EXPECT_NEAR(error.figures.rms, error.figures.max, 1e-3);
@@ -76,7 +76,7 @@ TEST(PictureError, IsInDecibelsOfCodes) {
 }
 
 TEST(PictureError, OfBlackForWhiteIsNearlyAllThereIs) {
-    const PictureError error = picture_error(to_linear(grey(255)), grey(0));
+    const PictureError error = picture_error(to_linear(gray(255)), gray(0));
     EXPECT_GT(error.figures.mean, 0.95);
     EXPECT_LE(error.figures.max, 1.0);
     EXPECT_NEAR(error.figures.psnr.value(), 0.0, 1e-4);
@@ -84,15 +84,15 @@ TEST(PictureError, OfBlackForWhiteIsNearlyAllThereIs) {
 
 TEST(PictureError, IsOfWhatAScreenShows) {
     // The difference is less than half a code everywhere, so the codes are equal.
-    Image truth = to_linear(grey(100));
-    for (float& sample : truth.as<float>())
+    Image ground_truth = to_linear(gray(100));
+    for (float& sample : ground_truth.as<float>())
         sample = linear_from_srgb(100.4F / 255.0F);
-    EXPECT_EQ(picture_error(truth, grey(100)).figures.max, 0.0);
+    EXPECT_EQ(picture_error(ground_truth, gray(100)).figures.max, 0.0);
     // One sample in three differs by one code.
-    Image picture = grey(100);
+    Image picture = gray(100);
     for (std::size_t i = 0; i < picture.sample_count(); i += 3)
         picture.as<std::uint8_t>()[i] = 101;
-    const ErrorFigures figures = picture_error(truth, picture).figures;
+    const ErrorFigures figures = picture_error(ground_truth, picture).figures;
     EXPECT_NEAR(figures.psnr.value(), 20.0 * std::log10(255.0 * std::sqrt(3.0)), 1e-6);
     EXPECT_GT(figures.mean, 0.0);
 }

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "experiment_driver.h"
-#include "relief/accuracy/own.h"
+#include "relief/accuracy/asset.h"
 
 namespace relief::test {
 
@@ -62,8 +62,8 @@ inline void expect_whole(const std::vector<Experiment>& all, Subject subject) {
         SCOPED_TRACE(one.id);
         EXPECT_TRUE(ids.insert(one.id).second);
         EXPECT_EQ(one.subject, subject);
-        for (const std::string& text :
-             {one.title, one.question, one.truth, one.input, one.error_unit, one.item, one.finding})
+        for (const std::string& text : {one.title, one.question, one.ground_truth, one.input,
+                                        one.error_unit, one.item, one.finding})
             EXPECT_FALSE(text.empty());
         EXPECT_EQ(one.question.back(), '?');
         // Findings do not mention times that were not measured.
@@ -88,7 +88,7 @@ inline void expect_whole(const std::vector<Experiment>& all, Subject subject) {
     }
 }
 
-inline const Measurement& found(const OwnExperiment& own, const std::string& method) {
+inline const Measurement& found(const AssetExperiment& own, const std::string& method) {
     return measurement_of(own.experiment, method);
 }
 

@@ -46,8 +46,8 @@ TEST(MeasureMethods, GivesEachItsOwnCostAndNoneToThoseWithoutWork) {
     EXPECT_TRUE(experiment.measurements[2].cost.one_thread);
     EXPECT_EQ(experiment.measurements[1].cost.stored_bytes, 4.0);
     EXPECT_TRUE(std::isnan(median_seconds(experiment.measurements[1])));
-    EXPECT_FALSE(experiment.measurements[1].is_efficient);  // It has no time.
-    EXPECT_TRUE(experiment.measurements[0].is_efficient);
+    EXPECT_FALSE(experiment.measurements[1].is_pareto_optimal);  // It has no time.
+    EXPECT_TRUE(experiment.measurements[0].is_pareto_optimal);
     EXPECT_EQ(value_of(experiment.measurements[2], "kind"), "last");
     EXPECT_EQ(value_of(experiment.measurements[2], "colour"), "");
 }
@@ -59,7 +59,7 @@ TEST(MeasureMethods, RunsNothingWhereNothingIsTimed) {
     Experiment experiment;
     measure_methods(methods, options, {}, experiment);
     EXPECT_FALSE(experiment.measurements[0].cost.one_thread);
-    EXPECT_FALSE(experiment.measurements[0].is_efficient);
+    EXPECT_FALSE(experiment.measurements[0].is_pareto_optimal);
 }
 
 TEST(Truest, HasTheLeastErrorOfThoseThatAreDefined) {
@@ -128,7 +128,7 @@ RunOptions counted_rounds(std::size_t counted) {
 Experiment timed_by(const RunOptions& options, std::size_t methods,
                     const std::function<double(std::size_t)>& seconds) {
     Experiment experiment;
-    for (const Timing& timing : rounds_in_turns(methods, options, seconds)) {
+    for (const Timing& timing : measure_interleaved_rounds(methods, options, seconds)) {
         experiment.measurements.emplace_back().cost.one_thread = timing;
     }
     return experiment;
@@ -198,18 +198,18 @@ TEST(Passes, MeasuredWorkHasItsRoundsOfAllPasses) {
 
 TEST(Passes, WhatIsTheSameInAllIsMadeOnce) {
     int made = 0;
-    const auto truths_of = [&](const RunOptions& options) {
-        const int first = made_once(options, [&] { return ++made; });
-        const std::string second = made_once(options, [&] { return std::to_string(++made); });
+    const auto references_of = [&](const RunOptions& options) {
+        const int first = computed_once(options, [&] { return ++made; });
+        const std::string second = computed_once(options, [&] { return std::to_string(++made); });
         return std::to_string(first) + second;
     };
     std::string all;
     run_in_passes(3, counted_rounds(3), [&](const RunOptions& options, std::size_t) {
-        all += truths_of(options) + " ";
+        all += references_of(options) + " ";
         return std::vector<Experiment>();
     });
     EXPECT_EQ(all, "12 12 12 ");
-    EXPECT_EQ(truths_of({}), "34") << "without passes, each time";
+    EXPECT_EQ(references_of({}), "34") << "without passes, each time";
 }
 
 TEST(Passes, OfOtherMethodsAreRefused) {
@@ -251,15 +251,15 @@ TEST(Passes, EndWithWhatAnExperimentThrows) {
 
 TEST(Subjects, HaveWordsThatLeadBackToThem) {
     for (const Subject subject : subjects_with_experiments())
-        EXPECT_EQ(subject_from(word_of(subject)), subject);
-    EXPECT_EQ(word_of(Subject::stability), "stability");
+        EXPECT_EQ(subject_from(name_of(subject)), subject);
+    EXPECT_EQ(name_of(Subject::stability), "stability");
     EXPECT_THROW(subject_from("colour"), InvalidInput);
 }
 
 TEST(Subjects, ThatDrawAreKnown) {
-    EXPECT_TRUE(is_drawn(Subject::shading));
-    EXPECT_TRUE(is_drawn(Subject::tangents));
-    EXPECT_FALSE(is_drawn(Subject::bump));
+    EXPECT_TRUE(uses_opengl(Subject::shading));
+    EXPECT_TRUE(uses_opengl(Subject::tangents));
+    EXPECT_FALSE(uses_opengl(Subject::bump));
 }
 
 }  // namespace

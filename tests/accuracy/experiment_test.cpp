@@ -22,10 +22,10 @@ TEST(MarkEfficient, GoesByTheMedianOnOneThread) {
     experiment.measurements = {measured(1.0, 2.0), measured(2.0, 1.0), measured(2.0, 3.0)};
     experiment.measurements[1].cost.one_thread = Timing{{1.0, 9.0, 1.0}};
     experiment.measurements[2].cost.all_threads = Timing{{0.1}};  // The time on one thread counts.
-    mark_efficient(experiment);
-    EXPECT_TRUE(experiment.measurements[0].is_efficient);
-    EXPECT_TRUE(experiment.measurements[1].is_efficient);
-    EXPECT_FALSE(experiment.measurements[2].is_efficient);
+    mark_pareto_optimal(experiment);
+    EXPECT_TRUE(experiment.measurements[0].is_pareto_optimal);
+    EXPECT_TRUE(experiment.measurements[1].is_pareto_optimal);
+    EXPECT_FALSE(experiment.measurements[2].is_pareto_optimal);
 }
 
 TEST(MarkEfficient, LeavesOutWhatIsUndefinedOrWasNotTimed) {
@@ -33,10 +33,10 @@ TEST(MarkEfficient, LeavesOutWhatIsUndefinedOrWasNotTimed) {
     experiment.measurements = {measured(0.0, 0.5), measured(1.0, 1.0), measured(0.5, 1.0)};
     experiment.measurements[0].error.undefined = 1;
     experiment.measurements[2].cost = {};
-    mark_efficient(experiment);
-    EXPECT_FALSE(experiment.measurements[0].is_efficient);
-    EXPECT_TRUE(experiment.measurements[1].is_efficient);
-    EXPECT_FALSE(experiment.measurements[2].is_efficient);
+    mark_pareto_optimal(experiment);
+    EXPECT_FALSE(experiment.measurements[0].is_pareto_optimal);
+    EXPECT_TRUE(experiment.measurements[1].is_pareto_optimal);
+    EXPECT_FALSE(experiment.measurements[2].is_pareto_optimal);
 }
 
 TEST(FittedOrder, IsThePowerOfAPowerLaw) {
@@ -70,9 +70,9 @@ TEST(FiguresOf, NothingAreNoneNotExactlyRight) {
         experiment.measurements.back().cost.one_thread = Timing{{1.0}};
     }
     experiment.measurements[0].cost.one_thread = Timing{{0.1}};
-    mark_efficient(experiment);
-    EXPECT_FALSE(experiment.measurements[0].is_efficient) << "nothing was measured";
-    EXPECT_TRUE(experiment.measurements[1].is_efficient);
+    mark_pareto_optimal(experiment);
+    EXPECT_FALSE(experiment.measurements[0].is_pareto_optimal) << "nothing was measured";
+    EXPECT_TRUE(experiment.measurements[1].is_pareto_optimal);
 }
 
 TEST(CurveError, HasNoNumberWhereASingleResultHasNone) {

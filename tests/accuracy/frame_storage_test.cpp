@@ -19,14 +19,14 @@ using testing::HasSubstr;
 constexpr double rounding = 1e-5;
 
 /// Frames that are rotated about their normals.
-Frames turned(const SampleFrames& truth, double degrees) {
+Frames turned(const SampleFrames& ground_truth, double degrees) {
     const double angle = degrees * std::numbers::pi / 180.0;
-    Frames found{truth.float_normals, truth.float_tangents};
+    Frames found{ground_truth.float_normals, ground_truth.float_tangents};
     for (std::size_t i = 0; i < found.normals.size(); ++i) {
-        const glm::dvec3 bitangent = glm::cross(truth.normals[i], truth.tangents[i]);
+        const glm::dvec3 bitangent = glm::cross(ground_truth.normals[i], ground_truth.tangents[i]);
         const glm::dvec3 tangent =
-            std::cos(angle) * truth.tangents[i] + std::sin(angle) * bitangent;
-        found.tangents[i] = glm::vec4(glm::vec3(tangent), truth.float_tangents[i].w);
+            std::cos(angle) * ground_truth.tangents[i] + std::sin(angle) * bitangent;
+        found.tangents[i] = glm::vec4(glm::vec3(tangent), ground_truth.float_tangents[i].w);
     }
     return found;
 }
@@ -51,9 +51,9 @@ TEST(SampleFrames, EvenOnesAreFramesSpreadEvenly) {
 }
 
 TEST(FrameErrors, OfTurnedFramesAreTheTurn) {
-    const SampleFrames truth = even_frames(500);
-    EXPECT_LE(frame_errors(truth, turned(truth, 0.0)).both.max, rounding);
-    const FrameCodeErrors errors = frame_errors(truth, turned(truth, 1.0));
+    const SampleFrames ground_truth = even_frames(500);
+    EXPECT_LE(frame_errors(ground_truth, turned(ground_truth, 0.0)).both.max, rounding);
+    const FrameCodeErrors errors = frame_errors(ground_truth, turned(ground_truth, 1.0));
     EXPECT_LE(errors.normal.max, rounding);
     EXPECT_NEAR(errors.tangent.rms, 1.0, rounding);
     EXPECT_NEAR(errors.tangent.max, 1.0, rounding);
@@ -66,11 +66,11 @@ TEST(FrameErrors, OfTurnedFramesAreTheTurn) {
 }
 
 TEST(FrameErrors, CountHandsThatAreLost) {
-    const SampleFrames truth = even_frames(10);
-    Frames found = turned(truth, 0.0);
+    const SampleFrames ground_truth = even_frames(10);
+    Frames found = turned(ground_truth, 0.0);
     found.tangents[3].w = -found.tangents[3].w;
     found.tangents[4].w = -found.tangents[4].w;
-    EXPECT_EQ(frame_errors(truth, found).flipped_frames, 2U);
+    EXPECT_EQ(frame_errors(ground_truth, found).flipped_frames, 2U);
 }
 
 TEST(FrameExperiments, AreWhole) {

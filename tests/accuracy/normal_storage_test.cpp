@@ -42,14 +42,14 @@ std::vector<glm::dvec3> leaning(double degrees) {
 }
 
 TEST(PatchErrors, OfTurnedNormalsAreTheTurnWhateverThePatch) {
-    const Image truth = image_of_normals(leaning(0.0), 16);
+    const Image ground_truth = image_of_normals(leaning(0.0), 16);
     const Image turned = image_of_normals(leaning(1.0), 16);
     for (const int block : {1, 2, 4, 8, 16}) {
-        const AngleDistribution errors = patch_errors(turned, truth, block);
+        const AngleDistribution errors = patch_errors(turned, ground_truth, block);
         EXPECT_EQ(errors.count, static_cast<std::size_t>(256 / (block * block)));
         EXPECT_NEAR(errors.rms, 1.0, 1e-5);  // Normals are rounded to float.
         EXPECT_NEAR(errors.max, 1.0, 1e-5);
-        EXPECT_EQ(patch_errors(truth, truth, block).max, 0.0);
+        EXPECT_EQ(patch_errors(ground_truth, ground_truth, block).max, 0.0);
     }
     EXPECT_THROW(image_of_normals(leaning(0.0), 15), InvalidInput);
 }
@@ -78,12 +78,12 @@ TEST(NormalCodes, FlatComesBackFlatUnlessItsZeroIsNoCode) {
 }
 
 /// Decodes an 8-bit texture as glTF 2.0 and engines do: 2 c / 255 - 1.
-AngleDistribution errors_by_gltf(const Image& codes, std::span<const glm::dvec3> truth) {
+AngleDistribution errors_by_gltf(const Image& codes, std::span<const glm::dvec3> ground_truth) {
     Image read = make_image(codes.width, codes.height, 3, 32, ColorSpace::data);
     for (std::size_t i = 0; i < read.sample_count(); ++i)
         read.as<float>()[i] =
             2.0F * static_cast<float>(codes.as<std::uint8_t>()[i]) / 255.0F - 1.0F;
-    return map_errors(read, truth);
+    return map_errors(read, ground_truth);
 }
 
 TEST(NormalCodes, RowsTellWhatEitherDecoderReads) {

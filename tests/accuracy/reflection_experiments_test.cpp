@@ -106,10 +106,10 @@ TEST(CubeMapSize, WithMoreSamplesAPixelTheLargestMapsDiffer) {
     const GlDevice device;
     if (!device.is_available()) GTEST_SKIP() << "no OpenGL";
     constexpr int ball_side = 160;
-    const Image truth = exact_mirror(waves_and_lights, ball_side, 4);
+    const Image ground_truth = exact_mirror(waves_and_lights, ball_side, 4);
     const auto error_with = [&](const EnvironmentFormula& shown, int map_side) {
         return rendered_error(
-            device, {"", {}, mirror_ball(cube_map_of(shown, map_side), 0.0), 1, 4}, truth);
+            device, {"", {}, mirror_ball(cube_map_of(shown, map_side), 0.0), 1, 4}, ground_truth);
     };
     const double of_large = error_with(waves_and_lights, 256);
     EXPECT_LT(of_large, 0.02);
@@ -172,9 +172,9 @@ TEST(GlossyLevels, OfAnotherRoughnessOrOtherSurroundingsAreFarOff) {
     constexpr double roughness = 0.5;  // That of the middle one of five levels: none are mixed.
     constexpr int map_side = 128;
     const Environment right = cube_map_of(waves_and_lights, map_side);
-    const Image truth = supersampled_reference(mirror_ball(right, roughness), ball_side, 1);
+    const Image ground_truth = supersampled_reference(mirror_ball(right, roughness), ball_side, 1);
     const auto error_of = [&](const Environment& shown, double drawn_roughness) {
-        return rendered_error(device, {"", {}, mirror_ball(shown, drawn_roughness)}, truth);
+        return rendered_error(device, {"", {}, mirror_ball(shown, drawn_roughness)}, ground_truth);
     };
     EXPECT_LT(error_of(right, roughness), 0.012);
     EXPECT_GT(error_of(right, 0.75), 0.05);

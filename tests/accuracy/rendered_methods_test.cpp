@@ -25,7 +25,7 @@ Scene ball() {
     return lit_scene(make_sphere(), glossy_plastic());
 }
 
-TEST(DrawnMethods, FindALampThatIsTurnedRound) {
+TEST(RenderedMethods, FindALampThatIsTurnedRound) {
     const GlDevice device;
     if (!device.is_available()) GTEST_SKIP() << "no OpenGL";
     Scene broken = ball();
@@ -46,7 +46,7 @@ TEST(DrawnMethods, FindALampThatIsTurnedRound) {
               std::string::npos);
 }
 
-TEST(DrawnMethods, AverageWhatTheyDrawMoreOf) {
+TEST(RenderedMethods, AverageWhatTheyDrawMoreOf) {
     const GlDevice device;
     if (!device.is_available()) GTEST_SKIP() << "no OpenGL";
     const std::vector<RenderedMethod> methods = {
@@ -60,7 +60,7 @@ TEST(DrawnMethods, AverageWhatTheyDrawMoreOf) {
     }
 }
 
-TEST(DrawnMethods, AreTimedInTurnsInSeconds) {
+TEST(RenderedMethods, AreTimedInTurnsInSeconds) {
     const GlDevice device;
     if (!device.is_available()) GTEST_SKIP() << "no OpenGL";
     const std::vector<RenderedMethod> methods = {{"one", {}, ball()}, {"other", {}, ball()}};
@@ -83,7 +83,7 @@ TEST(DrawnMethods, AreTimedInTurnsInSeconds) {
     }
 }
 
-TEST(DrawnMethods, SayTheirTimesOnlyWhereAllWereTimed) {
+TEST(RenderedMethods, SayTheirTimesOnlyWhereAllWereTimed) {
     Measurement stored;
     stored.cost.one_thread = Timing{{1.0e-3, 1.2e-3, 5.0e-3}};
     Measurement derived;
@@ -93,7 +93,7 @@ TEST(DrawnMethods, SayTheirTimesOnlyWhereAllWereTimed) {
     EXPECT_EQ(frame_times({{"stored", stored}, {"derived", Measurement{}}}), "");
 }
 
-TEST(DrawnMethods, SayInWordsThatThereIsNoOpenGL) {
+TEST(RenderedMethods, SayInWordsThatThereIsNoOpenGL) {
     const test::ScopedVariable osmesa("RELIEF_OSMESA_LIBRARY", "libnone.so");
     const GlDevice device(Backend::osmesa);
     ASSERT_FALSE(device.is_available());

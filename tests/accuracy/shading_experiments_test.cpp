@@ -14,7 +14,7 @@ namespace {
 
 const RunOptions untimed = test::quick_untimed();
 
-class DrawnExperiment : public ::testing::Test {
+class RenderedExperiment : public ::testing::Test {
   protected:
     static void SetUpTestSuite() { device_ = std::make_unique<GlDevice>(); }
     static void TearDownTestSuite() { device_.reset(); }
@@ -31,7 +31,7 @@ class DrawnExperiment : public ::testing::Test {
     inline static std::unique_ptr<GlDevice> device_;  ///< One for all tests of the suite.
 };
 
-TEST_F(DrawnExperiment, OnInterpolationRanksPhongGouraudFlat) {
+TEST_F(RenderedExperiment, OnInterpolationRanksPhongGouraudFlat) {
     const Experiment experiment = interpolation_experiment(device(), untimed);
     ASSERT_EQ(experiment.measurements.size(), 15U);
     EXPECT_LT(rms(experiment, "Phong, 2304 triangles"), rms(experiment, "Gouraud, 2304 triangles"));
@@ -47,7 +47,7 @@ TEST_F(DrawnExperiment, OnInterpolationRanksPhongGouraudFlat) {
     EXPECT_EQ(experiment.finding.find("frame"), std::string::npos) << experiment.finding;
 }
 
-TEST_F(DrawnExperiment, OnHighlightsFindsTheFactorBetweenExponents) {
+TEST_F(RenderedExperiment, OnHighlightsFindsTheFactorBetweenExponents) {
     const Experiment experiment = highlight_experiment(device(), untimed);
     EXPECT_LT(rms(experiment, "GGX"), 0.01);
     EXPECT_LT(rms(experiment, "Blinn-Phong"), rms(experiment, "Blinn-Phong, Phong's exponent"));
@@ -55,13 +55,13 @@ TEST_F(DrawnExperiment, OnHighlightsFindsTheFactorBetweenExponents) {
               rms(experiment, "Phong, Blinn's exponent"));
 }
 
-TEST_F(DrawnExperiment, OnEdgesRanksSamples) {
+TEST_F(RenderedExperiment, OnEdgesRanksSamples) {
     const Experiment experiment = edge_experiment(device(), untimed);
     EXPECT_LT(rms(experiment, "MSAA, 4 samples"), 0.6 * rms(experiment, "1 sample"));
     EXPECT_LT(rms(experiment, "4 x 4 pixels"), 0.6 * rms(experiment, "2 x 2 pixels"));
 }
 
-TEST_F(DrawnExperiment, OnSmallHighlightsFindsThatWideningThemHelps) {
+TEST_F(RenderedExperiment, OnSmallHighlightsFindsThatWideningThemHelps) {
     const Experiment experiment = specular_aliasing_experiment(device(), untimed);
     ASSERT_EQ(experiment.measurements.size(), 6U);
     EXPECT_LT(rms(experiment, "Toksvig"), 0.5 * rms(experiment, "averaged normals"));

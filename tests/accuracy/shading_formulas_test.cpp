@@ -137,18 +137,19 @@ double radiance_by_angles(const glm::vec3& interpolated) {
 /// on a highlight 0.45 of exponent 40 is 18 times as large.
 constexpr double radiance_rounding = 1e-6;
 
-TEST(UnitNormalTruth, IsAFormulaOfAnglesAtEveryPlace) {
+TEST(UnitNormalReference, IsAFormulaOfAnglesAtEveryPlace) {
     for (const double degrees : {1.0, 30.0, 90.0}) {
         const NormalSamples samples(degrees, 32);
-        const std::vector<double> truth = samples.exact_radiances();
-        ASSERT_EQ(truth.size(), samples.count());
+        const std::vector<double> ground_truth = samples.exact_radiances();
+        ASSERT_EQ(ground_truth.size(), samples.count());
         double least = 1.0;
         double most = 0.0;
-        for (std::size_t i = 0; i < truth.size(); ++i) {
-            ASSERT_NEAR(truth[i], radiance_by_angles(samples.interpolated()[i]), radiance_rounding)
+        for (std::size_t i = 0; i < ground_truth.size(); ++i) {
+            ASSERT_NEAR(ground_truth[i], radiance_by_angles(samples.interpolated()[i]),
+                        radiance_rounding)
                 << degrees << " " << i;
-            least = std::min(least, truth[i]);
-            most = std::max(most, truth[i]);
+            least = std::min(least, ground_truth[i]);
+            most = std::max(most, ground_truth[i]);
         }
         EXPECT_EQ(samples.brightest(), most);
         if (degrees > 1.0) {
@@ -170,7 +171,7 @@ double error_of_normals(const NormalSamples& samples, NormalOf normal_of) {
     return formula_error(method, samples.exact_radiances()).rms;
 }
 
-TEST(UnitNormalTruth, TellsNormalsThatAreTurnedByADegree) {
+TEST(UnitNormalReference, TellsNormalsThatAreTurnedByADegree) {
     const NormalSamples samples(30.0, 32);
     const auto turned = [](double degrees) {
         return [degrees](const glm::vec3& n) {
@@ -188,7 +189,7 @@ TEST(UnitNormalTruth, TellsNormalsThatAreTurnedByADegree) {
     EXPECT_NEAR(error_of_normals(samples, turned(2.0)), 2.0 * of_one, 0.01 * of_one);
 }
 
-TEST(UnitNormalTruth, TellsALengthThatIsWrong) {
+TEST(UnitNormalReference, TellsALengthThatIsWrong) {
     // The light of normals n |n|^p: p = 0 for the interpolated normal, -1 for the unit normal, -2
     // for one that is too long by the same factor. At one degree only the first order shows.
     const NormalSamples samples(1.0, 32);

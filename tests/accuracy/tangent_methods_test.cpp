@@ -45,17 +45,17 @@ TEST(Bases, AMirroredImageTurnsTangentAndHand) {
 }
 
 TEST(Bases, DerivedTangentsRunAlongTheImagesRowsOnAnyTriangle) {
-    const TexturedMesh truth = textured_mesh(AnalyticSurface::torus, Triangulation::anisotropic,
-                                             TextureLayout::sheared, 16, 7);
-    for (const Sample& sample : samples_of(truth)) {
-        const glm::uvec3& t = truth.mesh.triangles[sample.triangle];
-        const glm::dmat3 basis = basis_at(truth.mesh, {}, ShaderBasis::derived, sample);
-        const glm::dvec3 a(truth.mesh.positions[t.x]);
-        const glm::dvec3 e1 = glm::dvec3(truth.mesh.positions[t.y]) - a;
-        const glm::dvec3 e2 = glm::dvec3(truth.mesh.positions[t.z]) - a;
-        const glm::dvec2 origin(truth.mesh.texcoords[t.x]);
-        const glm::dvec2 d1 = glm::dvec2(truth.mesh.texcoords[t.y]) - origin;
-        const glm::dvec2 d2 = glm::dvec2(truth.mesh.texcoords[t.z]) - origin;
+    const TexturedMesh ground_truth = textured_mesh(
+        AnalyticSurface::torus, Triangulation::anisotropic, TextureLayout::sheared, 16, 7);
+    for (const Sample& sample : samples_of(ground_truth)) {
+        const glm::uvec3& t = ground_truth.mesh.triangles[sample.triangle];
+        const glm::dmat3 basis = basis_at(ground_truth.mesh, {}, ShaderBasis::derived, sample);
+        const glm::dvec3 a(ground_truth.mesh.positions[t.x]);
+        const glm::dvec3 e1 = glm::dvec3(ground_truth.mesh.positions[t.y]) - a;
+        const glm::dvec3 e2 = glm::dvec3(ground_truth.mesh.positions[t.z]) - a;
+        const glm::dvec2 origin(ground_truth.mesh.texcoords[t.x]);
+        const glm::dvec2 d1 = glm::dvec2(ground_truth.mesh.texcoords[t.y]) - origin;
+        const glm::dvec2 d2 = glm::dvec2(ground_truth.mesh.texcoords[t.z]) - origin;
         // The point in the plane of the triangle at one tangent from the corner, except for the
         // normal.
         const glm::dvec3 steps = glm::inverse(glm::dmat3(e1, e2, basis[2])) * basis[0];
@@ -87,21 +87,22 @@ TEST(Bases, InterpolatedVectorsStayShortUnlessMadeUnit) {
 }
 
 TEST(Bases, TrueTangentsAreThoseOfEachSideOfAMirroredImage) {
-    const TexturedMesh truth = textured_mesh(AnalyticSurface::saddle, Triangulation::regular,
-                                             TextureLayout::mirrored, 8, 1);
-    const CornerTangents tangents = exact_tangents(truth);
+    const TexturedMesh ground_truth = textured_mesh(AnalyticSurface::saddle, Triangulation::regular,
+                                                    TextureLayout::mirrored, 8, 1);
+    const CornerTangents tangents = exact_tangents(ground_truth);
     std::size_t left = 0;
     for (std::size_t corner = 0; corner < tangents.size(); ++corner) {
-        const glm::uvec3& t = truth.mesh.triangles[corner / 3];
-        const double middle =
-            (truth.parameters[t.x].x + truth.parameters[t.y].x + truth.parameters[t.z].x) / 3.0;
+        const glm::uvec3& t = ground_truth.mesh.triangles[corner / 3];
+        const double middle = (ground_truth.parameters[t.x].x + ground_truth.parameters[t.y].x +
+                               ground_truth.parameters[t.z].x) /
+                              3.0;
         EXPECT_EQ(tangents[corner].w, middle < 0.5 ? 1.0F : -1.0F);
         EXPECT_EQ(tangents[corner].x > 0.0F, middle < 0.5);
         left += middle < 0.5 ? 1U : 0U;
     }
     EXPECT_EQ(left, tangents.size() / 2);
     // Only triangles away from the border count, with four points each.
-    EXPECT_EQ(samples_of(truth).size(), 4U * 2U * 6U * 6U);
+    EXPECT_EQ(samples_of(ground_truth).size(), 4U * 2U * 6U * 6U);
 }
 
 /// Rounding to float: 2^-24 of a component, 3.4e-6 degrees each.

@@ -85,7 +85,7 @@ TEST(TangentsExperiments, MapsComeBackFromTheirOwnBasisAlone) {
     }
 }
 
-TEST(DrawnFrames, OnFewTrianglesDerivedOnesAreFartherOff) {
+TEST(RenderedFrames, OnFewTrianglesDerivedOnesAreFartherOff) {
     const GlDevice device;
     if (!device.is_available()) GTEST_SKIP() << "no OpenGL";
     const Experiment experiment = rendered_frames_experiment(device, quick_untimed());
@@ -105,7 +105,7 @@ TEST(DrawnFrames, OnFewTrianglesDerivedOnesAreFartherOff) {
     EXPECT_EQ(experiment.pictures.size(), 3U);
 }
 
-TEST(DrawnFrames, TakeTimeOfAllThreads) {
+TEST(RenderedFrames, TakeTimeOfAllThreads) {
     const GlDevice device;
     if (!device.is_available()) GTEST_SKIP() << "no OpenGL";
     RunOptions options = quick_untimed();

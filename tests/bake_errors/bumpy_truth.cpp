@@ -8,8 +8,8 @@
 namespace relief::test {
 namespace {
 
-constexpr int truth_side = 16;
-constexpr std::size_t truth_stride = 37;  ///< Every so many texels are looked at.
+constexpr int reference_side = 16;
+constexpr std::size_t reference_stride = 37;  ///< Every so many texels are looked at.
 
 /// Where a place of the texture is on the low mesh, and its outward direction there.
 struct LowPoint {
@@ -40,9 +40,9 @@ LowPoint low_point(const Mesh& low, const LowSphere& shape, double u, double v) 
     throw std::logic_error("a texel lies on no triangle");
 }
 
-TexelTruth truth_of(const BumpySphere& high, const Mesh& low, const LowSphere& shape, int map_side,
-                    std::size_t texel) {
-    TexelTruth truth{texel};
+TexelReference reference_of(const BumpySphere& high, const Mesh& low, const LowSphere& shape,
+                            int map_side, std::size_t texel) {
+    TexelReference ground_truth{texel};
     const auto add = [&](double x, double y, glm::dvec3& surface, glm::dvec3& mesh) {
         const LowPoint point = low_point(low, shape, x / map_side, y / map_side);
         const glm::dvec3 from = point.position + 0.05 * point.outward;
@@ -51,23 +51,24 @@ TexelTruth truth_of(const BumpySphere& high, const Mesh& low, const LowSphere& s
     };
     const auto x = static_cast<double>(texel % static_cast<std::size_t>(map_side));
     const auto y = static_cast<double>(texel / static_cast<std::size_t>(map_side));
-    for (int i = 0; i < truth_side * truth_side; ++i) {
-        add(x + (i % truth_side + 0.5) / truth_side, y + (i / truth_side + 0.5) / truth_side,
-            truth.surface, truth.mesh);
+    for (int i = 0; i < reference_side * reference_side; ++i) {
+        add(x + (i % reference_side + 0.5) / reference_side,
+            y + (i / reference_side + 0.5) / reference_side, ground_truth.surface,
+            ground_truth.mesh);
     }
-    add(x + 0.5, y + 0.5, truth.surface_middle, truth.mesh_middle);
-    return truth;
+    add(x + 0.5, y + 0.5, ground_truth.surface_middle, ground_truth.mesh_middle);
+    return ground_truth;
 }
 
 }  // namespace
 
-std::vector<TexelTruth> texel_truths(const BumpySphere& high, const Mesh& low,
-                                     const LowSphere& shape, int map_side) {
-    std::vector<TexelTruth> all;
+std::vector<TexelReference> texel_references(const BumpySphere& high, const Mesh& low,
+                                             const LowSphere& shape, int map_side) {
+    std::vector<TexelReference> all;
     const auto side = static_cast<std::size_t>(map_side);
     const std::size_t first = side * (side / 10);
-    for (std::size_t texel = first; texel < side * side - first; texel += truth_stride)
-        all.push_back(truth_of(high, low, shape, map_side, texel));
+    for (std::size_t texel = first; texel < side * side - first; texel += reference_stride)
+        all.push_back(reference_of(high, low, shape, map_side, texel));
     return all;
 }
 

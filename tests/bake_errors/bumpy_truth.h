@@ -17,7 +17,7 @@ struct LowSphere {
 };
 
 /// What a texel should hold: normals in object space.
-struct TexelTruth {
+struct TexelReference {
     std::size_t texel = 0;
     glm::dvec3 surface{0.0};  ///< The mean over its square.
     glm::dvec3 mesh{0.0};
@@ -27,7 +27,7 @@ struct TexelTruth {
 
 /// Of every 37th texel, away from the poles, where the formula's surface is none.
 /// \param low  its normals are the directions of rays
-std::vector<TexelTruth> texel_truths(const BumpySphere& high, const Mesh& low,
-                                     const LowSphere& shape, int map_side);
+std::vector<TexelReference> texel_references(const BumpySphere& high, const Mesh& low,
+                                             const LowSphere& shape, int map_side);
 
 }  // namespace relief::test

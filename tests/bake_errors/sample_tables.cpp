@@ -56,13 +56,13 @@ Image as_seen(const Image& normals, const Mesh& low, int bits) {
     return object_from_tangent(decoded, low, {}, report).normals;
 }
 
-std::string errors(const Image& seen, const std::vector<TexelTruth>& truths,
-                   glm::dvec3 TexelTruth::*which) {
+std::string errors(const Image& seen, const std::vector<TexelReference>& references,
+                   glm::dvec3 TexelReference::*which) {
     std::vector<float> degrees;
-    for (const TexelTruth& truth : truths) {
-        const float* const n = &seen.as<float>()[3 * truth.texel];
+    for (const TexelReference& ground_truth : references) {
+        const float* const n = &seen.as<float>()[3 * ground_truth.texel];
         degrees.push_back(
-            static_cast<float>(degrees_between(glm::dvec3(n[0], n[1], n[2]), truth.*which)));
+            static_cast<float>(degrees_between(glm::dvec3(n[0], n[1], n[2]), ground_truth.*which)));
     }
     const AngleDistribution all = angle_distribution(degrees);
     const auto digits = [](double value) {
@@ -85,7 +85,8 @@ std::string sample_tables() {
                          .mesh;
     Mesh rays = low;  // By default they run along averaged normals, whatever the mesh's own are.
     rays.normals = vertex_normals(low.positions, low.triangles, NormalWeight::angle, report);
-    const std::vector<TexelTruth> all = texel_truths(high, rays, low_sphere, sampled_map_side);
+    const std::vector<TexelReference> all =
+        texel_references(high, rays, low_sphere, sampled_map_side);
     const Baked single = baked(high, low, 1, false);
     std::string text =
         "\nOne ray, against the place on the surface that it asks about: RMS / 99 of 100 / "
@@ -94,8 +95,9 @@ std::string sample_tables() {
         table_header({"against the mesh's triangles", "against the surface itself"});
     for (const int bits : {8, 16, 32}) {
         const Image seen = as_seen(single.normals, low, bits);
-        text += row(fmt::format("{} bit", bits), {errors(seen, all, &TexelTruth::mesh_middle),
-                                                  errors(seen, all, &TexelTruth::surface_middle)});
+        text +=
+            row(fmt::format("{} bit", bits), {errors(seen, all, &TexelReference::mesh_middle),
+                                              errors(seen, all, &TexelReference::surface_middle)});
     }
     text +=
         "\nAgainst all that a texel shows, the mean over its square: RMS / 99 of 100 / greatest "
@@ -115,11 +117,11 @@ std::string sample_tables() {
         const Baked map = baked(high, low, choice.samples, choice.is_auto);
         const Image coarse = as_seen(map.normals, low, 8);
         const Image fine = as_seen(map.normals, low, 16);
-        text +=
-            row(choice.name,
-                {fmt::format("{:.1f}", map.rays_per_texel), errors(coarse, all, &TexelTruth::mesh),
-                 errors(fine, all, &TexelTruth::mesh), errors(coarse, all, &TexelTruth::surface),
-                 errors(fine, all, &TexelTruth::surface)});
+        text += row(choice.name, {fmt::format("{:.1f}", map.rays_per_texel),
+                                  errors(coarse, all, &TexelReference::mesh),
+                                  errors(fine, all, &TexelReference::mesh),
+                                  errors(coarse, all, &TexelReference::surface),
+                                  errors(fine, all, &TexelReference::surface)});
     }
     return text;
 }

@@ -50,7 +50,7 @@ Best best_on(const BumpField& field) {
         if (named.kernel != Kernel::gaussian) look_at(named.kernel, 2);
     }
     double least = std::numeric_limits<double>::infinity();
-    for (int radius = 1; radius <= largest_kernel_radius; radius += radius < 12 ? 1 : 2) {
+    for (int radius = 1; radius <= max_kernel_radius; radius += radius < 12 ? 1 : 2) {
         const double error = look_at(Kernel::gaussian, radius);
         least = std::min(least, error);
         if (radius > 3 && error > 1.5 * least) break;
@@ -121,7 +121,7 @@ std::string choice_tables() {
     std::string text =
         "\n| field | best kernel | RMS | `auto` | RMS | over the best |\n"
         "|---|---|---|---|---|---|\n";
-    for (const FieldRecipe& recipe : judging_fields()) {
+    for (const FieldRecipe& recipe : evaluation_fields()) {
         const BumpField field = make_bump_field(recipe, side, side);
         const Best best = best_on(field);
         const KernelChoice choice = choose_kernel(field.heights, field.options);
@@ -138,7 +138,7 @@ std::string step_tables() {
     std::string text =
         "\n| field | best kernel | RMS | after de-staircasing | RMS | gain |\n"
         "|---|---|---|---|---|---|\n";
-    for (const auto& set : {tuning_fields(), judging_fields()}) {
+    for (const auto& set : {tuning_fields(), evaluation_fields()}) {
         for (const FieldRecipe& recipe : set) {
             if (recipe.coding == FieldCoding::float32 || recipe.coding == FieldCoding::float16 ||
                 recipe.coding == FieldCoding::bits16)

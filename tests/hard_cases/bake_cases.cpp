@@ -78,8 +78,7 @@ HardCase border_case() {
               }
               if (map.result.texels_missed > 0)
                   return fmt::format("{} missed", map.result.texels_missed);
-              const bool is_flat =
-                  map.result.greatest_height < 1e-6 && map.result.least_height > -1e-6;
+              const bool is_flat = map.result.max_height < 1e-6 && map.result.min_height > -1e-6;
               return std::string(is_flat ? "" : "the heights are not 0");
           }}}};
 }

@@ -12,7 +12,7 @@ std::map<std::string, std::size_t> counts_of(const Report& report) {
     return counts;
 }
 
-std::string in_words(const std::map<std::string, std::size_t>& counts) {
+std::string as_text(const std::map<std::string, std::size_t>& counts) {
     std::string text;
     for (const auto& [kind, count] : counts)
         text += fmt::format("{}{} x {}", text.empty() ? "" : ", ", count, kind);

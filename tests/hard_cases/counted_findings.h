@@ -15,7 +15,7 @@ namespace relief::test {
 std::map<std::string, std::size_t> counts_of(const Report& report);
 
 /// "2 x needle triangle, 1 x isolated vertex"; "nothing".
-std::string in_words(const std::map<std::string, std::size_t>& counts);
+std::string as_text(const std::map<std::string, std::size_t>& counts);
 
 /// For the page: "; reported: 2 x needle triangle"; empty if nothing is.
 std::string reported(const std::vector<std::pair<std::string, std::size_t>>& findings);

@@ -47,7 +47,7 @@ TEST(HostileMeshesThemselves, HoldEveryKindOfTrouble) {
     std::vector<std::size_t> meshes_with(mesh_conditions().size());
     for (std::uint32_t seed = 0; seed < 500; ++seed) {
         Mesh mesh = hostile_mesh(seed);
-        for (const FoundCondition& found : diagnose(mesh).found)
+        for (const MeshConditionCount& found : diagnose(mesh).found)
             ++meshes_with[static_cast<std::size_t>(found.condition)];
     }
     for (const MeshConditionInfo& condition : mesh_conditions()) {

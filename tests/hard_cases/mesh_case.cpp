@@ -40,7 +40,7 @@ std::string wrong_normals(const Mesh& mesh, NormalWeight weight,
         vertex_normals(mesh.positions, mesh.triangles, weight, report);
     if (normals.size() != mesh.positions.size()) return "not one normal per vertex";
     if (const std::string problem = not_unit(normals); !problem.empty()) return problem;
-    if (counts_of(report) != expected) return "reports " + in_words(counts_of(report));
+    if (counts_of(report) != expected) return "reports " + as_text(counts_of(report));
     Report ignored;
     const Mesh other = reordered(mesh);
     const std::vector<glm::vec3> again =
@@ -52,12 +52,12 @@ std::string wrong_normals(const Mesh& mesh, NormalWeight weight,
 }
 
 std::string inaccurate(const Mesh& mesh, NormalWeight weight, double degrees,
-                       const TrueNormal& truth) {
+                       const TrueNormal& ground_truth) {
     Report report;
     const std::vector<glm::vec3> normals =
         vertex_normals(mesh.positions, mesh.triangles, weight, report);
     for (std::size_t v = 0; v < normals.size(); ++v) {
-        const std::optional<glm::dvec3> expected = truth(mesh, v);
+        const std::optional<glm::dvec3> expected = ground_truth(mesh, v);
         if (!expected) continue;
         const double error = degrees_between(glm::dvec3(normals[v]), *expected);
         if (!(error <= degrees)) return fmt::format("vertex {} is {} degrees off", v, error);
@@ -90,7 +90,7 @@ MeshCase& MeshCase::checked(const std::vector<std::pair<MeshCondition, std::size
     return expect("check", outcome.empty() ? "nothing" : outcome, [expected](const Mesh& mesh) {
         for (const Mesh& one : {mesh, reordered(mesh)}) {
             const auto counts = counts_of(to_report(diagnose(one)));
-            if (counts != expected) return "finds " + in_words(counts);
+            if (counts != expected) return "finds " + as_text(counts);
         }
         return std::string();
     });
@@ -113,13 +113,14 @@ MeshCase& MeshCase::normals_by(const std::string& step, const std::vector<Normal
 }
 
 MeshCase& MeshCase::accurate(const std::vector<NormalWeight>& weights, double degrees,
-                             const std::string& truth_in_words, const TrueNormal& truth) {
-    const std::string outcome =
-        degrees == 0.0 ? "exactly " + truth_in_words
-                       : fmt::format("within {} degrees of {}", degrees, truth_in_words);
-    return expect("normals", outcome, [weights, degrees, truth](const Mesh& mesh) {
+                             const std::string& truth_text, const TrueNormal& ground_truth) {
+    const std::string outcome = degrees == 0.0
+                                    ? "exactly " + truth_text
+                                    : fmt::format("within {} degrees of {}", degrees, truth_text);
+    return expect("normals", outcome, [weights, degrees, ground_truth](const Mesh& mesh) {
         for (const NormalWeight weight : weights) {
-            if (std::string problem = inaccurate(mesh, weight, degrees, truth); !problem.empty())
+            if (std::string problem = inaccurate(mesh, weight, degrees, ground_truth);
+                !problem.empty())
                 return fmt::format("weight {}: {}", static_cast<int>(weight), problem);
         }
         return std::string();

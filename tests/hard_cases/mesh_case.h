@@ -58,7 +58,7 @@ class MeshCase {
 
     /// Normals by these weightings are within so many degrees of the truth; 0: exactly there.
     MeshCase& accurate(const std::vector<NormalWeight>& weights, double degrees,
-                       const std::string& truth_in_words, const TrueNormal& truth);
+                       const std::string& truth_text, const TrueNormal& ground_truth);
 
     /// Every method keeps the invariant (support/tangent_invariant.h), gives the same bits for
     /// other orders of triangles, and reports exactly this. A mesh without texture is seen from
@@ -71,8 +71,8 @@ class MeshCase {
 
     /// Tangents by every method are within so many degrees of the truth, with its w; 0: exactly
     /// there.
-    MeshCase& tangents_near(double degrees, const std::string& truth_in_words,
-                            const TrueTangent& truth);
+    MeshCase& tangents_near(double degrees, const std::string& truth_text,
+                            const TrueTangent& ground_truth);
 
     /// Anything else: the outcome in words, and a function of the mesh that says what is wrong.
     MeshCase& expect(const std::string& step, const std::string& outcome,

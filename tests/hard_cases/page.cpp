@@ -38,7 +38,7 @@ std::string words() {
         "| word | | what it comes to |\n|---|---|---|\n";
     for (const MeshConditionInfo& condition : mesh_conditions()) {
         text += fmt::format("| {} | {} | {} |\n", condition.word,
-                            condition.severity == Severity::trouble ? "trouble" : "remark",
+                            condition.severity == Severity::problem ? "trouble" : "remark",
                             condition.meaning);
     }
     return text;

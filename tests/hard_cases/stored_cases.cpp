@@ -52,7 +52,7 @@ std::vector<HardCase> stored_cases() {
                  [] {
                      return square_with_normals({{0, 0, 1}, {0, 0, -1}, {0, 0, 1}, {1, 0, 0}});
                  })
-            .checked({{edge_boundary, 4}, {normal_opposed, 1}, {normal_divided, 1}})
+            .checked({{edge_boundary, 4}, {normal_opposed, 1}, {normal_inconsistent, 1}})
             .tangents({{"corner without texture direction", 1},
                        {"texture direction along the normal", 1}}),
         MeshCase(
@@ -67,9 +67,9 @@ std::vector<HardCase> stored_cases() {
             .checked({{edge_boundary, 4},
                       {tangent_not_finite, 1},
                       {tangent_not_unit, 1},
-                      {tangent_unhanded, 1},
+                      {tangent_invalid_sign, 1},
                       {tangent_along_normal, 1},
-                      {tangent_leaning, 1}})
+                      {tangent_not_perpendicular, 1}})
             .tangents(),
         MeshCase("all texture coordinates equal", "A square that shows one point of the image.",
                  "MikkTSpace#1, lslib#51",

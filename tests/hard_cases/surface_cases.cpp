@@ -141,7 +141,7 @@ std::vector<HardCase> surface_cases() {
         MeshCase("double-sided sheet",
                  "A square with a back on the same vertices: its normals cancel, and are (0,0,1).",
                  "leaves and cloth in games", double_sided_square)
-            .checked({{triangle_backed, 4}})
+            .checked({{triangle_two_sided, 4}})
             .normals({{"cancelling normals", 4}})
             .accurate(all_weights(), 0, "(0,0,1)", facing_up)
             .tangents(),

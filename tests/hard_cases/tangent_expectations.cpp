@@ -27,7 +27,7 @@ std::string wrong_tangents(const Mesh& mesh, const TangentMethod& method,
     const std::vector<glm::vec4> tangents = tangents_of(mesh, method, report);
     if (const std::string problem = broken_tangents(mesh, tangents); !problem.empty())
         return problem;
-    if (counts_of(report) != expected) return "reports " + in_words(counts_of(report));
+    if (counts_of(report) != expected) return "reports " + as_text(counts_of(report));
     const std::size_t count = mesh.triangles.size();
     for (const auto& order : {reversed(count), shuffled(count)}) {
         Report other;
@@ -40,11 +40,11 @@ std::string wrong_tangents(const Mesh& mesh, const TangentMethod& method,
 }
 
 std::string too_far(const Mesh& mesh, const TangentMethod& method, double degrees,
-                    const TrueTangent& truth) {
+                    const TrueTangent& ground_truth) {
     Report report;
     const std::vector<glm::vec4> tangents = tangents_of(mesh, method, report);
     for (std::size_t corner = 0; corner < tangents.size(); ++corner) {
-        const std::optional<glm::dvec4> expected = truth(mesh, corner);
+        const std::optional<glm::dvec4> expected = ground_truth(mesh, corner);
         if (!expected) continue;
         const glm::dvec4 tangent(tangents[corner]);
         const double error = degrees_between(glm::dvec3(tangent), glm::dvec3(*expected));
@@ -91,15 +91,15 @@ MeshCase& MeshCase::tangents_by(const std::string& step, const std::vector<Tange
                   }));
 }
 
-MeshCase& MeshCase::tangents_near(double degrees, const std::string& truth_in_words,
-                                  const TrueTangent& truth) {
-    const std::string outcome =
-        degrees == 0.0 ? "exactly " + truth_in_words
-                       : fmt::format("within {} degrees of {}", degrees, truth_in_words);
+MeshCase& MeshCase::tangents_near(double degrees, const std::string& truth_text,
+                                  const TrueTangent& ground_truth) {
+    const std::string outcome = degrees == 0.0
+                                    ? "exactly " + truth_text
+                                    : fmt::format("within {} degrees of {}", degrees, truth_text);
     return expect(
         "tangents", outcome,
         with_each(all_tangent_methods(), [=](const Mesh& mesh, const TangentMethod& method) {
-            return too_far(mesh, method, degrees, truth);
+            return too_far(mesh, method, degrees, ground_truth);
         }));
 }
 

@@ -29,11 +29,12 @@ std::string surface_table(const char* title, Triangulation triangulation) {
     constexpr int cells = 64;
     std::string text = fmt::format("\n{}\n\n{}", title, header());
     for (const AnalyticSurface surface : all_surfaces) {
-        const AnalyticMesh truth = analytic_mesh(surface, triangulation, cells, 1);
+        const AnalyticMesh ground_truth = analytic_mesh(surface, triangulation, cells, 1);
         std::vector<double> ranks;
         std::vector<std::string> entries;
         for (const NormalMethod& method : methods()) {
-            const AngleDistribution error = normal_errors(method.normals(truth.mesh), truth);
+            const AngleDistribution error =
+                normal_errors(method.normals(ground_truth.mesh), ground_truth);
             ranks.push_back(error.rms);
             entries.push_back(in_digits(error.rms) + " / " + in_digits(error.max));
         }

@@ -74,15 +74,15 @@ std::string row_of(double base_slope, double detail_slope, bool is_carved) {
     const Waves detail = detail_waves(detail_slope);
     Waves both = base;
     both.insert(both.end(), detail.begin(), detail.end());
-    AnalyticHeights truth = wave_heights(blend_side, blend_side, both);
-    if (is_carved) truth.normals = carved_normals(base, detail);
+    AnalyticHeights ground_truth = wave_heights(blend_side, blend_side, both);
+    if (is_carved) ground_truth.normals = carved_normals(base, detail);
     std::vector<double> ranks;
     std::vector<std::string> cells;
     for (const NormalBlend method : all_normal_blends) {
         Image blended = normals_image(blend_side, blend_side, base);
         Report report;
         blend_normals(blended, normals_image(blend_side, blend_side, detail), method, report);
-        const DirectionError error = normal_error(blended, truth);
+        const DirectionError error = normal_error(blended, ground_truth);
         ranks.push_back(error.rms);
         cells.push_back(in_digits(error.rms) + " / " + in_digits(error.max));
     }

@@ -34,16 +34,16 @@ std::string row_of(double rms_slope) {
     const std::vector<Image> levels = normal_mip_levels(normals);
     const auto mean = levels.back().as<float>();
     const double length = glm::length(glm::dvec3(mean[0], mean[1], mean[2]));
-    const double truth = slope_variance(normals);
+    const double ground_truth = slope_variance(normals);
     const double found = slope_variance_of_length(length);
     const double toksvig = (1.0 - length) / length;
     constexpr double base = 0.3;
     const std::vector<std::string> cells = {
         fmt::format("{:.4f}", length),
-        fmt::format("{:.4f}", truth),
+        fmt::format("{:.4f}", ground_truth),
         fmt::format("{:.4f}", found),
         fmt::format("{:.4f}", toksvig),
-        fmt::format("{:.3f}", roughness_with_variance(base, truth)),
+        fmt::format("{:.3f}", roughness_with_variance(base, ground_truth)),
         fmt::format("{:.3f}", roughness_with_variance(base, found))};
     return table_row(fmt::format("rms slope {:g}", rms_slope), std::vector<double>(6, NAN), cells);
 }

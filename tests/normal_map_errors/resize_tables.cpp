@@ -40,7 +40,7 @@ std::string row_of(const Situation& at, ResizeDomain domain) {
     held = scaled_waves(held, factor);
     all = scaled_waves(all, factor);
     const Image normals = normals_image(resize_side, resize_side, all);
-    const AnalyticHeights truth =
+    const AnalyticHeights ground_truth =
         wave_heights(at.to, at.to, resized_waves(held, static_cast<double>(resize_side) / at.to));
     std::vector<double> ranks;
     std::vector<std::string> cells;
@@ -50,7 +50,7 @@ std::string row_of(const Situation& at, ResizeDomain domain) {
         options.domain = domain;
         Report report;
         const double error =
-            normal_error(resize_normals(normals, at.to, at.to, options, report), truth).rms;
+            normal_error(resize_normals(normals, at.to, at.to, options, report), ground_truth).rms;
         ranks.push_back(error);
         cells.push_back(in_digits(error));
     }

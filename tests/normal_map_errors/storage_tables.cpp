@@ -14,13 +14,13 @@ constexpr int storage_side = 256;
 
 /// One of the ways of normal_codes().
 std::string row_of(const char* name, const std::string& code_name) {
-    const Image truth = image_of_normals(smooth_surface(storage_side), storage_side);
+    const Image ground_truth = image_of_normals(smooth_surface(storage_side), storage_side);
     for (const NormalCode& code : normal_codes()) {
         if (code.name != code_name) continue;
-        const Image read = code.stored(truth);
+        const Image read = code.stored(ground_truth);
         std::vector<std::string> cells;
         for (const int block : {1, 4, 16})
-            cells.push_back(fmt::format("{:.5f}", patch_errors(read, truth, block).rms));
+            cells.push_back(fmt::format("{:.5f}", patch_errors(read, ground_truth, block).rms));
         return table_row(name, std::vector<double>(3, NAN), cells);
     }
     throw std::invalid_argument("no code " + code_name);

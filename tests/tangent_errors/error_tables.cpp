@@ -25,7 +25,7 @@ const std::vector<TangentMethod>& methods() {
 
 struct NamedMesh {
     std::string name;
-    TexturedMesh truth;
+    TexturedMesh ground_truth;
 };
 
 const std::vector<NamedMesh>& meshes() {
@@ -54,15 +54,16 @@ std::string method_table(const std::string& title, bool at_corners, Measured mea
         names.push_back(method.name);
     std::string text = "\n" + title + "\n\n" + table_header(names);
     for (const NamedMesh& mesh : meshes()) {
-        const AngleDistribution least =
-            measured(mesh.truth, exact_tangents(mesh.truth), ShaderBasis::as_interpolated);
+        const AngleDistribution least = measured(
+            mesh.ground_truth, exact_tangents(mesh.ground_truth), ShaderBasis::as_interpolated);
         std::vector<double> ranks = {not_compared};
         std::vector<std::string> cells = {rms_and_max(least)};
         for (const TangentMethod& method : methods()) {
             const bool none = at_corners && !method.tangents;
             const AngleDistribution errors =
                 none ? AngleDistribution{}
-                     : measured(mesh.truth, method.tangents_of(mesh.truth.mesh), method.basis);
+                     : measured(mesh.ground_truth, method.tangents_of(mesh.ground_truth.mesh),
+                                method.basis);
             ranks.push_back(none ? not_compared : errors.rms);
             cells.push_back(none ? "" : rms_and_max(errors));
         }
@@ -77,9 +78,8 @@ std::string method_tables() {
                "triangles: RMS / largest error in degrees",
                false, texel_errors) +
            method_table("The tangent's direction at vertices", true,
-                        [](const TexturedMesh& truth, const CornerTangents& tangents, ShaderBasis) {
-                            return corner_tangent_errors(truth, tangents);
-                        }) +
+                        [](const TexturedMesh& ground_truth, const CornerTangents& tangents,
+                           ShaderBasis) { return corner_tangent_errors(ground_truth, tangents); }) +
            method_table("The tangent's direction inside of triangles", false,
                         inner_tangent_errors) +
            "\n";
@@ -112,9 +112,10 @@ std::string cost_table() {
         for (const std::string& name : shown) {
             const auto mesh = std::find_if(meshes().begin(), meshes().end(),
                                            [&](const NamedMesh& one) { return one.name == name; });
-            const TexturedMesh& truth = mesh->truth;
-            cells.push_back(
-                in_digits(texel_errors(truth, method.tangents_of(truth.mesh), method.basis).rms));
+            const TexturedMesh& ground_truth = mesh->ground_truth;
+            cells.push_back(in_digits(
+                texel_errors(ground_truth, method.tangents_of(ground_truth.mesh), method.basis)
+                    .rms));
         }
         const MeasuredCost& cost = measured_costs.at(i);
         cells.insert(cells.end(), {cost.computing, cost.bytes, cost.device});
@@ -123,7 +124,7 @@ std::string cost_table() {
     return text + "\n";
 }
 
-std::string mismatch_table(const std::string& title, const TexturedMesh& truth) {
+std::string mismatch_table(const std::string& title, const TexturedMesh& ground_truth) {
     std::vector<TangentMethod> bases = methods();
     bases.push_back(made_unit(bases.front()));
     std::vector<std::string> names;
@@ -134,7 +135,7 @@ std::string mismatch_table(const std::string& title, const TexturedMesh& truth) 
         std::vector<double> ranks;
         std::vector<std::string> cells;
         for (const TangentMethod& reader : bases) {
-            const AngleDistribution errors = mismatch_errors(truth, baker, reader);
+            const AngleDistribution errors = mismatch_errors(ground_truth, baker, reader);
             ranks.push_back(errors.rms);
             cells.push_back(rms_and_max(errors));
         }
@@ -151,13 +152,13 @@ std::string mismatch_tables() {
            mismatch_table("On a coarse torus, 16 x 16 cells, regular",
                           textured_mesh(AnalyticSurface::torus, Triangulation::regular,
                                         TextureLayout::upright, 16, 1)) +
-           mismatch_table("On the plate with thin bevels", bevelled_plate(0.02)) + "\n";
+           mismatch_table("On the plate with thin bevels", beveled_plate(0.02)) + "\n";
 }
 
 std::string encoding_tables() {
     constexpr std::size_t count = 100000;
     const TrueFrames random = random_frames(count);
-    const SampleFrames truth = sample_frames(random.normals, random.tangents);
+    const SampleFrames ground_truth = sample_frames(random.normals, random.tangents);
     std::string text =
         "\n100,000 random frames: mean / largest error in degrees of the normal, the tangent, and "
         "the normal of a texel tilted by 30 degrees\n\n" +
@@ -168,7 +169,7 @@ std::string encoding_tables() {
     for (const FrameEncoding encoding : all_frame_encodings) {
         for (const FrameRounding rounding : {FrameRounding::nearest, FrameRounding::best}) {
             if (encoding == FrameEncoding::float32 && rounding == FrameRounding::best) continue;
-            const FrameCodeErrors errors = frame_code_errors(truth, encoding, rounding);
+            const FrameCodeErrors errors = frame_code_errors(ground_truth, encoding, rounding);
             const std::vector<std::string> cells = {
                 rounding == FrameRounding::nearest ? "nearest" : "best",
                 fmt::format("{}", 4 * words_per_frame(encoding)),
@@ -176,7 +177,7 @@ std::string encoding_tables() {
                 mean_and_max(errors.tangent),
                 mean_and_max(errors.texel),
                 fmt::format("{}", errors.flipped_frames)};
-            text += table_row(fmt::format("`{}`", word_of(encoding)),
+            text += table_row(fmt::format("`{}`", name_of(encoding)),
                               std::vector(cells.size(), not_compared), cells);
         }
     }

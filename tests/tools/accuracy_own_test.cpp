@@ -114,17 +114,17 @@ TEST(AccuracyOwn, ABoundIsHeldAgainstTheErrorOfTheMapToo) {
     const json experiment = json::parse(workplace.run(line + "90").out)["experiments"][0];
     const auto map_error = experiment["reference_error"].get<double>();
     ASSERT_GT(map_error, 0.5);
-    double least_added = 180.0;
+    double min_added = 180.0;
     for (const json& one : experiment["measurements"]) {
         const json& expected = one["expected_error"];
         EXPECT_EQ(expected["map"], experiment["reference_error"]);
         EXPECT_EQ(expected["added"], one["error"]["rms"]);
         EXPECT_NEAR(expected["total"].get<double>(),
                     std::hypot(map_error, one["error"]["rms"].get<double>()), 1e-9);
-        least_added = std::min(least_added, one["error"]["rms"].get<double>());
+        min_added = std::min(min_added, one["error"]["rms"].get<double>());
     }
     // The limit includes the error of the map, also for methods that add less than half a degree.
-    ASSERT_LT(least_added, 0.5);
+    ASSERT_LT(min_added, 0.5);
     const ProgramResult bounded = workplace.run(line + "0.5");
     EXPECT_EQ(bounded.exit_code, 1);
     const auto finding = json::parse(bounded.out)["experiments"][0]["finding"].get<std::string>();

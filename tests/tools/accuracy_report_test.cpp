@@ -169,12 +169,12 @@ TEST(AccuracyTable, MarksTheFrontierAndAlignsItsColumns) {
 }
 
 TEST(AccuracyTable, SaysTimesInTheUnitThatSuitsThem) {
-    EXPECT_EQ(seconds_in_words(8.4e-8), "84.0 ns");
-    EXPECT_EQ(seconds_in_words(4.126e-6), "4.13 µs");
-    EXPECT_EQ(seconds_in_words(9.996e-4), "1.00 ms");
-    EXPECT_EQ(seconds_in_words(0.0123), "12.3 ms");
-    EXPECT_EQ(seconds_in_words(123.4), "123 s");
-    EXPECT_EQ(seconds_in_words(0.0), "0.00 ns");
+    EXPECT_EQ(format_seconds(8.4e-8), "84.0 ns");
+    EXPECT_EQ(format_seconds(4.126e-6), "4.13 µs");
+    EXPECT_EQ(format_seconds(9.996e-4), "1.00 ms");
+    EXPECT_EQ(format_seconds(0.0123), "12.3 ms");
+    EXPECT_EQ(format_seconds(123.4), "123 s");
+    EXPECT_EQ(format_seconds(0.0), "0.00 ns");
 }
 
 TEST(AccuracyFiles, PicturesStandWhereTheJsonSays) {

@@ -51,7 +51,7 @@ class EffectOptions : public testing::Test {
 TEST(ParseEffects, ReadsABaseAndNames) {
     EXPECT_EQ(parse_effects("--effects", "auto").base, EffectBase::planned);
     EXPECT_EQ(parse_effects("--effects", "all").base, EffectBase::all_neutral);
-    const EffectWishes requests = parse_effects("--effects", "none,+diffuse,-normal map");
+    const EffectRequest requests = parse_effects("--effects", "none,+diffuse,-normal map");
     EXPECT_EQ(requests.base, EffectBase::nothing);
     ASSERT_EQ(requests.forced.size(), 2U);
     EXPECT_EQ(requests.forced[0].name, "diffuse");

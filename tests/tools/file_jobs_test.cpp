@@ -12,7 +12,7 @@
 namespace relief::tools {
 namespace {
 
-using test::jobs_in_words;
+using test::jobs_text;
 using test::message_of;
 using test::TemporaryDirectory;
 using test::touch;
@@ -44,12 +44,12 @@ TEST(FileJobs, AFileIsTheSameByAnyPath) {
 
 TEST(FileJobs, TwoFilesAreInAndOut) {
     const JobList list = jobs({{"a.png", "b.exr"}, {}});
-    EXPECT_EQ(jobs_in_words(list), "a.png -> b.exr");
+    EXPECT_EQ(jobs_text(list), "a.png -> b.exr");
     EXPECT_TRUE(list.is_single());
 }
 
 TEST(FileJobs, OutputMayBeAFileForOneInput) {
-    EXPECT_EQ(jobs_in_words(jobs({{"a.png"}, "b.exr"})), "a.png -> b.exr");
+    EXPECT_EQ(jobs_text(jobs({{"a.png"}, "b.exr"})), "a.png -> b.exr");
     EXPECT_TRUE(jobs({{"a.png"}, "b.exr"}).is_single());
 }
 
@@ -57,14 +57,14 @@ TEST(FileJobs, InAFolderEachHasTheNameThatTheCallerGives) {
     const JobList list = jobs_of({{"x/a.png", "b.tif"}, "out/"}, "map", [](const auto& input) {
         return input.stem().string() + "-normal.png";
     });
-    EXPECT_EQ(jobs_in_words(list), "x/a.png -> out/a-normal.png, b.tif -> out/b-normal.png");
+    EXPECT_EQ(jobs_text(list), "x/a.png -> out/a-normal.png, b.tif -> out/b-normal.png");
     EXPECT_EQ(list.folder, "out/");
     EXPECT_FALSE(jobs({{"a.png"}, "out/"}).is_single()) << "in a folder one is a batch of one";
 }
 
 TEST(FileJobs, WhatExistsAsAFolderNeedsNoSlash) {
     const TemporaryDirectory folder;
-    EXPECT_EQ(jobs_in_words(jobs({{"a.png"}, folder.path().string()})),
+    EXPECT_EQ(jobs_text(jobs({{"a.png"}, folder.path().string()})),
               "a.png -> " + (folder / "a.png").string());
 }
 
@@ -101,11 +101,11 @@ TEST(FileJobs, AUdimNameStandsForItsTilesInOrder) {
         touch(folder / name);
     const std::string here = folder.path().string() + "/";
     const JobList list = jobs({{here + "w.<UDIM>.png", "n_<UDIM>.exr"}, {}});
-    EXPECT_EQ(jobs_in_words(list),
+    EXPECT_EQ(jobs_text(list),
               here + "w.1001.png -> n_1001.exr, " + here + "w.1012.png -> n_1012.exr");
     EXPECT_FALSE(list.is_single());
     EXPECT_FALSE(list.folder);
-    EXPECT_EQ(jobs_in_words(jobs({{here + "w.<UDIM>.png", here + "v.<UDIM>.png"}, "out/"})),
+    EXPECT_EQ(jobs_text(jobs({{here + "w.<UDIM>.png", here + "v.<UDIM>.png"}, "out/"})),
               here + "w.1001.png -> out/w.1001.png, " + here + "w.1012.png -> out/w.1012.png, " +
                   here + "v.1003.png -> out/v.1003.png");
 }

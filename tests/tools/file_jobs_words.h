@@ -12,7 +12,7 @@
 namespace relief::test {
 
 /// "a.obj -> out/a.obj, ..."
-inline std::string jobs_in_words(const tools::JobList& list) {
+inline std::string jobs_text(const tools::JobList& list) {
     std::string text;
     for (const tools::Job& job : list.jobs) {
         text += (text.empty() ? "" : ", ") + job.input.string() + " -> " + job.output.string();

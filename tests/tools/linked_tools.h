@@ -29,6 +29,6 @@ bool link_tool(const std::string& name, const ToolEntry& entry);
 
 /// The words of a line that a shell would pass to a program unchanged except for quotes; none if
 /// the line has anything else in it that a shell interprets.
-std::optional<std::vector<std::string>> plain_words(const std::string& line);
+std::optional<std::vector<std::string>> plain_text(const std::string& line);
 
 }  // namespace relief::test

@@ -18,15 +18,15 @@ using testing::ElementsAre;
 using testing::Optional;
 
 TEST(PlainWords, AreThoseThatAShellPassesOn) {
-    EXPECT_THAT(plain_words("relief-mesh info a.obj"),
+    EXPECT_THAT(plain_text("relief-mesh info a.obj"),
                 Optional(ElementsAre("relief-mesh", "info", "a.obj")));
-    EXPECT_THAT(plain_words("  a   'b c'd \"e  f\" '' 'g\"h' --i=j "),
+    EXPECT_THAT(plain_text("  a   'b c'd \"e  f\" '' 'g\"h' --i=j "),
                 Optional(ElementsAre("a", "b cd", "e  f", "", "g\"h", "--i=j")));
-    EXPECT_THAT(plain_words("a '*' '$b' \"c;\""), Optional(ElementsAre("a", "*", "$b", "c;")));
+    EXPECT_THAT(plain_text("a '*' '$b' \"c;\""), Optional(ElementsAre("a", "*", "$b", "c;")));
     for (const char* line :
          {"a | b", "a > b", "a; b", "a && b", "a $b", "a \"$b\"", "a *.obj", "a `b`", "a \\ b",
           "A=b c", "a 'b", "", "a\nb", "(a)", "a # b", "a ~/b", "a ?", "a [b]"})
-        EXPECT_EQ(plain_words(line), std::nullopt) << line;
+        EXPECT_EQ(plain_text(line), std::nullopt) << line;
 }
 
 /// What a line printed and left in out/.

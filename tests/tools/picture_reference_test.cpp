@@ -6,7 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "relief/mesh/heat_picture.h"
+#include "relief/mesh/false_color.h"
 #include "relief/mesh/image_file.h"
 #include "relief/shade/image_compare.h"
 #include "tools/refusal.h"
@@ -102,7 +102,7 @@ TEST_F(Reference, GivesAMapOfWhatTheEyeSees) {
     const FlipDifference flip =
         flip_difference(read_image(workplace_ / "near.png", ImageUse::color),
                         read_image(workplace_ / "out/new.png", ImageUse::color));
-    EXPECT_EQ(compare(colors, heat_picture(flip.map, 1.0)).max, 0.0);
+    EXPECT_EQ(compare(colors, false_color_image(flip.map, 1.0)).max, 0.0);
     EXPECT_EQ(compare(numbers, flip.map).max, 0.0);
     EXPECT_GT(flip.max, 0.0);
 }

@@ -17,7 +17,7 @@ namespace relief::tools {
 namespace {
 
 using nlohmann::json;
-using test::jobs_in_words;
+using test::jobs_text;
 using test::message_of;
 using test::ProgramResult;
 using test::TemporaryDirectory;
@@ -30,11 +30,11 @@ std::string model_refusal(const FileWords& words, std::optional<ModelFormat> for
 }
 
 TEST(ProcessJobs, InAFolderModelsKeepTheirNamesAndFormatsWhereThoseCanBeWritten) {
-    EXPECT_EQ(jobs_in_words(
-                  model_jobs_of({{"x/a.obj", "b.PLY", "c.stl", "d.off", "e.v2.gltf"}, "out/"}, {})),
-              "x/a.obj -> out/a.obj, b.PLY -> out/b.PLY, c.stl -> out/c.glb, d.off -> out/d.glb, "
-              "e.v2.gltf -> out/e.v2.gltf");
-    EXPECT_EQ(jobs_in_words(model_jobs_of({{"x/a.obj", "e.v2.gltf"}, "out/"}, ModelFormat::ply)),
+    EXPECT_EQ(
+        jobs_text(model_jobs_of({{"x/a.obj", "b.PLY", "c.stl", "d.off", "e.v2.gltf"}, "out/"}, {})),
+        "x/a.obj -> out/a.obj, b.PLY -> out/b.PLY, c.stl -> out/c.glb, d.off -> out/d.glb, "
+        "e.v2.gltf -> out/e.v2.gltf");
+    EXPECT_EQ(jobs_text(model_jobs_of({{"x/a.obj", "e.v2.gltf"}, "out/"}, ModelFormat::ply)),
               "x/a.obj -> out/a.ply, e.v2.gltf -> out/e.v2.ply");
 }
 

@@ -84,7 +84,7 @@ TEST_F(BakeAccuracy, KeepsGivenSamplesAndBits) {
 }
 
 /// The minimum error in an error message.
-double least_in(const std::string& error) {
+double min_in(const std::string& error) {
     const std::string before = "the minimum is ";
     const std::size_t at = error.find(before);
     return at == std::string::npos ? -1.0 : std::stod(error.substr(at + before.size()));
@@ -112,13 +112,13 @@ TEST_F(BakeAccuracy, FailsWithTheMinimumErrorOfAllChoices) {
     EXPECT_THAT(both, HasSubstr("(allow a larger error)"));
     const std::string floats = error_of("map.exr --max-error 0.000001");
     EXPECT_THAT(floats, HasSubstr("with 256 samples, 32 bit; sampling alone causes "));
-    EXPECT_LE(least_in(floats), least_in(both));
+    EXPECT_LE(min_in(floats), min_in(both));
     // The minimum errors of the messages can be reached.
-    const json eight = baked(fmt::format("--max-error {} --bits 8", 1.02 * least_in(rounding)));
-    EXPECT_LE(eight["kept"]["rms"].get<double>(), 1.02 * least_in(rounding));
-    const json sixteen = baked(fmt::format("--max-error {}", 1.02 * least_in(both)));
+    const json eight = baked(fmt::format("--max-error {} --bits 8", 1.02 * min_in(rounding)));
+    EXPECT_LE(eight["kept"]["rms"].get<double>(), 1.02 * min_in(rounding));
+    const json sixteen = baked(fmt::format("--max-error {}", 1.02 * min_in(both)));
     EXPECT_EQ(sixteen["kept"]["samples"], 256);
-    EXPECT_LT(least_in(both),
+    EXPECT_LT(min_in(both),
               0.5 * baked("--max-error 1 --samples 16 --bits 16")["kept"]["rms"].get<double>());
     std::filesystem::remove(workplace / "out/map.png");
     std::filesystem::remove(workplace / "out/report.json");
@@ -157,10 +157,10 @@ TEST_F(BakeAccuracy, ComparesEverySampleCountAndDepth) {
     EXPECT_GT(error_of(4, 16, "none"), 2.0 * error_of(16, 16, "none"));
     EXPECT_GT(error_of(16, 8, "none"), error_of(16, 16, "none"));
     EXPECT_GT(error_of(16, 8, "blue-noise"), error_of(16, 8, "none"));
-    std::size_t efficient = 0;
+    std::size_t pareto_optimal = 0;
     for (const json& one : all)
-        efficient += one["efficient"].get<bool>() ? 1 : 0;
-    EXPECT_GE(efficient, 2U);
+        pareto_optimal += one["efficient"].get<bool>() ? 1 : 0;
+    EXPECT_GE(pareto_optimal, 2U);
     EXPECT_EQ(report["reference"]["samples"], 256);
     EXPECT_TRUE(report["reference"]["whole"].get<bool>());
     // The map is also baked as usual.

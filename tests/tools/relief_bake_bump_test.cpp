@@ -255,18 +255,18 @@ TEST(BumpCommand, DitheredMapsHaveTheCorrectMean) {
     const Workplace workplace;
     write_ramp(workplace, "ramp.png", false, 257);
     // A slope of 0.355 has no exact 8-bit code.
-    const glm::dvec3 truth(-0.355, 0, 1);
+    const glm::dvec3 ground_truth(-0.355, 0, 1);
     const std::string line =
         "relief-bake bump ramp.png out/n.png --strength 90.525 --wrap clamp --bits 8";
     ASSERT_EQ(workplace.run(line).exit_code, 0);
-    EXPECT_GT(degrees_between(mean_normal(workplace / "out/n.png"), truth), 0.1);
+    EXPECT_GT(degrees_between(mean_normal(workplace / "out/n.png"), ground_truth), 0.1);
     for (const std::string dither : {"ordered", "blue-noise"}) {
         const ProgramResult result = workplace.run(line + " --dither " + dither);
         ASSERT_EQ(result.exit_code, 0) << result.error;
         EXPECT_THAT(result.out, HasSubstr("format    8 bit, zero at 127.5 of 255 (the decoding of "
                                           "glTF and engines), green up, dithered " +
                                           dither + "\n"));
-        EXPECT_LT(degrees_between(mean_normal(workplace / "out/n.png"), truth), 0.02);
+        EXPECT_LT(degrees_between(mean_normal(workplace / "out/n.png"), ground_truth), 0.02);
     }
 }
 
@@ -629,13 +629,13 @@ TEST(BumpAccuracyCommand, ComparesAllMethodsOnTheMap) {
     EXPECT_THAT(result.out, HasSubstr("* no other method is both faster and more accurate\n"));
     const json report = json::parse(workplace.read("out/r.json"));
     ASSERT_EQ(report["comparison"].size(), 20U);
-    int efficient = 0;
+    int pareto_optimal = 0;
     for (const json& one : report["comparison"]) {
         EXPECT_GT(one["milliseconds"]["median"].get<double>(), 0.0);
         EXPECT_LE(one["degrees"]["rms"].get<double>(), one["degrees"]["max"].get<double>());
-        efficient += one["efficient"].get<bool>() ? 1 : 0;
+        pareto_optimal += one["efficient"].get<bool>() ? 1 : 0;
     }
-    EXPECT_GE(efficient, 1);
+    EXPECT_GE(pareto_optimal, 1);
 }
 
 TEST(BumpAccuracyRefusal, ExplainsAndLeavesNoFiles) {

@@ -38,7 +38,7 @@ std::vector<HeightWave> waves() {
     return tiling_waves(side, side, 8, 12, 0.5, 11);
 }
 
-AnalyticHeights truth() {
+AnalyticHeights ground_truth() {
     return wave_heights(side, side, waves());
 }
 
@@ -84,7 +84,8 @@ TEST(ConvertCommand, FlippingGreenTwiceGivesTheSameTexels) {
             EXPECT_THAT(there.out, HasSubstr("steps     green inverted, all codes kept\n"));
             EXPECT_EQ(green_of(workplace / "out/dx.png"), "down");
             EXPECT_LT(
-                normal_error(decoded(workplace / "out/dx.png", Green::down, flat), truth()).max,
+                normal_error(decoded(workplace / "out/dx.png", Green::down, flat), ground_truth())
+                    .max,
                 bits == 8 ? 0.4 : degrees_of_16_bit);
             run(workplace, "out/dx.png out/back.png --flip green");
             EXPECT_EQ(workplace.read("out/back.png"), workplace.read("gl.png"));
@@ -106,7 +107,7 @@ TEST(ConvertCommand, GreenIsNotGuessed) {
     EXPECT_EQ(green_of(workplace / "out/n.png"), "unknown");
     run(workplace, "map.png out/n.png --input-green up --green down");
     EXPECT_EQ(green_of(workplace / "out/n.png"), "down");
-    EXPECT_LT(normal_error(decoded(workplace / "out/n.png", Green::down), truth()).max,
+    EXPECT_LT(normal_error(decoded(workplace / "out/n.png", Green::down), ground_truth()).max,
               degrees_of_16_bit);
     // An unknown direction of green is accepted if it has no effect.
     run(workplace, "map.png out/n.png --strength 2");
@@ -121,7 +122,8 @@ TEST(ConvertCommand, GreenIsDetectedFromTheSlopesOnRequest) {
         const ProgramResult result =
             run(workplace, name + ".png out/n.png --input-green auto --green up");
         EXPECT_THAT(result.out, HasSubstr("green " + name + " (by its slopes)"));
-        EXPECT_LT(normal_error(decoded(workplace / "out/n.png"), truth()).max, degrees_of_16_bit);
+        EXPECT_LT(normal_error(decoded(workplace / "out/n.png"), ground_truth()).max,
+                  degrees_of_16_bit);
     }
     write_image(workplace / "flat.png", make_image(64, 64, 3, 8, ColorSpace::data));
     const ProgramResult refused =
@@ -140,7 +142,8 @@ TEST(ConvertCommand, SignedFloatMapsAreRecognized) {
                                          "/ 2 (convert it with --input-signed)"));
     EXPECT_THAT(run(workplace, "signed.exr out/n.png --input-signed").out,
                 HasSubstr("zero is 0 (as told)\n"));
-    EXPECT_LT(normal_error(decoded(workplace / "out/n.png"), truth()).max, degrees_of_16_bit);
+    EXPECT_LT(normal_error(decoded(workplace / "out/n.png"), ground_truth()).max,
+              degrees_of_16_bit);
     write_map(workplace, "map.png");
     EXPECT_EQ(workplace.run("relief-bake convert map.png out/m.png --input-signed").exit_code, 2);
 }
@@ -175,18 +178,20 @@ TEST(ConvertCommand, DepthAndZeroCodeChangeWithoutChangingNormals) {
                 HasSubstr("format    16 bit, zero at 32768 of 65535 (glTF and engines decode zero "
                           "at 32767.5, which tilts normals by 0.0012 degrees), green up\n"));
     EXPECT_EQ(read_image_info(workplace / "out/middle.png").metadata.at("relief:flat"), "32768");
-    EXPECT_LT(
-        normal_error(decoded(workplace / "out/middle.png", Green::up, FlatCode::middle), truth())
-            .max,
-        2 * degrees_of_16_bit);
+    EXPECT_LT(normal_error(decoded(workplace / "out/middle.png", Green::up, FlatCode::middle),
+                           ground_truth())
+                  .max,
+              2 * degrees_of_16_bit);
     run(workplace, "half.png out/n.exr");
     EXPECT_EQ(read_image_info(workplace / "out/n.exr").bits, 32);
-    EXPECT_LT(normal_error(decoded(workplace / "out/n.exr"), truth()).max, degrees_of_16_bit);
+    EXPECT_LT(normal_error(decoded(workplace / "out/n.exr"), ground_truth()).max,
+              degrees_of_16_bit);
     EXPECT_THAT(run(workplace, "half.png out/8.png --bits 8 --dither blue-noise").out,
                 HasSubstr("format    8 bit, zero at 127.5 of 255 (the decoding of glTF and "
                           "engines), green up, dithered blue-noise"));
     EXPECT_LT(
-        normal_error(decoded(workplace / "out/8.png", Green::up, FlatCode::half), truth()).max,
+        normal_error(decoded(workplace / "out/8.png", Green::up, FlatCode::half), ground_truth())
+            .max,
         0.8);
     // The bit depth is that of the input if the format supports it.
     run(workplace, "out/8.png out/again.tif");
@@ -212,7 +217,7 @@ TEST(ConvertCommand, RebuildsZFromTwoChannels) {
     for (const std::string line :
          {"xy.png out/n.png --rebuild-z rg", "ag.png out/n.png --rebuild-z ag"}) {
         EXPECT_THAT(run(workplace, line).out, HasSubstr("steps     z computed from x and y\n"));
-        EXPECT_LT(normal_error(decoded(workplace / "out/n.png"), truth()).max, 0.003);
+        EXPECT_LT(normal_error(decoded(workplace / "out/n.png"), ground_truth()).max, 0.003);
         EXPECT_EQ(read_image_info(workplace / "out/n.png").channels, 3);
     }
     const ProgramResult refused = workplace.run("relief-bake convert xy.png out/m.png");
@@ -268,7 +273,8 @@ TEST(ConvertCommand, DetailsAreBlendedForEitherDirectionOfGreen) {
             .max,
         0.005);
     run(workplace, line + " --detail-strength 0");
-    EXPECT_LT(normal_error(decoded(workplace / "out/n.png"), truth()).max, 2 * degrees_of_16_bit);
+    EXPECT_LT(normal_error(decoded(workplace / "out/n.png"), ground_truth()).max,
+              2 * degrees_of_16_bit);
 }
 
 TEST(ConvertCommand, MipLevelsStoreLengthsAndRoughness) {

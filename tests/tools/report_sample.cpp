@@ -33,7 +33,7 @@ tools::AccuracyReport sample_report() {
     one.subject = Subject::storage;
     one.title = "A sample";
     one.question = "How near is near?";
-    one.truth = "made up";
+    one.ground_truth = "made up";
     one.input = "nothing";
     one.error_unit = "degrees";
     one.item = "frame";
@@ -48,7 +48,7 @@ tools::AccuracyReport sample_report() {
     for (Measurement& measured : one.measurements)
         measured.expected = ExpectedError{*one.reference_error, measured.error.rms};
     one.input_findings = {"2 x non-finite height (texel 5, 17): read as 0"};
-    mark_efficient(one);
+    mark_pareto_optimal(one);
     Curve curve;
     curve.method = "near";
     curve.points = {{1e-6, nan}, {0.001, 0.5}, {1.0, 0.25}};

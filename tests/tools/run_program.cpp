@@ -130,7 +130,7 @@ bool link_tool(const std::string& name, const ToolEntry& entry) {
     return true;
 }
 
-std::optional<std::vector<std::string>> plain_words(const std::string& line) {
+std::optional<std::vector<std::string>> plain_text(const std::string& line) {
     constexpr std::string_view special = "|&;<>()$`\\*?[]#~!\n\t";
     constexpr std::string_view special_in_quotes = "$`\\";
     std::vector<std::string> words;
@@ -203,7 +203,7 @@ ProgramResult run_shell(const std::string& line, const std::filesystem::path& fo
 }
 
 ProgramResult run_line(const std::string& line, const std::filesystem::path& folder) {
-    const std::optional<std::vector<std::string>> words = plain_words(line);
+    const std::optional<std::vector<std::string>> words = plain_text(line);
     if (words) {
         const auto linked = linked_tools().find(std::filesystem::path((*words)[0]).filename());
         if (linked != linked_tools().end()) return run_linked(linked->second, *words, folder);

@@ -43,7 +43,7 @@ AddedOption add_wrap(CLI::App& app, std::optional<Wraps>& target, const std::str
                      });
 }
 
-std::string wrap_words(const Wraps& wraps) {
+std::string wrap_text(const Wraps& wraps) {
     const std::string x = name_of(wraps.x, wrap_choices());
     return wraps.x == wraps.y ? x : x + "," + name_of(wraps.y, wrap_choices());
 }

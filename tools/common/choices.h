@@ -97,6 +97,6 @@ AddedOption add_wrap(CLI::App& app, WrapsOrAuto& target, const std::string& desc
 AddedOption add_wrap(CLI::App& app, std::optional<Wraps>& target, const std::string& description);
 
 /// Returns "repeat", or "repeat,clamp" for different axes.
-std::string wrap_words(const Wraps& wraps);
+std::string wrap_text(const Wraps& wraps);
 
 }  // namespace relief::tools

@@ -72,7 +72,7 @@ std::vector<std::string> write_document(const std::filesystem::path& file,
         return {};
     }
     const MeshFile flat = about(input, [&] { return flattened(document); });
-    std::vector<std::string> omitted = document.beyond_a_mesh();
+    std::vector<std::string> omitted = document.unsupported_contents();
     for (std::string& more : write_as_mesh(file, flat, has_tangents))
         omitted.push_back(std::move(more));
     return omitted;
@@ -131,7 +131,7 @@ Model read_model(const std::filesystem::path& file, Report& report) {
     });
 }
 
-std::vector<std::string> compression_in_words(const GltfDocument& document, bool only_decoded) {
+std::vector<std::string> compression_text(const GltfDocument& document, bool only_decoded) {
     std::vector<std::string> words;
     for (const GltfCompression& entry : document.compression()) {
         if (entry.decoded > 0) {

@@ -37,7 +37,7 @@ Model read_model(const std::filesystem::path& file, Report& report);
 
 /// Describes the compression of a document: "KHR_draco_mesh_compression of 2 primitives".
 /// \param only_decoded  omits content that stays compressed
-std::vector<std::string> compression_in_words(const GltfDocument& document, bool only_decoded);
+std::vector<std::string> compression_text(const GltfDocument& document, bool only_decoded);
 
 /// Returns the input and output files of a command line. In an output folder, a model keeps its
 /// name. STL and OFF, which cannot be written, become .glb unless `format` is given.

@@ -24,7 +24,7 @@ std::optional<Green> named_green(const std::map<std::string, std::string>& metad
     return std::nullopt;
 }
 
-std::string green_words(const MapInputOptions& options, const InputMap& map) {
+std::string green_text(const MapInputOptions& options, const InputMap& map) {
     if (!map.green) return "green unknown";
     const char* source = options.finds_green ? "by its slopes"
                          : options.green     ? "as told"
@@ -32,7 +32,7 @@ std::string green_words(const MapInputOptions& options, const InputMap& map) {
     return fmt::format("green {} ({})", name_of(*map.green, green_choices()), source);
 }
 
-std::string zero_words(const MapInputOptions& options, const InputMap& map) {
+std::string zero_text(const MapInputOptions& options, const InputMap& map) {
     if (options.is_signed) return "zero is 0 (as told)";
     if (map.image.bits() == 32) return "zero is 0.5";
     const char* source = options.flat                           ? "as told"
@@ -98,7 +98,7 @@ InputMap read_normal_map(const std::filesystem::path& file, const MapInputOption
         map.flat = *options.flat;
     else if (map.image.channels > 2)
         map.flat = detect_flat_code(map.image, map.metadata);
-    map.words = green_words(options, map) + ", " + zero_words(options, map);
+    map.words = green_text(options, map) + ", " + zero_text(options, map);
     return map;
 }
 

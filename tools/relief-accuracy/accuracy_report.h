@@ -13,8 +13,8 @@
 #include <string>
 #include <vector>
 
+#include "relief/accuracy/duration.h"
 #include "relief/accuracy/experiment.h"
-#include "relief/accuracy/words.h"
 
 namespace relief::tools {
 

@@ -86,10 +86,9 @@ std::string result_text(double value) {
 
 /// "storage/frames: angle16: 1.21 times, 550 µs then 666 µs on one thread"
 std::string line_of(const TimeChange& change) {
-    std::string text =
-        fmt::format("{}: {:.2f} times, {} then {} on {}", change_name(change), change.ratio,
-                    seconds_in_words(change.before), seconds_in_words(change.after),
-                    threads_of(change.on_all_threads));
+    std::string text = fmt::format("{}: {:.2f} times, {} then {} on {}", change_name(change),
+                                   change.ratio, format_seconds(change.before),
+                                   format_seconds(change.after), threads_of(change.on_all_threads));
     if (std::abs(std::log(change.relative / change.ratio)) > 0.01)
         text += fmt::format("; {:.2f} times relative to all", change.relative);
     return text;
@@ -170,7 +169,7 @@ std::vector<std::string> lines_of(const std::vector<Change>& changes) {
 }
 
 /// Returns the median and the maximum of the smallest detectable change of a method.
-std::string resolution_words(const ReportComparison& comparison, bool on_all_threads) {
+std::string resolution_text(const ReportComparison& comparison, bool on_all_threads) {
     std::vector<double> all;
     for (const TimeChange& change : comparison.times) {
         if (change.on_all_threads == on_all_threads) all.push_back(change.resolution);
@@ -179,7 +178,7 @@ std::string resolution_words(const ReportComparison& comparison, bool on_all_thr
     return fmt::format(
         "the smallest detectable change of a method is {:.0f} % (median) to {:.0f} % (least "
         "steady)",
-        percent(spread_of(std::move(all)).median), percent(largest));
+        percent(time_statistics(std::move(all)).median), percent(largest));
 }
 
 /// "1.02 times as long on one thread (median of 40 methods; half of them 1.00 to 1.04)", and the
@@ -190,7 +189,7 @@ std::string line_of(const ReportComparison& comparison, bool on_all_threads) {
         "{:.2f} times as long on {} (median of {}; half of them {:.2f} to {:.2f}); {}",
         common.ratio, threads_of(on_all_threads), counted(common.methods, "method"),
         common.lower_quartile, common.upper_quartile,
-        common.is_judged ? resolution_words(comparison, on_all_threads)
+        common.is_judged ? resolution_text(comparison, on_all_threads)
                          : "too few methods to detect a change");
 }
 

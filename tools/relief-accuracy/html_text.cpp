@@ -9,7 +9,7 @@
 #include <cstdint>
 
 #include "common/text.h"
-#include "relief/accuracy/words.h"
+#include "relief/accuracy/duration.h"
 
 namespace relief::tools {
 namespace {
@@ -96,12 +96,12 @@ std::string number_text(std::optional<double> value) {
 }
 
 std::string seconds_text(std::optional<double> seconds) {
-    return seconds && std::isfinite(*seconds) ? seconds_in_words(*seconds) : std::string(none);
+    return seconds && std::isfinite(*seconds) ? format_seconds(*seconds) : std::string(none);
 }
 
 std::string range_text(double from, double to) {
-    std::string begin = seconds_in_words(from);
-    const std::string end = seconds_in_words(to);
+    std::string begin = format_seconds(from);
+    const std::string end = format_seconds(to);
     const std::string unit = end.substr(end.rfind(' '));
     if (begin.ends_with(unit)) begin.resize(begin.size() - unit.size());
     return begin + "–" + end;

@@ -24,7 +24,7 @@ std::string data_uri(std::string_view bytes, std::string_view type);
 /// "–".
 std::string number_text(std::optional<double> value);
 
-/// Returns seconds_in_words(), "850 ns", "12.3 µs", or "–" for a missing value.
+/// Returns format_seconds(), "850 ns", "12.3 µs", or "–" for a missing value.
 std::string seconds_text(std::optional<double> seconds);
 
 /// Returns a range of times with a common unit if possible: "11.9–12.8 ms", "990 µs–1.02 ms".

@@ -26,7 +26,7 @@
 #include "common/normal_map_input.h"
 #include "common/text.h"
 #include "experiment_options.h"
-#include "relief/accuracy/own.h"
+#include "relief/accuracy/asset.h"
 #include "relief/mesh/bake.h"
 #include "relief/mesh/bump_file.h"
 #include "relief/mesh/height_map.h"
@@ -40,11 +40,11 @@ namespace {
 /// The content of an image.
 enum class ImageKind { heights, normals };
 
-struct OwnRequest {
+struct AssetRequest {
     std::vector<std::filesystem::path> files;
     std::optional<std::filesystem::path> high, low;
     std::optional<ImageKind> image_kind;  ///< Default: detected from the image.
-    std::optional<NormalTruth> truth;
+    std::optional<NormalReference> reference;
     std::optional<double> crease_degrees;
     std::optional<double> strength;
     std::optional<HeightChannel> channel;
@@ -53,7 +53,7 @@ struct OwnRequest {
 };
 
 /// An input: a file, or a pair of meshes.
-struct OwnInput {
+struct AssetInput {
     std::filesystem::path file;
     std::optional<std::filesystem::path> high;  ///< Of a pair; then `file` is the low mesh.
     std::string name;                           ///< The name in titles.
@@ -70,7 +70,7 @@ bool is_model(const std::filesystem::path& file) {
 }
 
 /// Returns the triangles of a model with the stored normals and tangents, once per primitive.
-Mesh read_own_mesh(const std::filesystem::path& file) {
+Mesh read_asset_mesh(const std::filesystem::path& file) {
     Report report;
     Model model = read_model(file, report);
     if (auto* mesh = std::get_if<MeshFile>(&model)) return std::move(mesh->mesh);
@@ -85,18 +85,18 @@ Mesh read_own_mesh(const std::filesystem::path& file) {
     return joined(std::move(parts));
 }
 
-std::vector<OwnExperiment> measure_mesh(const OwnInput& input, const OwnRequest& request,
-                                        const OwnOptions& options, std::string& description) {
-    OwnMeshOptions how;
-    how.truth = request.truth.value_or(NormalTruth::surface);
+std::vector<AssetExperiment> measure_mesh(const AssetInput& input, const AssetRequest& request,
+                                          const AssetOptions& options, std::string& description) {
+    AssetMeshOptions how;
+    how.reference = request.reference.value_or(NormalReference::surface);
     if (request.crease_degrees) how.crease_angle = glm::radians(*request.crease_degrees);
-    if (options.run.is_quick) how.most_triangles = quick_triangles;
+    if (options.run.is_quick) how.max_triangles = quick_triangles;
     description = "a mesh";
-    return measure_own_mesh(read_own_mesh(input.file), how, options);
+    return measure_asset_mesh(read_asset_mesh(input.file), how, options);
 }
 
-std::vector<OwnExperiment> measure_pair(const OwnInput& input, const OwnRequest& request,
-                                        const OwnOptions& options, std::string& description) {
+std::vector<AssetExperiment> measure_pair(const AssetInput& input, const AssetRequest& request,
+                                          const AssetOptions& options, std::string& description) {
     Report report;
     MapModel low = read_map_model(input.file, ModelSpace::world, report);
     require_texcoords(input.file, low, "no texture coordinates for the map", "unwrap it first");
@@ -109,7 +109,7 @@ std::vector<OwnExperiment> measure_pair(const OwnInput& input, const OwnRequest&
     const int size = request.size.value_or(default_map_size);
     description =
         fmt::format("a pair: a map of {0} x {0} is baked from {1}", size, input.high->string());
-    return {measure_own_bake(baker, size, options)};
+    return {measure_asset_bake(baker, size, options)};
 }
 
 ImageKind kind_shown(const std::filesystem::path& file) {
@@ -117,7 +117,7 @@ ImageKind kind_shown(const std::filesystem::path& file) {
     if (info.channels < 3) return ImageKind::heights;
     const MapContent content =
         check_normal_map(read_image(file, ImageUse::data), info.metadata).content;
-    return content == MapContent::grey || content == MapContent::other ? ImageKind::heights
+    return content == MapContent::gray || content == MapContent::other ? ImageKind::heights
                                                                        : ImageKind::normals;
 }
 
@@ -157,7 +157,7 @@ void add_non_finite(const Image& heights, Report& report) {
 }
 
 /// Returns the findings on a height map, or none for a map that is too large for memory.
-std::vector<std::string> height_findings(const HeightMapFile& map, const OwnRequest& request) {
+std::vector<std::string> height_findings(const HeightMapFile& map, const AssetRequest& request) {
     Report report;
     if (!map.is_streamed()) {
         if (!request.channel && map.info().channels > 1)
@@ -169,27 +169,27 @@ std::vector<std::string> height_findings(const HeightMapFile& map, const OwnRequ
     return findings.lines();
 }
 
-std::vector<OwnExperiment> measure_heights(const OwnInput& input, const OwnRequest& request,
-                                           OwnOptions options, std::string& description) {
+std::vector<AssetExperiment> measure_heights(const AssetInput& input, const AssetRequest& request,
+                                             AssetOptions options, std::string& description) {
     const HeightMapFile map(input.file, {request.channel.value_or(HeightChannel::mean)});
     const int width = map.info().width;
     const int height = map.info().height;
     const BumpSampleParts parts = {
-        parts_to_look_at(width, height),
+        parts_to_analyze(width, height),
         parts_to_measure(width, height, options.run.is_quick ? quick_texels : texels_to_measure)};
     const HeightMapFile::Survey survey = map.survey(parts.in_order());
     BumpOptions bump;
     bump.strength = request.strength.value_or(bump.strength);
     bump.wrap = request.wrap.value_or(WrapsOrAuto{}).value_or(survey.tiling.wraps());
     description += fmt::format("a height map of {} bits, {:g} texels high, {} at the border",
-                               map.info().bits, bump.strength, wrap_words(*bump.wrap));
+                               map.info().bits, bump.strength, wrap_text(*bump.wrap));
     if (request.channel) {
         const std::string name = name_of(*request.channel, height_channel_choices());
         description += fmt::format(", channel {}", name);
         options.height_arguments = " --channel " + name;
     }
-    std::vector<OwnExperiment> all = {
-        measure_own_heights(parts.sample(survey.parts), {width, height}, bump, options)};
+    std::vector<AssetExperiment> all = {
+        measure_asset_heights(parts.sample(survey.parts), {width, height}, bump, options)};
     all.front().experiment.input_findings = height_findings(map, request);
     return all;
 }
@@ -201,16 +201,16 @@ std::string lossless_extension(const std::filesystem::path& file, int bits) {
     return own == ".tif" || own == ".tiff" ? own : ".png";
 }
 
-std::vector<OwnExperiment> measure_normals(const OwnInput& input, const OwnOptions& options,
-                                           std::string& description) {
+std::vector<AssetExperiment> measure_normals(const AssetInput& input, const AssetOptions& options,
+                                             std::string& description) {
     const InputMap map = read_normal_map(input.file, {});
     Report report;
     const Image normals =
         decode_normal_map(map.image, map.green.value_or(Green::up), map.flat, report);
     description += fmt::format("a normal map of {} bits: {}", map.image.bits(), map.words);
-    const NormalMapOnFile stored = {map.image.bits(), map.image.channels,
-                                    lossless_extension(input.file, map.image.bits())};
-    std::vector<OwnExperiment> all = {measure_own_normals(
+    const NormalMapStorage stored = {map.image.bits(), map.image.channels,
+                                     lossless_extension(input.file, map.image.bits())};
+    std::vector<AssetExperiment> all = {measure_asset_normals(
         normals, stored, options, options.run.is_quick ? quick_texels : texels_to_measure)};
     Findings findings;
     findings.add("", report);
@@ -218,15 +218,15 @@ std::vector<OwnExperiment> measure_normals(const OwnInput& input, const OwnOptio
     return all;
 }
 
-std::vector<OwnExperiment> measure_image(const OwnInput& input, const OwnRequest& request,
-                                         const OwnOptions& options, std::string& description) {
+std::vector<AssetExperiment> measure_image(const AssetInput& input, const AssetRequest& request,
+                                           const AssetOptions& options, std::string& description) {
     const bool is_given = request.image_kind || request.channel;
     const ImageKind kind = request.image_kind ? *request.image_kind
                            : request.channel  ? ImageKind::heights
                                               : kind_shown(input.file);
-    std::vector<OwnExperiment> all = kind == ImageKind::heights
-                                         ? measure_heights(input, request, options, description)
-                                         : measure_normals(input, options, description);
+    std::vector<AssetExperiment> all = kind == ImageKind::heights
+                                           ? measure_heights(input, request, options, description)
+                                           : measure_normals(input, options, description);
     if (!is_given)
         description += kind == ImageKind::heights ? " (if not: --image normals)"
                                                   : " (if not: --image heights)";
@@ -234,19 +234,19 @@ std::vector<OwnExperiment> measure_image(const OwnInput& input, const OwnRequest
 }
 
 /// Refuses options without effect on the inputs.
-void check_effects(const OwnRequest& request, const std::vector<OwnInput>& inputs) {
+void check_effects(const AssetRequest& request, const std::vector<AssetInput>& inputs) {
     const auto any = [&](const auto& is_one) {
         return std::any_of(inputs.begin(), inputs.end(), is_one);
     };
-    const bool meshes = any([](const OwnInput& one) { return !one.high && is_model(one.file); });
-    const bool pairs = any([](const OwnInput& one) { return one.high.has_value(); });
-    const bool images = any([](const OwnInput& one) { return !is_model(one.file); });
+    const bool meshes = any([](const AssetInput& one) { return !one.high && is_model(one.file); });
+    const bool pairs = any([](const AssetInput& one) { return one.high.has_value(); });
+    const bool images = any([](const AssetInput& one) { return !is_model(one.file); });
     const bool heights = images && request.image_kind != ImageKind::normals;
     const auto require = [](bool has_input, bool is_given, const char* option, const char* input) {
         if (is_given && !has_input)
             throw UsageError(fmt::format("{}: applies only to {}", option, input));
     };
-    require(meshes, request.truth.has_value(), "--truth", "meshes");
+    require(meshes, request.reference.has_value(), "--truth", "meshes");
     require(meshes, request.crease_degrees.has_value(), "--crease", "meshes");
     require(pairs, request.size.has_value(), "--size", "a pair, --high and --low");
     require(images, request.image_kind.has_value(), "--image", "images");
@@ -256,12 +256,12 @@ void check_effects(const OwnRequest& request, const std::vector<OwnInput>& input
 }
 
 /// \throws UsageError if options contradict each other or have no effect on these inputs
-std::vector<OwnInput> inputs_of(const OwnRequest& request) {
+std::vector<AssetInput> inputs_of(const AssetRequest& request) {
     if (request.high.has_value() != request.low.has_value())
         throw UsageError(request.high ? "--high: requires the other mesh of the pair"
                                       : "--low: requires the other mesh of the pair",
                          request.high ? "give --low FILE" : "give --high FILE");
-    std::vector<OwnInput> inputs;
+    std::vector<AssetInput> inputs;
     std::set<std::string> names;
     for (const std::filesystem::path& file : request.files) {
         if (!names.insert(file.string()).second)
@@ -285,21 +285,21 @@ std::vector<OwnInput> inputs_of(const OwnRequest& request) {
 }
 
 /// Returns the options as typed: " --strength 8".
-std::string options_text(const OwnRequest& request) {
+std::string options_text(const AssetRequest& request) {
     std::string words;
     if (request.high) words += " --high " + quoted(*request.high);
     if (request.low) words += " --low " + quoted(*request.low);
     if (request.image_kind)
         words +=
             *request.image_kind == ImageKind::heights ? " --image heights" : " --image normals";
-    if (request.truth)
-        words += *request.truth == NormalTruth::file ? " --truth file" : " --truth surface";
+    if (request.reference)
+        words += *request.reference == NormalReference::file ? " --truth file" : " --truth surface";
     if (request.crease_degrees) words += fmt::format(" --crease {:g}", *request.crease_degrees);
     if (request.strength) words += fmt::format(" --strength {:g}", *request.strength);
     if (request.channel)
         words += " --channel " + name_of(*request.channel, height_channel_choices());
     if (request.wrap && request.wrap->is_settled())
-        words += " --wrap " + wrap_words(request.wrap->value_or({}));
+        words += " --wrap " + wrap_text(request.wrap->value_or({}));
     if (request.size) words += fmt::format(" --size {}", *request.size);
     return words;
 }
@@ -308,8 +308,8 @@ std::string options_text(const OwnRequest& request) {
 /// \param options      all but `file` and `arguments`
 /// \param description  receives the type of the input and how it was read
 /// \throws FileError
-std::vector<OwnExperiment> measure(const OwnInput& input, const OwnRequest& request,
-                                   OwnOptions options, std::string& description) {
+std::vector<AssetExperiment> measure(const AssetInput& input, const AssetRequest& request,
+                                     AssetOptions options, std::string& description) {
     options.file = input.name;
     options.arguments =
         input.high ? quoted(*input.high) + " " + quoted(input.file) : quoted(input.file);
@@ -323,8 +323,8 @@ std::vector<OwnExperiment> measure(const OwnInput& input, const OwnRequest& requ
 /// The error figure of --max-error.
 enum class BoundKind { rms, p99, max };
 
-struct OwnCommandOptions {
-    OwnRequest request;
+struct AssetCommandOptions {
+    AssetRequest request;
     std::optional<double> max_error;
     std::optional<BoundKind> max_error_kind;
     std::optional<double> max_milliseconds;
@@ -346,7 +346,7 @@ double ErrorFigures::*figure_of(BoundKind kind) {
     return &ErrorFigures::rms;
 }
 
-void check(const OwnCommandOptions& options) {
+void check(const AssetCommandOptions& options) {
     check(options.how);
     if (options.max_error_kind && !options.max_error)
         throw UsageError("--max-error-kind: requires --max-error", "give --max-error DEG");
@@ -354,7 +354,7 @@ void check(const OwnCommandOptions& options) {
         throw UsageError("--no-times and --max-time contradict each other");
 }
 
-std::string command_for(const OwnCommandOptions& options) {
+std::string command_for(const AssetCommandOptions& options) {
     std::string command = "relief-accuracy own";
     for (const std::filesystem::path& file : options.request.files)
         command += " " + quoted(file);
@@ -371,14 +371,14 @@ std::string command_for(const OwnCommandOptions& options) {
 }
 
 /// Returns the table of an experiment, shortened if it has many methods.
-std::string short_table(const OwnExperiment& own) {
+std::string short_table(const AssetExperiment& own) {
     Experiment shown = own.experiment;
     const std::size_t all = shown.measurements.size();
     if (all <= max_rows) return table_of(shown);
     std::vector<Measurement> rows;
     for (std::size_t i = 0; i < all; ++i) {
         const bool is_recommended = own.recommendation.method == i || own.recommendation.next == i;
-        if (is_recommended || shown.measurements[i].is_efficient)
+        if (is_recommended || shown.measurements[i].is_pareto_optimal)
             rows.push_back(std::move(shown.measurements[i]));
     }
     shown.input +=
@@ -388,43 +388,44 @@ std::string short_table(const OwnExperiment& own) {
 }
 
 /// Returns the findings on an input, from its first experiment, because all share the input.
-std::vector<std::string> findings_of(const std::vector<OwnExperiment>& experiments) {
+std::vector<std::string> findings_of(const std::vector<AssetExperiment>& experiments) {
     if (experiments.empty() || experiments.front().experiment.input_findings.empty())
         return {"none"};
     return experiments.front().experiment.input_findings;
 }
 
-OwnOptions own_options(const OwnCommandOptions& options, Stages& stages) {
-    OwnOptions own;
+AssetOptions asset_options(const AssetCommandOptions& options, Stages& stages) {
+    AssetOptions own;
     own.run = run_options(options.how);
     own.run.tell = [&stages](const std::string& title, std::size_t, std::size_t) {
         stages.show_progress(title, 0.0);
     };
     own.command = command_for(options);
-    own.wish.max_error = options.max_error;
-    own.wish.figure = figure_of(options.max_error_kind.value_or(BoundKind::rms));
-    if (options.max_milliseconds) own.wish.max_seconds = 1e-3 * *options.max_milliseconds;
+    own.request.max_error = options.max_error;
+    own.request.figure = figure_of(options.max_error_kind.value_or(BoundKind::rms));
+    if (options.max_milliseconds) own.request.max_seconds = 1e-3 * *options.max_milliseconds;
     return own;
 }
 
-ExitCode run(const OwnCommandOptions& options) {
+ExitCode run(const AssetCommandOptions& options) {
     check(options);
-    const std::vector<OwnInput> inputs = inputs_of(options.request);
+    const std::vector<AssetInput> inputs = inputs_of(options.request);
     prepare(options.how);
     Stages stages(options.how.general.quiet);
-    const OwnOptions own = own_options(options, stages);
+    const AssetOptions own = asset_options(options, stages);
     AccuracyReport report;
     report.command = own.command;
     bool is_within_limits = true;
-    for (const OwnInput& input : inputs) {
+    for (const AssetInput& input : inputs) {
         std::string description;
-        std::vector<OwnExperiment> experiments = measure(input, options.request, own, description);
+        std::vector<AssetExperiment> experiments =
+            measure(input, options.request, own, description);
         stages.clear_progress();
         if (prints_tables(options.how)) {
             print_entry("input", input.file.string() + ": " + description);
             print_entry("findings", findings_of(experiments));
         }
-        for (OwnExperiment& one : experiments) {
+        for (AssetExperiment& one : experiments) {
             if (prints_tables(options.how)) fmt::print(out(), "\n{}", short_table(one));
             is_within_limits = is_within_limits && one.recommendation.method.has_value();
             report.experiments.push_back(std::move(one.experiment));
@@ -437,7 +438,7 @@ ExitCode run(const OwnCommandOptions& options) {
     return has_limits && !is_within_limits ? ExitCode::failed : ExitCode::done;
 }
 
-void add_input_options(CLI::App& app, OwnRequest& request) {
+void add_input_options(CLI::App& app, AssetRequest& request) {
     add_files(app, "FILE...", request.files,
               "Meshes (.glb .gltf .obj .ply .stl .off), height maps and normal maps. Two meshes "
               "are separate inputs, not a pair.");
@@ -450,9 +451,9 @@ void add_input_options(CLI::App& app, OwnRequest& request) {
               })
         .group(pair);
     const char* mesh = "Meshes";
-    const Choices<NormalTruth> truths = {{"surface", NormalTruth::surface},
-                                         {"file", NormalTruth::file}};
-    add_choice(app, "--truth", request.truth, truths,
+    const Choices<NormalReference> references = {{"surface", NormalReference::surface},
+                                                 {"file", NormalReference::file}};
+    add_choice(app, "--truth", request.reference, references,
                "The ground truth of normals: a smooth surface fitted through the vertices, or the "
                "normals of the file. Default: surface.")
         .group(mesh);
@@ -489,7 +490,7 @@ void add_input_options(CLI::App& app, OwnRequest& request) {
         .group(image);
 }
 
-void add_limit_options(CLI::App& app, OwnCommandOptions& options) {
+void add_limit_options(CLI::App& app, AssetCommandOptions& options) {
     const char* group = "Recommendation; by default the method beyond which more time gains little";
     add_number(app, "--max-error", "DEG", options.max_error, {0.0, 180.0, "degrees"},
                "Recommend the cheapest method whose expected error is within this limit. The "
@@ -513,7 +514,7 @@ void add_limit_options(CLI::App& app, OwnCommandOptions& options) {
 Command add_own_command(CLI::App& tool) {
     CLI::App& app = add_subcommand(tool, "own",
                                    "Measures methods on your meshes and maps, and recommends one.");
-    const auto options = std::make_shared<OwnCommandOptions>();
+    const auto options = std::make_shared<AssetCommandOptions>();
     add_input_options(app, options->request);
     add_limit_options(app, *options);
     add_experiment_options(app, options->how);

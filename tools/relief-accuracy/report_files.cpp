@@ -14,7 +14,7 @@
 #include "common/text.h"
 #include "file_replacement.h"
 #include "relief/accuracy/subjects.h"
-#include "relief/mesh/heat_picture.h"
+#include "relief/mesh/false_color.h"
 #include "relief/mesh/image_file.h"
 #include "report_page.h"
 
@@ -57,7 +57,7 @@ void add_times(Row& row, const std::optional<Timing>& timing) {
         row.insert(row.end(), 4, "");
         return;
     }
-    const Spread spread = timing->spread();
+    const TimeStatistics spread = timing->spread();
     for (const double seconds : {spread.median, spread.p10, spread.p90})
         row.push_back(csv_number(seconds));
     row.push_back(fmt::to_string(spread.count));
@@ -66,7 +66,7 @@ void add_times(Row& row, const std::optional<Timing>& timing) {
 Row row_of(const Experiment& experiment, const Measurement& one) {
     const ErrorFigures& error = one.error;
     Row row = {experiment.id,
-               std::string(word_of(experiment.subject)),
+               std::string(name_of(experiment.subject)),
                one.method,
                choices_of(one),
                experiment.error_unit,
@@ -83,7 +83,7 @@ Row row_of(const Experiment& experiment, const Measurement& one) {
     add_times(row, one.cost.all_threads);
     row.push_back(one.cost.peak_bytes ? fmt::to_string(*one.cost.peak_bytes) : "");
     row.push_back(one.cost.stored_bytes > 0.0 ? csv_number(one.cost.stored_bytes) : "");
-    row.emplace_back(one.is_efficient ? "1" : "0");
+    row.emplace_back(one.is_pareto_optimal ? "1" : "0");
     return row;
 }
 
@@ -108,7 +108,8 @@ void write_pictures(const std::filesystem::path& folder, const AccuracyReport& r
     for (const Experiment& one : report.experiments) {
         for (std::size_t i = 0; i < one.heat_maps.size(); ++i) {
             const HeatMap& map = one.heat_maps[i];
-            write(picture_file(one, PictureRole::heat, i), heat_picture(map.errors, map.brightest));
+            write(picture_file(one, PictureRole::heat, i),
+                  false_color_image(map.errors, map.brightest));
         }
         for (std::size_t i = 0; i < one.pictures.size(); ++i) {
             write(picture_file(one, PictureRole::before, i), one.pictures[i].before);

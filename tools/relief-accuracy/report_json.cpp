@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Writes a report as JSON and reads it. Derived values (medians, is_efficient) are either read or
-// computed.
-// Tests: tests/tools/accuracy_report_test.cpp.
+// Writes a report as JSON and reads it. Derived values (medians, is_pareto_optimal) are either read
+// or computed. Tests: tests/tools/accuracy_report_test.cpp.
 #include "accuracy_report.h"
 
 #include <fmt/format.h>
@@ -46,7 +45,7 @@ Json json_of(const ErrorFigures& error) {
 }
 
 Json json_of(const Timing& timing) {
-    const Spread spread = timing.spread();
+    const TimeStatistics spread = timing.spread();
     return {{"median", spread.median},
             {"p10", spread.p10},
             {"p90", spread.p90},
@@ -66,9 +65,12 @@ Json json_of(const Measurement& one) {
     Json choices = Json::object();
     for (const auto& [choice, value] : one.choices)
         choices[choice] = value;
-    Json json = {{"method", one.method},          {"choices", choices},
-                 {"error", json_of(one.error)},   {"cost", json_of(one.cost)},
-                 {"efficient", one.is_efficient}, {"note", one.note}};
+    Json json = {{"method", one.method},
+                 {"choices", choices},
+                 {"error", json_of(one.error)},
+                 {"cost", json_of(one.cost)},
+                 {"efficient", one.is_pareto_optimal},
+                 {"note", one.note}};
     if (one.expected) {
         json["expected_error"] = {{"map", one.expected->map},
                                   {"added", one.expected->added},
@@ -128,10 +130,10 @@ void add_pictures(Json& json, const Experiment& one, bool has_files) {
 
 Json json_of(const Experiment& one, bool has_files) {
     Json json = {{"id", one.id},
-                 {"subject", word_of(one.subject)},
+                 {"subject", name_of(one.subject)},
                  {"title", one.title},
                  {"question", one.question},
-                 {"truth", one.truth},
+                 {"truth", one.reference},
                  {"input", one.input},
                  {"error_unit", one.error_unit},
                  {"item", one.item},
@@ -212,7 +214,7 @@ Measurement measurement_at(const JsonCursor& place) {
         one.choices.emplace_back(choice, value.text());
     one.error = error_at(place.at("error"));
     one.cost = cost_at(place.at("cost"));
-    one.is_efficient = place.at("efficient").boolean();
+    one.is_pareto_optimal = place.at("efficient").boolean();
     one.note = place.at("note").text();
     if (const auto expected = place.find_value("expected_error")) {
         one.expected = ExpectedError{expected->at("map").double_number(),
@@ -255,7 +257,7 @@ Experiment experiment_at(const JsonCursor& place) {
     one.subject = subject_from(place.at("subject").text());
     one.title = place.at("title").text();
     one.question = place.at("question").text();
-    one.truth = place.at("truth").text();
+    one.reference = place.at("truth").text();
     one.input = place.at("input").text();
     one.error_unit = place.at("error_unit").text();
     one.item = place.at("item").text();

@@ -118,7 +118,7 @@ std::string common_note(const ordered_json& measurements) {
 }
 
 /// Returns the explanation of the columns and marks of a table.
-std::string caption_words(const ordered_json& measurements, const std::string& common_note) {
+std::string caption_text(const ordered_json& measurements, const std::string& common_note) {
     std::string words;
     if (has_values(measurements, "/error/undefined"))
         words += "Undefined results are counted, and excluded from the other figures. ";
@@ -200,7 +200,7 @@ std::string measurements_table(const ordered_json& experiment) {
     return fmt::format(
         "<table class=\"measurements\"><caption>Errors in {}. {}</caption>\n"
         "<thead><tr>{}</tr></thead>\n<tbody>\n{}</tbody></table>\n",
-        html_escaped(experiment.value("error_unit", "")), caption_words(measurements, common), head,
+        html_escaped(experiment.value("error_unit", "")), caption_text(measurements, common), head,
         rows);
 }
 

@@ -59,15 +59,15 @@ std::string table_number(double value) {
 }
 
 /// Returns half of the range from the 10th to the 90th percentile, relative to the median: "±3 %".
-std::string spread_of(const std::optional<Timing>& timing) {
+std::string time_statistics(const std::optional<Timing>& timing) {
     if (!timing) return "";
-    const Spread spread = timing->spread();
+    const TimeStatistics spread = timing->spread();
     if (!(spread.median > 0.0)) return "";
     return fmt::format("±{:.0f} %", 50.0 * (spread.p90 - spread.p10) / spread.median);
 }
 
 std::string median_of(const std::optional<Timing>& timing) {
-    return timing ? seconds_in_words(timing->spread().median) : "";
+    return timing ? format_seconds(timing->spread().median) : "";
 }
 
 std::vector<TextColumn> columns_of(const Experiment& experiment) {
@@ -87,9 +87,9 @@ std::vector<TextColumn> columns_of(const Experiment& experiment) {
             one.expected ? table_number(one.expected->total()) : "",
             error.psnr ? fmt::format("{:.1f} dB", *error.psnr) : "",
             median_of(one.cost.one_thread),
-            spread_of(one.cost.one_thread),
+            time_statistics(one.cost.one_thread),
             median_of(one.cost.all_threads),
-            spread_of(one.cost.all_threads),
+            time_statistics(one.cost.all_threads),
             one.cost.peak_bytes ? byte_size(*one.cost.peak_bytes) : "",
             one.cost.stored_bytes > 0.0 ? fmt::format("{:.3g} B", one.cost.stored_bytes) : ""};
         for (std::size_t i = 0; i < columns.size(); ++i)
@@ -109,7 +109,7 @@ std::string rows_of(const Experiment& experiment) {
     std::string text = line_of(columns, "    ", widths, 0, true);
     for (std::size_t row = 0; row < experiment.measurements.size(); ++row) {
         const Measurement& one = experiment.measurements[row];
-        text += line_of(columns, one.is_efficient ? "  * " : "    ", widths, row, false);
+        text += line_of(columns, one.is_pareto_optimal ? "  * " : "    ", widths, row, false);
     }
     return text;
 }
@@ -155,7 +155,7 @@ std::string table_of(const Experiment& experiment) {
     std::string text =
         fmt::format("{}: {}\n  {}\n", experiment.id, experiment.title, experiment.question);
     text += fmt::format("  input         {}\n  ground truth  {}\n  error         {}\n",
-                        experiment.input, experiment.truth, experiment.error_unit);
+                        experiment.input, experiment.reference, experiment.error_unit);
     if (experiment.reference_error) {
         text += fmt::format(
             "  expected: the root of the sum of squares of the reference error, {:.3g}, and the "

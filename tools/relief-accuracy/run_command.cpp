@@ -35,7 +35,7 @@ struct RunCommandOptions {
 std::string subject_choices() {
     std::string words = "all";
     for (const Subject subject : subjects_with_experiments())
-        words += ", " + std::string(word_of(subject));
+        words += ", " + std::string(name_of(subject));
     return words;
 }
 
@@ -49,7 +49,7 @@ std::vector<Subject> subjects_of(const std::vector<std::string>& words) {
             return known;
         }
         const auto found = std::find_if(known.begin(), known.end(),
-                                        [&](Subject one) { return word_of(one) == word; });
+                                        [&](Subject one) { return name_of(one) == word; });
         if (found == known.end())
             throw UsageError(fmt::format("{}: not one of {}", word, subject_choices()));
         if (std::find(requested.begin(), requested.end(), *found) != requested.end())
@@ -76,7 +76,7 @@ std::vector<Experiment> run_pass(const std::vector<Subject>& subjects,
     const bool prints = prints_tables(options.how) && pass + 1 == passes;
     std::vector<Experiment> all;
     for (std::size_t i = 0; i < subjects.size(); ++i) {
-        const std::string subject(word_of(subjects[i]));
+        const std::string subject(name_of(subjects[i]));
         run.tell = [&](const std::string& title, std::size_t done, std::size_t total) {
             const auto parts = static_cast<double>(passes * subjects.size());
             const double within = static_cast<double>(done) / static_cast<double>(total);
@@ -121,7 +121,7 @@ ExitCode run(const RunCommandOptions& options) {
                                        });
     report.settings.passes = options.pass_count();
     report.command = command_for(fmt::format("{}", fmt::join(options.words, " ")), options);
-    const bool draws = std::any_of(subjects.begin(), subjects.end(), is_drawn);
+    const bool draws = std::any_of(subjects.begin(), subjects.end(), uses_opengl);
     finish_report(options.how, std::move(report), draws);
     return ExitCode::done;
 }

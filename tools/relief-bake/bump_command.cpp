@@ -101,7 +101,7 @@ void add_slope_options(CLI::App& app, BumpRequest& request) {
     add_value(app, "--kernel-radius", "R",
               "Radius of --kernel gaussian in texels, 1 to 64. Default: 2.",
               [&](const std::string& subject, const std::string& text) {
-                  request.gaussian_radius = parse_integer(subject, text, 1, largest_kernel_radius);
+                  request.gaussian_radius = parse_integer(subject, text, 1, max_kernel_radius);
               })
         .group("Accuracy");
     add_wrap(app, request.wrap,

@@ -48,7 +48,7 @@ void report_channels(const BumpRequest& request, const HeightMapFile& map,
 BumpSampleParts parts_to_read(const BumpAccuracyRequest& request, const ImageInfo& map) {
     BumpSampleParts parts;
     if (!request.kernel || request.needs_experiment())
-        parts.looked_at = parts_to_look_at(map.width, map.height);
+        parts.analyzed = parts_to_analyze(map.width, map.height);
     if (request.needs_experiment()) parts.measured = parts_to_measure(map.width, map.height);
     return parts;
 }
@@ -71,7 +71,7 @@ std::vector<BumpMethod> methods_for(const BumpAccuracyRequest& request, int radi
 /// The message if no method is within the limits, with the smallest possible error and a remedy.
 std::string limit_message(const BumpAccuracyRequest& request, const BumpExperiment& experiment,
                           ErrorKind kind) {
-    const BumpMeasurement* best = truest(experiment, kind);
+    const BumpMeasurement* best = most_accurate(experiment, kind);
     const ExpectedError error = expected_error(experiment.reference, *best, kind);
     const std::string method = to_string(best->method);
     const char* const kind_name = kind == ErrorKind::rms ? "RMS" : "maximum";
@@ -164,10 +164,10 @@ void choose_method(const BumpAccuracyRequest& request, const std::vector<Image>&
     if (request.precision) bump.arithmetic = request.precision;
     if (request.kernel) bump.kernel = *request.kernel;
     const BumpSampleParts read = parts_to_read(request, conversion.input);
-    if (read.looked_at.empty()) return;
+    if (read.analyzed.empty()) return;
     const BumpSample sample = read.sample(parts);
     if (!request.kernel) {
-        accuracy.choice = choose_kernel(sample.looked_at, bump, request.destaircase, request.grain);
+        accuracy.choice = choose_kernel(sample.analyzed, bump, request.destaircase, request.grain);
         report_grain(*accuracy.choice, report);
         bump.kernel = accuracy.choice->kernel;
         bump.gaussian_radius = accuracy.choice->gaussian_radius;

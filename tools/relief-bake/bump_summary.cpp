@@ -37,7 +37,7 @@ double megapixels_per_second(const BumpConversion& conversion, const Stages& sta
 
 /// "clamp at the border", with the evidence if the mode was chosen from the map.
 std::string border_text(const BumpConversion& conversion) {
-    const std::string text = wrap_words(*conversion.bump.wrap) + " at the border";
+    const std::string text = wrap_text(*conversion.bump.wrap) + " at the border";
     if (!conversion.tiling) return text;
     return fmt::format("{} (differences across the seams are {:.2g} and {:.2g} times those inside)",
                        text, conversion.tiling->seam_x, conversion.tiling->seam_y);
@@ -89,7 +89,7 @@ std::vector<std::string> comparison_table(const BumpExperiment& experiment) {
                         row->method.destaircased ? "smooth" : "as is", row->error.rms,
                         row->error.max, expected_error(experiment.reference, *row).total(),
                         duration(1000.0 * row->seconds.median), row->megapixels_per_second,
-                        row->is_efficient ? "*" : ""));
+                        row->is_pareto_optimal ? "*" : ""));
     }
     lines.emplace_back("RMS and max: added by the conversion; with map: total expected RMS error");
     lines.emplace_back("* no other method is both faster and more accurate");
@@ -105,7 +105,7 @@ std::string expectation_text(const KernelChoice& choice) {
         choice.noise > 0.0 ? "; the range depends on how much detail the noise hides"
                            : "; the range depends on whether fine detail is real, and how fine";
     return fmt::format("{} degrees RMS, {:.2g} at most, from the map and this kernel{}",
-                       expected_words(choice), choice.upper_max_degrees,
+                       expected_error_text(choice), choice.upper_max_degrees,
                        choice.is_range() ? range_reason : "");
 }
 
@@ -166,7 +166,7 @@ nlohmann::ordered_json measurement_json(const BumpMeasurement& measurement,
               {"p10", 1000.0 * measurement.seconds.p10},
               {"p90", 1000.0 * measurement.seconds.p90}}},
             {"megapixels_per_second", measurement.megapixels_per_second},
-            {"efficient", measurement.is_efficient}};
+            {"efficient", measurement.is_pareto_optimal}};
 }
 
 nlohmann::ordered_json grain_json(const KernelChoice& choice) {
@@ -193,7 +193,7 @@ void add_accuracy(const BumpAccuracy& accuracy, nlohmann::ordered_json& json) {
     if (!accuracy.experiment) return;
     const BumpExperiment& experiment = *accuracy.experiment;
     json["reference"] = {{"what", experiment.reference.words},
-                         {"own_degrees", experiment.reference.own_degrees},
+                         {"own_degrees", experiment.reference.reference_degrees},
                          {"texels", experiment.texels},
                          {"whole", experiment.is_whole}};
     if (accuracy.selected)
@@ -261,7 +261,7 @@ nlohmann::ordered_json results_json(const BumpConversion& conversion, const Stag
         {"kernel_radius", has_radius ? nlohmann::ordered_json(bump.gaussian_radius) : nullptr},
         {"strength", bump.strength},
         {"texel_size", {bump.texel.x, bump.texel.y}},
-        {"wrap", wrap_words(*bump.wrap)},
+        {"wrap", wrap_text(*bump.wrap)},
         {"seams", seams},
         {"content", has_moments ? "slope moments" : "normals"},
         {"xy_only", conversion.format.xy_only},

@@ -36,7 +36,7 @@ struct CheckedMap {
     NormalMapCheck check;
     double milliseconds = 0.0;  ///< Of the check, without reading.
 
-    [[nodiscard]] bool is_sound() const { return error.empty() && !check.has_trouble(); }
+    [[nodiscard]] bool is_sound() const { return error.empty() && !check.has_problem(); }
     [[nodiscard]] bool has_green() const {
         return check.content == MapContent::tangent_normals ||
                check.content == MapContent::xy_normals;
@@ -81,7 +81,7 @@ std::string remedy_for(MapCondition condition, const CheckedMap& map) {
     };
     switch (condition) {
         case MapCondition::not_normals:
-            if (map.check.content != MapContent::grey) return "";
+            if (map.check.content != MapContent::gray) return "";
             return fmt::format("relief-bake bump {} out.png", quoted(map.file));
         case MapCondition::object_space:
             return convert(" --to-tangent mesh.glb");
@@ -119,7 +119,7 @@ const char* describe(MapContent content) {
             return "object-space normals";
         case MapContent::xy_normals:
             return "x and y of tangent-space normals";
-        case MapContent::grey:
+        case MapContent::gray:
             return "grayscale: heights or a mask";
         default:
             return "not normals: colors, or several masks";
@@ -163,7 +163,7 @@ std::string describe_bits(const std::vector<int>& bits) {
 /// The findings of one severity, each followed by its remedy.
 std::vector<std::string> finding_lines(const CheckedMap& map, Severity severity) {
     std::vector<std::string> lines;
-    for (const FoundMapCondition& found : map.check.found) {
+    for (const MapConditionCount& found : map.check.found) {
         const MapConditionInfo& info = condition_info(found.condition);
         if (info.severity != severity) continue;
         lines.push_back(
@@ -199,15 +199,15 @@ void print_text(const CheckedMap& map) {
         print_entry("tiles", describe(check.tiling));
     }
     print_entry("bits", describe_bits(check.bits));
-    print_entry("problems", finding_lines(map, Severity::trouble));
-    print_entry("notes", finding_lines(map, Severity::remark));
+    print_entry("problems", finding_lines(map, Severity::problem));
+    print_entry("notes", finding_lines(map, Severity::note));
     print_entry("time", fmt::format("{} ({:.0f} MPixel/s without file access)",
                                     duration(map.milliseconds), map.megapixels_per_second()));
 }
 
 nlohmann::ordered_json findings_json(const CheckedMap& map, Severity severity) {
     nlohmann::ordered_json list = nlohmann::ordered_json::array();
-    for (const FoundMapCondition& found : map.check.found) {
+    for (const MapConditionCount& found : map.check.found) {
         const MapConditionInfo& info = condition_info(found.condition);
         if (info.severity != severity) continue;
         list.push_back({{"kind", info.word},
@@ -245,7 +245,7 @@ nlohmann::ordered_json json_of(const CheckedMap& map) {
     const Choices<MapContent> contents = {{"tangent-space", MapContent::tangent_normals},
                                           {"object-space", MapContent::object_normals},
                                           {"xy", MapContent::xy_normals},
-                                          {"grey", MapContent::grey},
+                                          {"grey", MapContent::gray},
                                           {"other", MapContent::other}};
     const Choices<StoredCurve> curves = {{"none", StoredCurve::none},
                                          {"srgb-encoded", StoredCurve::srgb_encoded},
@@ -269,8 +269,8 @@ nlohmann::ordered_json json_of(const CheckedMap& map) {
             {"alpha_correlation", check.alpha_correlation
                                       ? nlohmann::ordered_json(*check.alpha_correlation)
                                       : nlohmann::ordered_json()},
-            {"trouble", findings_json(map, Severity::trouble)},
-            {"remarks", findings_json(map, Severity::remark)},
+            {"trouble", findings_json(map, Severity::problem)},
+            {"remarks", findings_json(map, Severity::note)},
             {"milliseconds", map.milliseconds},
             {"megapixels_per_second", map.megapixels_per_second()}};
 }

@@ -105,9 +105,9 @@ struct MapConversion {
     int height = 0;
     int channels = 0;
     int bits_read = 0;
-    std::string input_words;              ///< The conventions of the input.
-    std::vector<std::string> steps;       ///< The operations, in order.
-    std::optional<LengthSpread> lengths;  ///< Of the input's vectors, if they were measured.
+    std::string input_text;              ///< The conventions of the input.
+    std::vector<std::string> steps;      ///< The operations, in order.
+    std::optional<LengthRange> lengths;  ///< Of the input's vectors, if they were measured.
     NormalMapFormat format;
     std::optional<Green> green;          ///< Absent: unknown.
     std::optional<std::string> content;  ///< The new "relief:content", if it changes.

@@ -83,7 +83,7 @@ Image read_detail(const DetailOptions& options, const NormalField& base, Report&
     });
     const std::optional<Green> base_green = base.green ? base.green : detail.green;
     const Green green = detail.green.value_or(base_green.value_or(Green::up));
-    if (base_green && green != *base_green) turn_normals(normals, flip_green);
+    if (base_green && green != *base_green) map_normal_axes(normals, flip_green);
     if (options.strength) scale_slopes(normals, *options.strength, report);
     return normals;
 }
@@ -156,8 +156,8 @@ void convert_space(const Conversion& conversion, const SpaceOptions& space,
     // UDIM numbers grow upwards, texture coordinates downwards.
     constexpr int tiles_across = 10;
     const int index = space.udim.value_or(first_udim) - first_udim;
-    const MapPlacement placement = {{index % tiles_across, -(index / tiles_across)},
-                                    space.outside == UvOutside::repeat};
+    const MapRegion placement = {{index % tiles_across, -(index / tiles_across)},
+                                 space.outside == UvOutside::repeat};
     ConvertedNormals converted = conversion(field.normals, target.mesh, placement, report);
     field.normals = std::move(converted.normals);
     const Coverage& coverage = converted.coverage;
@@ -175,7 +175,7 @@ ConvertStep to_object_step(const SpaceOptions& space) {
                     throw InvalidInput(
                         "the direction of its green channel is unknown (give --input-green)");
                 }
-                if (*field.green == Green::down) turn_normals(field.normals, flip_green);
+                if (*field.green == Green::down) map_normal_axes(field.normals, flip_green);
                 convert_space(object_from_tangent, space, *space.to_object, field, report);
                 field.green.reset();
                 field.is_object_space = true;
@@ -186,7 +186,7 @@ ConvertStep to_tangent_step(const SpaceOptions& space) {
     return {fmt::format("to the tangent space of {}", space.to_tangent->string()),
             [space](NormalField& field, Report& report) {
                 convert_space(tangent_from_object, space, *space.to_tangent, field, report);
-                if (field.green == Green::down) turn_normals(field.normals, flip_green);
+                if (field.green == Green::down) map_normal_axes(field.normals, flip_green);
                 field.green = field.green.value_or(Green::up);
             }};
 }
@@ -456,7 +456,7 @@ Image decode_input(const ConvertRequest& request, const InputMap& input, MapConv
         return decode_xy_map(input.image, *request.rebuild_z, Green::up, input.flat, report,
                              FlatTexels::exact);
     }
-    result.lengths = count_lengths(input.image, input.flat, report);
+    result.lengths = measure_lengths(input.image, input.flat, report);
     result.steps.push_back(fmt::format("normalized (lengths were {:.3f} to {:.3f}, mean {:.3f})",
                                        result.lengths->least, result.lengths->greatest,
                                        result.lengths->mean));
@@ -473,7 +473,7 @@ void convert_floats(const ConvertRequest& request, InputMap& input, const AxisCo
     field.green = axes.green;
     input.image = Image{};
     if (axes.mapping != same_axes) {
-        turn_normals(field.normals, axes.mapping);
+        map_normal_axes(field.normals, axes.mapping);
         result.steps.push_back(describe_axes(axes.mapping));
     }
     for (const ConvertStep& step : steps_of(request)) {
@@ -507,7 +507,7 @@ MapConversion convert_map(const Job& job, const ConvertRequest& request, Stages&
     result.height = input.image.height;
     result.channels = input.image.channels;
     result.bits_read = input.image.bits();
-    result.input_words = input.words;
+    result.input_text = input.words;
     check_channels(job, request, input);
     // An object-space map has no green direction; its tangent-space map has that of the output.
     if (request.space.to_tangent) input.green = request.output.green;

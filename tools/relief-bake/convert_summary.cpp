@@ -38,7 +38,7 @@ std::vector<std::string> level_lines(const MapConversion& conversion) {
     return lines;
 }
 
-nlohmann::ordered_json lengths_json(const std::optional<LengthSpread>& lengths) {
+nlohmann::ordered_json lengths_json(const std::optional<LengthRange>& lengths) {
     if (!lengths) return nullptr;
     return {{"least", lengths->least}, {"mean", lengths->mean}, {"greatest", lengths->greatest}};
 }
@@ -67,7 +67,7 @@ void print_summary(const Job& job, const MapConversion& conversion, const Stages
                 fmt::format("{}: {} x {}, {}, {} bit, {}", job.input.string(), conversion.width,
                             conversion.height,
                             counted(static_cast<std::size_t>(conversion.channels), "channel"),
-                            conversion.bits_read, conversion.input_words));
+                            conversion.bits_read, conversion.input_text));
     print_entry("steps", conversion.steps);
     print_entry("format", format_text(conversion));
     print_entry("findings", conversion.findings.empty() ? std::vector<std::string>{"none"}

@@ -34,7 +34,7 @@ struct HeightsConversion {
     int height = 0;
     int channels = 0;
     int bits_read = 0;
-    std::string input_words;
+    std::string input_text;
     Green green = Green::up;
     bool green_by_slopes = false;
     IntegrationOptions integration;
@@ -92,7 +92,7 @@ void add_heights_options(CLI::App& app, HeightsRequest& request) {
              "smoothly across the seam, else clamp. Two words set left and right, then top and "
              "bottom. Default: auto.")
         .group(group);
-    add_number(app, "--steepest", "S", request.integration.steepest, {1e-3, 1e6, ""},
+    add_number(app, "--steepest", "S", request.integration.max_slope, {1e-3, 1e6, ""},
                "Maximum slope. Steeper slopes, and those of normals that point sideways or "
                "backwards, are limited to it and counted. Default: 16, which is 86 degrees.")
         .group(group);
@@ -165,7 +165,7 @@ std::map<std::string, std::string> metadata_of(const HeightsConversion& conversi
     return {{"relief:content", "height map"},
             {"relief:strength", fmt::format("{:.9g}", conversion.strength)},
             {"relief:kernel", name_of(conversion.integration.kernel, kernel_choices())},
-            {"relief:wrap", wrap_words(conversion.integration.wrap)}};
+            {"relief:wrap", wrap_text(conversion.integration.wrap)}};
 }
 
 /// Reads, integrates and writes. The stages are "read", "integrate" and "write".
@@ -180,7 +180,7 @@ HeightsConversion convert_heights(const Job& job, const HeightsRequest& request,
     conversion.height = input.image.height;
     conversion.channels = input.image.channels;
     conversion.bits_read = input.image.bits();
-    conversion.input_words = input.words;
+    conversion.input_text = input.words;
     const Image file = about(job.input, [&] {
         return stages.run("integrate", [&] {
             choose_green(job, input, conversion);
@@ -220,7 +220,7 @@ std::string inverse_command(const Job& job, const HeightsConversion& conversion)
     return fmt::format("relief-bake bump {} normals.png --strength {:.9g} --kernel {} --wrap {}{}",
                        job.output.string(), conversion.strength,
                        name_of(conversion.integration.kernel, kernel_choices()),
-                       wrap_words(conversion.integration.wrap),
+                       wrap_text(conversion.integration.wrap),
                        conversion.green == Green::down ? " --green down" : "");
 }
 
@@ -230,7 +230,7 @@ void print_summary(const Job& job, const HeightsConversion& conversion, const St
                 fmt::format("{}: {} x {}, {}, {} bit, {}", job.input.string(), conversion.width,
                             conversion.height,
                             counted(static_cast<std::size_t>(conversion.channels), "channel"),
-                            conversion.bits_read, conversion.input_words));
+                            conversion.bits_read, conversion.input_text));
     if (conversion.green_by_slopes)
         print_entry("green", name_of(conversion.green, green_choices()) + ", from the slopes");
     print_entry("slopes", fmt::format("{:.4g} (RMS), mean {:.3g} and {:.3g}{}, {}, {} at the "
@@ -238,7 +238,7 @@ void print_summary(const Job& job, const HeightsConversion& conversion, const St
                                       result.rms_slope, result.mean_slope.x, result.mean_slope.y,
                                       conversion.integration.level ? " (removed)" : "",
                                       name_of(conversion.integration.kernel, kernel_choices()),
-                                      wrap_words(conversion.integration.wrap)));
+                                      wrap_text(conversion.integration.wrap)));
     print_entry("residual",
                 fmt::format("slopes of {:.3g} (RMS) that no height field has: {:.3g} degrees, "
                             "{:.3g} at most{}",
@@ -269,8 +269,8 @@ nlohmann::ordered_json results_json(const HeightsConversion& conversion, const S
             {"green", name_of(conversion.green, green_choices())},
             {"green_by_slopes", conversion.green_by_slopes},
             {"kernel", name_of(conversion.integration.kernel, kernel_choices())},
-            {"wrap", wrap_words(conversion.integration.wrap)},
-            {"steepest", conversion.integration.steepest},
+            {"wrap", wrap_text(conversion.integration.wrap)},
+            {"steepest", conversion.integration.max_slope},
             {"bits", conversion.bits},
             {"strength", conversion.strength},
             {"highest", result.highest},

@@ -48,7 +48,8 @@ class SampleSearch {
 
     /// Measures one number of samples in all formats, and adds those of the file to the result.
     /// \return whether a method is within the limit
-    bool try_samples(const BakeTrials& trials, const SampleChoice& samples, MeshAccuracy& result) {
+    bool try_samples(const BakeBenchmark& trials, const SampleChoice& samples,
+                     MeshAccuracy& result) {
         for (MeasuredBake& bake : measure(trials, samples)) {
             const bool available = is_available(bake);
             if (available && !result.selected && bound_.allows(bake.error)) result.selected = bake;
@@ -96,12 +97,12 @@ class SampleSearch {
     }
 
   private:
-    std::vector<MeasuredBake> measure(const BakeTrials& trials, const SampleChoice& samples) {
+    std::vector<MeasuredBake> measure(const BakeBenchmark& trials, const SampleChoice& samples) {
         const std::optional<double> angle = angle_of(request_, samples);
-        const BakeTrial trial = trials.measure({samples.count, angle}, formats_);
+        const BakeMeasurement trial = trials.measure({samples.count, angle}, formats_);
         std::vector<MeasuredBake> measured;
         for (std::size_t i = 0; i < formats_.size(); ++i) {
-            measured.push_back({samples, angle, formats_[i], trial.errors[i], trial.quantisation[i],
+            measured.push_back({samples, angle, formats_[i], trial.errors[i], trial.quantization[i],
                                 trial.sampling, trial.rays,
                                 trial.cast_seconds + trial.code_seconds[i], false});
         }
@@ -144,7 +145,7 @@ std::size_t texels_for(const MeshBakeRequest& request, const BakeMapOptions& map
                      : usual;
 }
 
-void describe(const BakeTrials& trials, MeshAccuracy& result) {
+void describe(const BakeBenchmark& trials, MeshAccuracy& result) {
     result.texels = trials.texels();
     result.is_whole = trials.is_whole();
     result.reference_samples = trials.reference_samples();
@@ -157,13 +158,13 @@ void select_within_limit(const Baker& baker, const BakeMapOptions& map, MeshBake
     SampleSearch search(request, format);
     const bool is_given = request.samples.is_given;
     const bool needs_finest = is_given && request.samples.count == max_samples;
-    const bool has_finest = std::max(map.width, map.height) * 32 <= TexelCover::largest_side;
+    const bool has_finest = std::max(map.width, map.height) * 32 <= TexelRasterizer::largest_side;
     if (needs_finest && !has_finest)
         throw InvalidInput(
             "the error of 256 samples can be measured only for maps of at most 2048 texels along a "
             "side");
     if (!needs_finest) {
-        const BakeTrials trials(baker, map, texels_for(request, map, texels_for_limit));
+        const BakeBenchmark trials(baker, map, texels_for(request, map, texels_for_limit));
         describe(trials, result);
         if (is_given) {
             if (!search.try_samples(trials, request.samples, result)) search.fail(true);
@@ -177,8 +178,8 @@ void select_within_limit(const Baker& baker, const BakeMapOptions& map, MeshBake
     }
     if (!result.selected) {
         if (!has_finest) search.fail(false);
-        const BakeTrials trials(baker, map, texels_for(request, map, texels_for_finest),
-                                finest_reference);
+        const BakeBenchmark trials(baker, map, texels_for(request, map, texels_for_finest),
+                                   finest_reference);
         describe(trials, result);
         search.restart();
         if (!search.try_samples(trials, {max_samples, false, is_given}, result)) {
@@ -196,27 +197,29 @@ void select_within_limit(const Baker& baker, const BakeMapOptions& map, MeshBake
 }
 
 /// Measures all methods in all bit depths, including those of other file formats.
-void compare_methods(const BakeTrials& trials, const NormalMapFormat& format,
+void compare_methods(const BakeBenchmark& trials, const NormalMapFormat& format,
                      MeshAccuracy& result) {
-    const std::span<const BakeWay> ways = usual_bake_ways();
-    const std::vector<NormalMapFormat> formats = usual_map_formats(format);
-    const std::vector<TimedBakeTrial> timed = measured_in_turns(trials, ways, formats, {rounds, 0});
+    const std::span<const BakeSampling> ways = default_bake_samplings();
+    const std::vector<NormalMapFormat> formats = default_map_formats(format);
+    const std::vector<TimedBakeMeasurement> timed =
+        measure_interleaved(trials, ways, formats, {rounds, 0});
     if (timed.front().trial.errors.front().count == 0)
         throw InvalidInput("no texel has a normal from the high model: no error can be measured");
-    std::vector<Price> prices;
+    std::vector<MethodCost> prices;
     for (std::size_t way = 0; way < ways.size(); ++way) {
-        const BakeTrial& trial = timed[way].trial;
+        const BakeMeasurement& trial = timed[way].trial;
         const SampleChoice samples{ways[way].samples, ways[way].sample_degrees.has_value(), false};
         for (std::size_t f = 0; f < formats.size(); ++f) {
             result.measured.push_back({samples, ways[way].sample_degrees, formats[f],
-                                       trial.errors[f], trial.quantisation[f], trial.sampling,
-                                       trial.rays, spread_of(timed[way].seconds[f]).median, false});
+                                       trial.errors[f], trial.quantization[f], trial.sampling,
+                                       trial.rays, time_statistics(timed[way].seconds[f]).median,
+                                       false});
             prices.push_back({result.measured.back().error.rms, result.measured.back().seconds});
         }
     }
-    const std::vector<bool> marks = efficient(prices);
+    const std::vector<bool> marks = pareto_optimal(prices);
     for (std::size_t i = 0; i < marks.size(); ++i)
-        result.measured[i].is_efficient = marks[i];
+        result.measured[i].is_pareto_optimal = marks[i];
 }
 
 }  // namespace
@@ -246,7 +249,7 @@ MeshAccuracy select_accuracy(const Baker& baker, const BakeMapOptions& map,
                              MeshBakeRequest& request, NormalMapFormat& format) {
     MeshAccuracy result;
     if (request.compare) {
-        const BakeTrials trials(baker, map, texels_for(request, map, texels_for_table));
+        const BakeBenchmark trials(baker, map, texels_for(request, map, texels_for_table));
         describe(trials, result);
         compare_methods(trials, format, result);
     } else {

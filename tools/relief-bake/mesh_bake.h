@@ -20,7 +20,7 @@
 #include "common/normal_map_input.h"
 #include "mesh_request.h"
 #include "relief/mesh/bake_check.h"
-#include "relief/mesh/high_detail.h"
+#include "relief/mesh/high_materials.h"
 #include "relief/mesh/image_file.h"
 
 namespace relief::tools {
@@ -71,7 +71,7 @@ class HighTextures {
     void add(const std::filesystem::path& file, const Mesh& mesh, const MapLooks& looks,
              const HighTextureOptions& options, bool with_colors, Report& report);
 
-    [[nodiscard]] std::span<const HighDetail> details() const { return details_; }
+    [[nodiscard]] std::span<const HighMaterials> details() const { return details_; }
 
     /// "1 normal map added to their normals, 2 color textures"; empty if there are none.
     [[nodiscard]] std::string description() const;
@@ -84,7 +84,7 @@ class HighTextures {
                            const GltfTexture& texture, ImageUse use);
     [[nodiscard]] SurfaceNormalMap normal_map(const SurfaceTexture& texture, float scale) const;
 
-    std::vector<HighDetail> details_;
+    std::vector<HighMaterials> details_;
     std::map<std::string, Image> images_;  ///< By file, index and use.
     std::map<const Image*, std::map<std::string, std::string>> metadata_;
     std::size_t normal_maps_ = 0;
@@ -231,8 +231,9 @@ struct MeasuredBake {
     AngleSummary rounding;  ///< The error of the format alone.
     AngleSummary sampling;  ///< The error of the samples alone.
     std::size_t rays = 0;
-    double seconds = 0.0;       ///< Of the rays; with --compare the median, including the encoding.
-    bool is_efficient = false;  ///< With --compare: no other method is faster and more accurate.
+    double seconds = 0.0;  ///< Of the rays; with --compare the median, including the encoding.
+    bool is_pareto_optimal =
+        false;  ///< With --compare: no other method is faster and more accurate.
 };
 
 /// "4 samples, 16 bit", "auto samples at 2 degrees, 8 bit, dithered"

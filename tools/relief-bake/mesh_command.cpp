@@ -229,7 +229,7 @@ void check_sample_count(const MeshBakeRequest& request) {
     int across = 1;
     while (across * across < request.samples.count)
         ++across;
-    const int max_side = TexelCover::largest_side / across;
+    const int max_side = TexelRasterizer::largest_side / across;
     if (std::max(request.size.x, request.size.y) <= max_side) return;
     throw UsageError(fmt::format("--size {}x{}: with {} samples per texel, the maximum side is {}",
                                  request.size.x, request.size.y, request.samples.count, max_side));

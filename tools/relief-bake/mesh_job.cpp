@@ -48,10 +48,8 @@ class MapProgress {
 void add_result(BakeResult& all, const BakeResult& more) {
     if (more.texels_baked > 0) {
         const bool is_first = all.texels_baked == 0;
-        all.least_height =
-            is_first ? more.least_height : std::min(all.least_height, more.least_height);
-        all.greatest_height =
-            is_first ? more.greatest_height : std::max(all.greatest_height, more.greatest_height);
+        all.min_height = is_first ? more.min_height : std::min(all.min_height, more.min_height);
+        all.max_height = is_first ? more.max_height : std::max(all.max_height, more.max_height);
     }
     all.distances = more.distances;
     all.coverage += more.coverage;

@@ -260,7 +260,7 @@ SurfaceNormalMap HighTextures::normal_map(const SurfaceTexture& texture, float s
 
 void HighTextures::add(const std::filesystem::path& file, const Mesh& mesh, const MapLooks& looks,
                        const HighTextureOptions& options, bool with_colors, Report& report) {
-    HighDetail detail{&mesh, {}, {}};
+    HighMaterials detail{&mesh, {}, {}};
     for (std::size_t i = 0; i < looks.materials.size(); ++i) {
         const GltfMaterial& source = looks.materials[i];
         HighMaterial material;

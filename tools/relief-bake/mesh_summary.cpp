@@ -25,7 +25,7 @@ std::string ray_text(const MeshBakeRequest& request, const BakeResult& result) {
     const std::string heights = result.texels_baked == 0
                                     ? ""
                                     : fmt::format("; the surface is {:.4g} to {:.4g} outside",
-                                                  result.least_height, result.greatest_height);
+                                                  result.min_height, result.max_height);
     if (request.cage) return "from the cage" + heights;
     const bool is_given = request.bake.offset && request.bake.max_distance;
     return fmt::format("from {:.4g} outside to {:.4g} inside{}{}", result.distances.offset,
@@ -122,7 +122,7 @@ std::vector<std::string> comparison_table(const MeshAccuracy& accuracy) {
             "{:<9} {:<4} {:<10} {:>9.3g} {:>9.3g} {:>9.3g} {:>9} {:>9.2f} {}", sample_cell(*row),
             row->format.bits, name_of(row->format.dither, dither_choices()), row->error.rms,
             row->error.p99, row->error.max, duration(1000.0 * row->seconds), rate,
-            row->is_efficient ? "*" : ""));
+            row->is_pareto_optimal ? "*" : ""));
     }
     lines.emplace_back("* no other method is both faster and more accurate");
     lines.emplace_back("auto: 4 samples, and 16 if they differ by more than this angle in degrees");
@@ -282,8 +282,8 @@ nlohmann::ordered_json map_json(const BakedMap& map, const glm::dvec3& origin) {
     if (map.plan.udim) json["tile"] = *map.plan.udim;
     json.update({{"texels_baked", map.result.texels_baked},
                  {"texels_missed", map.result.texels_missed},
-                 {"least_height", map.result.least_height},
-                 {"greatest_height", map.result.greatest_height},
+                 {"least_height", map.result.min_height},
+                 {"greatest_height", map.result.max_height},
                  {"samples", map.result.samples},
                  {"rays", map.result.rays},
                  {"missed", missed_json(map.result, origin)}});
@@ -308,7 +308,7 @@ nlohmann::ordered_json measured_json(const MeasuredBake& bake) {
             {"sampling", bake.sampling.rms},
             {"rays", bake.rays},
             {"milliseconds", 1000.0 * bake.seconds},
-            {"efficient", bake.is_efficient}};
+            {"efficient", bake.is_pareto_optimal}};
 }
 
 void add_accuracy(const MeshAccuracy& accuracy, nlohmann::ordered_json& json) {
@@ -384,8 +384,8 @@ nlohmann::ordered_json results_json(const MeshBakeRequest& request, const MeshBa
                                       {"low_triangles", bake.low_triangles},
                                       {"offset", result.distances.offset},
                                       {"max_distance", result.distances.max_distance},
-                                      {"least_height", result.least_height},
-                                      {"greatest_height", result.greatest_height},
+                                      {"least_height", result.min_height},
+                                      {"greatest_height", result.max_height},
                                       {"texels_baked", result.texels_baked},
                                       {"texels_missed", result.texels_missed},
                                       {"samples", result.samples},

@@ -12,7 +12,7 @@
 
 #include "common/text.h"
 #include "mesh_bake.h"
-#include "relief/mesh/heat_picture.h"
+#include "relief/mesh/false_color.h"
 #include "relief/mesh/image_rows.h"
 #include "relief/mesh/timing.h"
 
@@ -36,7 +36,7 @@ Image heat_rows(std::span<const float> degrees, int width, double brightest) {
     const int height = static_cast<int>(degrees.size() / static_cast<std::size_t>(width));
     Image values = make_image(width, height, 1, 32, ColorSpace::data);
     std::copy(degrees.begin(), degrees.end(), values.as<float>().begin());
-    const Image heat = heat_picture(values, brightest);
+    const Image heat = false_color_image(values, brightest);
     Image result = make_image(width, height, 4, 8, ColorSpace::srgb);
     const auto from = heat.as<std::uint8_t>();
     const auto to = result.as<std::uint8_t>();
@@ -120,11 +120,12 @@ PartText describe(const MapConvention& found, ConventionPart part) {
                                 ? "zero is between two codes (127.5 of 255)"
                                 : "zero is a code (128 of 255)"};
         case ConventionPart::turn:
-            return {"turn", found.turn == MapTurn::upside_down ? "the image is upside down"
-                            : found.turn == MapTurn::mirrored  ? "the image is mirrored, left to "
-                                                                 "right"
-                                                               : "the image is rotated by 180 "
-                                                                 "degrees"};
+            return {"turn", found.turn == ImageOrientation::upside_down ? "the image is upside down"
+                            : found.turn == ImageOrientation::mirrored
+                                ? "the image is mirrored, left to "
+                                  "right"
+                                : "the image is rotated by 180 "
+                                  "degrees"};
         case ConventionPart::axes:
             return {"axes", describe(found.axes)};
         case ConventionPart::space:
@@ -139,11 +140,11 @@ PartText describe(const MapConvention& found, ConventionPart part) {
                     : found.basis == MapBasis::lengyel ? "it was baked with Lengyel's tangents"
                                                        : "it was baked with the model's tangents"};
         case ConventionPart::frame:
-            return {"frame", found.frame == MapFrame::unit
+            return {"frame", found.frame == FrameInterpolation::unit
                                  ? "it was baked with normal and tangent normalized per pixel"
-                             : found.frame == MapFrame::orthonormal
+                             : found.frame == FrameInterpolation::orthonormal
                                  ? "it was baked with normal and tangent orthonormalized per pixel"
-                             : found.frame == MapFrame::vertex_bitangent
+                             : found.frame == FrameInterpolation::vertex_bitangent
                                  ? "it was baked with bitangents interpolated from the vertices"
                                  : "it was baked with the interpolated normal and tangent"};
         case ConventionPart::mirroring:
@@ -161,7 +162,7 @@ std::string describe(const ConventionFit& fit) {
     return fmt::format(
         "{}: with this convention, the error is {:.3g} degrees instead of {:.3g} "
         "(RMS)",
-        fmt::join(parts, "; "), fit.found_degrees, fit.told_degrees);
+        fmt::join(parts, "; "), fit.found_degrees, fit.given_degrees);
 }
 
 /// Commands that convert the map, or make a model that fits it; the output files are "out.png" and
@@ -246,7 +247,8 @@ std::vector<std::string> stage_lines(const BakeCheck& check) {
 
 std::string texel_text(const BakeCheck& check) {
     std::string text = counted(check.error.count, "texel");
-    if (check.torn > 0) text += fmt::format(", {} of them torn by the projection", check.torn);
+    if (check.discontinuous > 0)
+        text += fmt::format(", {} of them torn by the projection", check.discontinuous);
     if (check.missed > 0) text += fmt::format("; {} missed, without a reference", check.missed);
     if (check.frameless > 0) text += fmt::format("; {} without a frame", check.frameless);
     return text;
@@ -257,7 +259,7 @@ std::string worst_text(const BakeCheck& check) {
     for (std::size_t i = 0; i < std::min<std::size_t>(check.worst.size(), 4); ++i) {
         const WorstTexel& texel = check.worst[i];
         text += fmt::format("{}({}, {}): {:.3g}{}", i == 0 ? "" : "; ", texel.x, texel.y,
-                            texel.degrees, texel.is_torn ? " torn" : "");
+                            texel.degrees, texel.is_discontinuous ? " torn" : "");
     }
     return text;
 }
@@ -288,7 +290,7 @@ nlohmann::ordered_json convention_json(const ConventionFit& fit) {
     return {{"searched", fit.was_searched},
             {"explained", fit.is_explained},
             {"differs_in", parts},
-            {"told_degrees", fit.told_degrees},
+            {"told_degrees", fit.given_degrees},
             {"found_degrees", fit.found_degrees},
             {"tried", fit.tried}};
 }
@@ -360,14 +362,16 @@ nlohmann::ordered_json verified_json(const VerifiedMap& map) {
         stages[stage_names[i]] = {{"share", check.stages[i].share}, {"rms", check.stages[i].rms}};
     nlohmann::ordered_json worst = nlohmann::ordered_json::array();
     for (const WorstTexel& texel : check.worst) {
-        worst.push_back(
-            {{"x", texel.x}, {"y", texel.y}, {"degrees", texel.degrees}, {"torn", texel.is_torn}});
+        worst.push_back({{"x", texel.x},
+                         {"y", texel.y},
+                         {"degrees", texel.degrees},
+                         {"torn", texel.is_discontinuous}});
     }
     nlohmann::ordered_json json = {{"error", summary_json(check.error)},
                                    {"centre", summary_json(check.centre)},
-                                   {"remade", summary_json(check.remade)},
+                                   {"remade", summary_json(check.rebaked)},
                                    {"reference_samples", check.reference_samples},
-                                   {"torn", check.torn},
+                                   {"torn", check.discontinuous},
                                    {"missed", check.missed},
                                    {"frameless", check.frameless},
                                    {"stages", stages},

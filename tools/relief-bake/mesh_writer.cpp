@@ -104,7 +104,7 @@ double layer_range(LayerKind kind, const LayerOptions& options, const LayerBound
         case LayerKind::curvature:
             // Outliers would leave few of 256 codes for the other values.
             return options.curvature_range.value_or(
-                bits_of(options, kind) == 8 ? bounds.usual_curvature : bounds.curvature);
+                bits_of(options, kind) == 8 ? bounds.curvature_p99 : bounds.curvature);
         case LayerKind::position:
             return options.position_range.value_or(bounds.position);
         default:

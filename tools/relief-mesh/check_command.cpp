@@ -29,7 +29,7 @@ namespace {
 
 /// The result of identifying the tangents of a primitive.
 struct CheckedTangents {
-    SniffedTangents sniffed;
+    IdentifiedTangents identified;
     int texcoord_set = 0;       ///< The set that the tangents match, or else `usual_set`.
     int usual_set = 0;          ///< The set that glTF assigns to the tangents.
     bool has_normals = true;    ///< Without normals, glTF ignores tangents.
@@ -42,7 +42,7 @@ struct CheckedPart {
     std::size_t triangles = 0;
     std::size_t vertices = 0;
     Diagnosis diagnosis;
-    Report trouble;
+    Report problem;
     Report remarks;
     std::optional<CheckedTangents> tangents;  ///< Absent if the primitive has no tangents.
 };
@@ -63,7 +63,7 @@ struct CheckedModel {
 bool CheckedModel::is_sound() const {
     return error.empty() && reading_trouble.empty() &&
            std::all_of(parts.begin(), parts.end(),
-                       [](const CheckedPart& part) { return part.trouble.empty(); });
+                       [](const CheckedPart& part) { return part.problem.empty(); });
 }
 
 /// Identifies the method of a primitive's stored tangents. If no method matches with the texture
@@ -79,13 +79,13 @@ std::optional<CheckedTangents> check_tangents(const GltfDocument& document, Gltf
     const std::vector<int> sets = document.texcoord_sets(id);
     result.has_texcoords = !sets.empty();
     if (!result.has_normals || sets.empty()) return result;
-    result.sniffed = sniff_tangents(document.mesh(id, result.usual_set));
+    result.identified = identify_tangents(document.mesh(id, result.usual_set));
     for (const int set : sets) {
-        if (result.sniffed.basis) break;
+        if (result.identified.basis) break;
         if (set == result.usual_set) continue;
-        SniffedTangents other = sniff_tangents(document.mesh(id, set));
+        IdentifiedTangents other = identify_tangents(document.mesh(id, set));
         if (!other.basis) continue;
-        result.sniffed = std::move(other);
+        result.identified = std::move(other);
         result.texcoord_set = set;
     }
     return result;
@@ -117,17 +117,17 @@ struct Use {
 
 Severity severity_of(MeshCondition condition, const Use& use) {
     if (condition == MeshCondition::texture_degenerate && !use.tangents && !use.baking)
-        return Severity::remark;
-    if (condition == MeshCondition::texture_overlapping && use.baking) return Severity::trouble;
+        return Severity::note;
+    if (condition == MeshCondition::texture_overlapping && use.baking) return Severity::problem;
     return condition_info(condition).severity;
 }
 
 void add_part(CheckedModel& model, std::string name, const Mesh& mesh, const Use& use) {
     CheckedPart part{
         std::move(name), mesh.triangles.size(), mesh.positions.size(), diagnose(mesh), {}, {}, {}};
-    for (const FoundCondition& found : part.diagnosis.found) {
-        const bool is_trouble = severity_of(found.condition, use) == Severity::trouble;
-        (is_trouble ? part.trouble : part.remarks).add(to_finding(found));
+    for (const MeshConditionCount& found : part.diagnosis.found) {
+        const bool is_trouble = severity_of(found.condition, use) == Severity::problem;
+        (is_trouble ? part.problem : part.remarks).add(to_finding(found));
     }
     model.parts.push_back(std::move(part));
 }
@@ -193,30 +193,29 @@ constexpr double min_sign_share = 0.99;
 /// Whether the sign w matches the method: at all corners, at none, or at some.
 enum class Sign { correct, negated, mixed };
 
-Sign sign_of(const BasisAgreement& agreement) {
+Sign sign_of(const TangentAgreement& agreement) {
     const auto all = static_cast<double>(agreement.agreeing());
     const auto negated = static_cast<double>(agreement.negated);
     if (negated >= min_sign_share * all) return Sign::negated;
     return negated <= (1.0 - min_sign_share) * all ? Sign::correct : Sign::mixed;
 }
 
-std::string variant_of(const BasisAgreement& agreement) {
-    return std::string(
-        variant_in_words(agreement.quarter_turns, sign_of(agreement) == Sign::negated));
+std::string variant_of(const TangentAgreement& agreement) {
+    return std::string(variant_text(agreement.quarter_turns, sign_of(agreement) == Sign::negated));
 }
 
 /// Angles below 0.001 degrees are shown as 0.001.
-std::string angles_in_words(AngleDistribution angles) {
+std::string angles_text(AngleDistribution angles) {
     for (double* degrees : {&angles.median, &angles.p90, &angles.p99, &angles.max})
         *degrees = std::max(*degrees, 0.001);
     return fmt::format("median {:.2g}, 90 % within {:.2g}, 99 % within {:.2g}, maximum {:.2g}",
                        angles.median, angles.p90, angles.p99, angles.max);
 }
 
-std::string identified_in_words(const CheckedTangents& tangents) {
-    const SniffedTangents& sniffed = tangents.sniffed;
-    const BasisAgreement& best = *sniffed.best();
-    std::string text(word_of(*sniffed.basis));
+std::string identified_text(const CheckedTangents& tangents) {
+    const IdentifiedTangents& identified = tangents.identified;
+    const TangentAgreement& best = *identified.best();
+    std::string text(name_of(*identified.basis));
     const std::string variant = variant_of(best);
     if (!variant.empty()) text += ", " + variant;
     if (sign_of(best) == Sign::mixed) {
@@ -225,48 +224,48 @@ std::string identified_in_words(const CheckedTangents& tangents) {
     if (tangents.texcoord_set != tangents.usual_set)
         text += fmt::format(", from texture coordinate set {}", tangents.texcoord_set);
     text += fmt::format(": {} of {} within {:.2g} degrees ({})", best.agreeing(),
-                        counted(sniffed.corners, "corner"), sniffed.tolerance,
-                        angles_in_words(best.angles));
-    if (!sniffed.same_here.empty()) {
+                        counted(identified.corners, "corner"), identified.tolerance,
+                        angles_text(best.angles));
+    if (!identified.equivalent_methods.empty()) {
         std::vector<std::string_view> words;
-        for (const TangentBasis basis : sniffed.same_here)
-            words.push_back(word_of(basis));
+        for (const TangentBasis basis : identified.equivalent_methods)
+            words.push_back(name_of(basis));
         text += fmt::format("; {} {} the same tangents here", fmt::join(words, ", "),
                             words.size() == 1 ? "gives" : "give");
     }
     return text;
 }
 
-std::string in_words(const CheckedTangents& tangents) {
+std::string as_text(const CheckedTangents& tangents) {
     if (!tangents.has_normals) return "no normals: glTF ignores these tangents";
     if (!tangents.has_texcoords) return "of unknown basis: there are no texture coordinates";
-    const SniffedTangents& sniffed = tangents.sniffed;
-    if (sniffed.basis) return identified_in_words(tangents);
-    const BasisAgreement* best = sniffed.best();
+    const IdentifiedTangents& identified = tangents.identified;
+    if (identified.basis) return identified_text(tangents);
+    const TangentAgreement* best = identified.best();
     if (best == nullptr) {
         return fmt::format(
             "of unknown basis: all triangles are too small in the image, or all tangents are "
             "without direction ({} omitted, {} without direction)",
-            sniffed.left_out, sniffed.undefined);
+            identified.left_out, identified.undefined);
     }
     const std::string variant = variant_of(*best);
     return fmt::format("of unknown basis; nearest{} is {}{}: {} of {} within {:.2g} degrees ({})",
-                       sniffed.is_best_by_far() ? " by far" : "", word_of(best->basis),
+                       identified.is_clearly_best() ? " by far" : "", name_of(best->basis),
                        variant.empty() ? "" : ", " + variant, best->agreeing(),
-                       counted(sniffed.corners, "corner"), sniffed.tolerance,
-                       angles_in_words(best->angles));
+                       counted(identified.corners, "corner"), identified.tolerance,
+                       angles_text(best->angles));
 }
 
 nlohmann::ordered_json json_of(const CheckedTangents& tangents) {
-    const SniffedTangents& sniffed = tangents.sniffed;
+    const IdentifiedTangents& identified = tangents.identified;
     nlohmann::ordered_json agreements = nlohmann::ordered_json::array();
-    for (const BasisAgreement& agreement : sniffed.agreements) {
+    for (const TangentAgreement& agreement : identified.agreements) {
         const AngleDistribution& angles = agreement.angles;
         nlohmann::ordered_json histogram = nlohmann::ordered_json::array();
         for (std::size_t i = 0; i < angles.histogram.size(); ++i)
             histogram.push_back(
                 {{"up_to", AngleDistribution::bounds[i]}, {"corners", angles.histogram[i]}});
-        agreements.push_back({{"basis", word_of(agreement.basis)},
+        agreements.push_back({{"basis", name_of(agreement.basis)},
                               {"agreeing", agreement.agreeing()},
                               {"variant", variant_of(agreement)},
                               {"w_negated", agreement.negated},
@@ -278,22 +277,22 @@ nlohmann::ordered_json json_of(const CheckedTangents& tangents) {
                               {"max", angles.max},
                               {"histogram", std::move(histogram)}});
     }
-    nlohmann::ordered_json same_here = nlohmann::ordered_json::array();
-    for (const TangentBasis basis : sniffed.same_here)
-        same_here.push_back(word_of(basis));
-    const BasisAgreement* best = sniffed.best();
-    return {{"basis", sniffed.basis ? std::string(word_of(*sniffed.basis)) : "unknown"},
+    nlohmann::ordered_json equivalent_methods = nlohmann::ordered_json::array();
+    for (const TangentBasis basis : identified.equivalent_methods)
+        equivalent_methods.push_back(name_of(basis));
+    const TangentAgreement* best = identified.best();
+    return {{"basis", identified.basis ? std::string(name_of(*identified.basis)) : "unknown"},
             {"variant", best == nullptr ? "" : variant_of(*best)},
-            {"nearest", best == nullptr ? "" : std::string(word_of(best->basis))},
-            {"nearest_by_far", sniffed.is_best_by_far()},
-            {"same_here", std::move(same_here)},
+            {"nearest", best == nullptr ? "" : std::string(name_of(best->basis))},
+            {"nearest_by_far", identified.is_clearly_best()},
+            {"same_here", std::move(equivalent_methods)},
             {"texcoord_set", tangents.texcoord_set},
             {"texcoord_set_of_material", tangents.usual_set},
-            {"corners", sniffed.corners},
-            {"left_out", sniffed.left_out},
-            {"without_direction", sniffed.undefined},
-            {"stored_bits", sniffed.stored_bits == 0 ? 32 : sniffed.stored_bits},
-            {"tolerance", sniffed.tolerance},
+            {"corners", identified.corners},
+            {"left_out", identified.left_out},
+            {"without_direction", identified.undefined},
+            {"stored_bits", identified.stored_bits == 0 ? 32 : identified.stored_bits},
+            {"tolerance", identified.tolerance},
             {"agreements", std::move(agreements)}};
 }
 
@@ -337,7 +336,7 @@ std::vector<std::string> trouble_lines(const CheckedModel& model) {
     for (const Finding& finding : model.reading_trouble.findings())
         lines.push_back(to_string(finding));
     for (const MeshConditionInfo& condition : mesh_conditions()) {
-        const Sum sum = sum_of(model, &CheckedPart::trouble, condition.word);
+        const Sum sum = sum_of(model, &CheckedPart::problem, condition.word);
         if (sum.parts == 0) continue;
         const std::string place = sum.first_part->name.empty() ? "" : sum.first_part->name + ": ";
         std::string line = place + to_string(sum.first);
@@ -349,7 +348,7 @@ std::vector<std::string> trouble_lines(const CheckedModel& model) {
 }
 
 /// "36 x boundary edge in 3 primitives, 12 x needle triangle"
-std::string remarks_in_words(const CheckedModel& model) {
+std::string remarks_text(const CheckedModel& model) {
     std::vector<std::string> words;
     for (const Finding& finding : model.reading_remarks.findings())
         words.push_back(fmt::format("{} x {} {}", finding.count, finding.kind, finding.outcome));
@@ -364,7 +363,7 @@ std::string remarks_in_words(const CheckedModel& model) {
 }
 
 /// Returns a line per distinct result of the primitives' tangents.
-std::vector<std::string> tangents_in_words(const CheckedModel& model) {
+std::vector<std::string> tangents_text(const CheckedModel& model) {
     struct Group {
         std::string words;
         const CheckedPart* first;
@@ -373,7 +372,7 @@ std::vector<std::string> tangents_in_words(const CheckedModel& model) {
     std::vector<Group> groups;
     for (const CheckedPart& part : model.parts) {
         if (!part.tangents) continue;
-        std::string words = in_words(*part.tangents);
+        std::string words = as_text(*part.tangents);
         const auto group = std::find_if(groups.begin(), groups.end(),
                                         [&](const Group& other) { return other.words == words; });
         if (group == groups.end())
@@ -410,14 +409,14 @@ nlohmann::ordered_json findings_json(const Report& report) {
 
 nlohmann::ordered_json part_json(const CheckedPart& part) {
     return {{"name", part.name},
-            {"sound", part.trouble.empty()},
+            {"sound", part.problem.empty()},
             {"triangles", part.triangles},
             {"vertices", part.vertices},
             {"size", part.diagnosis.size},
             {"spacing", part.diagnosis.spacing},
             {"overlap_raster", part.diagnosis.overlap_raster},
             {"tangents", part.tangents ? json_of(*part.tangents) : nlohmann::ordered_json()},
-            {"trouble", findings_json(part.trouble)},
+            {"trouble", findings_json(part.problem)},
             {"remarks", findings_json(part.remarks)}};
 }
 
@@ -426,9 +425,9 @@ void print_text(const CheckedModel& model) {
                                     counted(model.parts.size(), "primitive"),
                                     counted(triangles_of(model), "triangle"), verdict(model)));
     print_entry("trouble", trouble_lines(model));
-    const std::string remarks = remarks_in_words(model);
+    const std::string remarks = remarks_text(model);
     if (!remarks.empty()) print_entry("remarks", remarks);
-    print_entry("tangents", tangents_in_words(model));
+    print_entry("tangents", tangents_text(model));
 }
 
 nlohmann::ordered_json json_of(const CheckedModel& model) {

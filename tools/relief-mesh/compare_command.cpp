@@ -54,13 +54,13 @@ ModelComparison compare_files(const CompareRequest& request) {
                           {request.tolerance, request.uv_tolerance, !request.ignore_uv});
 }
 
-std::string degrees_in_words(const AngleDistribution& angles) {
+std::string degrees_text(const AngleDistribution& angles) {
     return fmt::format("{}: rms {:.4g}, mean {:.4g}, 99 % within {:.4g}, maximum {:.4g} degrees",
                        counted(angles.count, "corner"), angles.rms, angles.mean, angles.p99,
                        angles.max);
 }
 
-std::string histogram_in_words(const AngleDistribution& angles) {
+std::string histogram_text(const AngleDistribution& angles) {
     std::vector<std::string> bins;
     for (std::size_t i = 0; i < angles.histogram.size(); ++i) {
         if (angles.histogram[i] != 0)
@@ -79,7 +79,7 @@ std::vector<std::string> attribute_lines(const AngleDistribution& angles, bool i
                                          std::size_t in_one) {
     if (!in_a || !in_b) return {absence(in_a, in_b)};
     std::vector<std::string> lines;
-    if (angles.count != 0) lines = {degrees_in_words(angles), histogram_in_words(angles)};
+    if (angles.count != 0) lines = {degrees_text(angles), histogram_text(angles)};
     if (angles.undefined != 0) {
         lines.push_back(fmt::format("{} with a zero or non-finite direction",
                                     counted(angles.undefined, "corner")));
@@ -100,8 +100,8 @@ glm::vec3 place_of(const JoinedModel& model, std::uint32_t corner) {
     return model.mesh.positions[model.mesh.triangles[corner / 3][static_cast<int>(corner % 3)]];
 }
 
-std::string in_words(const ModelComparison& compared, const WorstCorner& worst,
-                     const std::string& what) {
+std::string as_text(const ModelComparison& compared, const WorstCorner& worst,
+                    const std::string& what) {
     const ComparedPart& part = part_of(compared.a, worst.corner_a / 3);
     const glm::vec3 at = place_of(compared.a, worst.corner_a);
     return fmt::format(
@@ -122,7 +122,7 @@ std::vector<std::string> worst_lines(const ModelComparison& compared) {
             if (std::find(places.begin(), places.end(), place) != places.end()) continue;
             places.push_back(place);
             if (places.size() > shown) return;
-            lines.push_back(in_words(compared, worst, what));
+            lines.push_back(as_text(compared, worst, what));
         }
     };
     add(compared.all.worst_normals, "normal");
@@ -130,7 +130,7 @@ std::vector<std::string> worst_lines(const ModelComparison& compared) {
     return lines;
 }
 
-std::string matched_in_words(const ModelComparison& compared) {
+std::string matched_text(const ModelComparison& compared) {
     const CornerMatch& match = compared.match;
     std::string text =
         fmt::format("{} by position{}", counted(match.exact + match.near, "triangle"),
@@ -192,7 +192,7 @@ std::vector<std::string> part_lines(const ModelComparison& compared) {
     return lines;
 }
 
-std::string in_words(const std::filesystem::path& file, const JoinedModel& model) {
+std::string as_text(const std::filesystem::path& file, const JoinedModel& model) {
     return fmt::format("{}: {}, {}, {}", file.string(), format_name(readable_format(file)),
                        counted(model.parts.size(), "primitive"),
                        counted(model.mesh.triangles.size(), "triangle"));
@@ -204,9 +204,9 @@ bool any_has(const JoinedModel& model, bool ComparedPart::*attribute) {
 }
 
 void print_text(const CompareRequest& request, const ModelComparison& compared) {
-    print_entry("A", in_words(request.a, compared.a));
-    print_entry("B", in_words(request.b, compared.b));
-    print_entry("matched", matched_in_words(compared));
+    print_entry("A", as_text(request.a, compared.a));
+    print_entry("B", as_text(request.b, compared.b));
+    print_entry("matched", matched_text(compared));
     print_entry("unmatched", unmatched_lines(compared));
     if (compared.match.ambiguous != 0) {
         print_entry("ambiguous", fmt::format("{} matched to one of several at the same position",

@@ -85,7 +85,7 @@ std::string verdict(const Result& result) {
     return result.passed() ? "conforms" : "DIFFERS";
 }
 
-std::string in_words(const Result& result) {
+std::string as_text(const Result& result) {
     if (!result.error.empty()) return "NOT COMPARED: " + result.error;
     const Judgment& j = result.judgment;
     std::string text = fmt::format("{}: {} of {} compared", verdict(result), j.judged,
@@ -132,7 +132,7 @@ void show_text(const std::vector<Result>& results) {
         longest = std::max(longest, result.name.size());
     std::vector<std::string> lines;
     for (const Result& result : results)
-        lines.push_back(fmt::format("{:<{}}  {}", result.name, longest, in_words(result)));
+        lines.push_back(fmt::format("{:<{}}  {}", result.name, longest, as_text(result)));
     print_entry("meshes", lines);
     const Scores scores(results);
     const Score& conforming = scores.conforming;

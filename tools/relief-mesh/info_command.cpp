@@ -61,8 +61,8 @@ struct ModelInfo {
     std::size_t images = 0;
     std::size_t lights = 0;
     std::size_t cameras = 0;
-    std::vector<std::string> beyond_a_mesh;  ///< "2 animations", "1 skin", ...
-    std::vector<std::string> compression;    ///< "EXT_meshopt_compression of 3 buffer views", ...
+    std::vector<std::string> unsupported_contents;  ///< "2 animations", "1 skin", ...
+    std::vector<std::string> compression;  ///< "EXT_meshopt_compression of 3 buffer views", ...
     Findings findings;
 };
 
@@ -160,14 +160,14 @@ void describe(const GltfDocument& document, ModelInfo& info) {
     add_materials(info, view.materials);
     for (const GltfPrimitiveId id : document.triangle_primitives())
         add_part(info, document.describe(id), document.mesh(id));
-    for (const GltfPlaced<GltfPrimitiveId>& placed : view.primitives)
+    for (const GltfInstance<GltfPrimitiveId>& placed : view.primitives)
         include(info.bounds, bounds_in_world(document.mesh(placed.what), placed.world_from_object));
     info.instances = view.primitives.size();
     info.images = view.images.size();
     info.lights = view.lights.size();
     info.cameras = view.cameras.size();
-    info.beyond_a_mesh = document.beyond_a_mesh();
-    info.compression = compression_in_words(document, false);
+    info.unsupported_contents = document.unsupported_contents();
+    info.compression = compression_text(document, false);
 }
 
 void describe(const MeshFile& contents, ModelInfo& info) {
@@ -194,7 +194,7 @@ ModelInfo model_info(const std::filesystem::path& file) {
     return info;
 }
 
-std::string in_words(const Bounds& bounds) {
+std::string as_text(const Bounds& bounds) {
     if (bounds.empty()) return "empty: no finite position";
     const glm::vec3 size = bounds.max - bounds.min;
     return fmt::format(
@@ -203,7 +203,7 @@ std::string in_words(const Bounds& bounds) {
         size.y, size.z);
 }
 
-std::string in_words(const MeshBytes& memory) {
+std::string as_text(const MeshBytes& memory) {
     return fmt::format("{} of attributes, {} of indices, the same on the GPU",
                        byte_size(memory.attributes), byte_size(memory.indices));
 }
@@ -218,7 +218,7 @@ nlohmann::ordered_json bounds_json(const Bounds& bounds) {
             {"max", {bounds.max.x, bounds.max.y, bounds.max.z}}};
 }
 
-std::string in_words(const PartInfo& part) {
+std::string as_text(const PartInfo& part) {
     std::string text = part.name.empty() ? "" : part.name + ": ";
     text += counted(part.triangles, "triangle") + ", " +
             counted(part.vertices, "vertex", "vertices") + "; " +
@@ -229,7 +229,7 @@ std::string in_words(const PartInfo& part) {
     return text;
 }
 
-std::string in_words(const MaterialInfo& material) {
+std::string as_text(const MaterialInfo& material) {
     if (material.textures.empty()) return material.name;
     return fmt::format("{}: textures {}", material.name, fmt::join(material.textures, ", "));
 }
@@ -244,7 +244,7 @@ std::vector<std::string> list(const Things& things) {
                 fmt::format("... and {} more (--json lists all)", things.size() - lines.size()));
             break;
         }
-        lines.push_back(in_words(thing));
+        lines.push_back(as_text(thing));
     }
     return lines;
 }
@@ -259,11 +259,11 @@ void print_info(const std::filesystem::path& file, const ModelInfo& info) {
                     (info.instances != info.parts.size()
                          ? fmt::format(", {} in the scene", counted(info.instances, "instance"))
                          : ""));
-    print_entry("memory", in_words(info.memory));
-    print_entry("bounds", in_words(info.bounds));
+    print_entry("memory", as_text(info.memory));
+    print_entry("bounds", as_text(info.bounds));
     print_entry("parts", list(info.parts));
     print_entry("materials", list(info.materials));
-    std::vector<std::string> rest = info.beyond_a_mesh;
+    std::vector<std::string> rest = info.unsupported_contents;
     if (info.images != 0) rest.push_back(counted(info.images, "image"));
     if (!rest.empty()) print_entry("also", fmt::format("{}", fmt::join(rest, ", ")));
     print_entry("packed", info.compression);
@@ -297,7 +297,7 @@ nlohmann::ordered_json json_of(const std::filesystem::path& file, const ModelInf
             {"images", info.images},
             {"lights", info.lights},
             {"cameras", info.cameras},
-            {"beyond_a_mesh", info.beyond_a_mesh},
+            {"beyond_a_mesh", info.unsupported_contents},
             {"compression", info.compression},
             {"findings", info.findings.json()}};
 }

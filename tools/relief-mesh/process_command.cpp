@@ -99,7 +99,7 @@ Processed process(const ProcessRequest& request, Stages& stages) {
     Model model = stages.run("read", [&] { return read_model(request.input, read_report); });
     done.findings.add("", read_report);
     if (const auto* document = std::get_if<GltfDocument>(&model))
-        done.decompressed = compression_in_words(*document, true);
+        done.decompressed = compression_text(*document, true);
     stages.run("frames", [&] {
         check_texcoords(request, model);
         done.parts = about(request.input, [&] {
@@ -146,7 +146,7 @@ Totals totals_of(const Processed& done) {
     return totals;
 }
 
-std::string part_normals_in_words(const FramedPart& part) {
+std::string part_normals_text(const FramedPart& part) {
     switch (part.normals) {
         case AttributeOutcome::kept:
             return "kept";
@@ -170,16 +170,16 @@ std::string part_normals_in_words(const FramedPart& part) {
 }
 
 /// "MikkTSpace", "area-weighted", ...
-std::string method_in_words(TangentMode mode) {
+std::string method_text(TangentMode mode) {
     return mode == TangentMode::mikktspace ? "MikkTSpace" : tangent_name(mode);
 }
 
-std::string part_tangents_in_words(const FramedPart& part) {
+std::string part_tangents_text(const FramedPart& part) {
     switch (part.tangents) {
         case AttributeOutcome::kept:
             return "kept";
         case AttributeOutcome::computed: {
-            const std::string method = "computed, " + method_in_words(part.tangent_mode);
+            const std::string method = "computed, " + method_text(part.tangent_mode);
             if (part.texcoords.is_only && part.texcoords.set == 0) return method;
             return fmt::format("{}, from texture coordinate set {} ({})", method,
                                part.texcoords.set, part.texcoords.reason);
@@ -207,7 +207,7 @@ std::string summary_of(const std::vector<FramedPart>& parts,
     return text;
 }
 
-std::string splits_in_words(const Totals& totals) {
+std::string splits_text(const Totals& totals) {
     if (totals.vertices_written == totals.vertices_read) return "none needed";
     return fmt::format("{} -> {} vertices", totals.vertices_read, totals.vertices_written);
 }
@@ -227,7 +227,7 @@ std::string outcome_name(AttributeOutcome outcome) {
 }
 
 /// Returns the notes of all primitives. Equal notes share a line.
-std::vector<std::string> notes_in_words(const Processed& done) {
+std::vector<std::string> notes_text(const Processed& done) {
     std::vector<std::pair<std::string, std::vector<std::string>>> places;
     for (const FramedPart& part : done.parts) {
         for (const std::string& note : part.notes) {
@@ -279,12 +279,12 @@ void print_summary(const ProcessRequest& request, const Processed& done, const S
                                     counted(done.parts.size(), "primitive"),
                                     counted(totals.triangles, "triangle"),
                                     counted(totals.vertices_read, "vertex", "vertices")));
-    print_entry("normals", summary_of(done.parts, part_normals_in_words));
-    print_entry("tangents", summary_of(done.parts, part_tangents_in_words));
-    print_entry("splits", splits_in_words(totals));
+    print_entry("normals", summary_of(done.parts, part_normals_text));
+    print_entry("tangents", summary_of(done.parts, part_tangents_text));
+    print_entry("splits", splits_text(totals));
     print_entry("findings",
                 done.findings.empty() ? std::vector<std::string>{"none"} : done.findings.lines());
-    print_entry("notes", notes_in_words(done));
+    print_entry("notes", notes_text(done));
     if (!done.decompressed.empty()) {
         print_entry("unpacked",
                     fmt::format("{} (written uncompressed)", fmt::join(done.decompressed, ", ")));
@@ -309,8 +309,7 @@ std::string line_of(const ProcessRequest& request, const Processed& done, const 
         "{}: {}, {}, normals {}, tangents {}, {}{}, {}", request.output.string(),
         counted(totals.triangles, "triangle"),
         counted(totals.vertices_written, "vertex", "vertices"),
-        summary_of(done.parts, part_normals_in_words),
-        summary_of(done.parts, part_tangents_in_words),
+        summary_of(done.parts, part_normals_text), summary_of(done.parts, part_tangents_text),
         done.findings.empty() ? "no findings" : counted(done.findings.all().size(), "finding"),
         done.omitted.empty() ? "" : fmt::format(", left out: {}", fmt::join(done.omitted, ", ")),
         duration(sum));

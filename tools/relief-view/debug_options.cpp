@@ -19,7 +19,7 @@ Choices<DebugView> view_choices() {
 }
 
 const Choices<HealthChoice>& health_choices() {
-    static const Choices<HealthChoice> words = {{"trouble", HealthChoice::trouble},
+    static const Choices<HealthChoice> words = {{"trouble", HealthChoice::problem},
                                                 {"all", HealthChoice::all}};
     return words;
 }
@@ -108,7 +108,7 @@ Overlays overlays_of(const DebugChoices& choices, const HealthMarkers& markers) 
     Overlays overlays;
     overlays.wireframe = choices.wireframe;
     if (choices.vertex_frames)
-        overlays.vertex_frames = choices.frame_length.value_or(usual_frame_length);
+        overlays.vertex_frames = choices.frame_length.value_or(default_frame_length);
     overlays.markers = markers.markers;
     return overlays;
 }

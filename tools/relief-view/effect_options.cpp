@@ -159,11 +159,11 @@ constexpr std::size_t frames_per_effect = 3;
 /// The first frame is not counted, because the driver compiles shaders then.
 constexpr std::size_t warm_up_frames = 1;
 
-std::string milliseconds(const Spread& spread) {
+std::string milliseconds(const TimeStatistics& spread) {
     return fmt::format("{:.2f} ms ({:.2f} to {:.2f})", spread.median, spread.p10, spread.p90);
 }
 
-Json spread_json(const Spread& spread) {
+Json spread_json(const TimeStatistics& spread) {
     return {{"median", spread.median}, {"p10", spread.p10}, {"p90", spread.p90}};
 }
 
@@ -264,8 +264,8 @@ void add_effect_options(CLI::App& app, ViewOptions& options) {
         .group(group);
 }
 
-EffectWishes parse_effects(const std::string& subject, const std::string& text) {
-    EffectWishes requests;
+EffectRequest parse_effects(const std::string& subject, const std::string& text) {
+    EffectRequest requests;
     std::vector<std::string> words = split(text, ',');
     const Choices<EffectBase> bases = {{"auto", EffectBase::planned},
                                        {"all", EffectBase::all_neutral},
@@ -290,7 +290,7 @@ EffectWishes parse_effects(const std::string& subject, const std::string& text) 
 FramePlan chosen_plan(const ViewOptions& options, const Scene& scene,
                       const FrameSettings& settings) {
     FramePlan plan = plan_effects(scene, settings);
-    const EffectWishes& requests = options.effects.requests;
+    const EffectRequest& requests = options.effects.requests;
     if (requests.base == EffectBase::planned && requests.forced.empty()) return plan;
     try {
         return force_effects(scene, settings, std::move(plan), requests);
@@ -326,13 +326,13 @@ void print_measures(const FrameMeasures& measures, const ViewOptions& options, c
     if (measures.budget) print_entry("budget", budget_text(*measures.budget, options));
     if (measures.benchmark) {
         const FrameSeries& series = *measures.benchmark;
-        print_entry(
-            "benchmark",
-            fmt::format("{}: {}, of which drawing {} and reading back {}; {} linked in {}",
-                        counted(series.frame.size(), "frame"),
-                        milliseconds(spread_of(series.frame)), milliseconds(spread_of(series.draw)),
-                        milliseconds(spread_of(series.read_back)),
-                        counted(drawn.programs, "program"), duration(drawn.times.link)));
+        print_entry("benchmark",
+                    fmt::format("{}: {}, of which drawing {} and reading back {}; {} linked in {}",
+                                counted(series.frame.size(), "frame"),
+                                milliseconds(time_statistics(series.frame)),
+                                milliseconds(time_statistics(series.draw)),
+                                milliseconds(time_statistics(series.read_back)),
+                                counted(drawn.programs, "program"), duration(drawn.times.link)));
     }
     if (measures.costs) print_costs(*measures.costs, options);
 }
@@ -341,12 +341,13 @@ Json measures_json(const FrameMeasures& measures, const ViewOptions& options, co
     Json json = Json::object();
     if (measures.benchmark) {
         const FrameSeries& series = *measures.benchmark;
-        json["benchmark"] = {{"frames", series.frame.size()},
-                             {"frame_milliseconds", spread_json(spread_of(series.frame))},
-                             {"draw_milliseconds", spread_json(spread_of(series.draw))},
-                             {"read_back_milliseconds", spread_json(spread_of(series.read_back))},
-                             {"programs", drawn.programs},
-                             {"link_milliseconds", drawn.times.link}};
+        json["benchmark"] = {
+            {"frames", series.frame.size()},
+            {"frame_milliseconds", spread_json(time_statistics(series.frame))},
+            {"draw_milliseconds", spread_json(time_statistics(series.draw))},
+            {"read_back_milliseconds", spread_json(time_statistics(series.read_back))},
+            {"programs", drawn.programs},
+            {"link_milliseconds", drawn.times.link}};
     }
     if (measures.costs) {
         Json list = Json::array();

@@ -32,7 +32,7 @@ void add_effect_options(CLI::App& app, ViewOptions& options);
 
 /// Parses the value of --effects.
 /// \throws UsageError
-EffectWishes parse_effects(const std::string& subject, const std::string& text);
+EffectRequest parse_effects(const std::string& subject, const std::string& text);
 
 /// The plan of the scene with forced effects.
 /// \throws UsageError with effect, material and reason, if an effect is unknown or impossible in

@@ -352,7 +352,7 @@ std::optional<Kernel> displayed_kernel(const ViewOptions& options) {
     if (options.kernel || !options.height_map) return options.kernel;
     BumpOptions bump;
     bump.strength = options.strength.value_or(bump.strength);
-    bump = settled_options(height_field(read_image(*options.height_map, ImageUse::data)), bump);
+    bump = resolve_options(height_field(read_image(*options.height_map, ImageUse::data)), bump);
     if (bump.kernel == Kernel::gaussian && bump.gaussian_radius != BumpOptions{}.gaussian_radius)
         return std::nullopt;
     return bump.kernel;

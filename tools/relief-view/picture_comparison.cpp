@@ -9,7 +9,7 @@
 
 #include "common/text.h"
 #include "relief/mesh/error.h"
-#include "relief/mesh/heat_picture.h"
+#include "relief/mesh/false_color.h"
 #include "relief/mesh/image_file.h"
 #include "variant.h"
 #include "window/orbit_camera.h"
@@ -208,7 +208,7 @@ void write_difference_map(const ViewOptions& options, const PictureComparison& c
     if (!options.difference_map) return;
     const std::filesystem::path& file = *options.difference_map;
     const Image& map = comparison.flip.map;
-    write_image(file, extension_of(file) == ".png" ? heat_picture(map, 1.0) : map);
+    write_image(file, extension_of(file) == ".png" ? false_color_image(map, 1.0) : map);
 }
 
 nlohmann::ordered_json comparison_json(const ViewOptions& options,

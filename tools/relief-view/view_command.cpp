@@ -61,8 +61,8 @@ std::size_t triangle_count(const Scene& scene) {
 /// For example "24, each 12.3 ms to draw and 0.9 ms to read back (median)".
 std::string frames_text(const SequenceTimes& times) {
     return fmt::format("{}, each {:.3g} ms to draw and {:.3g} ms to read back (median)",
-                       times.draw.size(), spread_of(times.draw).median,
-                       spread_of(times.read_back).median);
+                       times.draw.size(), time_statistics(times.draw).median,
+                       time_statistics(times.read_back).median);
 }
 
 /// For example "out/spin-0001.png to out/spin-0024.png", or one file with its size.
@@ -129,8 +129,8 @@ nlohmann::ordered_json picture_json(const ViewOptions& options, const Drawn& dra
               {"read_back", times.read_back}}},
             {"frames",
              {{"count", drawn.times.draw.size()},
-              {"median_draw_milliseconds", spread_of(drawn.times.draw).median},
-              {"median_read_back_milliseconds", spread_of(drawn.times.read_back).median}}}};
+              {"median_draw_milliseconds", time_statistics(drawn.times.draw).median},
+              {"median_read_back_milliseconds", time_statistics(drawn.times.read_back).median}}}};
 }
 
 OutputCoding coding_of(const ViewOptions& options) {

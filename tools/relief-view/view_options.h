@@ -58,7 +58,7 @@ struct CompareChoices {
 };
 
 /// The findings of the health check that are marked.
-enum class HealthChoice { trouble, all };
+enum class HealthChoice { problem, all };
 
 /// The options --show, --wireframe, --vertex-frames, --frame-length and --health-markers.
 struct DebugChoices {
@@ -71,7 +71,7 @@ struct DebugChoices {
 
 /// The options --effects, --benchmark, --budget and --print-shaders.
 struct EffectChoices {
-    EffectWishes requests;         ///< --effects
+    EffectRequest requests;        ///< --effects
     std::optional<int> benchmark;  ///< Number of frames to time.
     std::optional<double> budget;  ///< Maximum milliseconds per frame.
     bool print_shaders = false;

@@ -32,8 +32,8 @@ void code(std::span<const float> heights, double least, double range, std::span<
 
 }  // namespace
 
-HeightAt waves_at(std::span<const HeightWave> waves, const glm::dvec2& place) {
-    HeightAt sum;
+HeightSample evaluate_waves(std::span<const HeightWave> waves, const glm::dvec2& place) {
+    HeightSample sum;
     for (const HeightWave& wave : waves) {
         const double angle = glm::dot(wave.frequency, place) + wave.phase;
         sum.height += wave.amplitude * std::sin(angle);
@@ -43,7 +43,7 @@ HeightAt waves_at(std::span<const HeightWave> waves, const glm::dvec2& place) {
 }
 
 AnalyticHeights sampled_heights(int width, int height,
-                                const std::function<HeightAt(const glm::dvec2& place)>& field) {
+                                const std::function<HeightSample(const glm::dvec2& place)>& field) {
     AnalyticHeights result{make_image(width, height, 1, 32, ColorSpace::data), {}};
     const std::span<float> heights = result.heights.as<float>();
     result.normals.resize(heights.size());
@@ -64,7 +64,7 @@ AnalyticHeights sampled_heights(int width, int height,
 
 AnalyticHeights wave_heights(int width, int height, std::span<const HeightWave> waves) {
     return sampled_heights(width, height,
-                           [&](const glm::dvec2& place) { return waves_at(waves, place); });
+                           [&](const glm::dvec2& place) { return evaluate_waves(waves, place); });
 }
 
 std::vector<HeightWave> tiling_waves(int width, int height, int count, double shortest,
@@ -108,12 +108,12 @@ CodedHeights coded_heights(const Image& heights, int bits) {
     return coded;
 }
 
-DirectionError normal_error(const Image& normals, const AnalyticHeights& truth, int margin) {
-    if (normals.width != truth.heights.width || normals.height != truth.heights.height ||
+DirectionError normal_error(const Image& normals, const AnalyticHeights& reference, int margin) {
+    if (normals.width != reference.heights.width || normals.height != reference.heights.height ||
         normals.channels != 3) {
         throw InvalidInput(fmt::format("normals of {} x {} texels and a truth of {} x {}",
-                                       normals.width, normals.height, truth.heights.width,
-                                       truth.heights.height));
+                                       normals.width, normals.height, reference.heights.width,
+                                       reference.heights.height));
     }
     const std::span<const float> samples = normals.as<float>();
     std::vector<glm::vec3> found;
@@ -122,7 +122,7 @@ DirectionError normal_error(const Image& normals, const AnalyticHeights& truth, 
         for (int column = margin; column < normals.width - margin; ++column) {
             const std::size_t texel = texel_at(normals.width, column, row);
             found.emplace_back(samples[3 * texel], samples[3 * texel + 1], samples[3 * texel + 2]);
-            expected.push_back(truth.normals[texel]);
+            expected.push_back(reference.normals[texel]);
         }
     }
     return direction_error(found, expected);

@@ -277,7 +277,7 @@ TexturedMesh textured_mesh(AnalyticSurface surface, Triangulation triangulation,
     return result;
 }
 
-TexturedMesh bevelled_plate(double width) {
+TexturedMesh beveled_plate(double width) {
     if (!(width > 0.0)) throw InvalidInput(fmt::format("bevels {} wide: above 0", width));
     TexturedMesh result;
     const auto add = [&](const glm::dvec3& position, const glm::dvec3& normal,

@@ -30,7 +30,7 @@ constexpr Kernel all_kernels[] = {
 struct Trial {
     std::vector<Image> heights;
     std::vector<Image> smooth;  ///< De-staircased; empty if no method wants it.
-    std::vector<std::vector<glm::dvec3>> truth;
+    std::vector<std::vector<glm::dvec3>> ground_truth;
     BumpOptions bump;
     int margin = 0;  ///< Texels along the border that are not compared: there, parts are no maps.
 
@@ -71,7 +71,8 @@ std::vector<glm::dvec3> vectors_of(const Image& normals) {
 
 /// Angles between what is stored and the truth, of the texels that count.
 void add_angles(const Image& map, const NormalMapFormat& format,
-                const std::vector<glm::dvec3>& truth, int margin, std::vector<float>& angles) {
+                const std::vector<glm::dvec3>& ground_truth, int margin,
+                std::vector<float>& angles) {
     Report ignored;
     const std::vector<glm::dvec3> found =
         vectors_of(decode_normal_map(map, format.green, format.flat, ignored));
@@ -86,7 +87,7 @@ void add_angles(const Image& map, const NormalMapFormat& format,
                     (y + static_cast<std::size_t>(margin)) * static_cast<std::size_t>(map.width) +
                     x + static_cast<std::size_t>(margin);
                 angles[first + y * static_cast<std::size_t>(width) + x] =
-                    static_cast<float>(degrees_between(found[texel], truth[texel]));
+                    static_cast<float>(degrees_between(found[texel], ground_truth[texel]));
             }
         }
     });
@@ -98,15 +99,15 @@ BumpReference reference_for(const BumpSample& sample, const BumpExperimentOption
     bool destaircased = false;
     if (plain.depth.bits > 0 && plain.depth.bits < fine_bits) {
         const KernelChoice smooth =
-            choose_kernel(sample.looked_at, options.bump, true, options.grain);
+            choose_kernel(sample.analyzed, options.bump, true, options.grain);
         destaircased = smooth.rms_degrees < plain.rms_degrees;
         if (destaircased) best = smooth;
     }
     BumpReference reference;
     reference.method =
         BumpMethod{best.kernel, best.gaussian_radius, Arithmetic::float64, 32, destaircased};
-    reference.own_degrees = best.rms_degrees;
-    reference.own_max_degrees = best.max_degrees;
+    reference.reference_degrees = best.rms_degrees;
+    reference.reference_max_degrees = best.max_degrees;
     reference.upper_degrees = best.upper_rms_degrees;
     reference.upper_max_degrees = best.upper_max_degrees;
     reference.words = fmt::format(
@@ -121,19 +122,19 @@ void take_reference(const BumpReference& reference, Trial& trial) {
     const std::vector<Image>& heights = method.destaircased ? trial.smooth : trial.heights;
     for (const Image& part : heights) {
         Report ignored;
-        trial.truth.push_back(
+        trial.ground_truth.push_back(
             vectors_of(normals_from_height(part, options_of(method, trial.bump), ignored)));
     }
 }
 
-void mark_efficient(std::vector<BumpMeasurement>& all) {
+void mark_pareto_optimal(std::vector<BumpMeasurement>& all) {
     constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
-    std::vector<Price> prices;
+    std::vector<MethodCost> prices;
     for (const BumpMeasurement& one : all)
         prices.push_back({one.error.rms, one.seconds.count > 0 ? one.seconds.median : unknown});
-    const std::vector<bool> marks = efficient(prices);
+    const std::vector<bool> marks = pareto_optimal(prices);
     for (std::size_t i = 0; i < all.size(); ++i)
-        all[i].is_efficient = marks[i];
+        all[i].is_pareto_optimal = marks[i];
 }
 
 NormalMapFormat format_of(const BumpMethod& method, NormalMapFormat format) {
@@ -173,11 +174,11 @@ void take_times(std::span<const BumpMethod> methods, const Trial& trial,
         if (counted)
             times[i].push_back(seconds + (methods[i].destaircased ? smoothing.back() : 0.0));
     });
-    experiment.smoothing = spread_of(smoothing);
+    experiment.smoothing = time_statistics(smoothing);
     const auto texels = static_cast<double>(trial.texels());
     for (std::size_t i = 0; i < methods.size(); ++i) {
         BumpMeasurement& one = experiment.measurements[i];
-        one.seconds = spread_of(times[i]);
+        one.seconds = time_statistics(times[i]);
         if (one.seconds.median > 0.0) one.megapixels_per_second = texels / one.seconds.median / 1e6;
     }
 }
@@ -191,13 +192,13 @@ void measure_methods(std::span<const BumpMethod> methods, const Trial& trial,
         convert_parts(trial, methods[i], options.format, maps);
         std::vector<float> angles;
         for (std::size_t part = 0; part < maps.size(); ++part)
-            add_angles(maps[part], format_of(methods[i], options.format), trial.truth[part],
+            add_angles(maps[part], format_of(methods[i], options.format), trial.ground_truth[part],
                        trial.margin, angles);
         experiment.measurements[i].method = methods[i];
         experiment.measurements[i].error = angle_distribution(std::move(angles));
     }
     if (options.repeats.counted > 0) take_times(methods, trial, options, experiment);
-    mark_efficient(experiment.measurements);
+    mark_pareto_optimal(experiment.measurements);
 }
 
 double error_of(const BumpMeasurement& measurement, ErrorKind kind) {
@@ -206,7 +207,7 @@ double error_of(const BumpMeasurement& measurement, ErrorKind kind) {
 
 }  // namespace
 
-double cost_of(const BumpMethod& method) {
+double nominal_cost(const BumpMethod& method) {
     const GradientKernel kernel = gradient_kernel(method.kernel, method.gaussian_radius);
     // Both slopes: a multiplication and two additions for each difference and each smoothed pair.
     const double operations =
@@ -230,10 +231,10 @@ std::vector<BumpMethod> bump_methods(int gaussian_radius, std::span<const int> d
     return methods;
 }
 
-std::vector<ImagePart> parts_to_measure(int width, int height, std::int64_t most_texels) {
-    if (std::int64_t{width} * height <= most_texels) return {{0, 0, width, height}};
+std::vector<ImagePart> parts_to_measure(int width, int height, std::int64_t max_texels) {
+    if (std::int64_t{width} * height <= max_texels) return {{0, 0, width, height}};
     constexpr int each_way = 3;
-    const auto side = static_cast<int>(std::sqrt(most_texels / (each_way * each_way)));
+    const auto side = static_cast<int>(std::sqrt(max_texels / (each_way * each_way)));
     const int part_width = std::clamp(side, 1, width);
     const int part_height = std::clamp(side, 1, height);
     std::vector<ImagePart> parts;
@@ -248,7 +249,7 @@ std::vector<ImagePart> parts_to_measure(int width, int height, std::int64_t most
 }
 
 std::vector<ImagePart> BumpSampleParts::in_order() const {
-    std::vector<ImagePart> all = looked_at;
+    std::vector<ImagePart> all = analyzed;
     for (const ImagePart& part : measured) {
         if (std::find(all.begin(), all.end(), part) == all.end()) all.push_back(part);
     }
@@ -267,15 +268,15 @@ BumpSample BumpSampleParts::sample(const std::vector<Image>& images) const {
         }
         return found;
     };
-    return {taken(looked_at), taken(measured), measured.size() <= 1};
+    return {taken(analyzed), taken(measured), measured.size() <= 1};
 }
 
-BumpSample sample_of(const Image& height, std::int64_t most_texels) {
+BumpSample sample_of(const Image& height, std::int64_t max_texels) {
     if (height.empty()) throw InvalidInput("an empty height field cannot be measured");
     BumpSample sample;
-    for (const ImagePart& part : parts_to_look_at(height.width, height.height))
-        sample.looked_at.push_back(part_of(height, part));
-    const std::vector<ImagePart> parts = parts_to_measure(height.width, height.height, most_texels);
+    for (const ImagePart& part : parts_to_analyze(height.width, height.height))
+        sample.analyzed.push_back(part_of(height, part));
+    const std::vector<ImagePart> parts = parts_to_measure(height.width, height.height, max_texels);
     sample.is_whole = parts.size() == 1;
     for (const ImagePart& part : parts)
         sample.measured.push_back(sample.is_whole ? height : part_of(height, part));
@@ -285,7 +286,7 @@ BumpSample sample_of(const Image& height, std::int64_t most_texels) {
 BumpExperiment measure_bump(const BumpSample& sample, std::span<const BumpMethod> methods,
                             const BumpExperimentOptions& options) {
     BumpExperiment experiment;
-    experiment.choice = choose_kernel(sample.looked_at, options.bump, false, options.grain);
+    experiment.choice = choose_kernel(sample.analyzed, options.bump, false, options.grain);
     experiment.reference = reference_for(sample, options, experiment.choice);
     Trial trial;
     trial.bump = options.bump;
@@ -315,7 +316,7 @@ BumpExperiment measure_bump(const BumpField& field, std::span<const BumpMethod> 
     trial.bump = options.bump;
     trial.heights.push_back(field.heights);
     if (is_any_destaircased(methods)) trial.smooth = smoothed_heights(trial);
-    trial.truth.push_back(field.normals);
+    trial.ground_truth.push_back(field.normals);
     experiment.texels = trial.texels();
     measure_methods(methods, trial, options, experiment);
     return experiment;
@@ -323,7 +324,7 @@ BumpExperiment measure_bump(const BumpField& field, std::span<const BumpMethod> 
 
 ExpectedError expected_error(const BumpReference& reference, const BumpMeasurement& measurement,
                              ErrorKind kind) {
-    return {kind == ErrorKind::rms ? reference.own_degrees : reference.own_max_degrees,
+    return {kind == ErrorKind::rms ? reference.reference_degrees : reference.reference_max_degrees,
             error_of(measurement, kind)};
 }
 
@@ -338,12 +339,13 @@ const BumpMeasurement* cheapest_within(const BumpExperiment& experiment,
     const BumpMeasurement* cheapest = nullptr;
     for (const BumpMeasurement& one : experiment.measurements) {
         if (!limits.hold(expected_error(experiment.reference, one, limits.kind))) continue;
-        if (cheapest == nullptr || cost_of(one.method) < cost_of(cheapest->method)) cheapest = &one;
+        if (cheapest == nullptr || nominal_cost(one.method) < nominal_cost(cheapest->method))
+            cheapest = &one;
     }
     return cheapest;
 }
 
-const BumpMeasurement* truest(const BumpExperiment& experiment, ErrorKind kind) {
+const BumpMeasurement* most_accurate(const BumpExperiment& experiment, ErrorKind kind) {
     const BumpMeasurement* least = nullptr;
     for (const BumpMeasurement& one : experiment.measurements) {
         if (least == nullptr || error_of(one, kind) < error_of(*least, kind)) least = &one;

@@ -18,7 +18,7 @@ namespace {
 
 constexpr int waves_in_all = 24;
 
-using FieldFunction = std::function<HeightAt(const glm::dvec2&)>;
+using FieldFunction = std::function<HeightSample(const glm::dvec2&)>;
 
 /// Waves of any length: they do not tile.
 std::vector<HeightWave> open_waves(int size, const FieldRecipe& recipe) {
@@ -43,7 +43,7 @@ FieldFunction domes(int width, int height, const FieldRecipe& recipe) {
     const glm::dvec2 cells = glm::max(glm::round(size / recipe.shortest), glm::dvec2(1.0));
     const glm::dvec2 cell = size / cells;
     const double radius = 0.48 * std::min(cell.x, cell.y);
-    return [=](const glm::dvec2& place) -> HeightAt {
+    return [=](const glm::dvec2& place) -> HeightSample {
         const glm::dvec2 index = glm::floor(place / cell);
         Random random(recipe.seed + static_cast<std::uint32_t>(index.x + index.y * cells.x));
         // rms slope of the shape is about the height over the radius.
@@ -60,7 +60,7 @@ FieldFunction domes(int width, int height, const FieldRecipe& recipe) {
 FieldFunction creases(int width, int height, const FieldRecipe& recipe) {
     const glm::dvec2 size(width, height);
     const glm::dvec2 period = size / glm::max(glm::round(size / recipe.shortest), glm::dvec2(1.0));
-    return [=](const glm::dvec2& place) -> HeightAt {
+    return [=](const glm::dvec2& place) -> HeightSample {
         const glm::dvec2 phase = glm::fract((place + 0.37) / period) - 0.5;
         const glm::dvec2 side(phase.x < 0.0 ? 1.0 : -1.0, phase.y < 0.0 ? 1.0 : -1.0);
         const double slope = recipe.rms_slope / std::sqrt(2.0);
@@ -78,10 +78,10 @@ FieldFunction terraces(int width, int height, const FieldRecipe& recipe) {
     const double between = recipe.shortest;
     const double wall = 4.0 * recipe.rms_slope;
     const auto level = [=](const glm::dvec2& place) {
-        return std::floor(waves_at(shape, place).height / between + 0.3);
+        return std::floor(evaluate_waves(shape, place).height / between + 0.3);
     };
-    return [=](const glm::dvec2& place) -> HeightAt {
-        HeightAt result = waves_at(ground, place);
+    return [=](const glm::dvec2& place) -> HeightSample {
+        HeightSample result = evaluate_waves(ground, place);
         const double own = level(place);
         result.height += wall * own;
         // Where a neighbour is on another level, there is a wall in between, and no normal.
@@ -101,13 +101,13 @@ FieldFunction mixed(int width, int height, const FieldRecipe& recipe) {
         tiling_waves(width, height, 8, longest / 4.0, recipe.rms_slope, recipe.seed);
     const std::vector<HeightWave> fine = tiling_waves(width, height, waves_in_all, recipe.shortest,
                                                       recipe.rms_slope, recipe.seed + 1);
-    return [=](const glm::dvec2& place) -> HeightAt {
+    return [=](const glm::dvec2& place) -> HeightSample {
         const double angle = 2.0 * std::numbers::pi * place.x / width;
         const double s = 0.5 - 0.5 * std::cos(angle);
         const double mask = s * s;
         const double steepness = 2.0 * s * 0.5 * std::sin(angle) * 2.0 * std::numbers::pi / width;
-        HeightAt result = waves_at(wide, place);
-        const HeightAt detail = waves_at(fine, place);
+        HeightSample result = evaluate_waves(wide, place);
+        const HeightSample detail = evaluate_waves(fine, place);
         result.height += mask * detail.height;
         result.slope += mask * detail.slope + glm::dvec2(steepness * detail.height, 0.0);
         return result;
@@ -119,11 +119,11 @@ FieldFunction shape_of(int width, int height, const FieldRecipe& recipe) {
         case FieldShape::waves: {
             auto waves = tiling_waves(width, height, waves_in_all, recipe.shortest,
                                       recipe.rms_slope, recipe.seed);
-            return [waves](const glm::dvec2& place) { return waves_at(waves, place); };
+            return [waves](const glm::dvec2& place) { return evaluate_waves(waves, place); };
         }
         case FieldShape::open: {
             auto waves = open_waves(std::max(width, height), recipe);
-            return [waves](const glm::dvec2& place) { return waves_at(waves, place); };
+            return [waves](const glm::dvec2& place) { return evaluate_waves(waves, place); };
         }
         case FieldShape::domes:
             return domes(width, height, recipe);
@@ -195,12 +195,12 @@ BumpField make_bump_field(const FieldRecipe& original, int width, int height) {
         throw InvalidInput(fmt::format("{} x {} texels are too few for a field", width, height));
     FieldRecipe recipe = original;
     recipe.shortest = std::min(recipe.shortest, 0.5 * std::max(width, height));
-    AnalyticHeights truth = sampled_heights(width, height, shape_of(width, height, recipe));
+    AnalyticHeights reference = sampled_heights(width, height, shape_of(width, height, recipe));
     BumpField field;
     field.options.wrap = recipe.shape == FieldShape::open ? Wrap::clamp : Wrap::repeat;
-    field.normals = std::move(truth.normals);
-    if (recipe.noise > 0.0) add_noise(truth.heights.as<float>(), recipe);
-    store(std::move(truth.heights), recipe.coding, field);
+    field.normals = std::move(reference.normals);
+    if (recipe.noise > 0.0) add_noise(reference.heights.as<float>(), recipe);
+    store(std::move(reference.heights), recipe.coding, field);
     return field;
 }
 
@@ -251,7 +251,7 @@ std::span<const FieldRecipe> tuning_fields() {
     return all;
 }
 
-std::span<const FieldRecipe> judging_fields() {
+std::span<const FieldRecipe> evaluation_fields() {
     using enum FieldShape;
     using enum FieldCoding;
     static constexpr FieldRecipe all[] = {

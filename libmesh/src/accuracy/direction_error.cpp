@@ -24,17 +24,17 @@ double degrees_between(const glm::dvec3& a, const glm::dvec3& b) {
 }
 
 DirectionError direction_error(std::span<const glm::vec3> directions,
-                               std::span<const glm::dvec3> truth,
+                               std::span<const glm::dvec3> reference,
                                std::span<const unsigned char> counts) {
-    if (directions.size() != truth.size() ||
+    if (directions.size() != reference.size() ||
         (!counts.empty() && counts.size() != directions.size())) {
         throw InvalidInput(fmt::format("{} directions cannot be compared with {}",
-                                       directions.size(), truth.size()));
+                                       directions.size(), reference.size()));
     }
     AngleMoments angles;
     for (std::size_t i = 0; i < directions.size(); ++i) {
         if (!counts.empty() && counts[i] == 0) continue;
-        angles.add(degrees_between(glm::dvec3(directions[i]), truth[i]));
+        angles.add(degrees_between(glm::dvec3(directions[i]), reference[i]));
     }
     DirectionError error{angles.rms(), angles.mean(), angles.max(), angles.count()};
     if (std::isnan(error.mean)) error.max = error.mean;

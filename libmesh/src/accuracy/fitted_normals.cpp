@@ -26,16 +26,16 @@ constexpr int crude_degree = 3;
 constexpr std::size_t terms_of(int degree) {
     return static_cast<std::size_t>((degree + 1) * (degree + 2) / 2 - 1);
 }
-constexpr std::size_t most_terms = terms_of(fine_degree);
+constexpr std::size_t max_terms = terms_of(fine_degree);
 /// Hubs of huge fans: what is around them is no neighbourhood.
-constexpr std::size_t most_triangles_around = 1024;
+constexpr std::size_t max_triangles_around = 1024;
 
 /// A symmetric system of equations, solved by Cholesky's decomposition.
 class NormalEquations {
   public:
     explicit NormalEquations(std::size_t size) : size_(size) {}
 
-    void add(const std::array<double, most_terms>& terms, double value, double weight) {
+    void add(const std::array<double, max_terms>& terms, double value, double weight) {
         for (std::size_t row = 0; row < size_; ++row) {
             for (std::size_t column = 0; column <= row; ++column)
                 matrix_[row][column] += weight * terms[row] * terms[column];
@@ -44,7 +44,7 @@ class NormalEquations {
     }
 
     /// \return nothing where the places do not determine the polynomial
-    std::optional<std::array<double, most_terms>> solution() {
+    std::optional<std::array<double, max_terms>> solution() {
         for (std::size_t row = 0; row < size_; ++row) {
             const double diagonal = matrix_[row][row];
             for (std::size_t column = 0; column <= row; ++column) {
@@ -59,7 +59,7 @@ class NormalEquations {
                 }
             }
         }
-        std::array<double, most_terms> result{};
+        std::array<double, max_terms> result{};
         for (std::size_t row = 0; row < size_; ++row) {
             result[row] = right_[row];
             for (std::size_t k = 0; k < row; ++k)
@@ -76,13 +76,13 @@ class NormalEquations {
 
   private:
     std::size_t size_;
-    std::array<std::array<double, most_terms>, most_terms> matrix_{};
-    std::array<double, most_terms> right_{};
+    std::array<std::array<double, max_terms>, max_terms> matrix_{};
+    std::array<double, max_terms> right_{};
 };
 
 /// x and y first, so that they are the slopes.
-std::array<double, most_terms> terms_at(double x, double y, int degree) {
-    std::array<double, most_terms> terms{x, y};
+std::array<double, max_terms> terms_at(double x, double y, int degree) {
+    std::array<double, max_terms> terms{x, y};
     std::size_t next = 2;
     for (int order = 2; order <= degree; ++order) {
         const std::size_t lower = next - static_cast<std::size_t>(order);
@@ -173,7 +173,7 @@ class MeshAsFans {
                 for (const Corner corner : corners_of(fans_[triangle][i]))
                     triangles.push_back(triangle_of(corner));
             }
-            if (triangles.size() > 16 * most_triangles_around) break;
+            if (triangles.size() > 16 * max_triangles_around) break;
         }
         make_unique(triangles);
     }
@@ -218,7 +218,7 @@ struct Fit {
 
 std::optional<Fit> fit_at(const MeshAsFans& mesh, std::size_t fan) {
     const std::span<const Corner> corners = mesh.corners_of(fan);
-    if (corners.empty() || corners.size() > most_triangles_around) return std::nullopt;
+    if (corners.empty() || corners.size() > max_triangles_around) return std::nullopt;
     const std::optional<glm::dvec3> start = mesh.mean_normal(fan);
     if (!start) return std::nullopt;
     std::vector<std::uint32_t> triangles;
@@ -228,9 +228,9 @@ std::optional<Fit> fit_at(const MeshAsFans& mesh, std::size_t fan) {
     mesh.grow(triangles);
     const auto crude =
         fitted_normal(mesh.points_of(triangles, corners.front()), *start, crude_degree);
-    if (!crude || triangles.size() > most_triangles_around) return std::nullopt;
+    if (!crude || triangles.size() > max_triangles_around) return std::nullopt;
     mesh.grow(triangles);
-    if (triangles.size() > most_triangles_around) return std::nullopt;
+    if (triangles.size() > max_triangles_around) return std::nullopt;
     const auto fine =
         fitted_normal(mesh.points_of(triangles, corners.front()), *crude, fine_degree);
     if (!fine) return std::nullopt;
@@ -244,7 +244,7 @@ FittedNormals fitted_normals(const Mesh& mesh, const FitOptions& options) {
     const MeshAsFans fans(mesh, options.hard_edges);
     FittedNormals result;
     result.fans = fans.fan_count();
-    result.places = std::min(result.fans, options.most_places);
+    result.places = std::min(result.fans, options.max_places);
     std::vector<std::optional<Fit>> fits(result.places);
     const auto fan_of = [&](std::size_t place) { return place * result.fans / result.places; };
     parallel_for(result.places, 64, [&](std::size_t begin, std::size_t end) {
@@ -254,8 +254,8 @@ FittedNormals fitted_normals(const Mesh& mesh, const FitOptions& options) {
     std::vector<std::pair<Corner, glm::dvec3>> found;
     double squares = 0.0;
     for (std::size_t place = 0; place < result.places; ++place) {
-        if (!fits[place] || !(fits[place]->doubt <= options.most_doubt) ||
-            fits[place]->bend > options.most_bend)
+        if (!fits[place] || !(fits[place]->doubt <= options.max_fit_difference) ||
+            fits[place]->bend > options.max_fit_angle)
             continue;
         found.emplace_back(fans.corners_of(fan_of(place)).front(), fits[place]->normal);
         squares += fits[place]->doubt * fits[place]->doubt;
@@ -266,7 +266,8 @@ FittedNormals fitted_normals(const Mesh& mesh, const FitOptions& options) {
         result.corners.push_back(corner);
         result.normals.push_back(normal);
     }
-    if (!found.empty()) result.own_degrees = std::sqrt(squares / static_cast<double>(found.size()));
+    if (!found.empty())
+        result.reference_degrees = std::sqrt(squares / static_cast<double>(found.size()));
     return result;
 }
 

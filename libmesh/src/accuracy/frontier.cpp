@@ -10,7 +10,7 @@
 
 namespace relief {
 
-std::vector<bool> efficient(std::span<const Price> prices) {
+std::vector<bool> pareto_optimal(std::span<const MethodCost> prices) {
     std::vector<std::size_t> order;
     for (std::size_t i = 0; i < prices.size(); ++i) {
         if (!std::isnan(prices[i].error) && !std::isnan(prices[i].time)) order.push_back(i);
@@ -20,10 +20,11 @@ std::vector<bool> efficient(std::span<const Price> prices) {
                                                 : prices[a].error < prices[b].error;
     });
     std::vector<bool> result(prices.size(), false);
-    Price last{std::numeric_limits<double>::infinity(), 0.0};  // The slowest efficient one so far.
+    MethodCost last{std::numeric_limits<double>::infinity(),
+                    0.0};  // The slowest efficient one so far.
     bool is_first = true;
     for (const std::size_t i : order) {
-        const Price& price = prices[i];
+        const MethodCost& price = prices[i];
         const bool is_equal = !is_first && price.error == last.error && price.time == last.time;
         if (!is_first && !is_equal && price.error >= last.error) continue;
         result[i] = true;

@@ -223,7 +223,7 @@ HeightTile filtered(const HeightTile& tile, std::span<const double> weights, int
     return result;
 }
 
-TileSlopes true_slopes(const HeightTile& tile, double least_cliff, bool has_exact_levels) {
+TileSlopes true_slopes(const HeightTile& tile, double min_cliff, bool has_exact_levels) {
     // Between exact levels, every change is a cliff, however close the next one is.
     const double times = has_exact_levels ? 0.0 : 4.0;
     TileSlopes result;
@@ -240,7 +240,7 @@ TileSlopes true_slopes(const HeightTile& tile, double least_cliff, bool has_exac
                       std::vector<unsigned char> cliffs(padded.size(), 0);
                       for (int i = -widest_difference; i < count + widest_difference; ++i)
                           cliffs[static_cast<std::size_t>(i + margin)] =
-                              is_cliff(line + i, least_cliff, times) ? 1 : 0;
+                              is_cliff(line + i, min_cliff, times) ? 1 : 0;
                       for (int i = 0; i < count; ++i) {
                           int left = 0;
                           int right = 0;

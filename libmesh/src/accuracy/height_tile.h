@@ -27,14 +27,14 @@ HeightTile filtered(const HeightTile& tile, std::span<const double> weights, int
 /// Slopes per texel, x to the right and y down, by differences of up to 12th order that never reach
 /// across a cliff: beside one they are one-sided.
 ///
-/// \param least_cliff  a change between neighbours of at least this is a cliff where it also is
+/// \param min_cliff  a change between neighbours of at least this is a cliff where it also is
 ///                     several times as large as any near it
 struct TileSlopes {
     std::vector<glm::dvec2> slopes;
     std::vector<unsigned char> beside_cliff;  ///< 1 where a neighbour is across one.
 };
-/// \param has_exact_levels  every change of at least `least_cliff` is one
-TileSlopes true_slopes(const HeightTile& tile, double least_cliff, bool has_exact_levels = false);
+/// \param has_exact_levels  every change of at least `min_cliff` is one
+TileSlopes true_slopes(const HeightTile& tile, double min_cliff, bool has_exact_levels = false);
 
 /// The slope by true_slopes() of a wave whose slope is `frequency`, in radians a texel.
 double true_slope_response(double frequency);

@@ -100,12 +100,12 @@ bool have_spectrum(std::span<const HeightTile> tiles) {
 }
 
 /// A map whose spectrum exceeds that of its grain by less than this, of the grain, is nothing else.
-constexpr double least_excess = 0.01;
+constexpr double min_excess = 0.01;
 
 /// The levels of masks and terraces: few, and farther apart than the codes of the file.
 bool has_exact_levels(const HeightDepth& depth, int bits_of_file) {
-    constexpr int most_bits = 2;
-    if (depth.bits == 0 || depth.bits > most_bits) return false;
+    constexpr int max_bits = 2;
+    if (depth.bits == 0 || depth.bits > max_bits) return false;
     return bits_of_file == 32 || depth.step > 1.5 / (std::ldexp(1.0, bits_of_file) - 1.0);
 }
 
@@ -172,14 +172,15 @@ struct MeanSquare {
 /// an arc tangent for small angles and 1% short at 90 degrees.
 ///
 /// \param margin  texels along the border that are left out
-MeanSquare square_error(const Image& normals, std::span<const glm::dvec3> truth, int margin) {
+MeanSquare square_error(const Image& normals, std::span<const glm::dvec3> reference, int margin) {
     const std::span<const float> n = normals.as<float>();
     MeanSquare result;
     for (int y = margin; y < normals.height - margin; ++y) {
         for (int x = margin; x < normals.width - margin; ++x) {
             const auto i = static_cast<std::size_t>(y * normals.width + x);
-            if (truth[i] == glm::dvec3(0.0)) continue;
-            const glm::dvec3 chord = glm::dvec3(n[3 * i], n[3 * i + 1], n[3 * i + 2]) - truth[i];
+            if (reference[i] == glm::dvec3(0.0)) continue;
+            const glm::dvec3 chord =
+                glm::dvec3(n[3 * i], n[3 * i + 1], n[3 * i + 2]) - reference[i];
             const double square = glm::dot(chord, chord);
             const double longer = 1.0 + square * (1.0 / 24.0 + square * (3.0 / 640.0));
             result.sum += square * longer * longer;
@@ -202,9 +203,9 @@ double HeightCoding::error_of(double height) const {
     return of_rounding * std::ldexp(1.0, exponent - mantissa_bits);
 }
 
-void KernelRehearsal::remove_spikes() {
+void KernelErrorModel::remove_spikes() {
     // Fewer are as well detail, and change little.
-    constexpr double least_share = 0.001;
+    constexpr double min_share = 0.001;
     std::size_t texels = 0;
     const std::vector<HeightTile> as_stored = tiles_;
     for (HeightTile& tile : tiles_) {
@@ -213,13 +214,13 @@ void KernelRehearsal::remove_spikes() {
         texels += tile.values.size();
     }
     spike_share_ = static_cast<double>(spikes_.size()) / static_cast<double>(texels);
-    if (spike_share_ >= least_share) return;
+    if (spike_share_ >= min_share) return;
     tiles_ = as_stored;
     spikes_.clear();
     spike_share_ = 0.0;
 }
 
-void KernelRehearsal::find_grain(Grain grain) {
+void KernelErrorModel::find_grain(Grain grain) {
     const double rounding = root_mean_square_rounding(tiles_, coding_);
     high_ = high_frequencies(tiles_);
     if (have_spectrum(tiles_)) spectrum_.emplace(tiles_);
@@ -235,17 +236,17 @@ void KernelRehearsal::find_grain(Grain grain) {
     }
     // Grain is everywhere. Edges have as much power in a few places: most of the map is smoother
     // than noise of their spectrum would be, and a fifth of its texels tells the deviation.
-    constexpr double least_share_of_noise = 0.85;
+    constexpr double min_share_of_noise = 0.85;
     const bool is_everywhere =
         high_.deviation > least &&
-        (!colored_ || high_.deviation > least_share_of_noise * colored_->high_deviation());
+        (!colored_ || high_.deviation > min_share_of_noise * colored_->high_deviation());
     if (colored_ && (is_flat(*colored_) || !is_everywhere || !(colored_->deviation() > least)))
         colored_.reset();
     // Edges may fill the spectrum, but not the quietest texels. The highest octave does not count,
     // since a blur leaves little in it.
-    constexpr double least_fall_of_detail = 1.9;
+    constexpr double min_fall_of_detail = 1.9;
     if (!colored_ && possible_ && possible_->deviation() > std::max(least, 1.5 * white_) &&
-        quiet[1] > 2.0 * rounding && quiet[2] < least_fall_of_detail * quiet[1])
+        quiet[1] > 2.0 * rounding && quiet[2] < min_fall_of_detail * quiet[1])
         colored_ = possible_;
     if (colored_)
         grain_ = beyond(colored_->deviation(), rounding);
@@ -254,13 +255,13 @@ void KernelRehearsal::find_grain(Grain grain) {
     if (grain_ == 0.0) return;
     if (spectrum_) {
         const NoiseSpectrum noise = colored_ ? *colored_ : NoiseSpectrum::white(white_);
-        is_only_grain_ = spectrum_->excess_over(noise) < least_excess;
+        is_only_grain_ = spectrum_->excess_over(noise) < min_excess;
     }
     is_as_stored_ = grain == Grain::detail || (grain == Grain::automatic && is_only_grain_);
     if (!is_as_stored_) noise_ = grain_;
 }
 
-void KernelRehearsal::restore() {
+void KernelErrorModel::restore() {
     if (is_as_stored_) return;
     const double rounding = root_mean_square_rounding(tiles_, coding_);
     const double step = coding_.step();
@@ -293,7 +294,7 @@ void KernelRehearsal::restore() {
 }
 
 /// Rounding, noise and spikes as the map has them, but not the same ones.
-Image KernelRehearsal::spoilt(const HeightTile& tile, std::uint32_t seed) const {
+Image KernelErrorModel::spoilt(const HeightTile& tile, std::uint32_t seed) const {
     Random random(seed);
     HeightTile result = tile;
     const double step = coding_.step();
@@ -324,9 +325,9 @@ Image KernelRehearsal::spoilt(const HeightTile& tile, std::uint32_t seed) const 
     return image_of(result);
 }
 
-void KernelRehearsal::spoil() {
+void KernelErrorModel::spoil() {
     const double step = coding_.step();
-    const double least_cliff = std::max(3.0 * step, 6.0 * noise_);
+    const double min_cliff = std::max(3.0 * step, 6.0 * noise_);
     const glm::dvec2 scale = options_.strength / options_.texel;
     walls_ = 0.0;
     normals_.assign(tiles_.size(), {});
@@ -334,15 +335,16 @@ void KernelRehearsal::spoil() {
     std::vector<std::size_t> beside(tiles_.size(), 0);
     parallel_for(tiles_.size(), 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
-            const TileSlopes truth = true_slopes(tiles_[i], least_cliff, coding_.has_exact_levels);
+            const TileSlopes reference =
+                true_slopes(tiles_[i], min_cliff, coding_.has_exact_levels);
             Random missed(static_cast<std::uint32_t>(i) ^ 0x6d697373U);
-            for (std::size_t texel = 0; texel < truth.slopes.size(); ++texel) {
-                glm::dvec2 slope = truth.slopes[texel] * scale;
+            for (std::size_t texel = 0; texel < reference.slopes.size(); ++texel) {
+                glm::dvec2 slope = reference.slopes[texel] * scale;
                 if (missed_slope_ > 0.0) {
                     const double along_x = missed.normal();
                     slope += scale * missed_slope_ * glm::dvec2(along_x, missed.normal());
                 }
-                const bool has_none = truth.beside_cliff[texel] != 0;
+                const bool has_none = reference.beside_cliff[texel] != 0;
                 normals_[i].push_back(has_none
                                           ? glm::dvec3(0.0)
                                           : glm::normalize(glm::dvec3(-slope.x, slope.y, 1.0)));
@@ -360,8 +362,8 @@ void KernelRehearsal::spoil() {
     walls_ /= texels;
 }
 
-KernelRehearsal::KernelRehearsal(std::span<const Image> parts, const BumpOptions& options,
-                                 bool destaircased, Grain grain)
+KernelErrorModel::KernelErrorModel(std::span<const Image> parts, const BumpOptions& options,
+                                   bool destaircased, Grain grain)
     : options_(options), destaircased_(destaircased) {
     const Image all = joined(parts);
     coding_.depth = height_depth(all);
@@ -377,9 +379,9 @@ KernelRehearsal::KernelRehearsal(std::span<const Image> parts, const BumpOptions
     spoil();
 }
 
-KernelPrediction KernelRehearsal::predict_upper(const KernelPrediction& shown) const {
+KernelPrediction KernelErrorModel::predict_upper(const KernelPrediction& shown) const {
     if (!spectrum_ || coding_.has_exact_levels) return shown;
-    KernelRehearsal upper = *this;
+    KernelErrorModel upper = *this;
     upper.tiles_ = some_of(tiles_);
     upper.normals_ = some_of(normals_);
     upper.spoilt_ = some_of(spoilt_);
@@ -411,7 +413,7 @@ KernelPrediction KernelRehearsal::predict_upper(const KernelPrediction& shown) c
     return result;
 }
 
-KernelPrediction KernelRehearsal::predict(Kernel kernel, int radius) const {
+KernelPrediction KernelErrorModel::predict(Kernel kernel, int radius) const {
     BumpOptions options = options_;
     options.kernel = kernel;
     options.gaussian_radius = radius;

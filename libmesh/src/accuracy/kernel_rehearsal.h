@@ -30,11 +30,11 @@ struct HeightCoding {
 };
 
 /// Ground truth made of a map's own parts.
-class KernelRehearsal {
+class KernelErrorModel {
   public:
     /// \param parts  one channel each, all of one depth
-    KernelRehearsal(std::span<const Image> parts, const BumpOptions& options, bool destaircased,
-                    Grain grain);
+    KernelErrorModel(std::span<const Image> parts, const BumpOptions& options, bool destaircased,
+                     Grain grain);
 
     /// What a kernel does to the spoilt parts.
     [[nodiscard]] KernelPrediction predict(Kernel kernel, int radius) const;

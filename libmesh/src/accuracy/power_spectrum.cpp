@@ -204,7 +204,7 @@ std::vector<double> PowerSpectrum::gains(const NoiseSpectrum& noise) const {
     constexpr double chance = 5.0;
     constexpr double chance_of_ring = 4.0;
     // Less may be what the window spreads of strong waves, or a noise spectrum that is too low.
-    constexpr double least_of_ring = 0.25;
+    constexpr double min_of_ring = 0.25;
     std::vector<double> result(bins_.size(), 0.0);
     for (int ring = 0; ring < side_; ++ring) {
         const double frequency = 2.0 * pi * ring / side_;
@@ -230,7 +230,7 @@ std::vector<double> PowerSpectrum::gains(const NoiseSpectrum& noise) const {
         rest /= count;
         // The window makes neighbors in all directions alike.
         const double least =
-            std::max(least_of_ring, chance_of_ring / std::sqrt(std::max(1.0, count / 8.0)));
+            std::max(min_of_ring, chance_of_ring / std::sqrt(std::max(1.0, count / 8.0)));
         if (!(rest > power * (1.0 + least))) continue;
         for (std::size_t i = first; i < first + sectors; ++i) {
             if (result[i] == 0.0) result[i] = std::sqrt((rest - power) / rest);
@@ -277,13 +277,13 @@ std::vector<PowerSpectrum::Band> PowerSpectrum::bands() const {
 
 std::optional<NoiseSpectrum> PowerSpectrum::grain() const {
     // The rise of power times squared frequency over at least an octave by which grain is known.
-    constexpr double least_rise = 1.5;
+    constexpr double min_rise = 1.5;
     constexpr double ripple = 0.8;
     const std::vector<Band> bands = this->bands();
     const auto roughness = [&](std::size_t i) {
         return bands[i].power * bands[i].frequency * bands[i].frequency;
     };
-    double greatest = least_rise;
+    double greatest = min_rise;
     std::size_t first = bands.size();
     for (std::size_t valley = 0; valley + 2 < bands.size(); ++valley) {
         double top = roughness(valley);
@@ -330,12 +330,12 @@ std::optional<NoiseSpectrum> PowerSpectrum::grain() const {
 }
 
 NoiseSpectrum PowerSpectrum::hidden_detail(const NoiseSpectrum& noise) const {
-    // Detail is seen in a ring if its power exceeds `least_seen` of that of the noise; up to
-    // `most_hidden` goes unnoticed.
-    constexpr double least_seen = 0.25;
-    constexpr double most_hidden = 0.7;
+    // Detail is seen in a ring if its power exceeds `min_seen` of that of the noise; up to
+    // `max_hidden` goes unnoticed.
+    constexpr double min_seen = 0.25;
+    constexpr double max_hidden = 0.7;
     // Exponents of the fall of the power over the frequency: edges, and what is smooth.
-    constexpr double least_fall = 3.0;
+    constexpr double min_fall = 3.0;
     constexpr double greatest_fall = 5.0;
     const std::vector<double> gains = this->gains(noise);
     const auto rings = static_cast<std::size_t>(side_);
@@ -352,8 +352,8 @@ NoiseSpectrum PowerSpectrum::hidden_detail(const NoiseSpectrum& noise) const {
             count += bins_[i].count;
         }
         seen[ring] /= std::max(1.0, count);
-        hidden[ring] = most_hidden * noise_power * empty / std::max(1.0, count);
-        if (seen[ring] > least_seen * noise_power) last = ring;
+        hidden[ring] = max_hidden * noise_power * empty / std::max(1.0, count);
+        if (seen[ring] > min_seen * noise_power) last = ring;
     }
     const auto mean_seen = [&](double begin, double end) {
         double sum = 0.0;
@@ -368,13 +368,13 @@ NoiseSpectrum PowerSpectrum::hidden_detail(const NoiseSpectrum& noise) const {
     };
     // From there on it falls as it does over the octave below, or as it must to go unnoticed.
     const auto edge = static_cast<double>(last);
-    double fall = least_fall;
+    double fall = min_fall;
     double next = last + 1 < rings ? hidden[last + 1] : 0.0;
     if (const double top = mean_seen(0.7 * edge, edge); top > 0.0) {
         if (last >= 3) {
             const double below = mean_seen(0.35 * edge, 0.5 * edge);
-            fall = std::clamp(portable::log(below / top) / std::numbers::ln2, least_fall,
-                              greatest_fall);
+            fall =
+                std::clamp(portable::log(below / top) / std::numbers::ln2, min_fall, greatest_fall);
         }
         next = std::min(next, top * portable::pow(edge / (edge + 1.0), fall));
         const double drop = portable::log(top / next) / portable::log((edge + 1.0) / (0.85 * edge));

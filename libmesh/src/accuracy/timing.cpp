@@ -25,7 +25,7 @@ double quantile(const std::vector<double>& sorted, double share) {
 
 }  // namespace
 
-Spread spread_of(std::vector<double> values) {
+TimeStatistics time_statistics(std::vector<double> values) {
     if (values.empty()) return {};
     std::sort(values.begin(), values.end());
     return {quantile(values, 0.5), quantile(values, 0.1), quantile(values, 0.9), values.size()};
@@ -53,7 +53,7 @@ double median_difference(const std::vector<double>& longer, const std::vector<do
     std::vector<double> differences(longer.size());
     std::transform(longer.begin(), longer.end(), shorter.begin(), differences.begin(),
                    std::minus<>());
-    return spread_of(std::move(differences)).median;
+    return time_statistics(std::move(differences)).median;
 }
 
 }  // namespace relief

@@ -57,7 +57,7 @@ double checked_extent(const BakeFit& fit, std::span<const Mesh> high, const Bake
     if (fit.differs_in_size() && !options.allow_size_mismatch)
         throw BakeMismatch(BakeMismatch::Kind::size, fit, reach, name);
     if (fit.gap > reach) throw BakeMismatch(BakeMismatch::Kind::apart, fit, reach, name);
-    if (fit.fits_turned) {
+    if (fit.fits_rotated) {
         report.add("high box that fits only with y and z swapped", "part", 0,
                    "baked as it is: one side may be Y up, the other Z up");
     }
@@ -131,11 +131,12 @@ void check_triangle_numbers(std::span<const std::uint32_t> numbers, std::size_t 
 }
 
 void check_rows(const BakeRowRange& rows, const BakeMapOptions& map) {
-    const bool ends_well = rows.last == map.height || rows.last % TexelCover::band_rows == 0;
-    if (rows.first < 0 || rows.first % TexelCover::band_rows != 0 || rows.last <= rows.first ||
+    const bool ends_well = rows.last == map.height || rows.last % TexelRasterizer::band_rows == 0;
+    if (rows.first < 0 || rows.first % TexelRasterizer::band_rows != 0 || rows.last <= rows.first ||
         rows.last > map.height || !ends_well) {
         throw InvalidInput(fmt::format("rows {} to {} are no multiples of {} within a map of {}",
-                                       rows.first, rows.last, TexelCover::band_rows, map.height));
+                                       rows.first, rows.last, TexelRasterizer::band_rows,
+                                       map.height));
     }
     if (map.padding > 0) throw InvalidInput("some rows of a map have no padding");
 }
@@ -154,10 +155,10 @@ void check_map(const BakeMapOptions& map, const Mesh& low) {
     const int side = samples_across(map.samples);
     // The limit of texel coverage applies to samples.
     for (const int texels : {map.width, map.height}) {
-        if (texels < 1 || texels > TexelCover::largest_side / side) {
-            throw InvalidInput(
-                fmt::format("a map of {} x {} texels of {} samples is not within 1 to {}",
-                            map.width, map.height, map.samples, TexelCover::largest_side / side));
+        if (texels < 1 || texels > TexelRasterizer::largest_side / side) {
+            throw InvalidInput(fmt::format(
+                "a map of {} x {} texels of {} samples is not within 1 to {}", map.width,
+                map.height, map.samples, TexelRasterizer::largest_side / side));
         }
     }
     if (map.padding < 0 || map.padding > max_padding) {
@@ -231,8 +232,8 @@ int rows_per_strip(const BakeLayers& requested, int width, int height) {
 }
 
 /// Bakes rows [first, last) of the map into a strip.
-void bake_strip(const BakeWork& work, const TexelCover& cover, Strip& strip, int first, int last,
-                BakeResult& result, BakeCounts& counts, int& rows_done, Report& report) {
+void bake_strip(const BakeWork& work, const TexelRasterizer& cover, Strip& strip, int first,
+                int last, BakeResult& result, BakeCounts& counts, int& rows_done, Report& report) {
     const int side = work.side;
     std::mutex mutex;
     std::map<int, Report> reports;  // By row, so that the order does not depend on threads.
@@ -286,7 +287,7 @@ LayerBounds BakeParts::bounds(const BakeLayers& layers) const {
         if (layers.curvature) {
             const HighSurface::CurvatureRange range = surface->high.curvature_range();
             bounds.curvature = std::max(bounds.curvature, range.greatest);
-            bounds.usual_curvature = std::max(bounds.usual_curvature, range.usual);
+            bounds.curvature_p99 = std::max(bounds.curvature_p99, range.usual);
         }
         if (layers.positions) {
             bounds.position = std::max(bounds.position,
@@ -381,8 +382,8 @@ BakeResult Baker::bake(const BakeMapOptions& map,
     const int side = samples_across(map.samples);
     const BakeRowRange range = map.rows.value_or(BakeRowRange{0, map.height});
     Report ignored;
-    const TexelCover cover(low().texcoords, low().triangles, coverage_options(map, side),
-                           range.first == 0 ? report : ignored);
+    const TexelRasterizer cover(low().texcoords, low().triangles, coverage_options(map, side),
+                                range.first == 0 ? report : ignored);
     BakeResult result;
     result.distances = distances();
     const BakeWork work{implementation_->parts, implementation_->low, options, side};
@@ -411,8 +412,8 @@ BakeResult Baker::bake(const BakeMapOptions& map,
     result.clipped_inside = counts.clipped_inside.summary();
     result.measuring_rays = counts.measuring_rays;
     if (counts.baked > 0) {
-        result.least_height = counts.least_height;
-        result.greatest_height = counts.greatest_height;
+        result.min_height = counts.min_height;
+        result.max_height = counts.max_height;
     }
     return result;
 }

@@ -40,7 +40,7 @@ struct RowsToCheck {
     const CastRows* reference = nullptr;  ///< The bake of many samples.
     const CastRows* center = nullptr;     ///< The bake of one sample.
     const CastRows* made = nullptr;  ///< The bake with the options of the map; may be `center`.
-    std::span<const float> remade;   ///< `made`, encoded and decoded.
+    std::span<const float> rebaked;  ///< `made`, encoded and decoded.
 };
 
 bool is_worse(const WorstTexel& a, const WorstTexel& b) {
@@ -131,9 +131,9 @@ class TexelCheck {
         }
         const double degrees = degrees_between(shown, reference);
         sums.error.add(degrees);
-        const bool is_torn = tears(texel, to_mesh, reference);
-        keep_worst(sums.worst, {column(texel), row(texel), degrees, is_torn});
-        split(texel, to_mesh, reference, shown, is_torn, sums);
+        const bool is_discontinuous = tears(texel, to_mesh, reference);
+        keep_worst(sums.worst, {column(texel), row(texel), degrees, is_discontinuous});
+        split(texel, to_mesh, reference, shown, is_discontinuous, sums);
         return degrees;
     }
 
@@ -157,30 +157,30 @@ class TexelCheck {
 
     /// Attributes the error to pipeline stages.
     void split(std::size_t texel, const MapToMesh& to_mesh, const glm::dvec3& reference,
-               const glm::dvec3& shown, bool is_torn, CheckSums& sums) const {
+               const glm::dvec3& shown, bool is_discontinuous, CheckSums& sums) const {
         const auto stage = [](BakeStage s) { return static_cast<std::size_t>(s); };
         const glm::dvec3 whole = shown - reference;
         const bool is_made = rows_.made->is_baked(texel);
-        const glm::dvec3 recoded = at(rows_.remade, texel);
-        const glm::dvec3 remade = to_mesh.shown(recoded);
-        if (is_made) sums.remade.add(degrees_between(remade, reference));
-        if (is_torn || !is_made) {
-            ++sums.torn;
+        const glm::dvec3 recoded = at(rows_.rebaked, texel);
+        const glm::dvec3 rebaked = to_mesh.shown(recoded);
+        if (is_made) sums.rebaked.add(degrees_between(rebaked, reference));
+        if (is_discontinuous || !is_made) {
+            ++sums.discontinuous;
             sums.stages[stage(BakeStage::projection)].add(degrees_between(shown, reference));
             sums.squares[stage(BakeStage::projection)] += glm::dot(whole, whole);
             return;
         }
         const glm::dvec3 made = to_mesh.shown(rows_.made->normal(texel));
         const double in_map = degrees_between(recoded, rows_.made->normal(texel));
-        const double in_object = degrees_between(remade, made);
+        const double in_object = degrees_between(rebaked, made);
         sums.stages[stage(BakeStage::sampling)].add(degrees_between(made, reference));
-        sums.stages[stage(BakeStage::quantisation)].add(in_map);
-        sums.stages[stage(BakeStage::other)].add(degrees_between(shown, remade));
+        sums.stages[stage(BakeStage::quantization)].add(in_map);
+        sums.stages[stage(BakeStage::other)].add(degrees_between(shown, rebaked));
         sums.tangent_squares += in_map * in_map;
         sums.object_squares += in_object * in_object;
         sums.squares[stage(BakeStage::sampling)] += glm::dot(made - reference, whole);
-        sums.squares[stage(BakeStage::quantisation)] += glm::dot(remade - made, whole);
-        sums.squares[stage(BakeStage::other)] += glm::dot(shown - remade, whole);
+        sums.squares[stage(BakeStage::quantization)] += glm::dot(rebaked - made, whole);
+        sums.squares[stage(BakeStage::other)] += glm::dot(shown - rebaked, whole);
         // Conventions are compared at texels where sampling has no influence.
         keep_known(texel, made, in_object, sums);
     }
@@ -216,7 +216,7 @@ std::vector<CoveredTexel> owners_of(const Baker& baker, const BakeMapOptions& ma
     const auto width = static_cast<std::size_t>(map.width);
     std::vector<CoveredTexel> owners(width * static_cast<std::size_t>(last - first));
     Report ignored;
-    const TexelCover cover(baker.low().texcoords, baker.low().triangles, options, ignored);
+    const TexelRasterizer cover(baker.low().texcoords, baker.low().triangles, options, ignored);
     cover.cover(
         first, last,
         [&](int row, std::span<const CoveredTexel> texels) {
@@ -250,7 +250,7 @@ CheckSums check_texels(const Baker& baker, const RowsToCheck& rows, int step,
 
 int check_strip_rows(int width) {
     const auto max_rows = static_cast<int>(strip_texels / static_cast<std::size_t>(width));
-    return std::max(max_rows / TexelCover::band_rows, 1) * TexelCover::band_rows;
+    return std::max(max_rows / TexelRasterizer::band_rows, 1) * TexelRasterizer::band_rows;
 }
 
 /// Rows of an image, in the same format.
@@ -286,10 +286,10 @@ void check(const Image& map, const BakeMapOptions& options) {
 void summarize(const CheckSums& sums, BakeCheck& check) {
     check.error = sums.error.summary();
     check.centre = sums.center.summary();
-    check.remade = sums.remade.summary();
+    check.rebaked = sums.rebaked.summary();
     check.missed = sums.missed;
     check.frameless = sums.frameless;
-    check.torn = sums.torn;
+    check.discontinuous = sums.discontinuous;
     check.worst = sums.worst;
     double all = 0.0;
     for (const double squares : sums.squares)
@@ -300,10 +300,10 @@ void summarize(const CheckSums& sums, BakeCheck& check) {
         check.stages[i].share = all > 0.0 ? sums.squares[i] / all : 0.0;
     }
     // The error of the codes in object space minus that in tangent space is the error of the basis.
-    StageError& codes = check.stages[index(BakeStage::quantisation)];
+    StageError& codes = check.stages[index(BakeStage::quantization)];
     StageError& basis = check.stages[index(BakeStage::basis)];
     const double texels =
-        static_cast<double>(sums.stages[index(BakeStage::quantisation)].summary().count);
+        static_cast<double>(sums.stages[index(BakeStage::quantization)].summary().count);
     const double more = sums.object_squares - sums.tangent_squares;
     if (!(more > 0.0)) return;
     // This is the difference of two mean squares, not a mean of angles.
@@ -336,14 +336,14 @@ ConventionFit convention_of(const Baker& baker, const Image& map, const BakeChec
 void CheckSums::add(const CheckSums& other) {
     error.add(other.error);
     center.add(other.center);
-    remade.add(other.remade);
+    rebaked.add(other.rebaked);
     for (std::size_t i = 0; i < stages.size(); ++i) {
         stages[i].add(other.stages[i]);
         squares[i] += other.squares[i];
     }
     missed += other.missed;
     frameless += other.frameless;
-    torn += other.torn;
+    discontinuous += other.discontinuous;
     tangent_squares += other.tangent_squares;
     object_squares += other.object_squares;
     for (const WorstTexel& texel : other.worst)
@@ -386,7 +386,8 @@ BakeMapOptions reference_of(const BakeMapOptions& map, int samples) {
     int count = samples > 0 ? samples : default_count;
     // Texel coverage limits the number of samples of large maps.
     const int longest = std::max(map.width, map.height);
-    while (count > 4 && std::sqrt(count) * longest > static_cast<double>(TexelCover::largest_side))
+    while (count > 4 &&
+           std::sqrt(count) * longest > static_cast<double>(TexelRasterizer::largest_side))
         count /= 4;
     return with_samples(map, count, reference_angle * std::numbers::pi / 180.0);
 }
@@ -401,7 +402,7 @@ BakeCasts::BakeCasts(const Baker& baker, const BakeMapOptions& map, int referenc
 }
 
 CheckSums compare_rows(const Baker& baker, const BakeMapOptions& map, const BakeCasts& casts,
-                       const CastRows& made, std::span<const float> remade,
+                       const CastRows& made, std::span<const float> rebaked,
                        std::span<const float> shown, int first, int step,
                        std::span<float> degrees) {
     const auto count = static_cast<int>(degrees.size() / static_cast<std::size_t>(map.width));
@@ -413,8 +414,8 @@ CheckSums compare_rows(const Baker& baker, const BakeMapOptions& map, const Bake
     rows.reference = &casts.reference;
     rows.center = &casts.center;
     rows.made = &made;
-    rows.remade = remade;
-    rows.map = shown.empty() ? remade : shown;
+    rows.rebaked = rebaked;
+    rows.map = shown.empty() ? rebaked : shown;
     return check_texels(baker, rows, step, degrees);
 }
 
@@ -436,8 +437,8 @@ BakeCheck check_bake(const Baker& baker, const Image& map, const BakeCheckOption
         const BakeCasts casts(baker, options.map, options.reference_samples, first, last, report);
         std::vector<float> degrees(static_cast<std::size_t>(map.width) *
                                    static_cast<std::size_t>(last - first));
-        const std::vector<float> remade = coded(casts.made().normals, map.width, format);
-        sums.add(compare_rows(baker, options.map, casts, casts.made(), remade, shown.as<float>(),
+        const std::vector<float> rebaked = coded(casts.made().normals, map.width, format);
+        sums.add(compare_rows(baker, options.map, casts, casts.made(), rebaked, shown.as<float>(),
                               first, step, degrees));
         result.rays += casts.rays();
         if (take) take(first, degrees);

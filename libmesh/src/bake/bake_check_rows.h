@@ -37,11 +37,11 @@ std::vector<float> coded(const std::vector<float>& normals, int width,
 
 /// Sums of errors over texels.
 struct CheckSums {
-    AngleSum error, center, remade;
+    AngleSum error, center, rebaked;
     std::array<AngleSum, bake_stage_count> stages;
     /// The part of each stage in the squared error vector.
     std::array<double, bake_stage_count> squares{};
-    std::size_t missed = 0, frameless = 0, torn = 0;
+    std::size_t missed = 0, frameless = 0, discontinuous = 0;
     /// Squared angles between codes and normals, in tangent and in object space.
     double tangent_squares = 0.0, object_squares = 0.0;
     std::vector<WorstTexel> worst;
@@ -78,7 +78,7 @@ struct BakeCasts {
 /// \param step     the distance, along and across, of texels stored in CheckSums::known; 0: none
 /// \param degrees  gets the errors, NaN if there is none
 CheckSums compare_rows(const Baker& baker, const BakeMapOptions& map, const BakeCasts& casts,
-                       const CastRows& made, std::span<const float> remade,
+                       const CastRows& made, std::span<const float> rebaked,
                        std::span<const float> shown, int first, int step, std::span<float> degrees);
 
 }  // namespace relief

@@ -82,7 +82,7 @@ std::string likely_cause(const BakeFit& fit) {
     if (fit.low.empty() || fit.high.empty()) return "";
     const std::string units = unit_cause(fit.size_ratio);
     if (!units.empty()) return units;
-    if (fit.fits_turned) return "is one of them Y up and the other Z up?";
+    if (fit.fits_rotated) return "is one of them Y up and the other Z up?";
     const glm::dvec3 low_min(fit.low.min), low_max(fit.low.max);
     const glm::dvec3 moved =
         0.5 * (glm::dvec3(fit.high.max) + glm::dvec3(fit.high.min) - low_max - low_min);

@@ -193,8 +193,8 @@ class Piece {
         if (needs_normals_) add_normal(sample, point, sum);
         sum.height += point.height;
         ++sum.hits;
-        counts_.least_height = std::min(counts_.least_height, point.height);
-        counts_.greatest_height = std::max(counts_.greatest_height, point.height);
+        counts_.min_height = std::min(counts_.min_height, point.height);
+        counts_.max_height = std::max(counts_.max_height, point.height);
     }
 
     void add_normal(const Sample& sample, const ProjectedPoint& point, TexelSum& sum) {
@@ -338,8 +338,8 @@ BakeCounts& BakeCounts::operator+=(const BakeCounts& other) {
     occlusion_rays += other.occlusion_rays;
     baked += other.baked;
     missed += other.missed;
-    least_height = std::min(least_height, other.least_height);
-    greatest_height = std::max(greatest_height, other.greatest_height);
+    min_height = std::min(min_height, other.min_height);
+    max_height = std::max(max_height, other.max_height);
     first_missed.insert(first_missed.end(), other.first_missed.begin(), other.first_missed.end());
     keep_first(first_missed);
     missed_from_behind += other.missed_from_behind;

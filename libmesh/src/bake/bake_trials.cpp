@@ -21,14 +21,14 @@ struct Band {
 
 }  // namespace
 
-struct BakeTrials::Implementation {
+struct BakeBenchmark::Implementation {
     const Baker& baker;
     BakeMapOptions map;  ///< With one sample.
     int reference_samples;
     std::vector<Band> bands;
     bool is_whole = true;
 
-    [[nodiscard]] BakeMapOptions map_by(const BakeWay& way) const {
+    [[nodiscard]] BakeMapOptions map_by(const BakeSampling& way) const {
         BakeMapOptions made = map;
         made.samples = way.samples;
         if (way.sample_degrees) made.sample_angle = glm::radians(*way.sample_degrees);
@@ -41,15 +41,15 @@ struct BakeTrials::Implementation {
     }
 };
 
-BakeTrials::BakeTrials(const Baker& baker, const BakeMapOptions& map, std::size_t texels,
-                       int reference_samples)
+BakeBenchmark::BakeBenchmark(const Baker& baker, const BakeMapOptions& map, std::size_t texels,
+                             int reference_samples)
     : implementation_(new Implementation{baker, map, 0, {}, true}) {
     Implementation& data = *implementation_;
     data.map.samples = 1;
     data.map.sample_angle.reset();
     data.reference_samples =
         reference_of(map, reference_samples > 0 ? reference_samples : 256).samples;
-    constexpr int band = TexelCover::band_rows;
+    constexpr int band = TexelRasterizer::band_rows;
     const int bands = (map.height + band - 1) / band;
     const std::size_t band_texels =
         static_cast<std::size_t>(map.width) * static_cast<std::size_t>(band);
@@ -66,12 +66,13 @@ BakeTrials::BakeTrials(const Baker& baker, const BakeMapOptions& map, std::size_
     }
 }
 
-BakeTrials::~BakeTrials() = default;
+BakeBenchmark::~BakeBenchmark() = default;
 
-BakeTrial BakeTrials::measure(const BakeWay& way, std::span<const NormalMapFormat> formats) const {
+BakeMeasurement BakeBenchmark::measure(const BakeSampling& way,
+                                       std::span<const NormalMapFormat> formats) const {
     const Implementation& data = *implementation_;
     const BakeMapOptions map = data.map_by(way);
-    BakeTrial trial;
+    BakeMeasurement trial;
     trial.code_seconds.resize(formats.size());
     std::vector<CheckSums> sums(formats.size());
     Report ignored;
@@ -82,17 +83,17 @@ BakeTrial BakeTrials::measure(const BakeWay& way, std::span<const NormalMapForma
         trial.rays += made.rays;
         std::vector<float> degrees(data.texels_of(part.rows));
         for (std::size_t f = 0; f < formats.size(); ++f) {
-            std::vector<float> remade;
+            std::vector<float> rebaked;
             trial.code_seconds[f] +=
-                seconds_of([&] { remade = coded(made.normals, map.width, formats[f]); });
-            sums[f].add(compare_rows(data.baker, map, part.casts, made, remade, {}, part.rows.first,
-                                     0, degrees));
+                seconds_of([&] { rebaked = coded(made.normals, map.width, formats[f]); });
+            sums[f].add(compare_rows(data.baker, map, part.casts, made, rebaked, {},
+                                     part.rows.first, 0, degrees));
         }
     }
     for (const CheckSums& sum : sums) {
         trial.errors.push_back(sum.error.summary());
-        const auto codes = static_cast<std::size_t>(BakeStage::quantisation);
-        trial.quantisation.push_back(sum.stages[codes].summary());
+        const auto codes = static_cast<std::size_t>(BakeStage::quantization);
+        trial.quantization.push_back(sum.stages[codes].summary());
         trial.centre.push_back(sum.center.summary());
     }
     if (!sums.empty()) {
@@ -102,7 +103,7 @@ BakeTrial BakeTrials::measure(const BakeWay& way, std::span<const NormalMapForma
     return trial;
 }
 
-Image BakeTrials::error_map(const BakeWay& way, const NormalMapFormat& format) const {
+Image BakeBenchmark::error_map(const BakeSampling& way, const NormalMapFormat& format) const {
     const Implementation& data = *implementation_;
     const BakeMapOptions map = data.map_by(way);
     Image errors =
@@ -111,43 +112,43 @@ Image BakeTrials::error_map(const BakeWay& way, const NormalMapFormat& format) c
     Report ignored;
     for (const Band& part : data.bands) {
         const CastRows made = cast_rows(data.baker, map, part.rows.first, part.rows.last, ignored);
-        const std::vector<float> remade = coded(made.normals, map.width, format);
+        const std::vector<float> rebaked = coded(made.normals, map.width, format);
         const std::span<float> rows = left.first(data.texels_of(part.rows));
-        compare_rows(data.baker, map, part.casts, made, remade, {}, part.rows.first, 0, rows);
+        compare_rows(data.baker, map, part.casts, made, rebaked, {}, part.rows.first, 0, rows);
         left = left.subspan(rows.size());
     }
     return errors;
 }
 
-std::size_t BakeTrials::texels() const {
+std::size_t BakeBenchmark::texels() const {
     std::size_t sum = 0;
     for (const Band& part : implementation_->bands)
         sum += implementation_->texels_of(part.rows);
     return sum;
 }
 
-bool BakeTrials::is_whole() const {
+bool BakeBenchmark::is_whole() const {
     return implementation_->is_whole;
 }
 
-int BakeTrials::reference_samples() const {
+int BakeBenchmark::reference_samples() const {
     return implementation_->reference_samples;
 }
 
-std::size_t BakeTrials::reference_rays() const {
+std::size_t BakeBenchmark::reference_rays() const {
     std::size_t sum = 0;
     for (const Band& part : implementation_->bands)
         sum += part.casts.reference.rays;
     return sum;
 }
 
-std::span<const BakeWay> usual_bake_ways() {
-    static const std::array<BakeWay, 7> ways = {
+std::span<const BakeSampling> default_bake_samplings() {
+    static const std::array<BakeSampling, 7> ways = {
         {{1, {}}, {4, {}}, {16, {}}, {64, {}}, {16, 8.0}, {16, 2.0}, {16, 0.5}}};
     return ways;
 }
 
-std::vector<NormalMapFormat> usual_map_formats(const NormalMapFormat& format) {
+std::vector<NormalMapFormat> default_map_formats(const NormalMapFormat& format) {
     std::vector<NormalMapFormat> formats(4, format);
     for (NormalMapFormat& one : formats)
         one.dither = Dither::none;
@@ -158,14 +159,14 @@ std::vector<NormalMapFormat> usual_map_formats(const NormalMapFormat& format) {
     return formats;
 }
 
-std::vector<TimedBakeTrial> measured_in_turns(const BakeTrials& trials,
-                                              std::span<const BakeWay> ways,
-                                              std::span<const NormalMapFormat> formats,
-                                              const Repeats& repeats) {
-    std::vector<TimedBakeTrial> results(ways.size());
+std::vector<TimedBakeMeasurement> measure_interleaved(const BakeBenchmark& trials,
+                                                      std::span<const BakeSampling> ways,
+                                                      std::span<const NormalMapFormat> formats,
+                                                      const Repeats& repeats) {
+    std::vector<TimedBakeMeasurement> results(ways.size());
     interleave(ways.size(), repeats, [&](std::size_t way, bool counted) {
         check_cancelled();
-        TimedBakeTrial& one = results[way];
+        TimedBakeMeasurement& one = results[way];
         one.trial = trials.measure(ways[way], formats);
         one.seconds.resize(formats.size());
         for (std::size_t f = 0; counted && f < formats.size(); ++f)

@@ -88,8 +88,8 @@ struct BakeCounts {
     std::size_t occlusion_rays = 0;
     std::size_t baked = 0;
     std::size_t missed = 0;
-    double least_height = std::numeric_limits<double>::infinity();
-    double greatest_height = -std::numeric_limits<double>::infinity();
+    double min_height = std::numeric_limits<double>::infinity();
+    double max_height = -std::numeric_limits<double>::infinity();
     std::vector<MissedTexel> first_missed;
     std::size_t missed_from_behind = 0;
     std::size_t measuring_rays = 0;

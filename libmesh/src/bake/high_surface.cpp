@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Attributes of the high-poly meshes at hits, and the filtering of their textures.
-// Tests: tests/mesh/bake/bake_test.cpp, high_detail_test.cpp.
+// Tests: tests/mesh/bake/bake_test.cpp, high_materials_test.cpp.
 #include "bake/high_surface.h"
 
 #include <fmt/format.h>
@@ -98,8 +98,8 @@ void check(const SurfaceTexture& texture, int min_channels, const char* what) {
 constexpr double usual_share = 0.99;  // Of the area.
 constexpr std::size_t max_area_samples = 250'000;
 
-const HighDetail* detail_of(const Mesh& mesh, const BakeOptions& options) {
-    for (const HighDetail& detail : options.details) {
+const HighMaterials* detail_of(const Mesh& mesh, const BakeOptions& options) {
+    for (const HighMaterials& detail : options.details) {
         if (detail.mesh != &mesh) continue;
         check(detail);
         return &detail;
@@ -107,7 +107,7 @@ const HighDetail* detail_of(const Mesh& mesh, const BakeOptions& options) {
     return nullptr;
 }
 
-bool has_normal_map(const HighDetail* detail) {
+bool has_normal_map(const HighMaterials* detail) {
     if (detail == nullptr) return false;
     if (detail->otherwise && detail->otherwise->normal_map) return true;
     return std::any_of(detail->materials.begin(), detail->materials.end(),
@@ -115,7 +115,7 @@ bool has_normal_map(const HighDetail* detail) {
 }
 
 /// Reports layers whose input a mesh does not have.
-void report_missing(const Mesh& mesh, const HighDetail* detail, std::size_t index,
+void report_missing(const Mesh& mesh, const HighMaterials* detail, std::size_t index,
                     const BakeLayers& layers, Report& report) {
     if (layers.colors && mesh.colors.empty() &&
         (detail == nullptr || (detail->materials.empty() && !detail->otherwise)))
@@ -187,7 +187,7 @@ glm::dvec3 normal_at(const SurfaceNormalMap& map, const glm::dvec2& texcoord) {
         image.samples);
 }
 
-void check(const HighDetail& detail) {
+void check(const HighMaterials& detail) {
     std::vector<HighMaterial> all = detail.materials;
     if (detail.otherwise) all.push_back(*detail.otherwise);
     for (const HighMaterial& material : all) {
@@ -261,7 +261,7 @@ HighSurface::Entry HighSurface::entry(const Mesh& mesh, std::size_t index,
     const BakeLayers& layers = options.layers;
     Entry result;
     result.mesh = &mesh;
-    const HighDetail* detail = detail_of(mesh, options);
+    const HighMaterials* detail = detail_of(mesh, options);
     report_missing(mesh, detail, index, layers, report);
     if (layers.normals || layers.colors) result.detail = detail;
     if (layers.colors && detail != nullptr) {

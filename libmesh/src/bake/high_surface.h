@@ -2,7 +2,7 @@
 /// \file
 /// The high-poly meshes of a bake: a ray scene, and the attributes at a hit (normal, color,
 /// curvature, position). An attribute is prepared only if a layer needs it. Tests:
-/// tests/mesh/bake/bake_test.cpp, high_detail_test.cpp.
+/// tests/mesh/bake/bake_test.cpp, high_materials_test.cpp.
 #pragma once
 
 #include <memory>
@@ -10,7 +10,7 @@
 
 #include "bake/ray_scene.h"
 #include "relief/mesh/bake.h"
-#include "relief/mesh/high_detail.h"
+#include "relief/mesh/high_materials.h"
 #include "relief/mesh/mesh.h"
 #include "relief/mesh/report.h"
 
@@ -28,7 +28,7 @@ glm::dvec3 normal_at(const SurfaceNormalMap& map, const glm::dvec2& texcoord);
 /// Checks the images, materials and texture coordinates of a high mesh.
 /// \throws InvalidInput if an image is missing, empty or has too few channels, if the mesh names a
 ///         missing material, or if texture coordinates and vertices differ in number
-void check(const HighDetail& detail);
+void check(const HighMaterials& detail);
 
 class HighSurface {
   public:
@@ -72,7 +72,7 @@ class HighSurface {
     /// A mesh with its attributes.
     struct Entry {
         const Mesh* mesh = nullptr;
-        const HighDetail* detail = nullptr;  ///< Null if no layer needs it.
+        const HighMaterials* detail = nullptr;  ///< Null if no layer needs it.
         std::span<const glm::vec2> color_texcoords;
         std::vector<glm::vec2>
             split_texcoords;           ///< Storage of `color_texcoords` if vertices were split.

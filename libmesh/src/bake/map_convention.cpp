@@ -28,13 +28,14 @@ constexpr int max_rounds = 3;
 constexpr std::array curves = {StoredCurve::none, StoredCurve::srgb_encoded,
                                StoredCurve::srgb_decoded};
 constexpr std::array flats = {FlatCode::middle, FlatCode::half};
-constexpr std::array turns = {MapTurn::upright, MapTurn::upside_down, MapTurn::mirrored,
-                              MapTurn::half_turn};
+constexpr std::array turns = {ImageOrientation::upright, ImageOrientation::upside_down,
+                              ImageOrientation::mirrored, ImageOrientation::half_turn};
 constexpr std::array spaces = {MapAxes::tangent, MapAxes::object, MapAxes::world};
 constexpr std::array bases = {MapBasis::used, MapBasis::mikktspace, MapBasis::area_weighted,
                               MapBasis::lengyel};
-constexpr std::array frames = {MapFrame::interpolated, MapFrame::unit, MapFrame::orthonormal,
-                               MapFrame::vertex_bitangent};
+constexpr std::array frames = {FrameInterpolation::interpolated, FrameInterpolation::unit,
+                               FrameInterpolation::orthonormal,
+                               FrameInterpolation::vertex_bitangent};
 
 /// All signed permutations, or those that keep z; positive signs come first.
 std::vector<AxisMapping> mappings(bool keeps_z) {
@@ -93,7 +94,7 @@ class Readings {
             for (std::size_t i = begin; i < end; ++i) {
                 const glm::dvec3 shown =
                     in_mesh(texels_[i], stored(texels_[i], convention), convention, tangents);
-                const double angle = degrees_between(shown, texels_[i].truth);
+                const double angle = degrees_between(shown, texels_[i].reference);
                 degrees[i] = std::isnan(angle) ? 180.0 : angle;
             }
         });
@@ -153,10 +154,10 @@ class Readings {
 
     [[nodiscard]] glm::dvec3 stored(const KnownTexel& texel,
                                     const MapConvention& convention) const {
-        const bool flips_x =
-            convention.turn == MapTurn::mirrored || convention.turn == MapTurn::half_turn;
-        const bool flips_y =
-            convention.turn == MapTurn::upside_down || convention.turn == MapTurn::half_turn;
+        const bool flips_x = convention.turn == ImageOrientation::mirrored ||
+                             convention.turn == ImageOrientation::half_turn;
+        const bool flips_y = convention.turn == ImageOrientation::upside_down ||
+                             convention.turn == ImageOrientation::half_turn;
         const int x = flips_x ? map_.width - 1 - texel.x : texel.x;
         const int y = flips_y ? map_.height - 1 - texel.y : texel.y;
         const std::size_t first =
@@ -194,12 +195,12 @@ class Readings {
             w += texel.weights[i] * corner_w;
             b += texel.weights[i] * corner_w * glm::cross(corner_n, glm::dvec3(corner_t));
         }
-        if (convention.frame != MapFrame::interpolated) {
+        if (convention.frame != FrameInterpolation::interpolated) {
             n = direction_or_zero(n);
-            if (convention.frame == MapFrame::orthonormal) t = in_plane(t, n);
+            if (convention.frame == FrameInterpolation::orthonormal) t = in_plane(t, n);
             t = direction_or_zero(t);
         }
-        if (convention.frame == MapFrame::vertex_bitangent)
+        if (convention.frame == FrameInterpolation::vertex_bitangent)
             b = direction_or_zero(b);
         else
             b = w * glm::cross(n, t);
@@ -234,7 +235,7 @@ std::vector<MapConvention> neighbors_of(const MapConvention& from) {
     if (from.space == MapAxes::tangent) {
         for (const bool ignores : {false, true}) {
             for (const MapBasis basis : bases) {
-                for (const MapFrame frame : frames) {
+                for (const FrameInterpolation frame : frames) {
                     add([&](MapConvention& c) {
                         c.ignores_mirroring = ignores;
                         c.basis = basis;
@@ -253,7 +254,7 @@ std::vector<MapConvention> neighbors_of(const MapConvention& from) {
             });
         }
     }
-    for (const MapTurn turn : turns) {
+    for (const ImageOrientation turn : turns) {
         for (const AxisMapping& axes : mappings_of(from.space)) {
             add([&](MapConvention& c) {
                 c.turn = turn;
@@ -290,10 +291,10 @@ ConventionFit find_convention(const Image& map, std::span<const KnownTexel> texe
     if (texels.empty()) return fit;
     Readings readings(map, texels, search);
     fit.expected_degrees = readings.expected();
-    fit.told_degrees = readings.error(search.told);
-    fit.found_degrees = fit.told_degrees;
+    fit.given_degrees = readings.error(search.told);
+    fit.found_degrees = fit.given_degrees;
     const double fine = std::max(2.0 * fit.expected_degrees, fit.expected_degrees + sure_degrees);
-    fit.was_searched = fit.told_degrees > fine;
+    fit.was_searched = fit.given_degrees > fine;
     for (int round = 0; round < max_rounds && fit.found_degrees > fine; ++round) {
         MapConvention best = fit.convention;
         double min_degrees = fit.found_degrees;
@@ -309,8 +310,8 @@ ConventionFit find_convention(const Image& map, std::span<const KnownTexel> texe
     }
     fit.tried = readings.tried;
     fit.changes = changes_between(search.told, fit.convention);
-    fit.is_explained = fit.was_searched && fit.found_degrees < fit.told_degrees / 2.0 &&
-                       fit.told_degrees - fit.found_degrees > sure_degrees;
+    fit.is_explained = fit.was_searched && fit.found_degrees < fit.given_degrees / 2.0 &&
+                       fit.given_degrees - fit.found_degrees > sure_degrees;
     return fit;
 }
 

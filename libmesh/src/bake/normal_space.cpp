@@ -53,7 +53,7 @@ void check(const Image& normals, const Mesh& mesh) {
     if (mesh.tangents.empty()) throw InvalidInput("the mesh has no tangents");
 }
 
-ConvertedNormals convert(const Image& normals, const Mesh& mesh, const MapPlacement& placement,
+ConvertedNormals convert(const Image& normals, const Mesh& mesh, const MapRegion& placement,
                          Conversion direction, Report& report) {
     check(normals, mesh);
     CoverageOptions options;
@@ -90,12 +90,12 @@ ConvertedNormals convert(const Image& normals, const Mesh& mesh, const MapPlacem
 }  // namespace
 
 ConvertedNormals object_from_tangent(const Image& normals, const Mesh& mesh,
-                                     const MapPlacement& placement, Report& report) {
+                                     const MapRegion& placement, Report& report) {
     return convert(normals, mesh, placement, Conversion::to_object, report);
 }
 
 ConvertedNormals tangent_from_object(const Image& normals, const Mesh& mesh,
-                                     const MapPlacement& placement, Report& report) {
+                                     const MapRegion& placement, Report& report) {
     return convert(normals, mesh, placement, Conversion::to_tangent, report);
 }
 

@@ -107,7 +107,7 @@ double face_distance(const Bounds& a, const Bounds& b) {
     return std::max({larger.x, larger.y, larger.z});
 }
 
-bool fits_turned(const BakeFit& fit, double low_diagonal) {
+bool fits_rotated(const BakeFit& fit, double low_diagonal) {
     if (face_distance(fit.high, fit.low) <= 0.1 * low_diagonal) return false;
     const glm::vec3 a = fit.high.min;
     const glm::vec3 b = fit.high.max;
@@ -271,7 +271,7 @@ BakeFit compare_boxes(const Bounds& high, const Bounds& low) {
     const double high_diagonal = diagonal(fit.high);
     if (!(low_diagonal > 0.0 && high_diagonal > 0.0)) return fit;
     fit.size_ratio = high_diagonal / low_diagonal;
-    fit.fits_turned = fits_turned(fit, low_diagonal);
+    fit.fits_rotated = fits_rotated(fit, low_diagonal);
     return fit;
 }
 

@@ -255,7 +255,7 @@ glm::dvec3 TexelTriangle::nearest(std::int64_t column, std::int64_t row,
     return in_given_order(weights);
 }
 
-constexpr int band_rows = TexelCover::band_rows;
+constexpr int band_rows = TexelRasterizer::band_rows;
 constexpr double max_repeats = 64.0;  // Of a repeating texture, across one triangle.
 
 /// The triangles of a map on the texel grid, made on demand from an index.
@@ -542,10 +542,10 @@ class DrawnBand {
 void check(std::span<const glm::vec2> texcoords, std::span<const glm::uvec3> triangles,
            const CoverageOptions& options) {
     for (const int side : {options.width, options.height}) {
-        if (side < 1 || side > TexelCover::largest_side)
+        if (side < 1 || side > TexelRasterizer::largest_side)
             throw InvalidInput(fmt::format("a map of {} x {} texels is not within 1 to {}",
                                            options.width, options.height,
-                                           TexelCover::largest_side));
+                                           TexelRasterizer::largest_side));
     }
     const int across = options.samples_across;
     constexpr std::array known = {1, 2, 4, 8, 16, 32};
@@ -560,7 +560,7 @@ void check(std::span<const glm::vec2> texcoords, std::span<const glm::uvec3> tri
 
 }  // namespace
 
-struct TexelCover::Implementation {
+struct TexelRasterizer::Implementation {
     Implementation(std::span<const glm::vec2> texcoords, std::span<const glm::uvec3> triangles,
                    const CoverageOptions& given, Report& report)
         : options(given), all(texcoords, triangles, options), bands(all, options, report) {}
@@ -570,15 +570,16 @@ struct TexelCover::Implementation {
     Bands bands;
 };
 
-TexelCover::TexelCover(std::span<const glm::vec2> texcoords, std::span<const glm::uvec3> triangles,
-                       const CoverageOptions& options, Report& report) {
+TexelRasterizer::TexelRasterizer(std::span<const glm::vec2> texcoords,
+                                 std::span<const glm::uvec3> triangles,
+                                 const CoverageOptions& options, Report& report) {
     check(texcoords, triangles, options);
     implementation_ = std::make_unique<Implementation>(texcoords, triangles, options, report);
 }
 
-TexelCover::~TexelCover() = default;
+TexelRasterizer::~TexelRasterizer() = default;
 
-Coverage TexelCover::cover(
+Coverage TexelRasterizer::cover(
     int first_row, int last_row,
     const std::function<void(int first_row, std::span<const CoveredTexel> texels)>& take,
     Report& report) const {
@@ -611,7 +612,8 @@ Coverage cover_texels(
     const CoverageOptions& options,
     const std::function<void(int first_row, std::span<const CoveredTexel> texels)>& take,
     Report& report) {
-    return TexelCover(texcoords, triangles, options, report).cover(0, options.height, take, report);
+    return TexelRasterizer(texcoords, triangles, options, report)
+        .cover(0, options.height, take, report);
 }
 
 }  // namespace relief

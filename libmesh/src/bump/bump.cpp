@@ -56,7 +56,7 @@ std::function<const void*(int)> rows_of(std::span<const Sample> samples, int wid
 /// Computes all rows of an image. If it has holes, the rows are computed from a filled copy.
 void make_image_rows(const Image& height, const BumpOptions& given, const BumpTarget& target,
                      Report& report) {
-    const BumpOptions options = settled_options(height, given);
+    const BumpOptions options = resolve_options(height, given);
     HeightRows heights{height.width, height.height, height.bits(), {}};
     std::visit(
         [&](const auto& samples) { heights.row = rows_of(std::span(samples), height.width); },
@@ -117,7 +117,7 @@ void check_bump(const BumpOptions& options) {
     gradient_kernel(options.kernel.value_or(Kernel::gaussian), options.gaussian_radius);
 }
 
-BumpOptions settled_options(const Image& height, BumpOptions options) {
+BumpOptions resolve_options(const Image& height, BumpOptions options) {
     check(height, options);
     if (!options.wrap) options.wrap = detect_tiling(height).wraps();
     if (!options.kernel) {

@@ -42,7 +42,7 @@ struct BumpTarget {
 
 /// Computes rows [first, last) on the calling thread.
 ///
-/// \param options  without unset fields; see settled_options()
+/// \param options  without unset fields; see resolve_options()
 /// \return false if a height that contributes is not finite, which makes the result invalid
 bool make_bump_rows(const HeightRows& heights, const BumpOptions& options, const BumpTarget& target,
                     int first, int last);

@@ -40,9 +40,9 @@ GradientKernel symmetric(int order, const std::vector<double>& differences,
 /// radius / 2: the b that minimizes sum g(x) g(y) (h - a - b x - c y)^2 is sum g(x) g(y) x h / sum
 /// g(x) g(y) x^2, which is separable.
 GradientKernel gaussian(int radius) {
-    if (radius < 1 || radius > largest_kernel_radius) {
+    if (radius < 1 || radius > max_kernel_radius) {
         throw InvalidInput(fmt::format("the kernel's radius {} is not within 1 and {}", radius,
-                                       largest_kernel_radius));
+                                       max_kernel_radius));
     }
     const double deviation = radius / 2.0;
     std::vector<double> differences;

@@ -428,9 +428,9 @@ Frames stored_and_read(std::span<const glm::vec3> normals, std::span<const glm::
                          encoding, seen_before);
 }
 
-FrameEncodingError error_against(const Frames& truth, const Frames& found) {
-    const std::vector<glm::dvec3> normals(truth.normals.begin(), truth.normals.end());
-    const std::vector<glm::dvec3> tangents(truth.tangents.begin(), truth.tangents.end());
+FrameEncodingError error_against(const Frames& reference, const Frames& found) {
+    const std::vector<glm::dvec3> normals(reference.normals.begin(), reference.normals.end());
+    const std::vector<glm::dvec3> tangents(reference.tangents.begin(), reference.tangents.end());
     const std::vector<glm::vec3> found_tangents(found.tangents.begin(), found.tangents.end());
     return {direction_error(found.normals, normals), direction_error(found_tangents, tangents)};
 }
@@ -441,7 +441,7 @@ double largest(const FrameEncodingError& error) {
 
 }  // namespace
 
-std::string_view word_of(FrameEncoding encoding) {
+std::string_view name_of(FrameEncoding encoding) {
     switch (encoding) {
         case FrameEncoding::float32:
             break;
@@ -535,15 +535,15 @@ ChosenEncoding smallest_encoding_within(double max_degrees, std::span<const glm:
         throw InvalidInput(
             fmt::format("an error of {} degrees is no bound: 0 or more", max_degrees));
     }
-    const Frames truth =
+    const Frames reference =
         stored_and_read(normals, tangents, FrameEncoding::float32, FrameRounding::nearest);
-    ChosenEncoding chosen{FrameEncoding::float32, error_against(truth, truth)};
+    ChosenEncoding chosen{FrameEncoding::float32, error_against(reference, reference)};
     for (const FrameEncoding encoding : all_frame_encodings) {
         const std::size_t words = words_per_frame(encoding);
         const std::size_t fewest = words_per_frame(chosen.encoding);
         if (encoding == FrameEncoding::float32 || words > fewest) continue;
         const FrameEncodingError error =
-            error_against(truth, stored_and_read(normals, tangents, encoding, rounding));
+            error_against(reference, stored_and_read(normals, tangents, encoding, rounding));
         if (largest(error) > max_degrees) continue;
         if (words < fewest || largest(error) < largest(chosen.error)) chosen = {encoding, error};
     }

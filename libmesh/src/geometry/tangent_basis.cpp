@@ -168,8 +168,8 @@ float degrees_off(float turn, int quarter_turns) {
 }
 
 /// Compares the stored tangents of all certain corners with a method's.
-BasisAgreement agreement_with(const Method& method, const Mesh& mesh,
-                              std::span<const unsigned char> kinds, double tolerance) {
+TangentAgreement agreement_with(const Method& method, const Mesh& mesh,
+                                std::span<const unsigned char> kinds, double tolerance) {
     const std::vector<glm::vec4> computed = method.tangents(mesh);
     std::vector<float> turns(computed.size(), std::numeric_limits<float>::quiet_NaN());
     parallel_for(computed.size(), basis_grain, [&](std::size_t begin, std::size_t end) {
@@ -179,7 +179,7 @@ BasisAgreement agreement_with(const Method& method, const Mesh& mesh,
             turns[corner] = turn_of(mesh.tangents[v], computed[corner], mesh.normals[v]);
         }
     });
-    BasisAgreement result;
+    TangentAgreement result;
     result.basis = method.basis;
     for (const float turn : turns) {
         for (int quarter = 0; quarter < 4; ++quarter)
@@ -205,9 +205,9 @@ BasisAgreement agreement_with(const Method& method, const Mesh& mesh,
 }
 
 /// Smallest mean of the methods that agree, and the methods that are equally good.
-void choose(SniffedTangents& result) {
-    const BasisAgreement* best = nullptr;
-    for (const BasisAgreement& agreement : result.agreements) {
+void choose(IdentifiedTangents& result) {
+    const TangentAgreement* best = nullptr;
+    for (const TangentAgreement& agreement : result.agreements) {
         if (agreement.share() < share_needed) continue;
         if (best == nullptr ||
             agreement.mean_clamped * factor_alike + means_alike < best->mean_clamped)
@@ -215,10 +215,10 @@ void choose(SniffedTangents& result) {
     }
     if (best == nullptr) return;
     result.basis = best->basis;
-    for (const BasisAgreement& agreement : result.agreements) {
+    for (const TangentAgreement& agreement : result.agreements) {
         if (&agreement == best || agreement.share() < share_needed) continue;
         if (agreement.mean_clamped <= best->mean_clamped * factor_alike + means_alike)
-            result.same_here.push_back(agreement.basis);
+            result.equivalent_methods.push_back(agreement.basis);
     }
 }
 
@@ -234,46 +234,47 @@ std::span<const TangentBasis> tangent_bases() {
     return all;
 }
 
-std::string_view word_of(TangentBasis basis) {
+std::string_view name_of(TangentBasis basis) {
     return std::find_if(methods.begin(), methods.end(),
                         [&](const Method& method) { return method.basis == basis; })
         ->word;
 }
 
-double BasisAgreement::share() const {
+double TangentAgreement::share() const {
     const std::size_t all = angles.count + angles.undefined;
     return all == 0 ? 0.0 : static_cast<double>(agreeing()) / static_cast<double>(all);
 }
 
-const BasisAgreement* SniffedTangents::best() const {
+const TangentAgreement* IdentifiedTangents::best() const {
     if (agreements.empty()) return nullptr;
     if (basis) {
         return &*std::find_if(agreements.begin(), agreements.end(),
-                              [&](const BasisAgreement& a) { return a.basis == *basis; });
+                              [&](const TangentAgreement& a) { return a.basis == *basis; });
     }
     // A method whose tangents are all parallel to the normals has no angles, and their mean would
     // be 0.
-    const auto mean_of = [](const BasisAgreement& a) {
+    const auto mean_of = [](const TangentAgreement& a) {
         return a.angles.count != 0 ? a.angles.mean : std::numeric_limits<double>::infinity();
     };
-    return &*std::min_element(
-        agreements.begin(), agreements.end(),
-        [&](const BasisAgreement& a, const BasisAgreement& b) { return mean_of(a) < mean_of(b); });
+    return &*std::min_element(agreements.begin(), agreements.end(),
+                              [&](const TangentAgreement& a, const TangentAgreement& b) {
+                                  return mean_of(a) < mean_of(b);
+                              });
 }
 
-bool SniffedTangents::is_best_by_far() const {
+bool IdentifiedTangents::is_clearly_best() const {
     constexpr double factor = 1.5;
-    const BasisAgreement* nearest = best();
+    const TangentAgreement* nearest = best();
     return nearest != nullptr &&
-           std::all_of(agreements.begin(), agreements.end(), [&](const BasisAgreement& other) {
+           std::all_of(agreements.begin(), agreements.end(), [&](const TangentAgreement& other) {
                return &other == nearest || other.angles.count == 0 ||
                       other.angles.mean >= factor * nearest->angles.mean;
            });
 }
 
-SniffedTangents sniff_tangents(const Mesh& mesh) {
+IdentifiedTangents identify_tangents(const Mesh& mesh) {
     validate(mesh);
-    SniffedTangents result;
+    IdentifiedTangents result;
     if (mesh.tangents.empty() || mesh.normals.empty() || mesh.texcoords.empty()) return result;
     result.stored_bits = stored_bits(mesh.tangents);
     result.tolerance = result.stored_bits == 8 ? tolerance_of_8_bits : float_tolerance;
@@ -288,7 +289,7 @@ SniffedTangents sniff_tangents(const Mesh& mesh) {
     return result;
 }
 
-std::string_view variant_in_words(int quarter_turns, bool is_negated) {
+std::string_view variant_text(int quarter_turns, bool is_negated) {
     static constexpr std::array<std::string_view, 8> words = {
         "",
         "w negated",

@@ -28,7 +28,7 @@
 namespace relief {
 namespace {
 
-bool is_grey(const Image& image) {
+bool is_gray(const Image& image) {
     return image.channels < 3;
 }
 
@@ -98,7 +98,7 @@ std::vector<float> floats_of(Image&& image) {
 template <typename Sample>
 std::vector<float> heights_of(const Image& image, HeightChannel channel) {
     if (channel == HeightChannel::alpha) return floats_of(channel_of(image, image.channels - 1));
-    if (is_grey(image)) return floats_of(channel_of(image, 0));
+    if (is_gray(image)) return floats_of(channel_of(image, 0));
     switch (channel) {
         case HeightChannel::luminance:
             return luminance<Sample>(image);
@@ -119,7 +119,7 @@ void check(const Image& image, HeightChannel channel) {
     if (channel == HeightChannel::alpha && !has_alpha(image))
         throw InvalidInput("the image has no alpha channel to take heights from");
     const bool is_color = channel == HeightChannel::green || channel == HeightChannel::blue;
-    if (is_color && is_grey(image))
+    if (is_color && is_gray(image))
         throw InvalidInput(fmt::format("a grey image has no {} channel to take heights from",
                                        channel == HeightChannel::green ? "green" : "blue"));
 }
@@ -147,13 +147,13 @@ void take_alpha(const Image& image, HeightMap& map) {
 template <typename Sample>
 void take_shares(const Image& image, HeightMap& map) {
     // JPEG leaves grey images this far from grey.
-    constexpr double least_difference = 1.0 / 16.0;
-    constexpr std::size_t looked_at = 10000;
+    constexpr double min_difference = 1.0 / 16.0;
+    constexpr std::size_t analyzed = 10000;
     const std::span<const Sample> samples = image.as<Sample>();
     const auto channels = static_cast<std::size_t>(image.channels);
     const std::size_t texels = samples.size() / channels;
     // An odd distance does not fall into step with the columns of most images.
-    const std::size_t distance = texels / looked_at | 1U;
+    const std::size_t distance = texels / analyzed | 1U;
     double count = 0.0;
     double colored = 0.0;
     double partial = 0.0;
@@ -163,7 +163,7 @@ void take_shares(const Image& image, HeightMap& map) {
         if (channels >= 3) {
             const auto [least, greatest] = std::minmax({at[0], at[1], at[2]});
             const double difference = static_cast<double>(greatest) - static_cast<double>(least);
-            if (difference > least_difference * largest_sample<Sample>) ++colored;
+            if (difference > min_difference * largest_sample<Sample>) ++colored;
         }
         if (has_alpha(image)) {
             const double alpha = static_cast<double>(at[channels - 1]) / largest_sample<Sample>;

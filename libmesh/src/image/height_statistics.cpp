@@ -88,10 +88,10 @@ HeightDepth depth_of(const Heights<float>& heights) {
     if (!(least < greatest))
         return {1, std::isfinite(least) && least != 0.0 ? std::abs(least) : 1.0};
     // Floats beyond 2^24 steps are multiples of them whatever they stand for.
-    constexpr double most_steps = 0x1p24;
+    constexpr double max_steps = 0x1p24;
     const double largest = std::max(std::abs(least), std::abs(greatest));
     const auto are_on_levels = [&](double levels) {
-        return largest * levels <= most_steps && are_multiples(heights.samples(), 1.0 / levels);
+        return largest * levels <= max_steps && are_multiples(heights.samples(), 1.0 / levels);
     };
     for (int bits = 1; bits <= 16; ++bits) {
         for (const double levels : {std::ldexp(1.0, bits) - 1.0, std::ldexp(1.0, bits)}) {
@@ -167,8 +167,8 @@ namespace {
 /// across the seam is the first.
 template <typename Index>
 std::vector<Index> pairs_of(int count) {
-    constexpr int most_pairs = 256;
-    const int pairs = std::min(count - 1, most_pairs);
+    constexpr int max_pairs = 256;
+    const int pairs = std::min(count - 1, max_pairs);
     std::vector<Index> first;
     for (int i = 0; i < pairs; ++i)
         first.push_back(static_cast<Index>(static_cast<std::int64_t>(i) * (count - 1) / pairs));

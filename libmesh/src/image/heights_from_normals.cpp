@@ -410,45 +410,45 @@ void FrequencySolver::solve_columns(double* values) const {
 
 using Field = std::vector<double>;
 
-constexpr int most_solver_rounds = 24;
+constexpr int max_solver_rounds = 24;
 constexpr double enough = 1e-10;  // Of the first error, squared.
 
 /// The slopes of a normal, and what was wrong with it.
 struct Slope {
     double x = 0.0, y = 0.0;
-    enum class Trouble { none, no_direction, faces_away, too_steep } trouble = Trouble::none;
+    enum class Trouble { none, no_direction, faces_away, too_steep } problem = Trouble::none;
 };
 
-Slope slope_of(const float* normal, double steepest) {
+Slope slope_of(const float* normal, double max_slope) {
     const double x = normal[0], y = normal[1], z = normal[2];
     if (!std::isfinite(x + y + z) || (x == 0.0 && y == 0.0 && z == 0.0))
         return {0.0, 0.0, Slope::Trouble::no_direction};
     const double across = std::sqrt(x * x + y * y);
-    if (z > 0.0 && across <= steepest * z) return {-x / z, -y / z, Slope::Trouble::none};
-    const auto trouble = z > 0.0 ? Slope::Trouble::too_steep : Slope::Trouble::faces_away;
-    if (across == 0.0) return {0.0, 0.0, trouble};
-    return {-x / across * steepest, -y / across * steepest, trouble};
+    if (z > 0.0 && across <= max_slope * z) return {-x / z, -y / z, Slope::Trouble::none};
+    const auto problem = z > 0.0 ? Slope::Trouble::too_steep : Slope::Trouble::faces_away;
+    if (across == 0.0) return {0.0, 0.0, problem};
+    return {-x / across * max_slope, -y / across * max_slope, problem};
 }
 
 /// Rows of the map's slopes less `mean`; no findings.
-SlopeOperator::SlopeRows slopes_of(const Image& normals, double steepest, glm::dvec2 mean) {
-    return [&normals, steepest, mean](int row, double* along_x, double* along_y) {
+SlopeOperator::SlopeRows slopes_of(const Image& normals, double max_slope, glm::dvec2 mean) {
+    return [&normals, max_slope, mean](int row, double* along_x, double* along_y) {
         const auto width = static_cast<std::size_t>(normals.width);
         const float* from = &normals.as<float>()[static_cast<std::size_t>(row) * width * 3];
         for (std::size_t i = 0; i < width; ++i) {
-            const Slope slope = slope_of(from + i * 3, steepest);
+            const Slope slope = slope_of(from + i * 3, max_slope);
             along_x[i] = slope.x - mean.x;
             along_y[i] = slope.y - mean.y;
         }
     };
 }
 
-void report_trouble(const Image& normals, double steepest, Report& report) {
+void report_trouble(const Image& normals, double max_slope, Report& report) {
     const std::size_t count = normals.sample_count() / 3;
     parallel_for_reporting(
         count, 1 << 14, report, [&](std::size_t begin, std::size_t end, Report& found) {
             for (std::size_t texel = begin; texel < end; ++texel) {
-                switch (slope_of(&normals.as<float>()[texel * 3], steepest).trouble) {
+                switch (slope_of(&normals.as<float>()[texel * 3], max_slope).problem) {
                     case Slope::Trouble::none:
                         break;
                     case Slope::Trouble::no_direction:
@@ -481,9 +481,9 @@ double sum_over_rows(int rows, const Sum& sum) {
     return all;
 }
 
-glm::dvec2 mean_slope(const Image& normals, double steepest) {
+glm::dvec2 mean_slope(const Image& normals, double max_slope) {
     const auto width = static_cast<std::size_t>(normals.width);
-    const SlopeOperator::SlopeRows slopes = slopes_of(normals, steepest, {0.0, 0.0});
+    const SlopeOperator::SlopeRows slopes = slopes_of(normals, max_slope, {0.0, 0.0});
     Field x(static_cast<std::size_t>(normals.height)), y(x.size());
     parallel_for(x.size(), 16, [&](std::size_t begin, std::size_t end) {
         Field along_x(width), along_y(width);
@@ -530,7 +530,7 @@ int refine(const SlopeOperator& slopes, const FrequencySolver& solver, Field& ri
     double error = dot(rest, better, rows);
     const double first_error = error;
     int round = 0;
-    while (round < most_solver_rounds && error > enough * first_error) {
+    while (round < max_solver_rounds && error > enough * first_error) {
         slopes.transpose(
             [&](int row, double* along_x, double* along_y) {
                 slopes.slopes(direction.data(), row, along_x, along_y);
@@ -608,9 +608,9 @@ void check(const Image& normals, const IntegrationOptions& options) {
         if (!is_within(size, 1e-30, 1e30))
             throw InvalidInput(fmt::format("a texel of size {} is not within 1e-30 to 1e30", size));
     }
-    if (!is_within(options.steepest, 1e-3, 1e6)) {
+    if (!is_within(options.max_slope, 1e-3, 1e6)) {
         throw InvalidInput(
-            fmt::format("a steepest slope of {} is not within 0.001 to 1e6", options.steepest));
+            fmt::format("a steepest slope of {} is not within 0.001 to 1e6", options.max_slope));
     }
 }
 
@@ -620,15 +620,15 @@ IntegratedHeights heights_from_normals(const Image& normals, const IntegrationOp
                                        Report& report) {
     check(normals, options);
     const GradientKernel kernel = gradient_kernel(options.kernel, options.gaussian_radius);
-    report_trouble(normals, options.steepest, report);
+    report_trouble(normals, options.max_slope, report);
     IntegratedHeights result;
     result.heights = make_image(normals.width, normals.height, 1, 32, ColorSpace::data);
     const SlopeOperator slopes(normals.width, normals.height, kernel, options.wrap, options.texel);
     const FrequencySolver solver(normals.width, normals.height, kernel, options.wrap,
                                  options.texel);
-    result.mean_slope = mean_slope(normals, options.steepest);
+    result.mean_slope = mean_slope(normals, options.max_slope);
     const SlopeOperator::SlopeRows wanted =
-        slopes_of(normals, options.steepest, options.level ? result.mean_slope : glm::dvec2(0.0));
+        slopes_of(normals, options.max_slope, options.level ? result.mean_slope : glm::dvec2(0.0));
 
     Field heights(result.heights.sample_count());
     slopes.transpose(wanted, heights.data());

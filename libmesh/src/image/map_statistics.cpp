@@ -32,12 +32,12 @@ constexpr float facing_back = -0.02F;  // Beyond what rounding to 8 bits makes o
 
 constexpr std::size_t listed_at_most = 8;
 
-void note(FoundMapCondition& found, std::size_t texel) {
+void note(MapConditionCount& found, std::size_t texel) {
     if (found.count++ < listed_at_most) found.first.push_back(texel);
 }
 
 /// Those of a later part of the map.
-void append(FoundMapCondition& found, const FoundMapCondition& later) {
+void append(MapConditionCount& found, const MapConditionCount& later) {
     found.count += later.count;
     for (const std::size_t texel : later.first) {
         if (found.first.size() < listed_at_most) found.first.push_back(texel);
@@ -154,13 +154,13 @@ namespace {
 constexpr int scales = 4;  ///< 1, 2, 4, 8 texels.
 constexpr int largest_square = 64;
 constexpr int least_square = 8;
-constexpr float steepest = 10.0F;
+constexpr float max_slope = 10.0F;
 
 // What makes a correlation count. Of 24 real maps, those of surfaces have 0.39 to 0.998 at 7.5
 // deviations and more; ripples, flakes, noise and isolated wires up to 0.08, or 0.2 at 2.7.
-constexpr double least_correlation = 0.15;
-constexpr double least_sureness = 5.0;  // In standard deviations.
-constexpr double fewest_squares = 4.0;  // That carry the weight: fewer have no spread to speak of.
+constexpr double min_correlation = 0.15;
+constexpr double min_sureness = 5.0;  // In standard deviations.
+constexpr double min_squares = 4.0;   // That carry the weight: fewer have no spread to speak of.
 
 /// Slopes of a square at one scale; NaN where a texel has no say.
 struct Slopes {
@@ -288,7 +288,7 @@ class Squares {
                 const glm::vec3 n = vectors_[static_cast<std::size_t>(first_row + row) *
                                                  static_cast<std::size_t>(width_) +
                                              static_cast<std::size_t>(first_column + column)];
-                if (!(n.z > 0.0F) || !(std::max(std::abs(n.x), std::abs(n.y)) <= steepest * n.z))
+                if (!(n.z > 0.0F) || !(std::max(std::abs(n.x), std::abs(n.y)) <= max_slope * n.z))
                     continue;
                 slopes.p[at] = -n.x / n.z;
                 slopes.q[at] = -n.y / n.z;
@@ -348,10 +348,10 @@ GreenEvidence judged(const std::vector<SquareEvidence>& squares, std::size_t sca
     }
     // The deviation of a ratio of sums, and how many squares have a part in it.
     evidence.deviation = std::sqrt(squared) / size;
-    if (size * size < fewest_squares * size_squares) return evidence;
+    if (size * size < min_squares * size_squares) return evidence;
     const double sureness = std::abs(evidence.correlation) / evidence.deviation;
     evidence.confidence = portable::erf(sureness / std::numbers::sqrt2);
-    if (std::abs(evidence.correlation) >= least_correlation && sureness >= least_sureness)
+    if (std::abs(evidence.correlation) >= min_correlation && sureness >= min_sureness)
         evidence.green = evidence.correlation > 0.0 ? Green::up : Green::down;
     return evidence;
 }

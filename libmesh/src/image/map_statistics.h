@@ -93,9 +93,9 @@ struct MapStatistics {
     std::array<bool, 4> constant{};  ///< By channel.
     /// Of these `equal`, not as long as a normal, nor without direction: 0.75 to 1.25.
     std::size_t background = 0;
-    FoundMapCondition not_finite{MapCondition::texel_not_finite, 0, {}};
-    FoundMapCondition without_direction{MapCondition::texel_without_direction, 0, {}};
-    FoundMapCondition facing_back{MapCondition::texel_facing_back, 0, {}};
+    MapConditionCount not_finite{MapCondition::texel_not_finite, 0, {}};
+    MapConditionCount without_direction{MapCondition::texel_without_direction, 0, {}};
+    MapConditionCount facing_back{MapCondition::texel_facing_back, 0, {}};
 
     [[nodiscard]] double share(std::size_t count) const {
         return vectors == 0 ? 0.0 : static_cast<double>(count) / static_cast<double>(vectors);

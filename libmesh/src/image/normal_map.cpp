@@ -274,7 +274,7 @@ void map_axes(Image& map, const AxisMapping& mapping, FlatCode flat, Report& rep
     });
 }
 
-void turn_normals(Image& normals, const AxisMapping& mapping) {
+void map_normal_axes(Image& normals, const AxisMapping& mapping) {
     check_mapping(mapping);
     check_floats(normals, 3, "normals");
     const std::span<float> all = normals.as<float>();

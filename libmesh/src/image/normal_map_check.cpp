@@ -22,59 +22,58 @@ using enum MapCondition;
 using enum Severity;
 
 constexpr std::array all_map_conditions = {
-    MapConditionInfo{not_normals, "no normal map", "map", trouble,
+    MapConditionInfo{not_normals, "no normal map", "map", problem,
                      "its vectors have no common length, or all its channels are the same"},
-    MapConditionInfo{object_space, "object-space normals", "map", remark,
+    MapConditionInfo{object_space, "object-space normals", "map", note,
                      "its vectors face all ways: for one mesh only, and no tangent-space map"},
-    MapConditionInfo{z_missing, "no third component", "map", trouble,
+    MapConditionInfo{z_missing, "no third component", "map", problem,
                      "only x and y are stored: who reads three channels gets wrong normals"},
-    MapConditionInfo{z_constant, "constant third component", "map", remark,
+    MapConditionInfo{z_constant, "constant third component", "map", note,
                      "x and y carry all; true only where slopes are small"},
-    MapConditionInfo{stored_through_srgb, "stored through the sRGB curve", "map", trouble,
+    MapConditionInfo{stored_through_srgb, "stored through the sRGB curve", "map", problem,
                      "too bright: flat is 188 of 255 instead of 128"},
-    MapConditionInfo{decoded_from_srgb, "darkened by the sRGB curve", "map", trouble,
+    MapConditionInfo{decoded_from_srgb, "darkened by the sRGB curve", "map", problem,
                      "read as colour and stored as light: flat is 55 of 255 instead of 128"},
-    MapConditionInfo{tagged_as_color, "tagged as a colour", "map", remark,
+    MapConditionInfo{tagged_as_color, "tagged as a colour", "map", note,
                      "its file says sRGB or the like: programs that follow such tags bend the "
                      "normals (relief does not, nor does glTF)"},
-    MapConditionInfo{signed_samples, "signed samples", "map", trouble,
+    MapConditionInfo{signed_samples, "signed samples", "map", problem,
                      "float samples hold n itself; relief and most others read (n + 1) / 2"},
-    MapConditionInfo{texel_not_finite, "texel not finite", "texel", trouble, "is read as flat"},
-    MapConditionInfo{texel_without_direction, "texel without direction", "texel", trouble,
+    MapConditionInfo{texel_not_finite, "texel not finite", "texel", problem, "is read as flat"},
+    MapConditionInfo{texel_without_direction, "texel without direction", "texel", problem,
                      "is (0,0,0) or all but that; what it is read as differs between programs"},
-    MapConditionInfo{texel_facing_back, "texel facing back", "texel", trouble,
+    MapConditionInfo{texel_facing_back, "texel facing back", "texel", problem,
                      "has z below 0, which no surface seen from outside has in tangent space"},
-    MapConditionInfo{texel_grey, "grey texel", "texel", remark,
+    MapConditionInfo{texel_gray, "grey texel", "texel", note,
                      "is black, white or grey: a background, which filtering mixes into its "
                      "neighbours"},
-    MapConditionInfo{not_unit, "not of unit length", "map", trouble,
+    MapConditionInfo{not_unit, "not of unit length", "map", problem,
                      "lengths are off by more than 0.05 (RMS): programs that do not normalise "
                      "shade it wrong"},
-    MapConditionInfo{not_quite_unit, "not quite of unit length", "map", remark,
+    MapConditionInfo{not_quite_unit, "not quite of unit length", "map", note,
                      "lengths are off by more than 0.02 (RMS): filtered or compressed"},
-    MapConditionInfo{green_contradicted, "green is not as said", "map", trouble,
+    MapConditionInfo{green_contradicted, "green is not as said", "map", problem,
                      "its slopes are those of a surface only with green the other way round"},
-    MapConditionInfo{green_down, "green is down", "map", remark,
+    MapConditionInfo{green_down, "green is down", "map", note,
                      "as DirectX has it; OpenGL and glTF want it up"},
-    MapConditionInfo{green_unknown, "green cannot be told", "map", remark,
+    MapConditionInfo{green_unknown, "green cannot be told", "map", note,
                      "its slopes are as good a surface with green up as with green down"},
-    MapConditionInfo{flat_contradicted, "zero is not what the file says", "map", trouble,
+    MapConditionInfo{flat_contradicted, "zero is not what the file says", "map", problem,
                      "its flat texels have another code than the one named"},
-    MapConditionInfo{all_flat, "every texel the same", "map", remark, "shows nothing"},
-    MapConditionInfo{x_constant, "constant first component", "map", remark,
+    MapConditionInfo{all_flat, "every texel the same", "map", note, "shows nothing"},
+    MapConditionInfo{x_constant, "constant first component", "map", note,
                      "no slope left and right"},
-    MapConditionInfo{y_constant, "constant second component", "map", remark,
-                     "no slope up and down"},
-    MapConditionInfo{bits_unused, "bits unused", "map", remark,
+    MapConditionInfo{y_constant, "constant second component", "map", note, "no slope up and down"},
+    MapConditionInfo{bits_unused, "bits unused", "map", note,
                      "holds no more than 8 bits: as large as a finer map and no better"},
-    MapConditionInfo{alpha_opaque, "constant alpha", "map", remark,
+    MapConditionInfo{alpha_opaque, "constant alpha", "map", note,
                      "a fourth channel that says nothing"},
-    MapConditionInfo{alpha_heights, "heights in alpha", "map", remark,
+    MapConditionInfo{alpha_heights, "heights in alpha", "map", note,
                      "the slopes of the fourth channel are those of the normals"},
-    MapConditionInfo{alpha_other, "something in alpha", "map", remark,
+    MapConditionInfo{alpha_other, "something in alpha", "map", note,
                      "a fourth channel that is not these normals' heights"},
-    MapConditionInfo{seam_x, "seam left and right", "map", remark, "does not tile along x"},
-    MapConditionInfo{seam_y, "seam top and bottom", "map", remark, "does not tile along y"},
+    MapConditionInfo{seam_x, "seam left and right", "map", note, "does not tile along x"},
+    MapConditionInfo{seam_y, "seam top and bottom", "map", note, "does not tile along y"},
 };
 
 static_assert([] {
@@ -95,20 +94,20 @@ const MapConditionInfo& condition_info(MapCondition condition) {
 }
 
 bool NormalMapCheck::has(MapCondition condition) const {
-    return std::any_of(found.begin(), found.end(), [condition](const FoundMapCondition& one) {
+    return std::any_of(found.begin(), found.end(), [condition](const MapConditionCount& one) {
         return one.condition == condition;
     });
 }
 
-bool NormalMapCheck::has_trouble() const {
-    return std::any_of(found.begin(), found.end(), [](const FoundMapCondition& one) {
-        return condition_info(one.condition).severity == trouble;
+bool NormalMapCheck::has_problem() const {
+    return std::any_of(found.begin(), found.end(), [](const MapConditionCount& one) {
+        return condition_info(one.condition).severity == problem;
     });
 }
 
 Report to_report(const NormalMapCheck& check, std::optional<Severity> severity) {
     Report report;
-    for (const FoundMapCondition& found : check.found) {
+    for (const MapConditionCount& found : check.found) {
         const MapConditionInfo& info = condition_info(found.condition);
         if (severity && info.severity != *severity) continue;
         report.add(Finding{std::string(info.word), std::string(info.element),
@@ -119,13 +118,13 @@ Report to_report(const NormalMapCheck& check, std::optional<Severity> severity) 
 
 namespace {
 
-constexpr std::size_t most_samples = 1 << 18;  // To tell the meaning from.
+constexpr std::size_t max_samples = 1 << 18;  // To tell the meaning from.
 
 /// Another meaning is believed where it makes lengths this much truer.
 constexpr double largest_other_rms = 0.1;
-constexpr double least_gain = 2.0;
+constexpr double min_gain = 2.0;
 
-bool is_grey(const MapStatistics& all) {
+bool is_gray(const MapStatistics& all) {
     return static_cast<double>(all.equal) >= 0.995 * static_cast<double>(all.texels);
 }
 
@@ -151,10 +150,10 @@ bool are_xy_normals(const Image& map, const MapStatistics& all) {
 }
 
 MapContent content_of(const Image& map, const MapStatistics& all) {
-    if (map.channels == 1 || is_grey(all)) return MapContent::grey;
+    if (map.channels == 1 || is_gray(all)) return MapContent::gray;
     if (map.channels >= 3 && are_tangent_normals(all)) return MapContent::tangent_normals;
     if (are_xy_normals(map, all)) return MapContent::xy_normals;
-    if (map.channels == 2) return MapContent::grey;
+    if (map.channels == 2) return MapContent::gray;
     return are_object_normals(all) ? MapContent::object_normals : MapContent::other;
 }
 
@@ -168,14 +167,14 @@ struct Meaning {
 Meaning meaning_of(const Image& map, FlatCode flat) {
     const std::size_t count =
         static_cast<std::size_t>(map.width) * static_cast<std::size_t>(map.height);
-    const std::size_t step = std::max<std::size_t>(1, count / most_samples);
+    const std::size_t step = std::max<std::size_t>(1, count / max_samples);
     SampleMeaning plain;
     plain.flat = flat;
     plain.z_is_stored = map.channels >= 3;
     const MapStatistics as_stored = map_statistics(map, plain, step);
     Meaning best{plain, content_of(map, as_stored)};
-    if (map.channels < 3 || is_grey(as_stored)) return best;
-    double least = as_stored.lengths.rms_deviation / least_gain;
+    if (map.channels < 3 || is_gray(as_stored)) return best;
+    double least = as_stored.lengths.rms_deviation / min_gain;
     const auto consider = [&](const SampleMeaning& other) {
         const MapStatistics statistics = map_statistics(map, other, step);
         const MapContent content = content_of(map, statistics);
@@ -233,7 +232,7 @@ class FoundConditions {
     void if_so(bool is_so, MapCondition condition) {
         if (is_so) check_.found.push_back({condition, 1, {}});
     }
-    void texels(const FoundMapCondition& found) {
+    void texels(const MapConditionCount& found) {
         if (found.count > 0) check_.found.push_back(found);
     }
 
@@ -248,7 +247,7 @@ bool has_directions(MapContent content) {
 void find_meaning(const NormalMapCheck& check, const SampleMeaning& meaning,
                   const MapStatistics& all, int channels, bool is_tagged, FoundConditions& found) {
     using enum MapCondition;
-    found.if_so(check.content == MapContent::grey || check.content == MapContent::other,
+    found.if_so(check.content == MapContent::gray || check.content == MapContent::other,
                 not_normals);
     found.if_so(check.content == MapContent::object_normals, object_space);
     found.if_so(check.content == MapContent::xy_normals, z_missing);
@@ -258,7 +257,7 @@ void find_meaning(const NormalMapCheck& check, const SampleMeaning& meaning,
                 z_constant);
     found.if_so(check.curve == StoredCurve::srgb_encoded, stored_through_srgb);
     found.if_so(check.curve == StoredCurve::srgb_decoded, decoded_from_srgb);
-    const bool is_color = check.content == MapContent::grey || check.content == MapContent::other;
+    const bool is_color = check.content == MapContent::gray || check.content == MapContent::other;
     found.if_so(is_tagged && !is_color, tagged_as_color);
     found.if_so(meaning.is_signed, signed_samples);
 }
@@ -268,7 +267,7 @@ void find_texels(const NormalMapCheck& check, const MapStatistics& all, FoundCon
     if (!has_directions(check.content)) return;
     found.texels(all.without_direction);
     if (check.content == MapContent::tangent_normals) found.texels(all.facing_back);
-    found.texels({MapCondition::texel_grey, all.background, {}});
+    found.texels({MapCondition::texel_gray, all.background, {}});
     const double rms = check.lengths_uncurved.rms_deviation;
     found.if_so(rms > 0.05, MapCondition::not_unit);
     found.if_so(rms > 0.02 && rms <= 0.05, MapCondition::not_quite_unit);
@@ -305,7 +304,7 @@ void find_conventions(const Image& map, const NormalMapCheck& check,
 void find_channels(const Image& map, const NormalMapCheck& check, const MapStatistics& all,
                    FoundConditions& found) {
     using enum MapCondition;
-    if (check.content == MapContent::grey || check.content == MapContent::other) return;
+    if (check.content == MapContent::gray || check.content == MapContent::other) return;
     const bool is_flat = all.constant[0] && all.constant[1];
     found.if_so(is_flat, all_flat);
     found.if_so(all.constant[0] && !is_flat, x_constant);
@@ -344,7 +343,7 @@ bool is_surface(const MapStatistics& all, const GreenEvidence& green) {
 /// What only tangent-space normals show; says so if the map turns out to hold some.
 void look_at_surface(const Image& map, SampleMeaning meaning, const MapStatistics& all,
                      NormalMapCheck& check) {
-    if (check.content == MapContent::grey || check.content == MapContent::object_normals) return;
+    if (check.content == MapContent::gray || check.content == MapContent::object_normals) return;
     meaning.z_is_stored = check.content != MapContent::xy_normals;
     const SurfaceEvidence surface = surface_evidence(map, meaning);
     if (check.content == MapContent::other) {
@@ -365,7 +364,7 @@ NormalMapCheck check_normal_map(const Image& map,
     FoundConditions found(check);
     look_at_channels(map, check);
     if (map.channels == 1) {
-        check.content = MapContent::grey;
+        check.content = MapContent::gray;
         found.if_so(true, MapCondition::not_normals);
         return check;
     }

@@ -89,7 +89,7 @@ RowLengths lengths_of_row(const Image& map, FlatCode flat, std::size_t row, Repo
 }
 
 /// All rows together, in their order.
-LengthSpread spread_of(const std::vector<RowLengths>& rows) {
+LengthRange time_statistics(const std::vector<RowLengths>& rows) {
     RowLengths all;
     for (const RowLengths& row : rows) {
         all.least = std::min(all.least, row.least);
@@ -129,7 +129,7 @@ Image decode_xy_map(const Image& map, const XyChannels& channels, Green green, F
     return result;
 }
 
-LengthSpread count_lengths(const Image& map, FlatCode flat, Report& report) {
+LengthRange measure_lengths(const Image& map, FlatCode flat, Report& report) {
     if (map.empty()) throw InvalidInput("an empty image holds no normals");
     if (map.channels < 3)
         throw InvalidInput(fmt::format("a normal map has 3 or 4 channels, not {}", map.channels));
@@ -139,7 +139,7 @@ LengthSpread count_lengths(const Image& map, FlatCode flat, Report& report) {
             rows[row] = lengths_of_row<Sample>(map, flat, row, found);
         });
     });
-    return spread_of(rows);
+    return time_statistics(rows);
 }
 
 void scale_slopes(Image& normals, double strength, Report& report) {

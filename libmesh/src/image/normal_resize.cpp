@@ -184,7 +184,7 @@ Image slopes_to_average(const Image& normals, Report& report) {
     for_each_texel(from.size() / 3, report, [&](std::size_t texel, Report& found) {
         const float* const n = &from[texel * 3];
         const double across = std::sqrt(double{n[0]} * n[0] + double{n[1]} * n[1]);
-        const bool is_steep = !(across <= steepest_averaged_slope * n[2]);
+        const bool is_steep = !(across <= max_averaged_slope * n[2]);
         if (is_steep)
             found.add("normal too steep to average slopes", "texel", texel,
                       "vectors averaged around it");

@@ -131,8 +131,8 @@ class CentroidGrid {
 };
 
 /// Distance of two triangles in tolerances; infinite if they do not match.
-double cost_of(const Mesh& a, const glm::uvec3& ta, const Mesh& b, const glm::uvec3& tb, int turn,
-               const MatchOptions& options) {
+double nominal_cost(const Mesh& a, const glm::uvec3& ta, const Mesh& b, const glm::uvec3& tb,
+                    int turn, const MatchOptions& options) {
     constexpr double never = std::numeric_limits<double>::infinity();
     double cost = 0.0;
     for (int k = 0; k < 3; ++k) {
@@ -151,7 +151,7 @@ double cost_of(const Mesh& a, const glm::uvec3& ta, const Mesh& b, const glm::uv
 }
 
 /// Request of a triangle of b.
-struct Wish {
+struct MethodRequest {
     std::uint32_t a = nobody;  ///< Index into the remaining triangles of a.
     int turn = 0;
     double cost = std::numeric_limits<double>::infinity();
@@ -203,52 +203,53 @@ class NearPairing {
         return std::max(largest * 1e-15, std::numeric_limits<double>::min());
     }
 
-    [[nodiscard]] Wish wish_of(std::uint32_t triangle) const {
-        Wish wish;
+    [[nodiscard]] MethodRequest request_of(std::uint32_t triangle) const {
+        MethodRequest request;
         const glm::dvec3 at = centroid(b_, triangle);
-        if (!is_finite(at)) return wish;
+        if (!is_finite(at)) return request;
         grid_.near(at, radius_, [&](std::uint32_t i) {
             if (is_taken_[i] != 0) return;
-            Wish candidate{i};
+            MethodRequest candidate{i};
             for (int turn = 0; turn < 3; ++turn) {
-                const double cost = cost_of(a_, a_.triangles[left_a_[i]], b_,
-                                            b_.triangles[triangle], turn, options_);
+                const double cost = nominal_cost(a_, a_.triangles[left_a_[i]], b_,
+                                                 b_.triangles[triangle], turn, options_);
                 if (cost < candidate.cost) candidate = {i, turn, cost};
             }
             if (!std::isfinite(candidate.cost)) return;
-            const std::uint32_t choices = wish.choices + 1;
-            if (candidate.cost < wish.cost ||
-                (candidate.cost == wish.cost &&
-                 preference(i, triangle) < preference(wish.a, triangle)))
-                wish = candidate;
-            wish.choices = choices;
+            const std::uint32_t choices = request.choices + 1;
+            if (candidate.cost < request.cost ||
+                (candidate.cost == request.cost &&
+                 preference(i, triangle) < preference(request.a, triangle)))
+                request = candidate;
+            request.choices = choices;
         });
-        return wish;
+        return request;
     }
 
     /// Grants requests. \return the triangles that must request again
     std::vector<std::uint32_t> round(const std::vector<std::uint32_t>& asking) {
-        std::vector<Wish> wishes(asking.size());
+        std::vector<MethodRequest> requests(asking.size());
         parallel_for(asking.size(), near_match_grain, [&](std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i)
-                wishes[i] = wish_of(left_b_[asking[i]]);
+                requests[i] = request_of(left_b_[asking[i]]);
         });
         std::vector<std::uint32_t> nearest(left_a_.size(), nobody);
-        for (std::uint32_t i = 0; i < wishes.size(); ++i) {
-            if (wishes[i].a == nobody) continue;
-            std::uint32_t& first = nearest[wishes[i].a];
-            if (first == nobody || wishes[i].cost < wishes[first].cost) first = i;
+        for (std::uint32_t i = 0; i < requests.size(); ++i) {
+            if (requests[i].a == nobody) continue;
+            std::uint32_t& first = nearest[requests[i].a];
+            if (first == nobody || requests[i].cost < requests[first].cost) first = i;
         }
         std::vector<std::uint32_t> again;
-        for (std::uint32_t i = 0; i < wishes.size(); ++i) {
-            const Wish& wish = wishes[i];
-            if (wish.a == nobody) continue;
-            if (nearest[wish.a] != i) {
+        for (std::uint32_t i = 0; i < requests.size(); ++i) {
+            const MethodRequest& request = requests[i];
+            if (request.a == nobody) continue;
+            if (nearest[request.a] != i) {
                 again.push_back(asking[i]);
                 continue;
             }
-            is_taken_[wish.a] = 1;
-            pairs_.push_back({left_a_[wish.a], left_b_[asking[i]], wish.turn, wish.choices > 1});
+            is_taken_[request.a] = 1;
+            pairs_.push_back(
+                {left_a_[request.a], left_b_[asking[i]], request.turn, request.choices > 1});
         }
         return again;
     }

@@ -29,67 +29,68 @@ using enum Severity;
 
 constexpr std::array all_mesh_conditions = {
     MeshConditionInfo{MeshCondition::triangle_not_finite, "triangle with a non-finite corner",
-                      "triangle", trouble, "has no area, no normal and no place"},
-    MeshConditionInfo{MeshCondition::triangle_collapsed, "collapsed triangle", "triangle", trouble,
+                      "triangle", problem, "has no area, no normal and no place"},
+    MeshConditionInfo{MeshCondition::triangle_collapsed, "collapsed triangle", "triangle", problem,
                       "has two corners at the same place, so no area and no normal"},
-    MeshConditionInfo{MeshCondition::triangle_collinear, "collinear triangle", "triangle", trouble,
+    MeshConditionInfo{MeshCondition::triangle_collinear, "collinear triangle", "triangle", problem,
                       "has its corners on a line, so no area and no normal"},
-    MeshConditionInfo{MeshCondition::triangle_needle, "needle triangle", "triangle", remark,
+    MeshConditionInfo{MeshCondition::triangle_needle, "needle triangle", "triangle", note,
                       "is so narrow that rounding of its corners turns its normal"},
-    MeshConditionInfo{MeshCondition::triangle_repeated, "repeated triangle", "triangle", trouble,
+    MeshConditionInfo{MeshCondition::triangle_repeated, "repeated triangle", "triangle", problem,
                       "lies exactly on an earlier one and counts twice"},
-    MeshConditionInfo{MeshCondition::triangle_backed, "double-sided triangle", "triangle", remark,
+    MeshConditionInfo{MeshCondition::triangle_two_sided, "double-sided triangle", "triangle", note,
                       "lies exactly on the back of another: smoothed together, they cancel"},
     MeshConditionInfo{MeshCondition::edge_non_manifold, "non-manifold edge", "edge of triangle",
-                      trouble, "has three triangles or more, so no inside and outside"},
-    MeshConditionInfo{MeshCondition::edge_flipped, "flipped neighbors", "edge of triangle", trouble,
+                      problem, "has three triangles or more, so no inside and outside"},
+    MeshConditionInfo{MeshCondition::edge_flipped, "flipped neighbors", "edge of triangle", problem,
                       "one of the two triangles on the edge is inside out"},
-    MeshConditionInfo{MeshCondition::edge_folded, "folded edge", "edge of triangle", remark,
+    MeshConditionInfo{MeshCondition::edge_folded, "folded edge", "edge of triangle", note,
                       "the two triangles on the edge lie on each other, back to back"},
-    MeshConditionInfo{MeshCondition::edge_boundary, "boundary edge", "edge of triangle", remark,
+    MeshConditionInfo{MeshCondition::edge_boundary, "boundary edge", "edge of triangle", note,
                       "has one triangle: the surface is open there"},
-    MeshConditionInfo{MeshCondition::vertex_not_finite, "non-finite position", "vertex", trouble,
+    MeshConditionInfo{MeshCondition::vertex_not_finite, "non-finite position", "vertex", problem,
                       "is nowhere"},
-    MeshConditionInfo{MeshCondition::vertex_isolated, "isolated vertex", "vertex", trouble,
+    MeshConditionInfo{MeshCondition::vertex_isolated, "isolated vertex", "vertex", problem,
                       "belongs to no triangle, so nothing gives it a normal"},
-    MeshConditionInfo{MeshCondition::vertex_voiceless, "vertex with only degenerate triangles",
-                      "vertex", trouble, "has no triangle that could give it a normal"},
-    MeshConditionInfo{MeshCondition::vertex_bow_tie, "bow-tie vertex", "vertex", remark,
+    MeshConditionInfo{MeshCondition::vertex_degenerate_fan, "vertex with only degenerate triangles",
+                      "vertex", problem, "has no triangle that could give it a normal"},
+    MeshConditionInfo{MeshCondition::vertex_bow_tie, "bow-tie vertex", "vertex", note,
                       "is where several surfaces touch in a point: smoothed together there"},
-    MeshConditionInfo{MeshCondition::vertex_near_duplicate, "near-duplicate vertex", "vertex",
-                      remark, "is all but equal to another: not smoothed together, a crack"},
-    MeshConditionInfo{MeshCondition::normal_not_finite, "non-finite normal", "vertex", trouble,
+    MeshConditionInfo{MeshCondition::vertex_near_duplicate, "near-duplicate vertex", "vertex", note,
+                      "is all but equal to another: not smoothed together, a crack"},
+    MeshConditionInfo{MeshCondition::normal_not_finite, "non-finite normal", "vertex", problem,
                       "is no direction"},
-    MeshConditionInfo{MeshCondition::normal_zero, "zero normal", "vertex", trouble,
+    MeshConditionInfo{MeshCondition::normal_zero, "zero normal", "vertex", problem,
                       "is no direction"},
     MeshConditionInfo{MeshCondition::normal_not_unit, "normal not of unit length", "vertex",
-                      trouble, "shades too bright or too dark"},
+                      problem, "shades too bright or too dark"},
     MeshConditionInfo{MeshCondition::normal_opposed, "normal against its triangles", "vertex",
-                      trouble, "points to the back of all of them"},
-    MeshConditionInfo{MeshCondition::normal_divided, "normal against one of its triangles",
-                      "vertex", remark, "does not face as every triangle around does"},
-    MeshConditionInfo{MeshCondition::tangent_not_finite, "non-finite tangent", "vertex", trouble,
+                      problem, "points to the back of all of them"},
+    MeshConditionInfo{MeshCondition::normal_inconsistent, "normal against one of its triangles",
+                      "vertex", note, "does not face as every triangle around does"},
+    MeshConditionInfo{MeshCondition::tangent_not_finite, "non-finite tangent", "vertex", problem,
                       "is no direction"},
     MeshConditionInfo{MeshCondition::tangent_not_unit, "tangent not of unit length", "vertex",
-                      trouble, "bends what a normal map says"},
-    MeshConditionInfo{MeshCondition::tangent_unhanded, "tangent without handedness", "vertex",
-                      trouble, "has a w that is neither 1 nor -1, so no bitangent"},
+                      problem, "bends what a normal map says"},
+    MeshConditionInfo{MeshCondition::tangent_invalid_sign, "tangent without handedness", "vertex",
+                      problem, "has a w that is neither 1 nor -1, so no bitangent"},
     MeshConditionInfo{MeshCondition::tangent_along_normal, "tangent along its normal", "vertex",
-                      trouble, "spans no tangent plane with it"},
-    MeshConditionInfo{MeshCondition::tangent_leaning, "tangent not perpendicular to its normal",
-                      "vertex", remark, "bends what a normal map says by as much"},
+                      problem, "spans no tangent plane with it"},
+    MeshConditionInfo{MeshCondition::tangent_not_perpendicular,
+                      "tangent not perpendicular to its normal", "vertex", note,
+                      "bends what a normal map says by as much"},
     MeshConditionInfo{MeshCondition::texture_not_finite, "non-finite texture coordinate", "vertex",
-                      trouble, "is nowhere in the image"},
+                      problem, "is nowhere in the image"},
     MeshConditionInfo{MeshCondition::texture_degenerate, "triangle without texture gradient",
-                      "triangle", trouble, "has no area in the image, so no tangents"},
-    MeshConditionInfo{MeshCondition::texture_mirrored, "mirrored texture", "triangle", remark,
+                      "triangle", problem, "has no area in the image, so no tangents"},
+    MeshConditionInfo{MeshCondition::texture_mirrored, "mirrored texture", "triangle", note,
                       "shows the image the wrong way round"},
-    MeshConditionInfo{MeshCondition::texture_overlapping, "overlapping texture", "triangle", remark,
+    MeshConditionInfo{MeshCondition::texture_overlapping, "overlapping texture", "triangle", note,
                       "shares texels with another: nothing can be baked there"},
-    MeshConditionInfo{MeshCondition::mesh_far_away, "far from the origin", "mesh", remark,
+    MeshConditionInfo{MeshCondition::mesh_far_away, "far from the origin", "mesh", note,
                       "floats are so coarse out there that details are rounded away"},
-    MeshConditionInfo{MeshCondition::texture_far_away, "texture far from its origin", "mesh",
-                      remark, "floats are so coarse out there that the image is torn"},
+    MeshConditionInfo{MeshCondition::texture_far_away, "texture far from its origin", "mesh", note,
+                      "floats are so coarse out there that the image is torn"},
 };
 
 /// Checks that the table is in the order of the enumeration.
@@ -205,7 +206,7 @@ void diagnose_vertices(const DiagnosedMesh& diagnosed, Tally& tally) {
         else if (use == Use::none)
             tally.add(MeshCondition::vertex_isolated, v);
         else if (use == Use::without_area)
-            tally.add(MeshCondition::vertex_voiceless, v);
+            tally.add(MeshCondition::vertex_degenerate_fan, v);
     }
 }
 
@@ -281,7 +282,7 @@ void diagnose_normals(const DiagnosedMesh& diagnosed, Tally& tally) {
         if (facing.behind != 0 && facing.before == 0 && facing.beside == 0)
             tally.add(MeshCondition::normal_opposed, v);
         else if (facing.behind != 0 || facing.beside != 0)
-            tally.add(MeshCondition::normal_divided, v);
+            tally.add(MeshCondition::normal_inconsistent, v);
     }
 }
 
@@ -294,7 +295,7 @@ void diagnose_slant(const Mesh& mesh, std::size_t vertex, Tally& tally) {
     if (cosine > along_normal)
         tally.add(MeshCondition::tangent_along_normal, vertex);
     else if (cosine > leaning_tolerance)
-        tally.add(MeshCondition::tangent_leaning, vertex);
+        tally.add(MeshCondition::tangent_not_perpendicular, vertex);
 }
 
 void diagnose_tangents(const Mesh& mesh, Tally& tally) {
@@ -306,7 +307,7 @@ void diagnose_tangents(const Mesh& mesh, Tally& tally) {
         }
         if (!is_unit(glm::length(glm::dvec3(tangent))))
             tally.add(MeshCondition::tangent_not_unit, v);
-        if (std::abs(tangent.w) != 1.0F) tally.add(MeshCondition::tangent_unhanded, v);
+        if (std::abs(tangent.w) != 1.0F) tally.add(MeshCondition::tangent_invalid_sign, v);
         diagnose_slant(mesh, v, tally);
     }
 }
@@ -390,7 +391,7 @@ Tally::Tally(std::size_t listed) : listed_(listed) {
 }
 
 void Tally::add(MeshCondition condition, std::size_t index) {
-    FoundCondition& found = conditions_[static_cast<std::size_t>(condition)];
+    MeshConditionCount& found = conditions_[static_cast<std::size_t>(condition)];
     ++found.count;
     if (found.first.size() < listed_ && (found.first.empty() || found.first.back() != index))
         found.first.push_back(index);
@@ -402,23 +403,23 @@ void Tally::merge(const Tally& other) {
     }
 }
 
-std::vector<FoundCondition> Tally::found() const {
-    std::vector<FoundCondition> found;
+std::vector<MeshConditionCount> Tally::found() const {
+    std::vector<MeshConditionCount> found;
     std::copy_if(conditions_.begin(), conditions_.end(), std::back_inserter(found),
-                 [](const FoundCondition& condition) { return condition.count != 0; });
+                 [](const MeshConditionCount& condition) { return condition.count != 0; });
     return found;
 }
 
 std::size_t Diagnosis::count(MeshCondition condition) const {
-    for (const FoundCondition& one : found) {
+    for (const MeshConditionCount& one : found) {
         if (one.condition == condition) return one.count;
     }
     return 0;
 }
 
-bool Diagnosis::has_trouble() const {
-    return std::any_of(found.begin(), found.end(), [](const FoundCondition& one) {
-        return condition_info(one.condition).severity == Severity::trouble;
+bool Diagnosis::has_problem() const {
+    return std::any_of(found.begin(), found.end(), [](const MeshConditionCount& one) {
+        return condition_info(one.condition).severity == Severity::problem;
     });
 }
 
@@ -456,7 +457,7 @@ Diagnosis diagnose(const Mesh& mesh, const DiagnoseOptions& options) {
     return diagnosis;
 }
 
-Finding to_finding(const FoundCondition& found) {
+Finding to_finding(const MeshConditionCount& found) {
     const MeshConditionInfo& words = condition_info(found.condition);
     return {std::string(words.word), std::string(words.element), std::string(words.meaning),
             found.count, found.first};
@@ -464,7 +465,7 @@ Finding to_finding(const FoundCondition& found) {
 
 Report to_report(const Diagnosis& diagnosis, std::optional<Severity> severity) {
     Report report;
-    for (const FoundCondition& one : diagnosis.found) {
+    for (const MeshConditionCount& one : diagnosis.found) {
         if (!severity || condition_info(one.condition).severity == *severity)
             report.add(to_finding(one));
     }

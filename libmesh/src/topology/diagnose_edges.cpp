@@ -220,7 +220,7 @@ void diagnose_edges(const DiagnosedMesh& diagnosed, Tally& tally) {
     const FoundEdges found = find_edges(diagnosed);
     for (std::size_t t = 0; t < found.copies.size(); ++t) {
         if (found.copies[t] == Copy::repeated) tally.add(MeshCondition::triangle_repeated, t);
-        if (found.copies[t] == Copy::backed) tally.add(MeshCondition::triangle_backed, t);
+        if (found.copies[t] == Copy::backed) tally.add(MeshCondition::triangle_two_sided, t);
     }
     for (std::size_t corner = 0; corner < found.edges.size(); ++corner)
         count_edge(found.edges[corner], corner / 3, tally);

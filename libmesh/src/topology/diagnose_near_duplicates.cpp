@@ -108,11 +108,11 @@ class PositionGrid {
     [[nodiscard]] bool has_near(const PositionCell& cell, std::uint32_t vertex,
                                 double reach) const {
         const std::uint32_t bucket = bucket_of(cell);
-        std::size_t looked_at = 0;
+        std::size_t analyzed = 0;
         for (std::uint32_t i = first_[bucket]; i < first_[bucket + 1]; ++i) {
             if (members_[i] == vertex) continue;
             const glm::vec3& other = positions_[members_[i]];
-            if (++looked_at > looked_at_most) return false;
+            if (++analyzed > looked_at_most) return false;
             if (exponent_of(other) != cell.exponent) continue;
             const glm::dvec3 apart = glm::abs(glm::dvec3(other) - glm::dvec3(positions_[vertex]));
             if (std::max({apart.x, apart.y, apart.z}) <= reach) return true;

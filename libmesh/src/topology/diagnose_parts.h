@@ -29,11 +29,11 @@ class Tally {
     void merge(const Tally& other);
 
     /// The conditions with a count above zero, in order.
-    [[nodiscard]] std::vector<FoundCondition> found() const;
+    [[nodiscard]] std::vector<MeshConditionCount> found() const;
 
   private:
     std::size_t listed_;
-    std::vector<FoundCondition> conditions_;
+    std::vector<MeshConditionCount> conditions_;
 };
 
 /// Shape of a single triangle.

@@ -66,7 +66,7 @@ std::string known_name(std::string_view wanted) {
 /// The requested effects by known names.
 class Requests {
   public:
-    explicit Requests(const EffectWishes& request) : base_(request.base) {
+    explicit Requests(const EffectRequest& request) : base_(request.base) {
         for (const ForcedEffect& forced : request.forced) {
             const std::string name = known_name(forced.name);
             const auto [entry, is_new] = by_name_.emplace(name, forced.on);
@@ -286,7 +286,7 @@ void remove_skybox(FramePlan& plan) {
 }  // namespace
 
 FramePlan force_effects(const Scene& scene, const FrameSettings& settings, FramePlan plan,
-                        const EffectWishes& request) {
+                        const EffectRequest& request) {
     const Requests requests(request);
     const bool had_skybox = plan.skybox;
     check_finishing(scene, settings, plan, requests);

@@ -97,7 +97,7 @@ class Tracer {
   private:
     [[nodiscard]] const Camera& camera() const { return *prepared_.scene.camera; }
     [[nodiscard]] glm::dvec2 on_view_plane(double x, double y) const;
-    [[nodiscard]] bool is_drawn(const Hit& hit, const Material& material) const {
+    [[nodiscard]] bool uses_opengl(const Hit& hit, const Material& material) const {
         return material.double_sided || !reference::is_back(prepared_, hit);
     }
     [[nodiscard]] bool is_same_surface(const Hit& a, const Hit& b) const;
@@ -121,7 +121,7 @@ glm::dvec2 Tracer::on_view_plane(double x, double y) const {
 
 bool Tracer::add(const Hit& hit, Sample& sample) const {
     const Material& material = prepared_.material_of(hit.instance, hit.triangle);
-    if (!is_drawn(hit, material)) return false;
+    if (!uses_opengl(hit, material)) return false;
     sample.layers.push_back(hit);
     const reference::Shaded shaded = reference::shade(prepared_, hit, material, sample.trace);
     const double alpha = coverage(material, shaded.alpha);
@@ -163,8 +163,8 @@ Sample Tracer::trace(double x, double y) const {
         if (sample.layers.size() > layers_before && i + 1 < hits.size()) {
             const Material& next =
                 prepared_.material_of(hits[i + 1].instance, hits[i + 1].triangle);
-            sample.ambiguous = sample.ambiguous ||
-                               (is_drawn(hits[i + 1], next) && is_too_close(hits[i], hits[i + 1]));
+            sample.ambiguous = sample.ambiguous || (uses_opengl(hits[i + 1], next) &&
+                                                    is_too_close(hits[i], hits[i + 1]));
         }
         if (hides_the_rest) break;
     }

@@ -16,7 +16,7 @@ namespace {
 
 FramePlan without(const MeasuredFrame& frame, const FramePlan& plan,
                   const std::vector<std::string>& effects) {
-    EffectWishes requests;
+    EffectRequest requests;
     for (const std::string& effect : effects)
         requests.forced.push_back({effect, false});
     return force_effects(frame.scene, frame.settings, plan, requests);
@@ -45,7 +45,7 @@ PictureChange picture_change(const Image& with, const Image& without) {
     return {difference.max, difference.mean, flip.mean, flip.max};
 }
 
-struct EffectPricing::Implementation {
+struct EffectCostMeasurement::Implementation {
     Implementation(const MeasuredFrame& measured, FramePlan whole_plan)
         : frame(measured), plan(std::move(whole_plan)), names(effects_in(plan)) {}
 
@@ -94,12 +94,12 @@ struct EffectPricing::Implementation {
     }
 };
 
-EffectPricing::EffectPricing(const MeasuredFrame& frame, FramePlan plan)
+EffectCostMeasurement::EffectCostMeasurement(const MeasuredFrame& frame, FramePlan plan)
     : implementation_(std::make_unique<Implementation>(frame, std::move(plan))) {}
 
-EffectPricing::~EffectPricing() = default;
+EffectCostMeasurement::~EffectCostMeasurement() = default;
 
-bool EffectPricing::step() {
+bool EffectCostMeasurement::step() {
     Implementation& now = *implementation_;
     if (now.done.size() == now.names.size()) return false;
     const Repeats& repeats = now.frame.repeats;
@@ -113,16 +113,16 @@ bool EffectPricing::step() {
     return now.done.size() < now.names.size();
 }
 
-std::size_t EffectPricing::count() const {
+std::size_t EffectCostMeasurement::count() const {
     return implementation_->names.size();
 }
 
-EffectCosts EffectPricing::costs() const {
-    return {spread_of(implementation_->frames), implementation_->done};
+EffectCosts EffectCostMeasurement::costs() const {
+    return {time_statistics(implementation_->frames), implementation_->done};
 }
 
 EffectCosts measure_effects(const MeasuredFrame& frame, const FramePlan& plan) {
-    EffectPricing pricing(frame, plan);
+    EffectCostMeasurement pricing(frame, plan);
     while (pricing.step()) {
     }
     return pricing.costs();
@@ -162,7 +162,7 @@ BudgetedPlan plan_within_budget(const MeasuredFrame& frame, const FramePlan& pla
     const auto frame_time = [&](const std::vector<std::string>& dropped) {
         const std::unique_ptr<Renderer> less = renderer_of(frame, without(frame, plan, dropped));
         const std::array<Renderer*, 1> alone{less.get()};
-        return spread_of(time_frames(alone, frame.camera, frame.repeats)[0].frame).median;
+        return time_statistics(time_frames(alone, frame.camera, frame.repeats)[0].frame).median;
     };
     result.milliseconds_before = frame_time({});
     if (result.milliseconds_before <= budget) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Render targets of a picture, its finishing pass with sRGB codes by [IEC 61966-2-1], and the
 // exchange of finished pictures between threads. Tests: tests/shade/render/renderer_test.cpp,
-// picture_test.cpp, handover_test.cpp.
+// picture_test.cpp, picture_exchange_test.cpp.
 #include "render/picture.h"
 
 #include <algorithm>
@@ -12,7 +12,7 @@
 
 #include "effects/surface_program.h"
 #include "relief/mesh/error.h"
-#include "relief/shade/handover.h"
+#include "relief/shade/picture_exchange.h"
 
 namespace relief {
 namespace {
@@ -148,7 +148,7 @@ void TargetPool::drop_unused() {
     std::erase_if(targets_, [](const Entry& entry) { return entry.target.use_count() == 1; });
 }
 
-struct Handover::Implementation {
+struct PictureExchange::Implementation {
     explicit Implementation(const gl::Api& gl) : api(gl) {}
 
     using Target = std::optional<gl::RenderTarget>;
@@ -191,12 +191,12 @@ struct Handover::Implementation {
     std::optional<std::size_t> newest;
 };
 
-Handover::Handover(const Context& context)
+PictureExchange::PictureExchange(const Context& context)
     : implementation_(std::make_unique<Implementation>(context.api())) {}
 
-Handover::~Handover() = default;
+PictureExchange::~PictureExchange() = default;
 
-void Handover::put(const Renderer& renderer, const Renderer* beside) {
+void PictureExchange::put(const Renderer& renderer, const Renderer* beside) {
     Implementation& self = *implementation_;
     const std::size_t free = self.free_slot();
     Implementation::Slot& slot = self.slots.at(free);
@@ -208,7 +208,7 @@ void Handover::put(const Renderer& renderer, const Renderer* beside) {
     self.publish(free);
 }
 
-void Handover::put(const Image& picture) {
+void PictureExchange::put(const Image& picture) {
     Implementation& self = *implementation_;
     const std::size_t free = self.free_slot();
     Implementation::Slot& slot = self.slots.at(free);
@@ -222,7 +222,7 @@ void Handover::put(const Image& picture) {
     self.publish(free);
 }
 
-Handover::Shown Handover::get() {
+PictureExchange::Shown PictureExchange::get() {
     Implementation& self = *implementation_;
     const std::lock_guard lock(self.mutex);
     self.shown = self.newest;

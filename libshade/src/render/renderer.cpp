@@ -441,7 +441,7 @@ const FramePlan& Renderer::plan() const {
 }
 
 void Renderer::move(const Scene& scene) {
-    validate_places(scene);
+    validate_transforms(scene);
     if (object_counts(scene) != implementation_->counts) {
         throw InvalidInput(
             "a moved scene has the instances and lamps that it had, no fewer or more");
@@ -453,7 +453,7 @@ const gl::RenderTarget& Renderer::target() const {
     return implementation_->picture.target();
 }
 
-DrawnFrame Renderer::draw_only(const Camera& camera) {
+RenderedFrame Renderer::draw_only(const Camera& camera) {
     validate(camera);
     Implementation& self = *implementation_;
     const Stopwatch stopwatch;
@@ -465,7 +465,7 @@ DrawnFrame Renderer::draw_only(const Camera& camera) {
 }
 
 Frame Renderer::draw(const Camera& camera) {
-    const DrawnFrame drawn = draw_only(camera);
+    const RenderedFrame drawn = draw_only(camera);
     Frame frame{{}, drawn.times, drawn.programs, drawn.textures};
     const Stopwatch stopwatch;
     frame.image = implementation_->picture.read();

@@ -132,9 +132,9 @@ glm::vec3 marker_color(MeshCondition condition) {
 }
 
 HealthMarkers health_markers(const Scene& scene, std::optional<Severity> severity) {
-    const bool with_notes = severity != Severity::trouble;
+    const bool with_notes = severity != Severity::problem;
     const DiagnoseOptions options{
-        .near_duplicates = with_notes, .texture_overlap = with_notes, .listed = most_markers};
+        .near_duplicates = with_notes, .texture_overlap = with_notes, .listed = max_markers};
     std::map<std::size_t, Diagnosis> diagnoses;
     for (const Instance& instance : scene.instances) {
         if (!diagnoses.contains(instance.mesh))
@@ -147,7 +147,7 @@ HealthMarkers health_markers(const Scene& scene, std::optional<Severity> severit
         MarkedCondition marked{info.condition, 0, 0, marker_color(info.condition)};
         for (std::size_t i = 0; i < scene.instances.size(); ++i) {
             const Mesh& mesh = scene.meshes[scene.instances[i].mesh];
-            for (const FoundCondition& found : diagnoses.at(scene.instances[i].mesh).found) {
+            for (const MeshConditionCount& found : diagnoses.at(scene.instances[i].mesh).found) {
                 if (found.condition != info.condition) continue;
                 marked.count += found.count;
                 for (const std::size_t index : found.first) {

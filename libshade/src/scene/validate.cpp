@@ -189,7 +189,7 @@ void validate(const Camera& camera) {
     }
 }
 
-void validate_places(const Scene& scene) {
+void validate_transforms(const Scene& scene) {
     for (std::size_t i = 0; i < scene.instances.size(); ++i)
         validate_instance(scene, i);
     FieldChecker("", 0).check_value(ambient_field, scene.ambient);
@@ -208,7 +208,7 @@ void validate(const Scene& scene) {
     }
     for (std::size_t i = 0; i < scene.materials.size(); ++i)
         validate_material(scene, i);
-    validate_places(scene);
+    validate_transforms(scene);
     if (scene.camera) validate(*scene.camera);
     FieldChecker("", 0).check(scene);
 }

@@ -19,13 +19,13 @@ constexpr AnalyticSurface all_surfaces[] = {AnalyticSurface::sphere, AnalyticSur
                                             AnalyticSurface::cubic};
 
 /// Triangles seen from behind by the true normal at their first corner.
-std::size_t turned_over(const AnalyticMesh& truth) {
+std::size_t turned_over(const AnalyticMesh& ground_truth) {
     std::size_t count = 0;
-    for (const glm::uvec3& t : truth.mesh.triangles) {
-        const glm::dvec3 a(truth.mesh.positions[t.x]);
-        const glm::dvec3 normal = glm::cross(glm::dvec3(truth.mesh.positions[t.y]) - a,
-                                             glm::dvec3(truth.mesh.positions[t.z]) - a);
-        count += glm::dot(normal, truth.normals[t.x]) <= 0.0 ? 1 : 0;
+    for (const glm::uvec3& t : ground_truth.mesh.triangles) {
+        const glm::dvec3 a(ground_truth.mesh.positions[t.x]);
+        const glm::dvec3 normal = glm::cross(glm::dvec3(ground_truth.mesh.positions[t.y]) - a,
+                                             glm::dvec3(ground_truth.mesh.positions[t.z]) - a);
+        count += glm::dot(normal, ground_truth.normals[t.x]) <= 0.0 ? 1 : 0;
     }
     return count;
 }
@@ -62,26 +62,27 @@ TEST(AnalyticMesh, NormalsAreThoseOfTheSurfaceItself) {
     };
     for (const AnalyticSurface surface : {AnalyticSurface::sphere, AnalyticSurface::torus,
                                           AnalyticSurface::ellipsoid, AnalyticSurface::saddle}) {
-        const AnalyticMesh truth = analytic_mesh(surface, Triangulation::jittered, 24, 5);
-        for (std::size_t v = 0; v < truth.normals.size(); ++v) {
-            const glm::dvec3 expected = gradient(surface, glm::dvec3(truth.mesh.positions[v]));
+        const AnalyticMesh ground_truth = analytic_mesh(surface, Triangulation::jittered, 24, 5);
+        for (std::size_t v = 0; v < ground_truth.normals.size(); ++v) {
+            const glm::dvec3 expected =
+                gradient(surface, glm::dvec3(ground_truth.mesh.positions[v]));
             // Positions are rounded to float, on curves of radius 0.16 and more.
-            EXPECT_LE(degrees_between(truth.normals[v], expected), 1e-4);
+            EXPECT_LE(degrees_between(ground_truth.normals[v], expected), 1e-4);
         }
     }
 }
 
 TEST(AnalyticMesh, CountsAsInnerWhatHasTrianglesAllAround) {
     for (const AnalyticSurface surface : all_surfaces) {
-        const AnalyticMesh truth = analytic_mesh(surface, Triangulation::regular, 8, 1);
-        validate(truth.mesh);
+        const AnalyticMesh ground_truth = analytic_mesh(surface, Triangulation::regular, 8, 1);
+        validate(ground_truth.mesh);
         std::size_t inner = 0;
-        for (const unsigned char is : truth.inner)
+        for (const unsigned char is : ground_truth.inner)
             inner += is;
         switch (surface) {
             case AnalyticSurface::torus:
                 EXPECT_EQ(inner, 64U);
-                EXPECT_EQ(truth.inner.size(), 64U);
+                EXPECT_EQ(ground_truth.inner.size(), 64U);
                 break;
             case AnalyticSurface::sphere:
             case AnalyticSurface::ellipsoid:
@@ -103,20 +104,24 @@ struct TextureErrors {
     std::size_t wrong_hands = 0;
 };
 
-TextureErrors texture_errors(const TexturedMesh& truth) {
+TextureErrors texture_errors(const TexturedMesh& ground_truth) {
     TextureErrors errors;
-    for (const glm::uvec3& t : truth.mesh.triangles) {
+    for (const glm::uvec3& t : ground_truth.mesh.triangles) {
         const auto edge = [&](std::uint32_t to) {
-            return glm::dvec3(truth.mesh.positions[to]) - glm::dvec3(truth.mesh.positions[t.x]);
+            return glm::dvec3(ground_truth.mesh.positions[to]) -
+                   glm::dvec3(ground_truth.mesh.positions[t.x]);
         };
         const auto step = [&](std::uint32_t to) {
-            return glm::dvec2(truth.mesh.texcoords[to]) - glm::dvec2(truth.mesh.texcoords[t.x]);
+            return glm::dvec2(ground_truth.mesh.texcoords[to]) -
+                   glm::dvec2(ground_truth.mesh.texcoords[t.x]);
         };
         const glm::dvec3 e1 = edge(t.y), e2 = edge(t.z);
         const glm::dvec2 d1 = step(t.y), d2 = step(t.z);
         const double area = d1.x * d2.y - d1.y * d2.x;
-        const SurfaceFrame frame = truth.frame_at(
-            (truth.parameters[t.x] + truth.parameters[t.y] + truth.parameters[t.z]) / 3.0);
+        const SurfaceFrame frame =
+            ground_truth.frame_at((ground_truth.parameters[t.x] + ground_truth.parameters[t.y] +
+                                   ground_truth.parameters[t.z]) /
+                                  3.0);
         const glm::dvec3 along_u = (e1 * d2.y - e2 * d1.y) / area;
         const glm::dvec3 up = (e1 * d2.x - e2 * d1.x) / area;
         errors.tangent = std::max(errors.tangent, degrees_between(along_u, frame.tangent));
@@ -134,10 +139,10 @@ TEST(TexturedMesh, FramesAreTheLimitOfItsTrianglesOwn) {
         for (const TextureLayout layout :
              {TextureLayout::upright, TextureLayout::sheared, TextureLayout::mirrored}) {
             const auto at = [&](int cells) {
-                const TexturedMesh truth =
+                const TexturedMesh ground_truth =
                     textured_mesh(surface, Triangulation::regular, layout, cells, 3);
-                validate(truth.mesh);
-                return texture_errors(truth);
+                validate(ground_truth.mesh);
+                return texture_errors(ground_truth);
             };
             const TextureErrors coarse = at(32);
             const TextureErrors fine = at(128);
@@ -177,7 +182,7 @@ TEST(TexturedMesh, HasASeamWhereTheSurfaceClosesAndAFoldWhereTheImageIsMirrored)
 }
 
 TEST(BevelledPlate, IsASquareWithAnUprightImageAndShearedOnesAroundIt) {
-    const TexturedMesh plate = bevelled_plate(0.25);
+    const TexturedMesh plate = beveled_plate(0.25);
     validate(plate.mesh);
     ASSERT_EQ(plate.mesh.triangles.size(), 10U);
     EXPECT_EQ(plate.inner, (std::vector<unsigned char>{1, 1, 1, 1, 0, 0, 0, 0}));
@@ -194,7 +199,7 @@ TEST(BevelledPlate, IsASquareWithAnUprightImageAndShearedOnesAroundIt) {
         const glm::vec3 a = plate.mesh.positions[t.x];
         EXPECT_GT(glm::cross(plate.mesh.positions[t.y] - a, plate.mesh.positions[t.z] - a).z, 0.0F);
     }
-    EXPECT_THROW(bevelled_plate(0.0), InvalidInput);
+    EXPECT_THROW(beveled_plate(0.0), InvalidInput);
 }
 
 TEST(CubicFan, IsClosedAroundTheOriginAndLevelThere) {

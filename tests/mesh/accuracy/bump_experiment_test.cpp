@@ -72,7 +72,7 @@ TEST(BumpExperiment, OnAMapTheReferenceIsTheTruestKnownAndSaysSo) {
     ASSERT_TRUE(experiment.reference.method);
     EXPECT_TRUE(experiment.reference.method->destaircased);
     EXPECT_EQ(experiment.reference.method->arithmetic, Arithmetic::float64);
-    EXPECT_GT(experiment.reference.own_degrees, 0.01);
+    EXPECT_GT(experiment.reference.reference_degrees, 0.01);
     EXPECT_THAT(experiment.reference.words, HasSubstr("its steps smoothed away"));
     // It is truer than what the choice for the map as it is would give.
     BumpOptions plain = field.options;
@@ -111,12 +111,12 @@ TEST(BumpExperiment, TheCheapestWithinABoundIsNoDearerThanNeeded) {
             for (const BumpMeasurement& one : experiment.measurements) {
                 const double error = kind == ErrorKind::rms ? one.error.rms : one.error.max;
                 const bool is_cheaper =
-                    best == nullptr || cost_of(one.method) < cost_of(best->method);
+                    best == nullptr || nominal_cost(one.method) < nominal_cost(best->method);
                 EXPECT_FALSE(is_cheaper && error <= bound);
             }
         }
     }
-    EXPECT_EQ(truest(experiment, ErrorKind::rms)->method.bits, 32);
+    EXPECT_EQ(most_accurate(experiment, ErrorKind::rms)->method.bits, 32);
 }
 
 TEST(BumpExperiment, TheExpectedErrorIsThatOfTheMapAndWhatIsAdded) {
@@ -127,11 +127,11 @@ TEST(BumpExperiment, TheExpectedErrorIsThatOfTheMapAndWhatIsAdded) {
     BumpExperimentOptions options = untimed(field);
     const BumpExperiment guess = measure_bump(sample_of(field.heights), methods, options);
     const BumpExperiment known = measure_bump(field, methods, options);
-    EXPECT_GT(guess.reference.own_degrees, 1.0);
-    EXPECT_GT(guess.reference.own_max_degrees, guess.reference.own_degrees);
+    EXPECT_GT(guess.reference.reference_degrees, 1.0);
+    EXPECT_GT(guess.reference.reference_max_degrees, guess.reference.reference_degrees);
     for (std::size_t i = 0; i < methods.size(); ++i) {
         const ExpectedError error = expected_error(guess.reference, guess.measurements[i]);
-        EXPECT_EQ(error.map, guess.reference.own_degrees);
+        EXPECT_EQ(error.map, guess.reference.reference_degrees);
         EXPECT_EQ(error.added, guess.measurements[i].error.rms);
         EXPECT_EQ(error.total(), std::hypot(error.map, error.added));
         const ExpectedError upper = expected_error_upper(guess.reference, guess.measurements[i]);
@@ -140,16 +140,16 @@ TEST(BumpExperiment, TheExpectedErrorIsThatOfTheMapAndWhatIsAdded) {
         EXPECT_NEAR(error.total() / known.measurements[i].error.rms, 1.0, 0.3) << i;
     }
     // The added part of many is far below a limit that no total is within.
-    const double limit = 0.5 * guess.reference.own_degrees;
+    const double limit = 0.5 * guess.reference.reference_degrees;
     EXPECT_EQ(cheapest_within(guess, {limit, std::nullopt, ErrorKind::rms}), nullptr);
     EXPECT_NE(cheapest_within(guess, {std::nullopt, limit, ErrorKind::rms}), nullptr);
-    const BumpMeasurement* total =
-        cheapest_within(guess, {1.5 * guess.reference.own_degrees, std::nullopt, ErrorKind::rms});
+    const BumpMeasurement* total = cheapest_within(
+        guess, {1.5 * guess.reference.reference_degrees, std::nullopt, ErrorKind::rms});
     ASSERT_NE(total, nullptr);
     EXPECT_EQ(total->method.bits, 8);
     // What is not known is within no limit.
     BumpExperiment unknown = guess;
-    unknown.reference.own_degrees = std::numeric_limits<double>::quiet_NaN();
+    unknown.reference.reference_degrees = std::numeric_limits<double>::quiet_NaN();
     EXPECT_EQ(cheapest_within(unknown, {90.0, std::nullopt, ErrorKind::rms}), nullptr);
 }
 
@@ -159,18 +159,18 @@ TEST(BumpExperiment, TimesAreTakenInTurnsAndTheEfficientOnesAreMarked) {
     options.repeats = {3, 1};
     const auto methods = bump_methods(2, std::array{16}, both_arithmetics, as_stored);
     const BumpExperiment experiment = measure_bump(sample_of(field.heights), methods, options);
-    int efficient = 0;
+    int pareto_optimal = 0;
     for (const BumpMeasurement& one : experiment.measurements) {
         EXPECT_EQ(one.seconds.count, 3U);
         EXPECT_GT(one.megapixels_per_second, 0.0);
-        efficient += one.is_efficient ? 1 : 0;
+        pareto_optimal += one.is_pareto_optimal ? 1 : 0;
         for (const BumpMeasurement& other : experiment.measurements) {
-            EXPECT_FALSE(one.is_efficient && other.error.rms < one.error.rms &&
+            EXPECT_FALSE(one.is_pareto_optimal && other.error.rms < one.error.rms &&
                          other.seconds.median < one.seconds.median);
         }
     }
-    EXPECT_GE(efficient, 1);
-    EXPECT_LT(efficient, 20);
+    EXPECT_GE(pareto_optimal, 1);
+    EXPECT_LT(pareto_optimal, 20);
 }
 
 TEST(BumpExperiment, SmoothingIsTimedInEachRoundAndPartOfThoseThatWantIt) {
@@ -183,7 +183,7 @@ TEST(BumpExperiment, SmoothingIsTimedInEachRoundAndPartOfThoseThatWantIt) {
     const BumpExperiment known = measure_bump(field, methods, options);
     const BumpExperiment sampled = measure_bump(sample_of(field.heights), methods, options);
     for (const BumpExperiment* experiment : {&known, &sampled}) {
-        const Spread& smoothing = experiment->smoothing;
+        const TimeStatistics& smoothing = experiment->smoothing;
         EXPECT_EQ(smoothing.count, 3U) << "once a round, not once a method; none while warming up";
         EXPECT_GT(smoothing.p10, 0.0);
         for (const BumpMeasurement& one : experiment->measurements) {
@@ -219,16 +219,16 @@ TEST(BumpExperiment, CostsGrowWithDepthThenSmoothingThenOperations) {
     const BumpMethod plain{Kernel::central3, 2, Arithmetic::float32, 8, false};
     BumpMethod other = plain;
     other.arithmetic = Arithmetic::float64;
-    EXPECT_GT(cost_of(other), cost_of(plain));
+    EXPECT_GT(nominal_cost(other), nominal_cost(plain));
     other = plain;
     other.kernel = Kernel::scharr5;
-    EXPECT_GT(cost_of(other), cost_of(plain));
+    EXPECT_GT(nominal_cost(other), nominal_cost(plain));
     BumpMethod smooth = plain;
     smooth.destaircased = true;
-    EXPECT_GT(cost_of(smooth), cost_of(other));
+    EXPECT_GT(nominal_cost(smooth), nominal_cost(other));
     BumpMethod deep = plain;
     deep.bits = 16;
-    EXPECT_GT(cost_of(deep), cost_of(smooth));
+    EXPECT_GT(nominal_cost(deep), nominal_cost(smooth));
 }
 
 }  // namespace

@@ -54,7 +54,7 @@ TEST(BumpFields, TheirNormalsAreThoseOfDifferencesOfHighOrder) {
 
 TEST(BumpFields, AFieldOfItsOwnIsSampledWithTheSlopeOfItsFormula) {
     const AnalyticHeights field = sampled_heights(5, 4, [](const glm::dvec2& p) {
-        return HeightAt{p.x * p.x * 0.25 - 2.0 * p.y, {0.5 * p.x, -2.0}};
+        return HeightSample{p.x * p.x * 0.25 - 2.0 * p.y, {0.5 * p.x, -2.0}};
     });
     EXPECT_EQ(field.heights.as<float>()[1 * 5 + 4], 2.0F);
     EXPECT_LT(glm::length(field.normals[1 * 5 + 4] - glm::normalize(glm::dvec3(-2.0, -2.0, 1.0))),
@@ -121,7 +121,7 @@ TEST(BumpFields, NoiseHasItsDeviationAndTheTruthHasNone) {
 TEST(BumpFields, TheSetsHaveEveryShapeAndCodingAndAreApart) {
     std::set<std::string> names;
     std::set<std::uint32_t> seeds;
-    for (const auto& set : {tuning_fields(), judging_fields()}) {
+    for (const auto& set : {tuning_fields(), evaluation_fields()}) {
         std::set<FieldShape> shapes;
         std::set<FieldCoding> codings;
         int noisy = 0;

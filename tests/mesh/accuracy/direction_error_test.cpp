@@ -28,25 +28,25 @@ TEST(DegreesBetween, OfNoDirectionIsNoNumber) {
 
 TEST(DirectionError, IsRmsMeanAndLargestOfThoseThatCount) {
     const std::array<glm::vec3, 3> found = {glm::vec3(0, 0, 1), {0, 1, 1}, {1, 0, 0}};
-    const std::array<glm::dvec3, 3> truth = {glm::dvec3(0, 0, 1), {0, 0, 1}, {0, 0, 1}};
-    const DirectionError all = direction_error(found, truth);
+    const std::array<glm::dvec3, 3> ground_truth = {glm::dvec3(0, 0, 1), {0, 0, 1}, {0, 0, 1}};
+    const DirectionError all = direction_error(found, ground_truth);
     EXPECT_EQ(all.count, 3U);
     EXPECT_DOUBLE_EQ(all.mean, 45.0);
     EXPECT_DOUBLE_EQ(all.rms, std::sqrt((45.0 * 45.0 + 90.0 * 90.0) / 3.0));
     EXPECT_DOUBLE_EQ(all.max, 90.0);
     const std::array<unsigned char, 3> counts = {1, 1, 0};
-    EXPECT_DOUBLE_EQ(direction_error(found, truth, counts).max, 45.0);
+    EXPECT_DOUBLE_EQ(direction_error(found, ground_truth, counts).max, 45.0);
     EXPECT_EQ(direction_error({}, {}).count, 0U);
 }
 
 TEST(DirectionError, DoesNotHideADirectionThatIsNone) {
     const std::array<glm::vec3, 3> found = {glm::vec3(0, 0, 1), {0, 0, 0}, {1, 0, 0}};
-    const std::array<glm::dvec3, 3> truth = {glm::dvec3(0, 0, 1), {0, 0, 1}, {0, 0, 1}};
-    const DirectionError error = direction_error(found, truth);
+    const std::array<glm::dvec3, 3> ground_truth = {glm::dvec3(0, 0, 1), {0, 0, 1}, {0, 0, 1}};
+    const DirectionError error = direction_error(found, ground_truth);
     EXPECT_TRUE(std::isnan(error.rms));
     EXPECT_TRUE(std::isnan(error.mean));
     EXPECT_TRUE(std::isnan(error.max));
-    EXPECT_THROW(direction_error(found, std::span(truth).first(2)), InvalidInput);
+    EXPECT_THROW(direction_error(found, std::span(ground_truth).first(2)), InvalidInput);
 }
 
 }  // namespace

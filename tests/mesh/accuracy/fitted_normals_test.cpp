@@ -21,24 +21,24 @@ std::uint32_t vertex_at(const Mesh& mesh, std::uint32_t corner) {
 }
 
 /// RMS error of the fits at inner vertices, in degrees.
-double error_of(const FittedNormals& fitted, const AnalyticMesh& truth) {
+double error_of(const FittedNormals& fitted, const AnalyticMesh& ground_truth) {
     double squares = 0.0;
     std::size_t count = 0;
     for (std::size_t i = 0; i < fitted.corners.size(); ++i) {
-        const std::uint32_t vertex = vertex_at(truth.mesh, fitted.corners[i]);
-        if (truth.inner[vertex] == 0) continue;
-        const double degrees = degrees_between(fitted.normals[i], truth.normals[vertex]);
+        const std::uint32_t vertex = vertex_at(ground_truth.mesh, fitted.corners[i]);
+        if (ground_truth.inner[vertex] == 0) continue;
+        const double degrees = degrees_between(fitted.normals[i], ground_truth.normals[vertex]);
         squares += degrees * degrees;
         ++count;
     }
     return std::sqrt(squares / static_cast<double>(count));
 }
 
-double averaged_error(const AnalyticMesh& truth) {
+double averaged_error(const AnalyticMesh& ground_truth) {
     Report report;
-    const std::vector<glm::vec3> normals =
-        vertex_normals(truth.mesh.positions, truth.mesh.triangles, NormalWeight::max, report);
-    return direction_error(normals, truth.normals, truth.inner).rms;
+    const std::vector<glm::vec3> normals = vertex_normals(
+        ground_truth.mesh.positions, ground_truth.mesh.triangles, NormalWeight::max, report);
+    return direction_error(normals, ground_truth.normals, ground_truth.inner).rms;
 }
 
 struct Situation {
@@ -49,19 +49,21 @@ struct Situation {
 class FittedNormalsOnSurfaces : public testing::TestWithParam<Situation> {};
 
 TEST_P(FittedNormalsOnSurfaces, AreFarTruerThanAveragedOnesAndKnowHowMuch) {
-    const AnalyticMesh truth =
+    const AnalyticMesh ground_truth =
         analytic_mesh(GetParam().surface, GetParam().triangulation, GetParam().cells, 1);
-    const FittedNormals fitted = fitted_normals(truth.mesh, {});
-    const double error = error_of(fitted, truth);
-    EXPECT_LE(error, 0.1 * averaged_error(truth));
-    EXPECT_LE(error, fitted.own_degrees);
+    const FittedNormals fitted = fitted_normals(ground_truth.mesh, {});
+    const double error = error_of(fitted, ground_truth);
+    EXPECT_LE(error, 0.1 * averaged_error(ground_truth));
+    EXPECT_LE(error, fitted.reference_degrees);
     // At a border, triangles are on one side only, and mostly no fit is to be trusted; inside,
     // nearly every place has one.
-    const auto inner = std::count(truth.inner.begin(), truth.inner.end(), 1);
-    const double share = static_cast<double>(inner) / static_cast<double>(truth.inner.size());
-    const auto fits = std::count_if(
-        fitted.corners.begin(), fitted.corners.end(),
-        [&](std::uint32_t corner) { return truth.inner[vertex_at(truth.mesh, corner)] == 1; });
+    const auto inner = std::count(ground_truth.inner.begin(), ground_truth.inner.end(), 1);
+    const double share =
+        static_cast<double>(inner) / static_cast<double>(ground_truth.inner.size());
+    const auto fits =
+        std::count_if(fitted.corners.begin(), fitted.corners.end(), [&](std::uint32_t corner) {
+            return ground_truth.inner[vertex_at(ground_truth.mesh, corner)] == 1;
+        });
     EXPECT_GE(static_cast<double>(fits), 0.97 * share * static_cast<double>(fitted.places));
 }
 
@@ -79,19 +81,19 @@ TEST(FittedNormals, OwnErrorIsNoLessThanTheErrorWhereAveragedOnesAreExact) {
     for (const auto& [surface, triangulation] :
          {std::pair(AnalyticSurface::sphere, Triangulation::jittered),
           std::pair(AnalyticSurface::torus, Triangulation::regular)}) {
-        const AnalyticMesh truth = analytic_mesh(surface, triangulation, 48, 1);
-        const FittedNormals fitted = fitted_normals(truth.mesh, {});
-        EXPECT_LE(averaged_error(truth), 1e-4);
-        EXPECT_LE(error_of(fitted, truth), 0.02);
-        EXPECT_LE(error_of(fitted, truth), fitted.own_degrees);
+        const AnalyticMesh ground_truth = analytic_mesh(surface, triangulation, 48, 1);
+        const FittedNormals fitted = fitted_normals(ground_truth.mesh, {});
+        EXPECT_LE(averaged_error(ground_truth), 1e-4);
+        EXPECT_LE(error_of(fitted, ground_truth), 0.02);
+        EXPECT_LE(error_of(fitted, ground_truth), fitted.reference_degrees);
     }
 }
 
 TEST(FittedNormals, GetTruerWithTheFourthPowerOfTheCells) {
     const auto error_with = [](int cells) {
-        const AnalyticMesh truth =
+        const AnalyticMesh ground_truth =
             analytic_mesh(AnalyticSurface::cubic, Triangulation::jittered, cells, 3);
-        return error_of(fitted_normals(truth.mesh, {}), truth);
+        return error_of(fitted_normals(ground_truth.mesh, {}), ground_truth);
     };
     const double order = std::log2(error_with(16) / error_with(32));
     EXPECT_GE(order, 3.0);
@@ -186,15 +188,15 @@ TEST(FittedNormals, SayNothingWhereTrianglesBendAway) {
     // A steep roof, symmetric: both fits agree on its ridge, and there is no normal.
     const Mesh roof = graph_of([](double x, double) { return 2.0 - 2.0 * std::abs(x); }, 16);
     FitOptions options;
-    options.most_doubt = 180.0;
-    options.most_bend = 180.0;
+    options.max_fit_difference = 180.0;
+    options.max_fit_angle = 180.0;
     const auto beside_the_ridge = [&](const FittedNormals& found) {
         return std::count_if(found.corners.begin(), found.corners.end(), [&](std::uint32_t corner) {
             return roof.positions[vertex_at(roof, corner)].x != 0.0F;
         });
     };
     const FittedNormals all = fitted_normals(roof, options);
-    options.most_bend = 45.0;
+    options.max_fit_angle = 45.0;
     const FittedNormals found = fitted_normals(roof, options);
     EXPECT_GT(static_cast<std::ptrdiff_t>(all.corners.size()), beside_the_ridge(all) + 10);
     EXPECT_EQ(static_cast<std::ptrdiff_t>(found.corners.size()), beside_the_ridge(all));
@@ -216,14 +218,14 @@ TEST(FittedNormals, SayNothingWhereThereIsNoSurface) {
 }
 
 TEST(FittedNormals, OfLargeMeshesAreASampleTheSameForAnyThreads) {
-    const AnalyticMesh truth =
+    const AnalyticMesh ground_truth =
         analytic_mesh(AnalyticSurface::torus, Triangulation::jittered, 32, 1);
     FitOptions options;
-    options.most_places = 100;
+    options.max_places = 100;
     set_thread_limit(1);
-    const FittedNormals one = fitted_normals(truth.mesh, options);
+    const FittedNormals one = fitted_normals(ground_truth.mesh, options);
     set_thread_limit(0);
-    const FittedNormals all = fitted_normals(truth.mesh, options);
+    const FittedNormals all = fitted_normals(ground_truth.mesh, options);
     EXPECT_EQ(one.places, 100U);
     EXPECT_EQ(one.fans, 1024U);
     EXPECT_EQ(one.corners, all.corners);

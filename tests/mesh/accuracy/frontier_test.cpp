@@ -20,8 +20,8 @@ using testing::IsEmpty;
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-std::vector<bool> of(std::vector<Price> prices) {
-    return efficient(prices);
+std::vector<bool> of(std::vector<MethodCost> prices) {
+    return pareto_optimal(prices);
 }
 
 TEST(Frontier, HoldsWhatNothingBeats) {
@@ -49,13 +49,13 @@ TEST(Frontier, WhatIsNotKnownIsNeverOnIt) {
 TEST(Frontier, IsThatOfTheDefinitionOnRandomPrices) {
     Random random(3);
     for (int round = 0; round < 200; ++round) {
-        std::vector<Price> prices(12);
-        for (Price& price : prices)  // Few values, so that there are ties.
+        std::vector<MethodCost> prices(12);
+        for (MethodCost& price : prices)  // Few values, so that there are ties.
             price = {std::floor(random.between(0, 6)), std::floor(random.between(0, 6))};
-        const std::vector<bool> found = efficient(prices);
+        const std::vector<bool> found = pareto_optimal(prices);
         for (std::size_t i = 0; i < prices.size(); ++i) {
             const bool is_beaten =
-                std::any_of(prices.begin(), prices.end(), [&](const Price& other) {
+                std::any_of(prices.begin(), prices.end(), [&](const MethodCost& other) {
                     return other.error <= prices[i].error && other.time <= prices[i].time &&
                            (other.error < prices[i].error || other.time < prices[i].time);
                 });

@@ -37,26 +37,26 @@ double error_by(const BumpField& field, Kernel kernel, int radius) {
     return field_error(normals_from_height(field.heights, options, report), field).rms;
 }
 
-double least_error(const BumpField& field) {
+double min_error(const BumpField& field) {
     double least = std::numeric_limits<double>::infinity();
     for (const Kernel kernel :
          {Kernel::forward, Kernel::central3, Kernel::prewitt3, Kernel::sobel3, Kernel::scharr3,
           Kernel::sobel5, Kernel::scharr5, Kernel::central5, Kernel::central7})
         least = std::min(least, error_by(field, kernel, 2));
-    double least_gaussian = std::numeric_limits<double>::infinity();
-    for (int radius = 1; radius <= largest_kernel_radius; radius += radius < 12 ? 1 : 2) {
+    double min_gaussian = std::numeric_limits<double>::infinity();
+    for (int radius = 1; radius <= max_kernel_radius; radius += radius < 12 ? 1 : 2) {
         const double error = error_by(field, Kernel::gaussian, radius);
-        least_gaussian = std::min(least_gaussian, error);
-        if (radius > 3 && error > 1.5 * least_gaussian) break;
+        min_gaussian = std::min(min_gaussian, error);
+        if (radius > 3 && error > 1.5 * min_gaussian) break;
     }
-    return std::min(least, least_gaussian);
+    return std::min(least, min_gaussian);
 }
 
 void expect_promise_kept(const FieldRecipe& recipe, int width, int height, bool destaircased) {
     BumpField field = make_bump_field(recipe, width, height);
     const KernelChoice choice = choose_kernel(field.heights, field.options, destaircased);
     if (destaircased) field.heights = destaircase(field.heights, {*field.options.wrap}).heights;
-    const double least = least_error(field);
+    const double least = min_error(field);
     EXPECT_LE(error_by(field, choice.kernel, choice.gaussian_radius),
               (destaircased ? promised_destaircased : promised) * least)
         << recipe.name << ", " << width << " x " << height << ": " << choice.reason;
@@ -84,7 +84,7 @@ std::string test_name(const testing::TestParamInfo<FieldRecipe>& row) {
 
 INSTANTIATE_TEST_SUITE_P(Tuned, KernelChoiceOnFields, testing::ValuesIn(tuning_fields()),
                          test_name);
-INSTANTIATE_TEST_SUITE_P(Judged, KernelChoiceOnFields, testing::ValuesIn(judging_fields()),
+INSTANTIATE_TEST_SUITE_P(Judged, KernelChoiceOnFields, testing::ValuesIn(evaluation_fields()),
                          test_name);
 
 KernelChoice choice_on(const FieldRecipe& recipe) {
@@ -164,7 +164,7 @@ TEST(KernelChoice, IsTheSameForAnyNumberOfThreadsAndFromPartsReadInTurn) {
     const KernelChoice all = choose_kernel(field.heights, field.options);
     set_thread_limit(1);
     std::vector<Image> parts;
-    for (const ImagePart& place : parts_to_look_at(512, 400))
+    for (const ImagePart& place : parts_to_analyze(512, 400))
         parts.push_back(part_of(field.heights, place));
     const KernelChoice one = choose_kernel(parts, field.options);
     set_thread_limit(0);
@@ -173,13 +173,13 @@ TEST(KernelChoice, IsTheSameForAnyNumberOfThreadsAndFromPartsReadInTurn) {
 }
 
 TEST(KernelChoice, LooksAtAFewPartsFromTopToBottom) {
-    EXPECT_EQ(parts_to_look_at(128, 128).size(), 1U);
-    EXPECT_EQ(parts_to_look_at(191, 128).size(), 1U);
-    EXPECT_EQ(parts_to_look_at(192, 128).size(), 2U);
-    EXPECT_EQ(parts_to_look_at(100000, 5).size(), 1U);
+    EXPECT_EQ(parts_to_analyze(128, 128).size(), 1U);
+    EXPECT_EQ(parts_to_analyze(191, 128).size(), 1U);
+    EXPECT_EQ(parts_to_analyze(192, 128).size(), 2U);
+    EXPECT_EQ(parts_to_analyze(100000, 5).size(), 1U);
     for (const auto& [width, height] :
          {std::pair(32768, 32768), {100, 75}, {4096, 16}, {130, 5000}, {8, 8}, {384, 384}}) {
-        const std::vector<ImagePart> parts = parts_to_look_at(width, height);
+        const std::vector<ImagePart> parts = parts_to_analyze(width, height);
         EXPECT_LE(parts.size(), 9U);
         int row = 0;
         for (const ImagePart& part : parts) {
@@ -202,7 +202,7 @@ TEST(KernelChoice, WhatAreNoPartsOfAHeightMapIsRefused) {
     const Image mixed[] = {make_image(9, 9, 1, 8, ColorSpace::data),
                            make_image(9, 9, 1, 16, ColorSpace::data)};
     EXPECT_THROW(choose_kernel(mixed, {}), InvalidInput);
-    EXPECT_THROW(parts_to_look_at(0, 5), InvalidInput);
+    EXPECT_THROW(parts_to_analyze(0, 5), InvalidInput);
 }
 
 TEST(KernelChoiceOnRealMaps, A16BitMapIsNotSmoothedAndAnHalfFloatOneHardly) {

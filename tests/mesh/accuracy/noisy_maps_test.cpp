@@ -223,7 +223,7 @@ double error_by(const BumpField& map, Kernel kernel, int radius) {
     return field_error(normals_from_height(map.heights, options, report), map).rms;
 }
 
-double least_error(const BumpField& map) {
+double min_error(const BumpField& map) {
     double least = std::numeric_limits<double>::infinity();
     for (const Kernel kernel : {Kernel::central3, Kernel::sobel3, Kernel::central5,
                                 Kernel::central7, Kernel::sobel5, Kernel::scharr5})
@@ -253,7 +253,7 @@ void expect_promise_kept(const BumpField& map, const std::string& name, double w
     const KernelChoice choice = choose_kernel(map.heights, map.options);
     const double error = error_by(map, choice.kernel, choice.gaussian_radius);
     if (chooses_well) {
-        EXPECT_LE(error, promised * least_error(map)) << name << ": " << choice.reason;
+        EXPECT_LE(error, promised * min_error(map)) << name << ": " << choice.reason;
     }
     expect_range_holds(choice, error, name, widest);
 }
@@ -389,7 +389,7 @@ TEST(KernelChoiceOnMasks, AntialiasedEdgesAreNotBlurred) {
     const KernelChoice choice = choose_kernel(map.heights, map.options);
     EXPECT_NE(choice.kernel, Kernel::gaussian) << choice.reason;
     const double error = error_by(map, choice.kernel, choice.gaussian_radius);
-    EXPECT_LE(error, promised * least_error(map));
+    EXPECT_LE(error, promised * min_error(map));
     // Edges have detail beyond the Nyquist frequency.
     expect_range_holds(choice, error, "edges", 5.0);
     const BumpField waves = noisy_map(sines(0.3), NoiseKind::white, 0.0, 8);
@@ -424,7 +424,7 @@ TEST(KernelChoiceOnGrain, SaysWhatFollowsFromBothReadings) {
     const KernelChoice asked = choose_kernel(map.heights, map.options, false, Grain::noise);
     EXPECT_EQ(asked.kernel, Kernel::gaussian);
     EXPECT_GT(asked.noise, 0.0);
-    EXPECT_LE(error_by(map, asked.kernel, asked.gaussian_radius), promised * least_error(map));
+    EXPECT_LE(error_by(map, asked.kernel, asked.gaussian_radius), promised * min_error(map));
 
     // Noise on a surface: smoothed, unless it is said to be detail.
     const BumpField noisy = noisy_map(sines(0.3), NoiseKind::white, 0.6, 8);
@@ -452,7 +452,7 @@ TEST(DefaultOptions, AreSettledByTheMap) {
     EXPECT_FALSE(open.kernel);
     EXPECT_FALSE(open.wrap);
     open.strength = noisy.options.strength;
-    const BumpOptions settled = settled_options(noisy.heights, open);
+    const BumpOptions settled = resolve_options(noisy.heights, open);
     const KernelChoice choice = choose_kernel(noisy.heights, open);
     EXPECT_EQ(settled.kernel, choice.kernel);
     EXPECT_EQ(settled.gaussian_radius, choice.gaussian_radius);
@@ -463,7 +463,7 @@ TEST(DefaultOptions, AreSettledByTheMap) {
               normals_from_height(noisy.heights, settled, report).samples);
     open.kernel = Kernel::central3;
     open.wrap = Wrap::mirror;
-    const BumpOptions given = settled_options(noisy.heights, open);
+    const BumpOptions given = resolve_options(noisy.heights, open);
     EXPECT_EQ(given.kernel, Kernel::central3);
     EXPECT_EQ(given.wrap, Wraps(Wrap::mirror));
 }

@@ -16,24 +16,24 @@ using testing::Pair;
 
 constexpr double clock_rounding = 1e-12;  // Ticks are whole; their sums in seconds are rounded.
 
-TEST(Spread, IsTakenBetweenMeasurements) {
-    const Spread odd = spread_of({5, 1, 3, 2, 4, 11, 8, 7, 6, 10, 9});  // 1 to 11.
+TEST(TimeStatistics, IsTakenBetweenMeasurements) {
+    const TimeStatistics odd = time_statistics({5, 1, 3, 2, 4, 11, 8, 7, 6, 10, 9});  // 1 to 11.
     EXPECT_EQ(odd.median, 6.0);
     EXPECT_EQ(odd.p10, 2.0);
     EXPECT_EQ(odd.p90, 10.0);
     EXPECT_EQ(odd.count, 11U);
-    const Spread even = spread_of({4, 1});
+    const TimeStatistics even = time_statistics({4, 1});
     EXPECT_EQ(even.median, 2.5);
     EXPECT_NEAR(even.p10, 1.3, 1e-12);
     EXPECT_NEAR(even.p90, 3.7, 1e-12);
 }
 
-TEST(Spread, OfOneIsThatOneAndOfNoneNothing) {
-    EXPECT_EQ(spread_of({7}).median, 7.0);
-    EXPECT_EQ(spread_of({7}).p10, 7.0);
-    EXPECT_EQ(spread_of({7}).p90, 7.0);
-    EXPECT_EQ(spread_of({}).count, 0U);
-    EXPECT_EQ(spread_of({}).median, 0.0);
+TEST(TimeStatistics, OfOneIsThatOneAndOfNoneNothing) {
+    EXPECT_EQ(time_statistics({7}).median, 7.0);
+    EXPECT_EQ(time_statistics({7}).p10, 7.0);
+    EXPECT_EQ(time_statistics({7}).p90, 7.0);
+    EXPECT_EQ(time_statistics({}).count, 0U);
+    EXPECT_EQ(time_statistics({}).median, 0.0);
 }
 
 TEST(Stopwatch, LapsAddUpToTheWhole) {

@@ -90,10 +90,10 @@ TEST(BakeCheck, NormalsTurnedByOneDegreeAreOneDegreeOff) {
     EXPECT_NEAR(check.error.max, 1.0, 2e-5);
     EXPECT_NEAR(check.error.p99, 1.0, 0.02);
     EXPECT_NEAR(check.centre.rms, 1.0, 2e-6);
-    EXPECT_EQ(check.remade.max, 0.0);
+    EXPECT_EQ(check.rebaked.max, 0.0);
     EXPECT_NEAR(stage(check, BakeStage::other).rms, 1.0, 2e-6);
     EXPECT_NEAR(stage(check, BakeStage::other).share, 1.0, 1e-9);
-    EXPECT_EQ(check.torn, 0U);
+    EXPECT_EQ(check.discontinuous, 0U);
     ASSERT_EQ(errors.size(), 64U * 96U);
     EXPECT_NEAR(errors[1234], 1.0F, 1e-5F);
     // Turned all ways, they are so by no convention.
@@ -130,8 +130,8 @@ TEST(BakeCheck, QuantisationAloneIsWhatRoundingToCodesDoes) {
     const double rounded = degrees_between({code(0), code(1), code(2)}, {0.6, 0.0, 0.8});
     EXPECT_NEAR(check.error.rms, rounded, 1e-5);
     EXPECT_NEAR(check.centre.rms, rounded, 1e-5);
-    EXPECT_NEAR(stage(check, BakeStage::quantisation).rms, rounded, 1e-5);
-    EXPECT_NEAR(stage(check, BakeStage::quantisation).share, 1.0, 1e-3);
+    EXPECT_NEAR(stage(check, BakeStage::quantization).rms, rounded, 1e-5);
+    EXPECT_NEAR(stage(check, BakeStage::quantization).share, 1.0, 1e-3);
     EXPECT_NEAR(stage(check, BakeStage::other).rms, 0.0, 1e-9);
     EXPECT_NEAR(all_shares(check), 1.0, 1e-9);
 }
@@ -163,11 +163,11 @@ TEST(BakeCheck, BasisIsWhatASkewedFrameMakesOfRounding) {
     low.tangents.assign(low.positions.size(), {0.5F, 0.0F, 0.866025F, 1.0F});
     const BakeOptions options = sized(32, 32);
     const BakeCheck check = checked(high, low, options, baked_map(high, low, options, 8));
-    EXPECT_GT(stage(check, BakeStage::quantisation).rms, 0.01);
+    EXPECT_GT(stage(check, BakeStage::quantization).rms, 0.01);
     EXPECT_GT(check.error.rms, 0.01);
     EXPECT_NEAR(all_shares(check), 1.0, 1e-9);
     const double whole =
-        std::hypot(stage(check, BakeStage::quantisation).rms, stage(check, BakeStage::basis).rms);
+        std::hypot(stage(check, BakeStage::quantization).rms, stage(check, BakeStage::basis).rms);
     EXPECT_GE(whole, check.error.rms - 1e-5);
     low.tangents.assign(low.positions.size(), {1.0F, 0.0F, 0.0F, 1.0F});
     const BakeCheck right = checked(high, low, options, baked_map(high, low, options, 8));
@@ -193,12 +193,12 @@ TEST(BakeCheck, ProjectionIsWhereTheSurfaceJumpsWithinATexel) {
     const BakeOptions options = sized(16, 8);
     const BakeCheck check =
         checked(high, make_quad(), options, baked_map(high, make_quad(), options, 32));
-    EXPECT_EQ(check.torn, 8U);  // The column from 0 to 0.125.
+    EXPECT_EQ(check.discontinuous, 8U);  // The column from 0 to 0.125.
     EXPECT_GT(stage(check, BakeStage::projection).rms, 5.0);
     EXPECT_NEAR(stage(check, BakeStage::projection).share, 1.0, 1e-6);
     ASSERT_EQ(check.worst.size(), 8U);
     EXPECT_EQ(check.worst[0].x, 8);
-    EXPECT_TRUE(check.worst[0].is_torn);
+    EXPECT_TRUE(check.worst[0].is_discontinuous);
 }
 
 TEST(BakeCheck, WhatRaysMissHasNoTruthAndIsCounted) {

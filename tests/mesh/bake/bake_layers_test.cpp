@@ -133,8 +133,8 @@ TEST(BakeLayers, OcclusionIsThatOfTheHighMeshes) {
     for (std::size_t i = 0; i < 33; ++i) {
         const double x = (static_cast<double>(i) + 0.5) / 16.5 - 1.0;
         // An endless half plane: half of 1 minus the sine of its rim's angle from upright.
-        const double truth = 0.5 * (1.0 - x / std::hypot(x, 0.5));
-        EXPECT_NEAR(image.occlusion[i], truth, 0.01) << x;
+        const double ground_truth = 0.5 * (1.0 - x / std::hypot(x, 0.5));
+        EXPECT_NEAR(image.occlusion[i], ground_truth, 0.01) << x;
     }
 }
 

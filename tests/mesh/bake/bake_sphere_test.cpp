@@ -38,7 +38,7 @@ Mesh bumpy_sphere(int stacks) {
 }
 
 /// The high mesh's interpolated normal on a ray's outermost hit, every triangle tried.
-glm::dvec3 truth(const Mesh& high, const glm::dvec3& origin, const glm::dvec3& direction) {
+glm::dvec3 ground_truth(const Mesh& high, const glm::dvec3& origin, const glm::dvec3& direction) {
     double nearest = 1e30;
     glm::dvec3 normal(0.0);
     for (const glm::uvec3& t : high.triangles) {
@@ -94,8 +94,9 @@ Errors errors_of(const Mesh& high, const Mesh& low, const BakedImage& baked, int
                 outward = glm::normalize(outward);
                 const std::size_t texel = static_cast<std::size_t>(first_row) * side + i;
                 const float* n = &object.as<float>()[3 * texel];
-                const double error = degrees_between(glm::dvec3(n[0], n[1], n[2]),
-                                                     truth(high, point + 0.1 * outward, -outward));
+                const double error =
+                    degrees_between(glm::dvec3(n[0], n[1], n[2]),
+                                    ground_truth(high, point + 0.1 * outward, -outward));
                 static std::mutex mutex;
                 const std::lock_guard lock(mutex);
                 errors.mean += error;
@@ -117,8 +118,8 @@ TEST(BakeSphere, IsTheHighMeshsNormalsWithinWhatCodesHold) {
     const BakedImage baked = bake({high}, low, sized(side, side));
     EXPECT_EQ(baked.result.texels_missed, 0U);
     // Bumps of 2%, over a sphere whose facets lie up to 0.7% inside: all of it was found.
-    EXPECT_GT(baked.result.greatest_height, 0.02);
-    EXPECT_LT(baked.result.least_height, -0.015);
+    EXPECT_GT(baked.result.max_height, 0.02);
+    EXPECT_LT(baked.result.min_height, -0.015);
     const Errors fine = errors_of(high, low, baked, 16);
     EXPECT_LT(fine.mean, 0.005);
     EXPECT_LT(fine.largest, 0.05);

@@ -72,8 +72,8 @@ TEST(Bake, HeightsAreHowFarOutsideTheSurfaceLies) {
         for (const float here : image.heights)
             EXPECT_NEAR(here, height, 1e-7F);
         EXPECT_NEAR(image.result.distances.offset, 1.5 * std::abs(height) + 0.01, 1e-6);
-        EXPECT_NEAR(image.result.least_height, height, 1e-15);
-        EXPECT_NEAR(image.result.greatest_height, height, 1e-15);
+        EXPECT_NEAR(image.result.min_height, height, 1e-15);
+        EXPECT_NEAR(image.result.max_height, height, 1e-15);
     }
 }
 
@@ -119,7 +119,7 @@ TEST(Bake, TexelsThatMeetNothingAreCountedAndFilledFromTheNearest) {
 TEST(Bake, NothingHighIsAllMissed) {
     const BakedImage image = bake({}, make_quad(), sized(8, 8));
     EXPECT_EQ(image.count(TexelState::missed), 64U);
-    EXPECT_EQ(image.result.least_height, 0.0);
+    EXPECT_EQ(image.result.min_height, 0.0);
     EXPECT_THROW(bake({Mesh{}}, make_quad(), sized(8, 8)), BakeMismatch);
 }
 
@@ -241,10 +241,11 @@ TEST(Bake, SamplesAreMeansAndAutoCastsThemWhereTheyDisagree) {
     const auto error = [&](const BakedImage& image) {
         double sum = 0.0;
         for (std::size_t texel = 0; texel < 256; ++texel) {
-            glm::dvec3 truth(0.0);
+            glm::dvec3 ground_truth(0.0);
             for (std::size_t i = 0; i < 256; ++i)
-                truth += fine.normal((texel / 16 * 16 + i / 16) * 256 + texel % 16 * 16 + i % 16);
-            sum += degrees_between(image.normal(texel), truth);
+                ground_truth +=
+                    fine.normal((texel / 16 * 16 + i / 16) * 256 + texel % 16 * 16 + i % 16);
+            sum += degrees_between(image.normal(texel), ground_truth);
         }
         return sum / 256;
     };

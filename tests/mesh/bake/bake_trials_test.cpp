@@ -43,44 +43,44 @@ struct Trials {
     }
 };
 
-TEST(BakeTrials, SayOfAWholeMapWhatACheckSays) {
+TEST(BakeBenchmark, SayOfAWholeMapWhatACheckSays) {
     Trials all;
-    const BakeTrials trials(all.baker, all.options, 64 * 192, 64);
+    const BakeBenchmark trials(all.baker, all.options, 64 * 192, 64);
     EXPECT_TRUE(trials.is_whole());
     EXPECT_EQ(trials.texels(), 64U * 192U);
     EXPECT_EQ(trials.reference_samples(), 64);
     for (const int samples : {1, 4}) {
-        const BakeTrial trial = trials.measure({samples}, all.formats);
+        const BakeMeasurement trial = trials.measure({samples}, all.formats);
         EXPECT_GE(trial.rays, static_cast<std::size_t>(samples) * 64U * 192U);
         for (std::size_t i = 0; i < 2; ++i) {
             const BakeCheck check = all.check_of(samples, all.formats[i]);
             EXPECT_NEAR(trial.errors[i].rms, check.error.rms, 1e-9);
             EXPECT_EQ(trial.errors[i].max, check.error.max);
-            const auto codes = static_cast<std::size_t>(BakeStage::quantisation);
-            EXPECT_NEAR(trial.quantisation[i].rms, check.stages.at(codes).rms, 1e-6);
+            const auto codes = static_cast<std::size_t>(BakeStage::quantization);
+            EXPECT_NEAR(trial.quantization[i].rms, check.stages.at(codes).rms, 1e-6);
         }
     }
 }
 
-TEST(BakeTrials, MoreSamplesAndBitsAreTruer) {
+TEST(BakeBenchmark, MoreSamplesAndBitsAreTruer) {
     Trials all;
-    const BakeTrials trials(all.baker, all.options, 64 * 192);
+    const BakeBenchmark trials(all.baker, all.options, 64 * 192);
     EXPECT_EQ(trials.reference_samples(), 256);
-    const BakeTrial one = trials.measure({1}, all.formats);
-    const BakeTrial four = trials.measure({4}, all.formats);
+    const BakeMeasurement one = trials.measure({1}, all.formats);
+    const BakeMeasurement four = trials.measure({4}, all.formats);
     EXPECT_LT(four.errors[1].rms, one.errors[1].rms / 2.0);
     EXPECT_LT(four.errors[1].rms, four.errors[0].rms);
-    EXPECT_LT(four.quantisation[1].rms, 0.001);
-    EXPECT_GT(four.quantisation[0].rms, 0.05);
+    EXPECT_LT(four.quantization[1].rms, 0.001);
+    EXPECT_GT(four.quantization[0].rms, 0.05);
     // What is sampled at the centre alone is exact there.
     EXPECT_LT(one.centre[1].max, 0.002);
 }
 
-TEST(BakeTrials, ErrorMapsHoldTheErrorsOfEachTexel) {
+TEST(BakeBenchmark, ErrorMapsHoldTheErrorsOfEachTexel) {
     Trials all;
     for (const std::size_t texels : {std::size_t{64 * 192}, std::size_t{1}}) {
-        const BakeTrials trials(all.baker, all.options, texels);
-        const BakeTrial trial = trials.measure({4}, all.formats);
+        const BakeBenchmark trials(all.baker, all.options, texels);
+        const BakeMeasurement trial = trials.measure({4}, all.formats);
         const Image map = trials.error_map({4}, all.formats[0]);
         EXPECT_EQ(map.width, 64);
         EXPECT_EQ(static_cast<std::size_t>(map.height), trials.texels() / 64);
@@ -93,33 +93,33 @@ TEST(BakeTrials, ErrorMapsHoldTheErrorsOfEachTexel) {
     }
 }
 
-TEST(BakeTrials, OfAPartAreNearlyThoseOfTheWhole) {
+TEST(BakeBenchmark, OfAPartAreNearlyThoseOfTheWhole) {
     Trials all;
-    const BakeTrials part(all.baker, all.options, 1);
+    const BakeBenchmark part(all.baker, all.options, 1);
     EXPECT_FALSE(part.is_whole());
     EXPECT_EQ(part.texels(), 64U * 64U);
-    const BakeTrials whole(all.baker, all.options, 64 * 192);
+    const BakeBenchmark whole(all.baker, all.options, 64 * 192);
     EXPECT_NEAR(part.measure({1}, all.formats).errors[1].rms,
                 whole.measure({1}, all.formats).errors[1].rms, 0.01);
 }
 
-TEST(BakeTrials, SeparateSamplingFromRoundingUpTo256Samples) {
+TEST(BakeBenchmark, SeparateSamplingFromRoundingUpTo256Samples) {
     Trials all;
-    const BakeTrials trials(all.baker, all.options, 64, 1024);
+    const BakeBenchmark trials(all.baker, all.options, 64, 1024);
     EXPECT_EQ(trials.reference_samples(), 1024);
-    const BakeTrial few = trials.measure({16}, all.formats);
-    const BakeTrial many = trials.measure({256}, all.formats);
+    const BakeMeasurement few = trials.measure({16}, all.formats);
+    const BakeMeasurement many = trials.measure({256}, all.formats);
     // Samples are no comparison with themselves, and four times finer along a side is better.
     EXPECT_GT(many.sampling.rms, 0.0);
     EXPECT_LT(many.sampling.rms, 0.5 * few.sampling.rms);
     // Rounding and sampling are independent: together they make the error.
-    EXPECT_NEAR(many.errors[0].rms, std::hypot(many.sampling.rms, many.quantisation[0].rms),
+    EXPECT_NEAR(many.errors[0].rms, std::hypot(many.sampling.rms, many.quantization[0].rms),
                 0.05 * many.errors[0].rms);
     // Larger maps have no room for so many samples.
     BakeMapOptions large = all.options;
     large.width = 2112;
     large.height = 64;
-    EXPECT_EQ(BakeTrials(all.baker, large, 64, 1024).reference_samples(), 256);
+    EXPECT_EQ(BakeBenchmark(all.baker, large, 64, 1024).reference_samples(), 256);
 }
 
 }  // namespace

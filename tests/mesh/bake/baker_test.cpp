@@ -128,7 +128,7 @@ TEST(Baker, PartsDoNotCatchEachOthersRays) {
     for (std::size_t i = 0; i < 256; ++i)
         EXPECT_LT(degrees_between(image.normal(i), {0.6, 0, 0.8}), 1e-4);
     // What is far from the other part does not lengthen its rays: 0.01 apart, not 2 or 0.04.
-    EXPECT_NEAR(image.result.greatest_height, 0.01, 1e-7);
+    EXPECT_NEAR(image.result.max_height, 0.01, 1e-7);
     const std::vector<Mesh> far = {leaning(make_quad(), {0, 0.6F, 0.8F}, {2, 0, 5})};
     const std::vector<BakePart> apart = {{left, {0, 1}}, {far, {2, 3}}};
     // 5 apart are bridged only where that is asked for.
@@ -227,7 +227,7 @@ TEST(Baker, ComparesBoxesOfTrianglesAlone) {
     EXPECT_EQ(fit.low.max, glm::vec3(1, 1, 0));
     EXPECT_DOUBLE_EQ(fit.gap, 0.5);
     EXPECT_DOUBLE_EQ(fit.size_ratio, std::sqrt(73.0 / 8.0));
-    EXPECT_FALSE(fit.fits_turned);
+    EXPECT_FALSE(fit.fits_rotated);
     // Beside and above: the corners are apart.
     const std::vector<Mesh> corner = {test::moved(make_quad(), 1.0F, {5, 0, 4})};
     EXPECT_DOUBLE_EQ(compare_boxes(corner, make_quad()).gap, 5.0);

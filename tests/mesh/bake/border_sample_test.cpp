@@ -131,8 +131,8 @@ TEST(OpenBorders, NoTexelOfAMeshOntoItselfIsMissed) {
             for (std::size_t i = 0; i < image.states.size(); ++i)
                 worst = std::max(worst, degrees_between(image.normal(i), {0, 0, 1}));
             EXPECT_LT(worst, 0.02);
-            EXPECT_LT(image.result.greatest_height, 1e-6);
-            EXPECT_GT(image.result.least_height, -1e-6);
+            EXPECT_LT(image.result.max_height, 1e-6);
+            EXPECT_GT(image.result.min_height, -1e-6);
         }
     }
 }

@@ -125,7 +125,7 @@ const Image& tangent_normals() {
 void expect_explained(const ConventionFit& found, const std::vector<ConventionPart>& changes) {
     EXPECT_TRUE(found.was_searched);
     EXPECT_TRUE(found.is_explained)
-        << found.told_degrees << " to " << found.found_degrees << " degrees";
+        << found.given_degrees << " to " << found.found_degrees << " degrees";
     EXPECT_EQ(found.changes, changes);
     EXPECT_LT(found.found_degrees, 1.5 * found.expected_degrees + 0.02);
 }
@@ -136,7 +136,7 @@ TEST(MapConvention, WhatReliefBakesIsAsTold) {
         EXPECT_FALSE(found.was_searched) << bits;
         EXPECT_EQ(found.tried, 1U);
         EXPECT_TRUE(found.changes.empty());
-        EXPECT_NEAR(found.told_degrees, found.expected_degrees, 1e-4);
+        EXPECT_NEAR(found.given_degrees, found.expected_degrees, 1e-4);
     }
     const Image object = baked(pair().high, pair().low, options_of(BakeSpace::object));
     EXPECT_FALSE(fit(encoded(object), BakeSpace::object).was_searched);
@@ -197,7 +197,7 @@ TEST(MapConvention, ImagesLyingOtherwiseAreRecognised) {
     }
     const ConventionFit found = fit(encoded(turned));
     expect_explained(found, {ConventionPart::turn});
-    EXPECT_EQ(found.convention.turn, MapTurn::upside_down);
+    EXPECT_EQ(found.convention.turn, ImageOrientation::upside_down);
     const Image down = changed(turned, [](glm::vec3 n) { return glm::vec3(n.x, -n.y, n.z); });
     expect_explained(fit(encoded(down)), {ConventionPart::turn, ConventionPart::axes});
 }
@@ -265,7 +265,7 @@ TEST(MapConvention, FramesOfOtherShadersAreRecognised) {
         return glm::dmat3(unit_t, t.w * glm::cross(unit_n, unit_t), unit_n);
     })));
     expect_explained(unit, {ConventionPart::frame});
-    EXPECT_EQ(unit.convention.frame, MapFrame::unit);
+    EXPECT_EQ(unit.convention.frame, FrameInterpolation::unit);
     const ConventionFit mirrored = fit(encoded(baked_by([](glm::dvec3 n, glm::dvec4 t, glm::dvec3) {
         return glm::dmat3(glm::dvec3(t), glm::cross(n, glm::dvec3(t)), n);
     })));

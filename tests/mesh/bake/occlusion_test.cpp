@@ -48,12 +48,12 @@ struct OcclusionError {
     double mean = 0.0;
 };
 
-OcclusionError error_of(const std::vector<double>& shares, double truth) {
+OcclusionError error_of(const std::vector<double>& shares, double ground_truth) {
     OcclusionError error;
     for (const double share : shares) {
-        error.mean += (share - truth) / static_cast<double>(shares.size());
+        error.mean += (share - ground_truth) / static_cast<double>(shares.size());
         error.root_mean_square +=
-            (share - truth) * (share - truth) / static_cast<double>(shares.size());
+            (share - ground_truth) * (share - ground_truth) / static_cast<double>(shares.size());
     }
     error.root_mean_square = std::sqrt(error.root_mean_square);
     return error;
@@ -77,10 +77,10 @@ TEST(Occlusion, UnderADiscIsItsClosedForm) {
     for (const auto& [height, aside] : {std::pair(0.5F, 0.0), {1.0F, 0.3}, {2.0F, 1.5}}) {
         const Mesh mesh = disc(height, aside);
         const RayScene scene({ray_mesh(mesh)});
-        const double truth = open_beside(double{height}, aside);
+        const double ground_truth = open_beside(double{height}, aside);
         const auto shares = Occlusion(rays(256), 1).open_shares(scene, from_origin(500), report);
-        EXPECT_LT(error_of(shares, truth).root_mean_square, 0.009) << height;
-        EXPECT_NEAR(error_of(shares, truth).mean, 0.0, 0.001) << height;
+        EXPECT_LT(error_of(shares, ground_truth).root_mean_square, 0.009) << height;
+        EXPECT_NEAR(error_of(shares, ground_truth).mean, 0.0, 0.001) << height;
         // What is further away than rays run hides nothing.
         const auto near =
             Occlusion(rays(64, 0.9 * height), 1).open_shares(scene, from_origin(10), report);
@@ -92,12 +92,12 @@ TEST(Occlusion, UnderADiscIsItsClosedForm) {
 TEST(Occlusion, ErrorFallsFasterThanThatOfRaysAtRandom) {
     const Mesh mesh = disc(0.8F, 0.6);
     const RayScene scene({ray_mesh(mesh)});
-    const double truth = open_beside(0.8F, 0.6);
+    const double ground_truth = open_beside(0.8F, 0.6);
     Report report;
     double before = 0.0;
     for (const int count : {4, 64, 1024}) {
         const auto shares = Occlusion(rays(count), 1).open_shares(scene, from_origin(1000), report);
-        const double error = error_of(shares, truth).root_mean_square;
+        const double error = error_of(shares, ground_truth).root_mean_square;
         // At random it would be nearly 0.5 / sqrt(count), and fall to a quarter for 16 times as
         // many; here it falls to an eighth, for rays that meet a border in the disc of directions.
         EXPECT_LT(error, 0.5 / std::sqrt(count));

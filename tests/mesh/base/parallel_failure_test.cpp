@@ -309,7 +309,7 @@ std::set<std::size_t> sampled_pieces(std::size_t count) {
     return pieces;
 }
 
-void expect_failures_arrive(const std::function<std::string()>& run, std::size_t least_pieces) {
+void expect_failures_arrive(const std::function<std::string()>& run, std::size_t min_pieces) {
     Injection none;
     none.at = std::numeric_limits<std::size_t>::max();
     std::string expected;
@@ -318,7 +318,7 @@ void expect_failures_arrive(const std::function<std::string()>& run, std::size_t
         expected = run();
     }
     ASSERT_FALSE(expected.empty());
-    ASSERT_GE(none.pieces, least_pieces);
+    ASSERT_GE(none.pieces, min_pieces);
     std::size_t failed = 0;
     for (const std::size_t piece : sampled_pieces(none.pieces)) {
         Injection injection;

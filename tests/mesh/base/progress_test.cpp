@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How far work is, that it ends when somebody wishes so, and which files it read.
+// How far work is, that it ends when somebody requests so, and which files it read.
 #include "relief/mesh/progress.h"
 
 #include <gmock/gmock.h>

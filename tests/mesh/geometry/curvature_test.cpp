@@ -33,12 +33,13 @@ struct CurvatureError {
     double largest = 0.0;
 };
 
-CurvatureError error_of(const Mesh& mesh, const std::function<double(const glm::dvec3&)>& truth) {
+CurvatureError error_of(const Mesh& mesh,
+                        const std::function<double(const glm::dvec3&)>& ground_truth) {
     const std::vector<float> values = curvatures(mesh);
     CurvatureError error;
     for (std::size_t i = 0; i < values.size(); ++i) {
         const double off =
-            std::abs(static_cast<double>(values[i]) - truth(glm::dvec3(mesh.positions[i])));
+            std::abs(static_cast<double>(values[i]) - ground_truth(glm::dvec3(mesh.positions[i])));
         error.mean += off / static_cast<double>(values.size());
         error.largest = std::max(error.largest, off);
     }
@@ -47,10 +48,11 @@ CurvatureError error_of(const Mesh& mesh, const std::function<double(const glm::
 
 /// Halving triangles must make the mean error at most a third: second order.
 void expect_second_order(const std::function<Mesh(int)>& mesh_of,
-                         const std::function<double(const glm::dvec3&)>& truth, double finest) {
+                         const std::function<double(const glm::dvec3&)>& ground_truth,
+                         double finest) {
     double before = std::numeric_limits<double>::infinity();
     for (const int cells : {16, 32, 64}) {
-        const CurvatureError error = error_of(mesh_of(cells), truth);
+        const CurvatureError error = error_of(mesh_of(cells), ground_truth);
         EXPECT_LT(error.mean, before / 3.0) << cells;
         before = error.mean;
     }
@@ -76,11 +78,12 @@ TEST(Curvature, OfASphereIsOneOverItsRadius) {
 TEST(Curvature, OfATorusIsThatOfItsClosedForm) {
     constexpr double tube = 0.4;
     // H = (R + 2 r cos t) / (2 r (R + r cos t)), where the axis is R + r cos t away.
-    const auto truth = [&](const glm::dvec3& place) {
+    const auto ground_truth = [&](const glm::dvec3& place) {
         const double away = std::hypot(place.x, place.z);
         return (2.0 * away - 1.0) / (2.0 * tube * away);
     };
-    expect_second_order([](int cells) { return make_torus(0.4F, 2 * cells, cells); }, truth, 2e-3);
+    expect_second_order([](int cells) { return make_torus(0.4F, 2 * cells, cells); }, ground_truth,
+                        2e-3);
 }
 
 TEST(Curvature, OfACylinderIsHalfOfThatOfItsCircle) {

@@ -95,9 +95,9 @@ TEST(Image, AlphaIsNeverDecodedNorEncoded) {
     EXPECT_NEAR(linear.as<float>()[0], 0.215861, 1e-6);
     EXPECT_EQ(linear.as<float>()[3], 128.0F / 255.0F);
     EXPECT_EQ(to_srgb(linear, 8).samples, coded.samples);
-    const Image grey = image_of<std::uint8_t>(2, 2, ColorSpace::srgb, {128, 128, 0, 7});
-    EXPECT_EQ(samples_of<float>(to_linear(grey))[1], 128.0F / 255.0F);
-    EXPECT_EQ(samples_of<float>(to_linear(grey))[3], 7.0F / 255.0F);
+    const Image gray = image_of<std::uint8_t>(2, 2, ColorSpace::srgb, {128, 128, 0, 7});
+    EXPECT_EQ(samples_of<float>(to_linear(gray))[1], 128.0F / 255.0F);
+    EXPECT_EQ(samples_of<float>(to_linear(gray))[3], 7.0F / 255.0F);
 }
 
 TEST(Image, DataAndLinearImagesAreNeverDecoded) {

@@ -196,8 +196,8 @@ TEST(Flip, TheNumberOfThreadsChangesNoBit) {
 }
 
 TEST(Flip, BitsChannelsAndCodingOfOnePictureDoNotMatter) {
-    const Codes grey = [](unsigned x, unsigned y, unsigned) { return ramps(x, y, 0); };
-    const Image bytes = picture(30, 20, grey);
+    const Codes gray = [](unsigned x, unsigned y, unsigned) { return ramps(x, y, 0); };
+    const Image bytes = picture(30, 20, gray);
     Image words = make_image(30, 20, 1, 16, ColorSpace::srgb);
     for (std::size_t i = 0; i < words.sample_count(); ++i) {
         words.as<std::uint16_t>()[i] =

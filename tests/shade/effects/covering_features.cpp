@@ -16,7 +16,7 @@ FeatureField field(const char* name) {
             [](Features& f, unsigned value) { f.*Member = static_cast<Value>(value); }};
 }
 
-constexpr unsigned most_values = 4;
+constexpr unsigned max_values = 4;
 
 /// One set, and how many pairs it would bring at the most: what it would have brought when that was
 /// counted last, since pairs only become fewer.
@@ -30,7 +30,7 @@ struct Candidate {
 class CoveredPairs {
   public:
     explicit CoveredPairs(std::size_t fields)
-        : fields_(fields), met_(fields * fields * most_values * most_values, 0) {}
+        : fields_(fields), met_(fields * fields * max_values * max_values, 0) {}
 
     [[nodiscard]] std::size_t fresh_in(const std::vector<unsigned char>& values) const {
         std::size_t fresh = 0;
@@ -51,7 +51,7 @@ class CoveredPairs {
   private:
     [[nodiscard]] std::size_t place(std::size_t i, std::size_t j, std::size_t a,
                                     std::size_t b) const {
-        return ((i * fields_ + j) * most_values + a) * most_values + b;
+        return ((i * fields_ + j) * max_values + a) * max_values + b;
     }
 
     std::size_t fields_;

@@ -42,13 +42,13 @@ Material named(const char* name) {
     return material;
 }
 
-FramePlan forced(const Scene& scene, const EffectWishes& wishes,
+FramePlan forced(const Scene& scene, const EffectRequest& requests,
                  const FrameSettings& settings = one_sample) {
-    return force_effects(scene, settings, plan_effects(scene, settings), wishes);
+    return force_effects(scene, settings, plan_effects(scene, settings), requests);
 }
 
 FramePlan forced(const Scene& scene, const std::vector<ForcedEffect>& list) {
-    return forced(scene, EffectWishes{EffectBase::planned, list});
+    return forced(scene, EffectRequest{EffectBase::planned, list});
 }
 
 std::string refusal(const Scene& scene, const std::vector<ForcedEffect>& list) {
@@ -65,7 +65,7 @@ const EffectReason& reason(const DrawPlan& draw, const char* effect) {
 TEST(EffectForcing, OfNothingLeavesThePlanAsItIs) {
     const Scene scene = scene_with({named("body")});
     const FramePlan plan = plan_effects(scene, one_sample);
-    EXPECT_EQ(forced(scene, EffectWishes{}).draws[0].features, plan.draws[0].features);
+    EXPECT_EQ(forced(scene, EffectRequest{}).draws[0].features, plan.draws[0].features);
     EXPECT_THAT(effects_in(plan), ElementsAre("directional lights", "diffuse"));
 }
 
@@ -92,10 +92,10 @@ TEST(EffectForcing, FromNothingKeepsWhatTheSceneHasOfThoseForcedOn) {
     scene.ambient = glm::vec3(0.1F);
     const FramePlan plan = forced(
         scene,
-        EffectWishes{EffectBase::nothing, {{"directional lights", true}, {"diffuse", true}}});
+        EffectRequest{EffectBase::nothing, {{"directional lights", true}, {"diffuse", true}}});
     EXPECT_EQ(plan.draws[0].features.directional_lights, 3U);
     EXPECT_FALSE(plan.draws[0].features.ambient);
-    EXPECT_EQ(forced(scene, EffectWishes{EffectBase::nothing, {}}).draws[0].features, Features{});
+    EXPECT_EQ(forced(scene, EffectRequest{EffectBase::nothing, {}}).draws[0].features, Features{});
 }
 
 TEST(EffectForcing, ShowsWhereverItCanAndSaysWhereNot) {
@@ -172,7 +172,7 @@ TEST(EffectForcing, OfTheFrameTakesOutTheSkyboxAndItsMap) {
 TEST(EffectForcing, OfAFinishingPassIsRefused) {
     Scene scene = scene_with({named("body")});
     scene.exposure = 2.0F;
-    const EffectWishes without{EffectBase::planned, {{"exposure", false}}};
+    const EffectRequest without{EffectBase::planned, {{"exposure", false}}};
     EXPECT_FALSE(forced(scene, without).draws[0].features.exposure);
     EXPECT_EQ(test::message_of<InvalidInput>([&] { forced(scene, without, {.samples = 4}); }),
               "effect 'exposure' is in the finishing pass, which follows the scene: change the "
@@ -192,7 +192,7 @@ TEST(EffectForcing, OfAllThatIsNeutralIsAFixedPointAndKeepsWhatIsPlanned) {
     for (const Features& features : test::covering_features()) {
         const test::CallingScene calling = test::scene_calling_for(features);
         const FramePlan plan = plan_effects(calling.scene, calling.settings);
-        const EffectWishes all{EffectBase::all_neutral, {}};
+        const EffectRequest all{EffectBase::all_neutral, {}};
         const FramePlan once = force_effects(calling.scene, calling.settings, plan, all);
         const FramePlan twice = force_effects(calling.scene, calling.settings, once, all);
         EXPECT_EQ(twice.draws[0].features, once.draws[0].features) << describe(features);

@@ -146,9 +146,9 @@ TEST_P(Textures, LookUpWithRowZeroAtTZero) {
 }
 
 TEST_P(Textures, GreyIsSeenAsGreyWithAlphaInItsPlace) {
-    Image grey = make_image(1, 1, 1, 8, ColorSpace::data);
-    grey.samples = std::vector<std::uint8_t>{51};
-    const Image seen = look_up(api(), make_texture(api(), grey, "grey"), {1, 1});
+    Image gray = make_image(1, 1, 1, 8, ColorSpace::data);
+    gray.samples = std::vector<std::uint8_t>{51};
+    const Image seen = look_up(api(), make_texture(api(), gray, "grey"), {1, 1});
     EXPECT_THAT(seen.samples, VariantWith<std::vector<float>>(
                                   Pointwise(FloatNear(rounding), {0.2F, 0.2F, 0.2F, 1.0F})));
     Image with_alpha = make_image(1, 1, 2, 16, ColorSpace::data);
@@ -159,9 +159,9 @@ TEST_P(Textures, GreyIsSeenAsGreyWithAlphaInItsPlace) {
 }
 
 TEST_P(Textures, CodedGreyIsDecodedAndItsAlphaIsNot) {
-    Image grey = make_image(1, 1, 2, 8, ColorSpace::srgb);
-    grey.samples = std::vector<std::uint8_t>{188, 51};
-    const Image seen = look_up(api(), make_texture(api(), grey, "grey"), {1, 1});
+    Image gray = make_image(1, 1, 2, 8, ColorSpace::srgb);
+    gray.samples = std::vector<std::uint8_t>{188, 51};
+    const Image seen = look_up(api(), make_texture(api(), gray, "grey"), {1, 1});
     const float linear = linear_from_srgb(188.0F / 255.0F);
     for (std::size_t i = 0; i < 3; ++i)
         EXPECT_NEAR(seen.as<float>()[i], linear, 2e-3F);

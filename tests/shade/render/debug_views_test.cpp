@@ -192,8 +192,8 @@ TEST_F(DebugViewPictures, HatchWhatHasNothingToShow) {
     for (int x = 0; x < view_size; ++x) {
         // Rows count from below in gl_FragCoord.
         const double stripe = std::fmod(x + 0.5 + (view_size - 1 - 2 + 0.5), 16.0);
-        const double grey = stripe < 8.0 ? 51.0 : 77.0;
-        EXPECT_EQ(pixel(image, x, 2), glm::dvec4(grey, grey, grey, 255));
+        const double gray = stripe < 8.0 ? 51.0 : 77.0;
+        EXPECT_EQ(pixel(image, x, 2), glm::dvec4(gray, gray, gray, 255));
         dark += stripe < 8.0 ? 1 : 0;
         EXPECT_NE(pixel(image, x, view_size - 2).x, pixel(image, x, view_size - 2).z);
     }

@@ -102,7 +102,7 @@ TEST_F(EffectCostsOf, StepsLeaveRoomForOtherDrawings) {
     RenderCache cache(context());
     MeasuredFrame cached = frame();
     cached.cache = &cache;
-    EffectPricing pricing(cached, plan);
+    EffectCostMeasurement pricing(cached, plan);
     EXPECT_EQ(pricing.count(), 3U);
     EXPECT_THAT(pricing.costs().effects, IsEmpty());
     Report report;

@@ -82,16 +82,16 @@ std::vector<std::string> added_effects(const FramePlan& plan, const FramePlan& n
 class ForcedEffects : public test::DrawTest {
   protected:
     [[nodiscard]] Image forced(const Scene& scene, const FrameSettings& settings,
-                               const EffectWishes& wishes) const {
+                               const EffectRequest& requests) const {
         const FramePlan plan = plan_effects(scene, settings);
-        return render(scene, force_effects(scene, settings, plan, wishes), settings).image;
+        return render(scene, force_effects(scene, settings, plan, requests), settings).image;
     }
 
     /// Everything neutral at once; if that shows, one by one, to say which.
     /// \return how many effects were forced on
     std::size_t expect_no_change(const Scene& scene, const FrameSettings& settings) const {
         const FramePlan plan = plan_effects(scene, settings);
-        const EffectWishes all{EffectBase::all_neutral, {}};
+        const EffectRequest all{EffectBase::all_neutral, {}};
         const FramePlan neutral = force_effects(scene, settings, plan, all);
         const Image as_planned = render(scene, plan, settings).image;
         const std::vector<std::string> added = added_effects(plan, neutral);
@@ -100,7 +100,7 @@ class ForcedEffects : public test::DrawTest {
         }
         ADD_FAILURE() << "all neutral effects at once show";
         for (const std::string& effect : added) {
-            EffectWishes without = all;
+            EffectRequest without = all;
             without.forced = {{effect, false}};
             if (test::same_bits(forced(scene, settings, without), as_planned)) {
                 ADD_FAILURE() << "not without '" << effect << "'";
@@ -117,7 +117,7 @@ class ForcedEffects : public test::DrawTest {
         std::set<std::string> shown;
         for (const Effect& effect : effects()) {
             if (effect.on(plan.draws.at(0).features)) continue;
-            const EffectWishes one{EffectBase::planned, {{effect.name, true}}};
+            const EffectRequest one{EffectBase::planned, {{effect.name, true}}};
             try {
                 EXPECT_TRUE(test::same_bits(forced(scene, settings, one), as_planned))
                     << effect.name;
@@ -166,8 +166,8 @@ TEST_F(ForcedEffects, ThatNeedOthersChangeNoBitWithThem) {
     const FrameSettings settings{48, 48, 1, OutputCoding::linear};
     const Image as_planned = forced(scene, settings, {});
     for (const std::vector<ForcedEffect>& set : sets) {
-        const EffectWishes wishes{EffectBase::planned, set};
-        EXPECT_TRUE(test::same_bits(forced(scene, settings, wishes), as_planned))
+        const EffectRequest requests{EffectBase::planned, set};
+        EXPECT_TRUE(test::same_bits(forced(scene, settings, requests), as_planned))
             << set[0].name << ", " << set[1].name;
     }
 }

@@ -164,8 +164,8 @@ TEST_F(Cached, RenderersThatLiveSideBySideDoNotDrawIntoEachOther) {
     Report report;
     Renderer first(cache(), context(), red, plan_effects(red, settings), settings, report);
     Renderer second(cache(), context(), green, plan_effects(green, settings), settings, report);
-    const DrawnFrame one = first.draw_only(*red.camera);
-    const DrawnFrame other = second.draw_only(*green.camera);
+    const RenderedFrame one = first.draw_only(*red.camera);
+    const RenderedFrame other = second.draw_only(*green.camera);
     EXPECT_NE(one.texture, other.texture);
     EXPECT_EQ(test::pixel(first.draw(*red.camera).image, 20, 15), glm::dvec4(255, 0, 0, 255));
     EXPECT_EQ(test::pixel(second.draw(*green.camera).image, 20, 15), glm::dvec4(0, 255, 0, 255));

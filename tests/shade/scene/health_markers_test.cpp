@@ -65,7 +65,7 @@ TEST(HealthMarkers, AreOfTroubleUnlessRemarksAreAskedForToo) {
     const HealthMarkers all = health_markers(scene, std::nullopt);
     const Diagnosis diagnosis = diagnose(scene.meshes[0]);
     EXPECT_EQ(all.conditions.size(), diagnosis.found.size());
-    for (const FoundCondition& found : diagnosis.found) {
+    for (const MeshConditionCount& found : diagnosis.found) {
         ASSERT_NE(marked(all, found.condition), nullptr);
         EXPECT_EQ(marked(all, found.condition)->count, found.count);
     }

@@ -25,10 +25,10 @@ constexpr float json_rounding = 1e-6F;
 class SceneFile : public testing::Test {
   protected:
     SceneFile() {
-        Image grey = make_image(2, 2, 1, 8, ColorSpace::data);
+        Image gray = make_image(2, 2, 1, 8, ColorSpace::data);
         for (const char* name : {"a.png", "b.png", "posx.png", "negx.png", "posy.png", "negy.png",
                                  "posz.png", "negz.png"})
-            write_image(folder_ / name, grey);
+            write_image(folder_ / name, gray);
         write_mesh(folder_ / "cube.ply", {test::cube(), {}});
         std::ofstream(folder_ / "two.mtl") << "newmtl one\nKd 1 0 0\nmap_Kd a.png\n";
         std::ofstream(folder_ / "two.obj")

@@ -92,7 +92,7 @@ INSTANTIATE_TEST_SUITE_P(All, AccuracyDocumentOf,
                          testing::Values(Subject::normals, Subject::tangents, Subject::bump,
                                          Subject::storage, Subject::bake, Subject::stability),
                          [](const testing::TestParamInfo<Subject>& tested) {
-                             return std::string(word_of(tested.param));
+                             return std::string(name_of(tested.param));
                          });
 
 /// Returns the commands with a recommendation in the page.

@@ -162,7 +162,7 @@ std::shared_ptr<const Scene> collapsed() {
 
 TEST(HealthSearch, FindsMeshProblems) {
     HealthSearch search([] {});
-    search.start({collapsed(), HealthChoice::trouble});
+    search.start({collapsed(), HealthChoice::problem});
     std::optional<HealthResult> found;
     ASSERT_TRUE(eventually([&] { return (found = search.take()).has_value(); }));
     EXPECT_EQ(found->error, "");
@@ -183,7 +183,7 @@ TEST(HealthSearch, InvalidSceneIsAnError) {
     auto broken = std::make_shared<Scene>(*collapsed());
     broken->meshes[0].edit().triangles.push_back({0, 1, 9});
     HealthSearch search([] {});
-    search.start({broken, HealthChoice::trouble});
+    search.start({broken, HealthChoice::problem});
     std::optional<HealthResult> found;
     ASSERT_TRUE(eventually([&] { return (found = search.take()).has_value(); }));
     EXPECT_NE(found->error, "");

@@ -84,7 +84,7 @@ class Drawing : public testing::Test {
     }
 
     /// Waits until the thread is idle.
-    static DrawnPicture rest(DrawThread& thread) {
+    static RenderedPicture rest(DrawThread& thread) {
         EXPECT_TRUE(eventually([&] { return !thread.is_busy(); }));
         return thread.drawn();
     }
@@ -99,7 +99,7 @@ TEST_F(Drawing, DrawsTheRequestAndWakes) {
     EXPECT_NE(thread.renderer_name(), "");
     EXPECT_EQ(thread.shown().texture, 0U);
     thread.request(request_of(7));
-    const DrawnPicture drawn = rest(thread);
+    const RenderedPicture drawn = rest(thread);
     EXPECT_EQ(drawn.error, "");
     EXPECT_EQ(drawn.revision, 7U);
     EXPECT_EQ(drawn.frames, 1U);
@@ -113,7 +113,7 @@ TEST_F(Drawing, AnotherCameraNeedsNoRenderer) {
     thread.request(request_of(1));
     rest(thread);
     thread.request(request_of(1, 4.0F));
-    DrawnPicture drawn = rest(thread);
+    RenderedPicture drawn = rest(thread);
     EXPECT_EQ(drawn.frames, 2U);
     EXPECT_EQ(drawn.renderers, 1U);
     thread.request(request_of(2, 4.0F));
@@ -125,7 +125,7 @@ TEST_F(Drawing, OnlyTheLastOfManyRequestsMustBeDrawn) {
     DrawThread thread(context());
     for (std::uint64_t i = 1; i <= 200; ++i)
         thread.request(request_of(i));
-    const DrawnPicture drawn = rest(thread);
+    const RenderedPicture drawn = rest(thread);
     EXPECT_EQ(drawn.revision, 200U);
     EXPECT_LT(drawn.frames, 200U);
 }
@@ -138,7 +138,7 @@ TEST_F(Drawing, DrawingErrorKeepsThePicture) {
     DrawRequest impossible = request_of(2);
     impossible.effects.forced.push_back({"no such effect", true});
     thread.request(impossible);
-    DrawnPicture drawn = rest(thread);
+    RenderedPicture drawn = rest(thread);
     EXPECT_THAT(drawn.error, HasSubstr("no such effect"));
     EXPECT_EQ(drawn.revision, 1U);
     EXPECT_EQ(thread.shown().texture, shown);
@@ -158,7 +158,7 @@ TEST_F(Drawing, DrawingErrorIsTriedOnceAndTheOldSceneFollowsTheCamera) {
     const std::uint64_t frames = rest(thread).frames;
     impossible.camera.world_from_view[3].z = 5.0F;
     thread.request(impossible);
-    const DrawnPicture drawn = rest(thread);
+    const RenderedPicture drawn = rest(thread);
     EXPECT_EQ(drawn.frames, frames + 1);
     EXPECT_EQ(drawn.revision, 1U);
     EXPECT_EQ(drawn.camera.world_from_view[3].z, 5.0F);

@@ -154,7 +154,7 @@ class Following : public testing::Test {
         files_.follow(result);
     }
     void drawn(const std::vector<std::string>& names, const std::string& error = "") {
-        DrawnPicture picture;
+        RenderedPicture picture;
         picture.error = error;
         picture.files = std::make_shared<const FileWatch::Files>(stamped(names));
         files_.follow(picture);

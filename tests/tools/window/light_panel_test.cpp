@@ -94,7 +94,7 @@ TEST(Lights, AtTheCenterOrWithoutADirectionStayFinite) {
             if (kind == kind_of(light)) continue;
             Scene scene;
             set_lights(scene, {converted_to(light, kind, lit_sphere)});
-            EXPECT_NO_THROW(validate_places(scene));
+            EXPECT_NO_THROW(validate_transforms(scene));
         }
     }
 }

@@ -20,13 +20,14 @@ using testing::SizeIs;
 
 /// A jittered torus with exact normals.
 Loaded torus(const std::string& name) {
-    AnalyticMesh truth = analytic_mesh(AnalyticSurface::torus, Triangulation::jittered, 24, 1);
-    truth.mesh.normals.assign(truth.normals.begin(), truth.normals.end());
+    AnalyticMesh ground_truth =
+        analytic_mesh(AnalyticSurface::torus, Triangulation::jittered, 24, 1);
+    ground_truth.mesh.normals.assign(ground_truth.normals.begin(), ground_truth.normals.end());
     Loaded loaded;
     loaded.options.model = name;
     loaded.composed.emplace();
     Scene& scene = loaded.composed->scene();
-    scene.meshes.emplace_back(std::move(truth.mesh));
+    scene.meshes.emplace_back(std::move(ground_truth.mesh));
     scene.instances.push_back({});
     return loaded;
 }

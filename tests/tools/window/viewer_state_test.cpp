@@ -113,11 +113,11 @@ TEST_F(State, EditsStayWhenTheFileIsReadAgain) {
     for (int i = 0; i < 2; ++i) {
         show("square.obj");
         EXPECT_EQ(state().scene().exposure, 4.0F);
-        EXPECT_EQ(state().json(DrawnPicture{})["edits"]["kept"], 1);
+        EXPECT_EQ(state().json(RenderedPicture{})["edits"]["kept"], 1);
     }
     state().edit([](Scene& scene) { scene.exposure = 1.0F; });
     show("square.obj");
-    EXPECT_EQ(state().json(DrawnPicture{})["edits"]["kept"], 0) << "as the file says";
+    EXPECT_EQ(state().json(RenderedPicture{})["edits"]["kept"], 0) << "as the file says";
 }
 
 TEST_F(State, AnErrorKeepsTheSceneAndEndsWithTheNextScene) {
@@ -210,7 +210,7 @@ TEST_F(State, ShowsDebugViewsByKeyAndKeepsThemForAnotherModel) {
     state().act(Action::health_markers);
     EXPECT_FALSE(state().request()->settings.overlays.markers) << "they are looked for elsewhere";
     const HealthRequest sought = state().take_health_request().value();
-    EXPECT_EQ(sought.choice, HealthChoice::trouble);
+    EXPECT_EQ(sought.choice, HealthChoice::problem);
     EXPECT_FALSE(state().take_health_request()) << "only once";
     state().take(HealthResult{health_markers(*sought.scene), ""});
     const DrawRequest request = *state().request();
@@ -222,8 +222,8 @@ TEST_F(State, ShowsDebugViewsByKeyAndKeepsThemForAnotherModel) {
                                                            "--health-markers trouble"));
     show("far.obj");
     EXPECT_TRUE(state().take_health_request()->choice) << "of the new model too";
-    EXPECT_EQ(state().json(DrawnPicture{})["show"], "geometric-normal");
-    EXPECT_EQ(state().json(DrawnPicture{})["overlays"]["wireframe"], true);
+    EXPECT_EQ(state().json(RenderedPicture{})["show"], "geometric-normal");
+    EXPECT_EQ(state().json(RenderedPicture{})["overlays"]["wireframe"], true);
     state().act(Action::previous_view);
     state().act(Action::previous_view);
     EXPECT_EQ(state().request()->settings.view, DebugView::overdraw);
@@ -324,7 +324,7 @@ TEST_F(State, EditsOfTheDefaultMaterialSurviveReadingAgain) {
 TEST_F(State, IsWrittenAsJson) {
     show("square.obj");
     state().camera().azimuth = glm::radians(40.0F);
-    const nlohmann::ordered_json json = state().json(DrawnPicture{});
+    const nlohmann::ordered_json json = state().json(RenderedPicture{});
     EXPECT_NEAR(json["camera"]["azimuth"].get<double>(), 40.0, 1e-5);
     EXPECT_EQ(json["view"], nlohmann::json({400, 300}));
     EXPECT_EQ(json["triangles"], 2);

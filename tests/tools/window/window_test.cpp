@@ -306,7 +306,7 @@ TEST_F(Window, SlowPicturesAreReducedDuringMotionAndMeasuringCanBeStopped) {
     EXPECT_GT(after["reduced"], 0);
 }
 
-constexpr const char* saved_words = "vase.obj --height-map data/bricks-height.png";
+constexpr const char* saved_text = "vase.obj --height-map data/bricks-height.png";
 
 class SavingWindow : public Window {
   protected:
@@ -346,7 +346,7 @@ class SavingWindow : public Window {
 
 TEST_F(SavingWindow, PictureSceneModelAndTextDrawWhatIsShown) {
     open_beside_saved_files();
-    RELIEF_NEEDS_WINDOW(saved_words);
+    RELIEF_NEEDS_WINDOW(saved_text);
     const json before = window().wait_for_rest();
     window().key("s");
     const json picture =
@@ -355,7 +355,7 @@ TEST_F(SavingWindow, PictureSceneModelAndTextDrawWhatIsShown) {
     expect_equal("vase-1.png", shown(before));
 
     const json moved = move_in_all_ways();
-    expect_drawn(saved_words + (" " + moved["command_line"].get<std::string>()), shown(moved));
+    expect_drawn(saved_text + (" " + moved["command_line"].get<std::string>()), shown(moved));
 
     window().key("ctrl+s");
     const json scene = window().wait_for("a scene", [](const json& now) {

@@ -32,7 +32,7 @@ struct CaptureSettings {
 /// A request to save one picture or a turntable.
 struct CaptureRequest {
     std::shared_ptr<const Scene> scene;
-    EffectWishes effects;
+    EffectRequest effects;
     FrameSettings settings;
     Camera camera;
     bool transparent = false;

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <array>
 
-#include "relief/mesh/heat_picture.h"
+#include "relief/mesh/false_color.h"
 #include "window/controls.h"
 #include "window/panels.h"
 
@@ -29,10 +29,10 @@ ComparisonResult numbers_of(const ComparisonKey& key, const Image& left, const I
         const Image apart = largest_differences(left, right);
         const auto values = apart.as<float>();
         const float largest = *std::max_element(values.begin(), values.end());
-        numbers.absolute =
-            std::make_shared<const Image>(heat_picture(apart, largest > 0.0F ? largest : 1.0F));
+        numbers.absolute = std::make_shared<const Image>(
+            false_color_image(apart, largest > 0.0F ? largest : 1.0F));
         numbers.flip =
-            std::make_shared<const Image>(heat_picture(numbers.comparison.flip.map, 1.0));
+            std::make_shared<const Image>(false_color_image(numbers.comparison.flip.map, 1.0));
     } catch (const std::exception& error) {
         numbers.error = error.what();
     }

@@ -25,7 +25,7 @@ FrameSettings AdaptiveResolution::settings_for(FrameSettings full, double now) c
 }
 
 FramePlan forced_plan(const Scene& scene, const FrameSettings& settings,
-                      const EffectWishes& effects) {
+                      const EffectRequest& effects) {
     return force_effects(scene, settings, plan_effects(scene, settings), effects);
 }
 
@@ -36,7 +36,7 @@ class DrawThread::Drawer {
         : context_(loader, name), cache_(context_), handover_(context_) {}
 
     [[nodiscard]] const std::string& renderer_name() const { return context_.renderer_name(); }
-    Handover& handover() { return handover_; }
+    PictureExchange& handover() { return handover_; }
 
     void relink() {
         cache_.drop_programs();
@@ -47,7 +47,7 @@ class DrawThread::Drawer {
 
     /// Draws a request, or throws and keeps the old picture. A scene that cannot be prepared is
     /// tried once; after that, the old scene still follows the camera.
-    void draw(const DrawRequest& request, DrawnPicture& drawn, const Progress& progress) {
+    void draw(const DrawRequest& request, RenderedPicture& drawn, const Progress& progress) {
         if (request.instead) {
             show(*request.instead, request, drawn);
             return;
@@ -66,7 +66,7 @@ class DrawThread::Drawer {
     /// Stores the files that were read, even after an error, because the user may repair a file.
     struct NotedFiles {
         const Progress& progress;
-        DrawnPicture& drawn;
+        RenderedPicture& drawn;
         ~NotedFiles() {
             drawn.files = std::make_shared<const std::map<std::filesystem::path, FileStamp>>(
                 progress.files());
@@ -81,7 +81,7 @@ class DrawThread::Drawer {
         return a.world_from_view == b.world_from_view && a.vertical_fov == b.vertical_fov;
     }
 
-    void show(const Image& picture, const DrawRequest& request, DrawnPicture& drawn) {
+    void show(const Image& picture, const DrawRequest& request, RenderedPicture& drawn) {
         handover_.put(picture);
         drawn.error.clear();
         drawn.beside = 0;
@@ -91,7 +91,7 @@ class DrawThread::Drawer {
         ++drawn.frames;
     }
 
-    void draw_prepared(const DrawRequest& request, DrawnPicture& drawn) {
+    void draw_prepared(const DrawRequest& request, RenderedPicture& drawn) {
         drawn.times = renderer_->draw_only(request.camera).times;
         const bool has_beside = request.beside && beside_;
         if (has_beside) drawn.times.draw += beside_->draw_only(request.beside->camera).times.draw;
@@ -103,7 +103,8 @@ class DrawThread::Drawer {
         ++drawn.frames;
     }
 
-    void try_to_prepare(const DrawRequest& request, DrawnPicture& drawn, const Progress& progress) {
+    void try_to_prepare(const DrawRequest& request, RenderedPicture& drawn,
+                        const Progress& progress) {
         const NotedFiles noted{progress, drawn};
         tried_revision_ = request.revision;
         tried_beside_ = revision_of(request.beside);
@@ -121,7 +122,7 @@ class DrawThread::Drawer {
         }
     }
 
-    void prepare(const DrawRequest& request, DrawnPicture& drawn) {
+    void prepare(const DrawRequest& request, RenderedPicture& drawn) {
         Report findings;
         renderer_ = prepared(*request.scene, request, findings);
         settings_ = request.settings;
@@ -147,7 +148,7 @@ class DrawThread::Drawer {
 
     Context context_;
     RenderCache cache_;
-    Handover handover_;
+    PictureExchange handover_;
     std::unique_ptr<Renderer> renderer_;
     std::unique_ptr<Renderer> beside_;
     FrameSettings settings_;  ///< Settings of the renderer.
@@ -200,12 +201,12 @@ void DrawThread::relink() {
     is_relinking_ = true;
 }
 
-DrawnPicture DrawThread::drawn() {
+RenderedPicture DrawThread::drawn() {
     const std::lock_guard lock(mutex_);
     return drawn_;
 }
 
-Handover::Shown DrawThread::shown() {
+PictureExchange::Shown DrawThread::shown() {
     return handover_->get();
 }
 
@@ -270,7 +271,7 @@ void DrawThread::run() {
             is_ready_ = true;
         }
         changed_.notify_all();
-        DrawnPicture picture;
+        RenderedPicture picture;
         while (const std::optional<DrawRequest> request = next(drawer)) {
             try {
                 const std::shared_ptr<Progress> progress = progress_of_now();

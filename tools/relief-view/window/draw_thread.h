@@ -22,7 +22,7 @@
 #include "relief/mesh/report.h"
 #include "relief/shade/effect_forcing.h"
 #include "relief/shade/frame_settings.h"
-#include "relief/shade/handover.h"
+#include "relief/shade/picture_exchange.h"
 #include "relief/shade/render_cache.h"
 #include "relief/shade/renderer.h"
 
@@ -67,7 +67,7 @@ struct BesideRequest {
 struct DrawRequest {
     std::shared_ptr<const Scene> scene;
     std::uint64_t revision = 0;  ///< Changes with everything except the camera.
-    EffectWishes effects;
+    EffectRequest effects;
     FrameSettings settings;
     Camera camera;
     std::optional<BesideRequest> beside = std::nullopt;
@@ -77,10 +77,10 @@ struct DrawRequest {
 
 /// The plan of a scene with forced effects.
 FramePlan forced_plan(const Scene& scene, const FrameSettings& settings,
-                      const EffectWishes& effects);
+                      const EffectRequest& effects);
 
 /// The last picture, or the reason why it could not be drawn.
-struct DrawnPicture {
+struct RenderedPicture {
     std::uint64_t revision = 0;
     std::uint64_t beside = 0;     ///< The revision of the second scene; 0 if there is none.
     bool is_difference = false;   ///< DrawRequest::instead was shown.
@@ -125,8 +125,8 @@ class DrawThread {
     /// step. Unfinished tasks are dropped at the end.
     void add(DrawTask task);
 
-    [[nodiscard]] DrawnPicture drawn();
-    [[nodiscard]] Handover::Shown shown();
+    [[nodiscard]] RenderedPicture drawn();
+    [[nodiscard]] PictureExchange::Shown shown();
     /// Whether a request is waiting or being drawn.
     [[nodiscard]] bool is_busy();
     /// Progress of preparing a renderer. Without a preparation, the stage is empty.
@@ -154,8 +154,8 @@ class DrawThread {
     /// Progress of the current work.
     std::shared_ptr<Progress> progress_ = std::make_shared<Progress>();
     std::exception_ptr failure_;
-    DrawnPicture drawn_;
-    Handover* handover_ = nullptr;
+    RenderedPicture drawn_;
+    PictureExchange* handover_ = nullptr;
     std::thread thread_;
 };
 

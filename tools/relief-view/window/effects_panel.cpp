@@ -71,7 +71,7 @@ class EffectTimes::MeasurementTask {
                                   .settings = request_.settings,
                                   .camera = request_.camera,
                                   .cache = &cache};
-        pricing_ = std::make_unique<EffectPricing>(frame, plan);
+        pricing_ = std::make_unique<EffectCostMeasurement>(frame, plan);
         const std::lock_guard lock(measurement_->mutex);
         measurement_->plan = std::move(plan);
         measurement_->state.count = pricing_->count();
@@ -79,7 +79,7 @@ class EffectTimes::MeasurementTask {
 
     DrawRequest request_;
     std::shared_ptr<Measurement> measurement_;
-    std::unique_ptr<EffectPricing> pricing_;
+    std::unique_ptr<EffectCostMeasurement> pricing_;
 };
 
 EffectTimes::State EffectTimes::state() const {
@@ -206,7 +206,7 @@ void ShaderPanel::draw(const std::shared_ptr<const FramePlan>& plan) {
 namespace {
 
 /// 0: automatic, 1: forced on, 2: forced off.
-int forced(const EffectWishes& requests, const std::string& name) {
+int forced(const EffectRequest& requests, const std::string& name) {
     for (const ForcedEffect& effect : requests.forced) {
         if (effect.name == name) return effect.on ? 1 : 2;
     }
@@ -218,7 +218,7 @@ void draw_switch(ViewerState& state, const std::string& name) {
     ImGui::PushID(name.c_str());
     ImGui::SetNextItemWidth(4.5F * ImGui::GetFontSize());
     if (ImGui::Combo("##forced", &choice, "auto\0on\0off\0")) {
-        EffectWishes requests = state.effects();
+        EffectRequest requests = state.effects();
         std::erase_if(requests.forced,
                       [&](const ForcedEffect& effect) { return effect.name == name; });
         if (choice != 0) requests.forced.push_back({name, choice == 1});
@@ -268,7 +268,7 @@ void draw_effect_times(const PanelInput& input, PanelRequests& requests) {
         return ImGui::TextWrapped(
             "The time of an effect is the difference between a frame with it and a frame without "
             "it.");
-    const Spread& frame = effect_times.costs.frame;
+    const TimeStatistics& frame = effect_times.costs.frame;
     ImGui::TextWrapped("Frame: %.2f ms (%.2f to %.2f), %d x %d pixels, %s", frame.median, frame.p10,
                        frame.p90, effect_times.width, effect_times.height,
                        counted(static_cast<std::size_t>(effect_times.samples), "sample").c_str());

@@ -134,7 +134,7 @@ void WatchedFiles::follow(const Loaded& loaded) {
     watch_.watch(Purpose::attempt, loaded.composed ? FileWatch::Files{} : loaded.files);
 }
 
-void WatchedFiles::follow(const DrawnPicture& drawn) {
+void WatchedFiles::follow(const RenderedPicture& drawn) {
     if (drawn.files == followed_) return;
     followed_ = drawn.files;
     // After an error, the list of files is incomplete.

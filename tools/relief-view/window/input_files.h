@@ -91,7 +91,7 @@ class WatchedFiles {
     void follow(const Loaded& loaded);
 
     /// Watches the images and shaders of a picture.
-    void follow(const DrawnPicture& drawn);
+    void follow(const RenderedPicture& drawn);
 
     Changed take();
 

@@ -201,7 +201,7 @@ void aim_at(OrbitCamera& orbit, const glm::vec3& point) {
 
 namespace {
 
-std::vector<std::string> words_of(const std::string& text) {
+std::vector<std::string> to_string(const std::string& text) {
     std::istringstream stream(text);
     std::vector<std::string> words;
     for (std::string word; stream >> word;)
@@ -222,7 +222,7 @@ std::optional<std::string> value_of(const std::vector<std::string>& words,
 }  // namespace
 
 ViewText parse_view_text(const std::string& text) {
-    const std::vector<std::string> words = words_of(text);
+    const std::vector<std::string> words = to_string(text);
     std::optional<std::string> camera = value_of(words, "--camera");
     if (!camera && words.size() == 1) camera = words.front();
     if (!camera) throw UsageError("the pasted text contains no camera", "copy one with Ctrl+C");

@@ -223,7 +223,7 @@ void draw_view_panel(const PanelInput& input) {
     ImGui::TextWrapped("%s", debug_view_info(choices.view).what.data());
     changed |= ImGui::Checkbox("Wireframe", &choices.wireframe);
     changed |= ImGui::Checkbox("Vertex frames", &choices.vertex_frames);
-    float length = choices.frame_length.value_or(usual_frame_length);
+    float length = choices.frame_length.value_or(default_frame_length);
     if (choices.vertex_frames &&
         ImGui::SliderFloat("Length", &length, 1e-3F, 0.2F, "%.3f", ImGuiSliderFlags_Logarithmic)) {
         choices.frame_length = length;
@@ -233,7 +233,7 @@ void draw_view_panel(const PanelInput& input) {
     if (ImGui::Combo("Health", &marks, "No markers\0Problems\0Problems and notes\0")) {
         choices.health_markers.reset();
         if (marks > 0)
-            choices.health_markers = marks == 2 ? HealthChoice::all : HealthChoice::trouble;
+            choices.health_markers = marks == 2 ? HealthChoice::all : HealthChoice::problem;
         changed = true;
     }
     if (choices.health_markers) draw_legend(input.state.markers());

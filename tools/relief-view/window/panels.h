@@ -22,7 +22,7 @@ class SceneAccuracy;
 struct PanelInput {
     ViewerState& state;
     WindowLayout& layout;
-    const DrawnPicture& drawn;
+    const RenderedPicture& drawn;
     const std::string& renderer;
     double loading_seconds = 0.0;  ///< 0 if nothing is being read.
     std::string loading;           ///< The name of the file that is being read.

@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "material_options.h"
-#include "relief/accuracy/words.h"
+#include "relief/accuracy/duration.h"
 #include "relief/mesh/height_map.h"
 #include "relief/mesh/image_file.h"
 #include "window/controls.h"
@@ -60,7 +60,7 @@ double seconds_of(const Measurement& one) {
                                 : std::numeric_limits<double>::infinity();
 }
 
-AccuracyTopic topic_of(OwnExperiment own) {
+AccuracyTopic topic_of(AssetExperiment own) {
     AccuracyTopic topic;
     const std::vector<Measurement>& all = own.experiment.measurements;
     for (std::size_t i = 0; i < all.size(); ++i) {
@@ -75,13 +75,13 @@ AccuracyTopic topic_of(OwnExperiment own) {
 }
 
 AccuracyResult measured(const Scene& scene, const ViewOptions& view) {
-    OwnOptions options;
+    AssetOptions options;
     options.run.is_quick = true;
     options.run.repeats = window_repeats;
     options.costs = {.one_thread = false, .all_threads = true, .memory = false};
     options.file = view.model.filename().string();
     AccuracyResult found;
-    for (OwnExperiment& own : measure_own_mesh(largest_mesh(scene), {}, options)) {
+    for (AssetExperiment& own : measure_asset_mesh(largest_mesh(scene), {}, options)) {
         if (own.experiment.subject == Subject::storage) continue;
         found.topics.push_back(topic_of(std::move(own)));
     }
@@ -93,7 +93,7 @@ AccuracyResult measured(const Scene& scene, const ViewOptions& view) {
     options.file = view.height_map->filename().string();
     const Image height = height_field(read_image(*view.height_map, ImageUse::data));
     found.kernel = displayed_kernel(view);
-    found.topics.push_back(topic_of(measure_own_heights(height, bump, options)));
+    found.topics.push_back(topic_of(measure_asset_heights(height, bump, options)));
     return found;
 }
 
@@ -182,7 +182,7 @@ nlohmann::ordered_json SceneAccuracy::json(const ViewOptions& options) const {
             rows.push_back({{"method", one.method},
                             {"rms", one.error.rms},
                             {"seconds", seconds_of(one)},
-                            {"efficient", one.is_efficient},
+                            {"efficient", one.is_pareto_optimal},
                             {"use", use ? to_text(*use) : ""},
                             {"used", use && is_used(*use, options)}});
         }
@@ -195,7 +195,7 @@ namespace {
 
 std::string time_text(const Measurement& one) {
     if (!one.cost.all_threads) return "-";
-    return seconds_in_words(one.cost.all_threads->spread().median);
+    return format_seconds(one.cost.all_threads->spread().median);
 }
 
 /// The method without the bit depth, which is the same for all rows. "*" marks Pareto-optimal
@@ -205,7 +205,7 @@ std::string name_of(const Measurement& one) {
     const std::string depth = ", 16 bit";
     if (const std::size_t place = name.find(depth); place != std::string::npos)
         name.erase(place, depth.size());
-    return (one.is_efficient ? "* " : "  ") + name;
+    return (one.is_pareto_optimal ? "* " : "  ") + name;
 }
 
 void draw_method(const PanelInput& input, const AccuracyTopic& topic, std::size_t row,
@@ -240,7 +240,7 @@ void draw_topic(const PanelInput& input, const AccuracyTopic& topic, PanelReques
         ImGui::BeginTooltip();
         ImGui::PushTextWrapPos(30.0F * ImGui::GetFontSize());
         ImGui::TextUnformatted((experiment.question + "\n" + experiment.input +
-                                "\n\nGround truth: " + experiment.truth + "\n\n" +
+                                "\n\nGround truth: " + experiment.reference + "\n\n" +
                                 topic.own.recommendation.words)
                                    .c_str());
         ImGui::PopTextWrapPos();

@@ -15,7 +15,7 @@
 #include <string>
 #include <vector>
 
-#include "relief/accuracy/own.h"
+#include "relief/accuracy/asset.h"
 #include "variant.h"
 #include "window/background_jobs.h"
 #include "window/viewer_state.h"
@@ -24,7 +24,7 @@ namespace relief::tools {
 
 /// An experiment with its rows in the panel.
 struct AccuracyTopic {
-    OwnExperiment own;
+    AssetExperiment own;
     std::vector<std::size_t> rows;  ///< Indices of all measurements, the fastest first.
     /// For each measurement, the variant that applies it, if there is one.
     std::vector<std::optional<Variant>> uses;

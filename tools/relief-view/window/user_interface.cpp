@@ -50,11 +50,11 @@ void draw_label(const std::string& text, const glm::vec2& place, float align) {
     list.AddText(vec(min), label_color, text.c_str());
 }
 
-void draw_picture(const Handover::Shown& picture, const ViewPlace& place) {
+void draw_picture(const PictureExchange::Shown& picture, const ViewPlace& place) {
     draw_part(picture.texture, place, 0.0F, 1.0F);
 }
 
-float draw_sides(const Handover::Shown& picture, const ViewPlace& place,
+float draw_sides(const PictureExchange::Shown& picture, const ViewPlace& place,
                  const Comparison& comparison) {
     const float width = place.max.x - place.min.x;
     // The line is on a whole pixel, so that both textures are sampled at texel centers.
@@ -72,7 +72,7 @@ float draw_sides(const Handover::Shown& picture, const ViewPlace& place,
     return x;
 }
 
-void draw_difference(const Handover::Shown& picture, const ViewPlace& place,
+void draw_difference(const PictureExchange::Shown& picture, const ViewPlace& place,
                      const Comparison& comparison) {
     draw_picture(picture, place);
     const std::string kind = comparison.shown() == ComparisonView::flip
@@ -302,7 +302,7 @@ void UserInterface::apply(const Move& move, ViewerState& state) const {
 }
 
 /// Draws one picture, two pictures, or their difference.
-void UserInterface::draw_view(const PanelInput& input, const Handover::Shown& picture,
+void UserInterface::draw_view(const PanelInput& input, const PictureExchange::Shown& picture,
                               const ViewPlace& place) {
     line_.reset();
     if (picture.texture == 0) return;
@@ -317,7 +317,8 @@ void UserInterface::draw_view(const PanelInput& input, const Handover::Shown& pi
     }
 }
 
-UserInterface::Events UserInterface::draw(const PanelInput& input, const Handover::Shown& picture) {
+UserInterface::Events UserInterface::draw(const PanelInput& input,
+                                          const PictureExchange::Shown& picture) {
     ImGui_ImplOpenGL3_NewFrame();
     apply_scale();
     ImGui_ImplGlfw_NewFrame();

@@ -200,7 +200,7 @@ void ViewerState::apply_view_text(const std::string& text) {
     }
 }
 
-void ViewerState::set_effects(EffectWishes effects) {
+void ViewerState::set_effects(EffectRequest effects) {
     effects_ = std::move(effects);
     ++revision_;
 }
@@ -243,7 +243,7 @@ void ViewerState::act_on_debug(Action action) {
     if (action == Action::health_markers) {
         const bool were_on = choices.health_markers.has_value();
         choices.health_markers.reset();
-        if (!were_on) choices.health_markers = HealthChoice::trouble;
+        if (!were_on) choices.health_markers = HealthChoice::problem;
     }
     set_debug(choices);
 }
@@ -338,7 +338,7 @@ std::string ViewerState::command_line() const {
            command_line_of(options_.debug);
 }
 
-nlohmann::ordered_json ViewerState::json(const DrawnPicture& drawn) const {
+nlohmann::ordered_json ViewerState::json(const RenderedPicture& drawn) const {
     const auto numbers = [](const glm::vec3& v) { return nlohmann::json{v.x, v.y, v.z}; };
     nlohmann::ordered_json state = {{"model", options_.model.string()},
                                     {"error", !error().empty() ? error() : drawn.error},

@@ -43,7 +43,7 @@ SceneTree tree_of(const SceneGraph& graph);
 std::vector<std::size_t> instances_below(const SceneTree& tree, const TreeNode& node);
 
 struct DrawRequest;
-struct DrawnPicture;
+struct RenderedPicture;
 
 /// The scene, the camera and the options that the window shows.
 class ViewerState {
@@ -119,8 +119,8 @@ class ViewerState {
     /// Applies the camera of a command line. If the text contains none, error() reports it.
     void apply_view_text(const std::string& text);
 
-    void set_effects(EffectWishes effects);
-    [[nodiscard]] const EffectWishes& effects() const { return effects_; }
+    void set_effects(EffectRequest effects);
+    [[nodiscard]] const EffectRequest& effects() const { return effects_; }
 
     /// Sets the debug view and the overlays.
     void set_debug(const DebugChoices& choices);
@@ -150,7 +150,7 @@ class ViewerState {
     /// Options that draw the same picture without a window: "--camera ... --fov ... --size ...".
     [[nodiscard]] std::string command_line() const;
 
-    [[nodiscard]] nlohmann::ordered_json json(const DrawnPicture& drawn) const;
+    [[nodiscard]] nlohmann::ordered_json json(const RenderedPicture& drawn) const;
 
   private:
     void replace(std::shared_ptr<const Scene> scene);
@@ -172,7 +172,7 @@ class ViewerState {
     std::uint64_t revision_ = 0;
     HealthMarkers markers_;  ///< The result of the search for mesh problems.
     bool has_health_request_ = false;
-    EffectWishes effects_;
+    EffectRequest effects_;
     OrbitCamera camera_;
     BoundingSphere sphere_;
     glm::ivec2 view_{0};

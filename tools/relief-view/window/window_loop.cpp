@@ -140,7 +140,7 @@ class WindowLoop {
     void draw() {
         // This must come first: if the thread is idle now, drawn() is the newest picture.
         const bool was_busy = drawer_.is_busy();
-        const DrawnPicture drawn = drawer_.drawn();
+        const RenderedPicture drawn = drawer_.drawn();
         files_.follow(drawn);
         if (drawn.frames > 0 && !is_reduced(drawn.settings))
             resolution_.set_full_time(drawn.times.draw);
@@ -272,7 +272,7 @@ class WindowLoop {
     }
 
     /// Starts and stops the measurement of effect times, and discards outdated ones.
-    void measure(const DrawnPicture& drawn, const PanelRequests& requests) {
+    void measure(const RenderedPicture& drawn, const PanelRequests& requests) {
         const std::optional<DrawRequest> request = state_.request();
         if (!request || requests.stop_measuring) return effect_times_.cancel();
         if (requests.measure_effects) drawer_.add(effect_times_.start(*request));
@@ -330,7 +330,7 @@ class WindowLoop {
     }
 
     /// Writes the state for tests and scripts (--dump-state).
-    void write_state(const DrawnPicture& drawn, bool is_busy) {
+    void write_state(const RenderedPicture& drawn, bool is_busy) {
         if (!state_file_) return;
         nlohmann::ordered_json state = state_.json(drawn);
         state["loading"] = loader_.is_loading();

@@ -21,7 +21,7 @@
 
 namespace relief {
 
-class EarlierPasses;  // passes.h
+class PassHistory;  // passes.h
 
 /// The subjects of experiments, with the names of `relief-accuracy run`.
 enum class Subject { normals, tangents, bump, storage, bake, shading, stability };
@@ -54,7 +54,7 @@ double curve_error(const AngleDistribution& angles);
 struct Timing {
     std::vector<double> rounds{};
 
-    [[nodiscard]] Spread spread() const { return spread_of(rounds); }
+    [[nodiscard]] TimeStatistics spread() const { return time_statistics(rounds); }
     friend bool operator==(const Timing&, const Timing&) = default;
 };
 
@@ -79,8 +79,9 @@ struct Measurement {
     Cost cost{};
     /// Both parts of the error, if the reference has an error (Experiment::reference_error).
     std::optional<ExpectedError> expected{};
-    bool is_efficient = false;  ///< Pareto-optimal by RMS error and time (mark_efficient()).
-    std::string note{};         ///< A note for readers; mostly empty.
+    bool is_pareto_optimal =
+        false;           ///< Pareto-optimal by RMS error and time (mark_pareto_optimal()).
+    std::string note{};  ///< A note for readers; mostly empty.
 };
 
 /// The error as a function of a parameter: cells of a mesh, texels of a wave, the scale of a mesh.
@@ -126,8 +127,8 @@ struct Experiment {
     std::string id{};  ///< The same in every run: "normals/torus-jittered".
     Subject subject = Subject::normals;
     std::string title{};
-    std::string question{};  ///< One sentence that ends with a question mark.
-    std::string truth{};     ///< The ground truth, and how it is known.
+    std::string question{};      ///< One sentence that ends with a question mark.
+    std::string ground_truth{};  ///< The ground truth, and how it is known.
     /// The expected RMS error of this ground truth; absent if there is none or it is unknown.
     std::optional<double> reference_error{};
     std::string input{};       ///< "torus, jittered, 64 x 64 cells: 8192 triangles"
@@ -158,7 +159,7 @@ struct RunOptions {
     /// The number of threads for "all threads"; 0: the number of hardware threads.
     unsigned threads = 0;
     /// The rounds of earlier passes, filled in by run_in_passes(); null if there is one pass.
-    std::shared_ptr<EarlierPasses> earlier{};
+    std::shared_ptr<PassHistory> earlier{};
     /// Called before each experiment with its title, the number of finished experiments and the
     /// total. May throw Cancelled.
     std::function<void(const std::string& title, std::size_t done, std::size_t total)> tell{};
@@ -167,7 +168,7 @@ struct RunOptions {
 /// Marks the measurements that are Pareto-optimal by RMS error and time on one thread, or on all
 /// threads if only that was measured. Without times none is marked. Measurements with undefined
 /// results are never marked.
-void mark_efficient(Experiment& experiment);
+void mark_pareto_optimal(Experiment& experiment);
 
 /// Computes the slope of log(error) over log(x) by least squares, from the points whose coordinates
 /// are positive and finite.

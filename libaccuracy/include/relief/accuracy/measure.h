@@ -18,7 +18,7 @@ namespace relief {
 /// \param seconds_of_round  runs one round of thing `thing` and returns its time
 /// \return the times of each thing, including those of earlier passes. Cancellation is checked
 ///         before each round
-std::vector<Timing> rounds_in_turns(
+std::vector<Timing> measure_interleaved_rounds(
     std::size_t things, const RunOptions& options,
     const std::function<double(std::size_t thing)>& seconds_of_round);
 

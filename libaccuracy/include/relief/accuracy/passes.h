@@ -23,10 +23,10 @@ namespace relief {
 /// The rounds of earlier passes, by experiment. A group is a set of methods that are timed
 /// together. An experiment has the same groups in the same order in every pass; the order and the
 /// number of experiments do not matter.
-class EarlierPasses {
+class PassHistory {
   public:
     /// \param passes  at least 1
-    explicit EarlierPasses(std::size_t passes) : passes_(passes) {}
+    explicit PassHistory(std::size_t passes) : passes_(passes) {}
 
     /// Starts the next pass, outside of all experiments.
     void begin_pass();
@@ -65,7 +65,7 @@ class EarlierPasses {
 /// Returns the result of `make`, which is called only in the first pass: for ground truths and
 /// curves that are slow to compute and equal in every pass.
 template <typename Make>
-auto made_once(const RunOptions& options, const Make& make) {
+auto computed_once(const RunOptions& options, const Make& make) {
     using Result = decltype(make());
     if (!options.earlier) return make();
     return std::any_cast<Result>(options.earlier->next_result([&] { return std::any(make()); }));

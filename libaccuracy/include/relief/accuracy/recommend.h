@@ -18,7 +18,7 @@ namespace relief {
 enum class CostKind { time, bytes };
 
 /// The limits of a request. Without limits, the knee is recommended, see recommended().
-struct Wish {
+struct MethodRequest {
     /// In the unit of the experiment, for the statistic `figure`.
     std::optional<double> max_error;
     std::optional<double> max_seconds;  ///< Maximum time in seconds; ignored for CostKind::bytes.
@@ -26,15 +26,15 @@ struct Wish {
 };
 
 struct RecommendationRule {
-    Wish wish;
+    MethodRequest request;
     CostKind cost = CostKind::time;
     /// An invisible error. The search for the knee adds its square to that of each error.
-    double unseen_error = 0.0;
+    double negligible_error = 0.0;
     /// For each measurement, whether it may be recommended; empty: all.
     std::span<const unsigned char> choosable;
     /// For each measurement, a cost that does not depend on measured time (such as operations per
     /// texel). It decides between methods of equal size if nothing was timed. Empty: unknown.
-    std::span<const double> natural_costs;
+    std::span<const double> nominal_costs;
     /// The name of the source of Experiment::reference_error, such as "the map itself".
     std::string reference = "the reference itself";
 };

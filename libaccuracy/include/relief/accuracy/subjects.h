@@ -16,10 +16,10 @@ std::vector<Subject> subjects_with_experiments();
 
 /// Returns true if some of its experiments draw with OpenGL, so that their errors depend on the
 /// renderer.
-bool is_drawn(Subject subject);
+bool uses_opengl(Subject subject);
 
 /// Returns the name: "normals", "tangents", ...
-std::string_view word_of(Subject subject);
+std::string_view name_of(Subject subject);
 
 /// Returns the subject of this name. \throws InvalidInput listing the valid names
 Subject subject_from(std::string_view word);

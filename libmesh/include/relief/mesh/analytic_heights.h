@@ -34,7 +34,7 @@ struct AnalyticHeights {
 AnalyticHeights wave_heights(int width, int height, std::span<const HeightWave> waves);
 
 /// A height in texels and its derivatives to the right and downwards.
-struct HeightAt {
+struct HeightSample {
     double height = 0.0;
     glm::dvec2 slope{};
 };
@@ -44,10 +44,10 @@ struct HeightAt {
 /// \param field  is called from several threads
 /// \throws InvalidInput if a size is not positive
 AnalyticHeights sampled_heights(int width, int height,
-                                const std::function<HeightAt(const glm::dvec2& place)>& field);
+                                const std::function<HeightSample(const glm::dvec2& place)>& field);
 
 /// Evaluates a sum of waves at a position in texels.
-HeightAt waves_at(std::span<const HeightWave> waves, const glm::dvec2& place);
+HeightSample evaluate_waves(std::span<const HeightWave> waves, const glm::dvec2& place);
 
 /// Creates waves whose sum tiles: a whole number of periods of each wave fits into width and
 /// height.
@@ -77,6 +77,6 @@ CodedHeights coded_heights(const Image& heights, int bits);
 /// \param normals  three float channels, of the same size
 /// \param margin  width of the border that is ignored, in texels
 /// \throws InvalidInput if the sizes differ
-DirectionError normal_error(const Image& normals, const AnalyticHeights& truth, int margin = 0);
+DirectionError normal_error(const Image& normals, const AnalyticHeights& reference, int margin = 0);
 
 }  // namespace relief

@@ -95,6 +95,6 @@ TexturedMesh textured_mesh(AnalyticSurface surface, Triangulation triangulation,
 /// \param width  of the bevels, above 0
 /// \return a mesh in which the vertices of the square are the inner ones, the parameters are x and
 ///         y, and the exact frames are those of the square
-TexturedMesh bevelled_plate(double width);
+TexturedMesh beveled_plate(double width);
 
 }  // namespace relief

@@ -19,7 +19,7 @@
 
 #include "relief/mesh/bake_layers.h"
 #include "relief/mesh/error.h"
-#include "relief/mesh/high_detail.h"
+#include "relief/mesh/high_materials.h"
 #include "relief/mesh/mesh.h"
 #include "relief/mesh/normal_space.h"
 #include "relief/mesh/report.h"
@@ -62,7 +62,7 @@ struct BakeProgress {
 struct BakeMapOptions {
     int width = 0;  ///< In texels.
     int height = 0;
-    MapPlacement placement{};
+    MapRegion placement{};
     /// The triangles of the low mesh that the map shows, ascending: those of a material or a tile.
     /// If absent, all. The span must outlive the call.
     std::optional<std::span<const std::uint32_t>> triangles{};
@@ -120,7 +120,7 @@ struct BakeOptions : BakeMapOptions {
     /// Results are normalized.
     glm::dmat3 output_from_mesh{1.0};
     /// The materials of high meshes, for those that have them. The span must outlive the bake.
-    std::span<const HighDetail> details;
+    std::span<const HighMaterials> details;
 };
 
 /// The origin of a texel's value.
@@ -177,8 +177,8 @@ struct BakeResult {
     BakeDistances distances;         ///< Baker::distances().
     /// Minimum and maximum height of the high surface above the low mesh, over all samples that
     /// hit; 0 if none did.
-    double least_height = 0.0;
-    double greatest_height = 0.0;
+    double min_height = 0.0;
+    double max_height = 0.0;
     std::vector<MissedTexel> first_missed;  ///< In order of row and column, at most 8.
     /// With BakeMapOptions::measures_missed: results for the line through the first sample of each
     /// missed texel. Each texel is counted at most once; the triangle nearest to it decides.
@@ -198,7 +198,7 @@ struct BakeFit {
     /// True if the up axes seem to differ (Y up and Z up): after a rotation of the high meshes by
     /// 90 degrees about x, the faces of the boxes agree within 3% of the low box's diagonal;
     /// without the rotation, they differ by more than 10%.
-    bool fits_turned = false;
+    bool fits_rotated = false;
 
     /// Returns true if the diagonals differ by more than a factor of max_size_ratio.
     [[nodiscard]] bool differs_in_size() const;

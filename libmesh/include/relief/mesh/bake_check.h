@@ -26,7 +26,7 @@ enum class BakeStage {
     /// ray of the center hits nothing; or the shown normal faces away from the low mesh.
     projection,
     sampling,      ///< The map has fewer samples than the reference.
-    quantisation,  ///< Normals are rounded to codes; angles are measured in tangent space.
+    quantization,  ///< Normals are rounded to codes; angles are measured in tangent space.
     /// The effect of rounding in object space, where the low mesh's tangent frame is not
     /// orthonormal.
     basis,
@@ -49,7 +49,7 @@ struct WorstTexel {
     int x = 0;
     int y = 0;
     double degrees = 0.0;
-    bool is_torn = false;  ///< The texel belongs to BakeStage::projection.
+    bool is_discontinuous = false;  ///< The texel belongs to BakeStage::projection.
 };
 
 struct BakeCheckOptions {
@@ -57,8 +57,8 @@ struct BakeCheckOptions {
     NormalMapFormat format;  ///< The meaning of the codes; the number of bits is that of the image.
     /// Samples per texel of the reference: 4, 16, 64, 256 or 1024. 0 means 16 times those of the
     /// map, at most 256, or 1024 for a map of 256; fewer for large maps that would exceed
-    /// TexelCover::largest_side. First a quarter of them is cast, and the others only if two of
-    /// those normals differ by more than half a degree.
+    /// TexelRasterizer::largest_side. First a quarter of them is cast, and the others only if two
+    /// of those normals differ by more than half a degree.
     int reference_samples = 0;
     /// Searches for another convention if the error of the map is large.
     bool finds_convention = true;
@@ -80,11 +80,11 @@ struct BakeCheck {
     /// by design.
     AngleSummary centre;
     /// The value of `error` for the codes that this bake produces now.
-    AngleSummary remade;
+    AngleSummary rebaked;
     std::array<StageError, bake_stage_count> stages{};  ///< Indexed by BakeStage.
-    std::size_t missed = 0;     ///< Texels on the mesh without a reference: all rays miss.
-    std::size_t frameless = 0;  ///< Texels where the low mesh has no tangent frame.
-    std::size_t torn = 0;       ///< Texels of BakeStage::projection.
+    std::size_t missed = 0;         ///< Texels on the mesh without a reference: all rays miss.
+    std::size_t frameless = 0;      ///< Texels where the low mesh has no tangent frame.
+    std::size_t discontinuous = 0;  ///< Texels of BakeStage::projection.
     std::size_t rays = 0;
     int reference_samples = 0;
     std::vector<WorstTexel> worst;  ///< At most 8, largest error first.

@@ -36,17 +36,17 @@ struct BakeLayers {
     bool curvature = false;
     /// Positions, transformed by `position_from_mesh`.
     bool positions = false;
-    /// Linear RGB: vertex colors times the material's color and texture (high_detail.h).
+    /// Linear RGB: vertex colors times the material's color and texture (high_materials.h).
     bool colors = false;
     glm::dmat4 position_from_mesh{1.0};  ///< For `positions`.
 };
 
 /// Upper bounds of the absolute values of layers, for integer storage.
 struct LayerBounds {
-    double height = 0.0;           ///< The length of the rays.
-    double curvature = 0.0;        ///< Over all vertices of the high meshes.
-    double usual_curvature = 0.0;  ///< Over 99% of their area.
-    double position = 0.0;         ///< Over all coordinates, transformed by `position_from_mesh`.
+    double height = 0.0;         ///< The length of the rays.
+    double curvature = 0.0;      ///< Over all vertices of the high meshes.
+    double curvature_p99 = 0.0;  ///< Over 99% of their area.
+    double position = 0.0;       ///< Over all coordinates, transformed by `position_from_mesh`.
 };
 
 }  // namespace relief

@@ -17,17 +17,17 @@
 namespace relief {
 
 /// The number of samples per texel.
-struct BakeWay {
+struct BakeSampling {
     int samples = 1;
     /// Adaptive sampling: BakeMapOptions::sample_angle in degrees.
     std::optional<double> sample_degrees{};
 };
 
 /// The errors and times of one bake in several formats.
-struct BakeTrial {
+struct BakeMeasurement {
     std::vector<AngleSummary> errors;  ///< By format, against the mean normal over the texel.
     /// By format, the error of rounding to codes alone, which more samples do not reduce.
-    std::vector<AngleSummary> quantisation;
+    std::vector<AngleSummary> quantization;
     AngleSummary sampling;             ///< The error of sampling alone, which no format reduces.
     std::vector<AngleSummary> centre;  ///< By format, against the normal at the texel's center.
     std::size_t rays = 0;
@@ -38,7 +38,7 @@ struct BakeTrial {
 /// The reference for a map or some of its bands, with which any number of bakes can be compared.
 ///
 /// Memory: 17 bytes per measured texel, and four times that during a measurement.
-class BakeTrials {
+class BakeBenchmark {
   public:
     /// Computes the reference.
     ///
@@ -47,19 +47,19 @@ class BakeTrials {
     /// \param reference_samples  per texel of the reference; 0: 256, or the maximum for the size of
     ///         the map. Bakes of 256 samples need a reference of 1024; otherwise they are compared
     ///         with themselves
-    BakeTrials(const Baker& baker, const BakeMapOptions& map, std::size_t texels,
-               int reference_samples = 0);
-    ~BakeTrials();
-    BakeTrials(const BakeTrials&) = delete;
-    BakeTrials& operator=(const BakeTrials&) = delete;
+    BakeBenchmark(const Baker& baker, const BakeMapOptions& map, std::size_t texels,
+                  int reference_samples = 0);
+    ~BakeBenchmark();
+    BakeBenchmark(const BakeBenchmark&) = delete;
+    BakeBenchmark& operator=(const BakeBenchmark&) = delete;
 
     /// Bakes and encodes in memory, and compares the result as check_bake() does.
-    [[nodiscard]] BakeTrial measure(const BakeWay& way,
-                                    std::span<const NormalMapFormat> formats) const;
+    [[nodiscard]] BakeMeasurement measure(const BakeSampling& way,
+                                          std::span<const NormalMapFormat> formats) const;
 
-    /// Computes BakeTrial::errors for each texel: one float channel in degrees, NaN without a
+    /// Computes BakeMeasurement::errors for each texel: one float channel in degrees, NaN without a
     /// reference. If only bands were measured, they are stacked.
-    [[nodiscard]] Image error_map(const BakeWay& way, const NormalMapFormat& format) const;
+    [[nodiscard]] Image error_map(const BakeSampling& way, const NormalMapFormat& format) const;
 
     [[nodiscard]] std::size_t texels() const;  ///< Number of measured texels, covered or not.
     [[nodiscard]] bool is_whole() const;
@@ -73,21 +73,21 @@ class BakeTrials {
 
 /// Returns 1, 4, 16 and 64 samples, and 16 adaptive samples with thresholds of 8, 2 and 0.5
 /// degrees.
-std::span<const BakeWay> usual_bake_ways();
+std::span<const BakeSampling> default_bake_samplings();
 
 /// Returns variants of `format`: 8 bits, 8 bits with blue-noise dithering, 16 bits, and float.
-std::vector<NormalMapFormat> usual_map_formats(const NormalMapFormat& format);
+std::vector<NormalMapFormat> default_map_formats(const NormalMapFormat& format);
 
-struct TimedBakeTrial {
-    BakeTrial trial;
+struct TimedBakeMeasurement {
+    BakeMeasurement trial;
     /// By format and round: the time of the bake and its encoding.
     std::vector<std::vector<double>> seconds;
 };
 
 /// Measures all ways, interleaved. \throws Cancelled between bakes if cancellation was requested
-std::vector<TimedBakeTrial> measured_in_turns(const BakeTrials& trials,
-                                              std::span<const BakeWay> ways,
-                                              std::span<const NormalMapFormat> formats,
-                                              const Repeats& repeats);
+std::vector<TimedBakeMeasurement> measure_interleaved(const BakeBenchmark& trials,
+                                                      std::span<const BakeSampling> ways,
+                                                      std::span<const NormalMapFormat> formats,
+                                                      const Repeats& repeats);
 
 }  // namespace relief

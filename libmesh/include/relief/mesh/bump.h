@@ -36,7 +36,7 @@ struct Wraps {
 };
 
 /// Options for the conversion of heights to slopes. Absent options are derived from the map: see
-/// settled_options().
+/// resolve_options().
 struct BumpOptions {
     std::optional<Kernel> kernel{};
     std::optional<Wraps> wrap{};
@@ -58,7 +58,7 @@ struct BumpOptions {
 /// \return absent kernels (with radius) by choose_kernel() (kernel_choice.h), absent wraps by
 ///         detect_tiling() (height_statistics.h); the other options unchanged
 /// \throws InvalidInput as normals_from_height() does
-BumpOptions settled_options(const Image& height, BumpOptions options);
+BumpOptions resolve_options(const Image& height, BumpOptions options);
 
 /// Computes the unit normals of a height field in tangent space: x points right, y up in the image,
 /// z out of it.

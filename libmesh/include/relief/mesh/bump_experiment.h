@@ -33,7 +33,7 @@ struct BumpMethod {
 
 /// A cost that does not depend on measured time. It is ordered by the bits of the result, then by
 /// de-staircasing, then by the number of operations per texel, which counts twice in float64.
-double cost_of(const BumpMethod& method);
+double nominal_cost(const BumpMethod& method);
 
 /// The measured error and time of a method.
 struct BumpMeasurement {
@@ -42,10 +42,10 @@ struct BumpMeasurement {
     AngleDistribution error;
     /// The time of a conversion in memory, including smoothing (BumpExperiment::smoothing); zeros
     /// if it was not timed.
-    Spread seconds;
+    TimeStatistics seconds;
     double megapixels_per_second = 0.0;
     /// No other method has both a smaller RMS error and a shorter time.
-    bool is_efficient = false;
+    bool is_pareto_optimal = false;
 };
 
 /// The reference of the errors.
@@ -55,9 +55,9 @@ struct BumpReference {
     std::optional<BumpMethod> method;
     /// The expected RMS error of the reference against the surface from which the map was made, in
     /// degrees. Measured errors do not include it. 0 if the exact normals are known.
-    double own_degrees = 0.0;
+    double reference_degrees = 0.0;
     /// The expected maximum of that error.
-    double own_max_degrees = 0.0;
+    double reference_max_degrees = 0.0;
     /// The upper ends of both, if the map does not show whether detail is real (KernelChoice::
     /// upper_rms_degrees). Not less than the values above.
     double upper_degrees = 0.0;
@@ -70,7 +70,7 @@ struct BumpExperiment {
     std::vector<BumpMeasurement> measurements;  ///< In the order of the methods.
     /// The time of destaircase() in seconds. It runs once per round and is added to all methods
     /// that need it. Zeros if no method needs it or nothing was timed.
-    Spread smoothing;
+    TimeStatistics smoothing;
     KernelChoice choice;      ///< For the map without smoothing.
     std::int64_t texels = 0;  ///< Number of measured texels.
     bool is_whole = true;     ///< False if only parts of a large map were measured.
@@ -85,20 +85,20 @@ struct BumpExperimentOptions {
 
 /// The samples of a map, which may be too large for memory.
 struct BumpSample {
-    std::vector<Image> looked_at;  ///< The parts of parts_to_look_at(), for the choice of a kernel.
-    std::vector<Image> measured;   ///< The parts of parts_to_measure().
-    bool is_whole = true;          ///< The only measured part is the whole map.
+    std::vector<Image> analyzed;  ///< The parts of parts_to_analyze(), for the choice of a kernel.
+    std::vector<Image> measured;  ///< The parts of parts_to_measure().
+    bool is_whole = true;         ///< The only measured part is the whole map.
 };
 
 /// Selects the parts of a map on which methods are measured: the whole map, or, if it has more
 /// texels than the limit, nine parts with that many texels together, from top to bottom.
 inline constexpr std::int64_t texels_to_measure = std::int64_t{1} << 20;
 std::vector<ImagePart> parts_to_measure(int width, int height,
-                                        std::int64_t most_texels = texels_to_measure);
+                                        std::int64_t max_texels = texels_to_measure);
 
 /// The parts of a sample.
 struct BumpSampleParts {
-    std::vector<ImagePart> looked_at;
+    std::vector<ImagePart> analyzed;
     std::vector<ImagePart> measured;
 
     /// All parts once, from top to bottom, as a file is read.
@@ -108,7 +108,7 @@ struct BumpSampleParts {
 };
 
 /// Creates the sample of a map in memory.
-BumpSample sample_of(const Image& height, std::int64_t most_texels = texels_to_measure);
+BumpSample sample_of(const Image& height, std::int64_t max_texels = texels_to_measure);
 
 /// Returns all combinations of kernels (the Gaussian with the given radius), precisions, bit depths
 /// and de-staircasing.
@@ -159,10 +159,11 @@ struct ErrorLimits {
     }
 };
 
-/// Returns the measurement with the smallest cost_of() within the limits; null if there is none.
+/// Returns the measurement with the smallest nominal_cost() within the limits; null if there is
+/// none.
 const BumpMeasurement* cheapest_within(const BumpExperiment& experiment, const ErrorLimits& limits);
 
 /// Returns the measurement with the smallest error; null if there is none.
-const BumpMeasurement* truest(const BumpExperiment& experiment, ErrorKind kind);
+const BumpMeasurement* most_accurate(const BumpExperiment& experiment, ErrorKind kind);
 
 }  // namespace relief

@@ -62,7 +62,7 @@ BumpField make_bump_field(const FieldRecipe& recipe, int width, int height);
 std::span<const FieldRecipe> tuning_fields();
 
 /// Fields for evaluation, which are never used for tuning.
-std::span<const FieldRecipe> judging_fields();
+std::span<const FieldRecipe> evaluation_fields();
 
 /// Computes the angles between normals and the exact normals of the field, in degrees.
 DirectionError field_error(const Image& normals, const BumpField& field);

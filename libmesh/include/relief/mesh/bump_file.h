@@ -23,12 +23,12 @@
 namespace relief {
 
 /// The channel of a file that holds the heights, and the memory limit for reading it.
-struct HeightMapChoice {
+struct HeightMapOptions {
     HeightChannel channel = HeightChannel::mean;
     /// Treats transparent texels as part of the surface.
     bool ignore_alpha = false;
     /// Maps with more bytes of samples than this are read by rows, two or more times.
-    std::size_t most_memory = std::size_t{640} << 20;
+    std::size_t max_memory = std::size_t{640} << 20;
     /// Size of a band.
     std::size_t texels_per_band = std::size_t{1} << 22;
 };
@@ -39,10 +39,10 @@ class HeightMapFile {
   public:
     /// Opens a file, and reads it unless it is too large.
     /// \throws FileError as read_image(); InvalidInput as height_map()
-    explicit HeightMapFile(const std::filesystem::path& file, const HeightMapChoice& choice = {});
+    explicit HeightMapFile(const std::filesystem::path& file, const HeightMapOptions& choice = {});
 
     [[nodiscard]] const std::filesystem::path& path() const { return path_; }
-    [[nodiscard]] const HeightMapChoice& choice() const { return choice_; }
+    [[nodiscard]] const HeightMapOptions& choice() const { return choice_; }
     /// Information about the file.
     [[nodiscard]] const ImageInfo& info() const { return info_; }
     /// Returns true if the map is too large to be in memory.
@@ -68,7 +68,7 @@ class HeightMapFile {
 
   private:
     std::filesystem::path path_;
-    HeightMapChoice choice_;
+    HeightMapOptions choice_;
     ImageInfo info_;
     bool is_streamed_ = false;
     HeightMap map_;

@@ -20,7 +20,7 @@ namespace relief {
 
 /// The severity of a condition. A problem causes a fallback, or makes a result depend on more than
 /// the surface. A note also applies to valid models.
-enum class Severity { trouble, remark };
+enum class Severity { problem, note };
 
 /// The conditions of a mesh. For triangles, edges and fans, vertices at equal positions count as
 /// one, so that texture seams are not boundaries.
@@ -33,7 +33,7 @@ enum class MeshCondition {
     /// It has the corners and winding of an earlier triangle; all but the first are counted.
     triangle_repeated,
     /// It has the corners of another triangle with opposite winding: a two-sided sheet.
-    triangle_backed,
+    triangle_two_sided,
     // Edges between finite triangles that are not collapsed, repeated or backed. Each edge is
     // counted once and listed by its first triangle.
     edge_non_manifold,  ///< It has three or more triangles.
@@ -43,8 +43,8 @@ enum class MeshCondition {
     edge_boundary,  ///< It has one triangle.
     // Vertices.
     vertex_not_finite,
-    vertex_isolated,   ///< No triangle has a corner at its position.
-    vertex_voiceless,  ///< All its triangles have one of the first three conditions.
+    vertex_isolated,        ///< No triangle has a corner at its position.
+    vertex_degenerate_fan,  ///< All its triangles have one of the first three conditions.
     vertex_bow_tie,  ///< Several fans of triangles meet only at this position. Counted by position.
     /// Another position differs from it by at most 4 units in the last place of its largest
     /// coordinate. Counted by position.
@@ -56,15 +56,15 @@ enum class MeshCondition {
     normal_not_unit,
     normal_opposed,  ///< It points to the back of every triangle of its vertex.
     /// It points to the back of some triangle of its vertex, or lies in its plane.
-    normal_divided,
+    normal_inconsistent,
     // Tangents, if the mesh has them.
     tangent_not_finite,
-    tangent_not_unit,  ///< It is zero, or its length differs from 1 as for normals.
-    tangent_unhanded,  ///< Its w is neither 1 nor -1.
+    tangent_not_unit,      ///< It is zero, or its length differs from 1 as for normals.
+    tangent_invalid_sign,  ///< Its w is neither 1 nor -1.
     /// It is within 2.5 degrees of the normal or its opposite, so there is no tangent frame.
     tangent_along_normal,
     /// It deviates by more than 1.2 degrees from the perpendicular to the normal.
-    tangent_leaning,
+    tangent_not_perpendicular,
     // Texture coordinates, if the mesh has them. Only triangles with an area in space are
     // considered.
     texture_not_finite,   ///< Counted by vertex.
@@ -93,24 +93,24 @@ std::span<const MeshConditionInfo> mesh_conditions();
 const MeshConditionInfo& condition_info(MeshCondition condition);
 
 /// A condition that occurs in a mesh.
-struct FoundCondition {
+struct MeshConditionCount {
     MeshCondition condition;
     std::size_t count = 0;
     /// The smallest indices, ascending, at most DiagnoseOptions::listed.
     std::vector<std::size_t> first;
 
-    friend bool operator==(const FoundCondition&, const FoundCondition&) = default;
+    friend bool operator==(const MeshConditionCount&, const MeshConditionCount&) = default;
 };
 
 struct Diagnosis {
-    std::vector<FoundCondition> found;  ///< In the order of the enumeration.
+    std::vector<MeshConditionCount> found;  ///< In the order of the enumeration.
     float size = 0.0F;     ///< The longest side of the bounding box of all finite positions.
     float spacing = 0.0F;  ///< The spacing of floats at the largest coordinate.
     /// Texels along each side of the raster for the overlap test; 0 if it was not done.
     int overlap_raster = 0;
 
     [[nodiscard]] std::size_t count(MeshCondition condition) const;
-    [[nodiscard]] bool has_trouble() const;
+    [[nodiscard]] bool has_problem() const;
 
     friend bool operator==(const Diagnosis&, const Diagnosis&) = default;
 };
@@ -143,7 +143,7 @@ struct DiagnoseOptions {
 Diagnosis diagnose(const Mesh& mesh, const DiagnoseOptions& options = {});
 
 /// Converts a condition to a finding of a report.
-Finding to_finding(const FoundCondition& found);
+Finding to_finding(const MeshConditionCount& found);
 
 /// Converts all conditions, or those of one severity, to findings.
 Report to_report(const Diagnosis& diagnosis, std::optional<Severity> severity = std::nullopt);

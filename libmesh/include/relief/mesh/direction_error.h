@@ -31,7 +31,7 @@ struct DirectionError {
 ///         finite, so that the error is not hidden in a mean
 /// \throws InvalidInput if the spans differ in length
 DirectionError direction_error(std::span<const glm::vec3> directions,
-                               std::span<const glm::dvec3> truth,
+                               std::span<const glm::dvec3> reference,
                                std::span<const unsigned char> counts = {});
 
 }  // namespace relief

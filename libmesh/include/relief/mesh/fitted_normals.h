@@ -24,18 +24,18 @@ struct FittedNormals {
     std::size_t fans = 0;                ///< Number of fans of the mesh.
     /// The uncertainty of the reference in degrees: the RMS angle between it and a fit of lower
     /// degree, over all corners. Smaller errors are not significant.
-    double own_degrees = 0.0;
+    double reference_degrees = 0.0;
 };
 
 struct FitOptions {
-    HardEdges hard_edges;            ///< The fitted surfaces end at hard edges.
-    std::size_t most_places = 8192;  ///< Maximum number of examined fans, which are evenly spread.
+    HardEdges hard_edges;           ///< The fitted surfaces end at hard edges.
+    std::size_t max_places = 8192;  ///< Maximum number of examined fans, which are evenly spread.
     /// Fans whose two fits differ by more than this many degrees are omitted, because no smooth
     /// surface fits (noise, an unmarked hard edge, triangles as large as the shape).
-    double most_doubt = 2.0;
+    double max_fit_difference = 2.0;
     /// Fans with a triangle that deviates by more than this many degrees from the fit are omitted
     /// too.
-    double most_bend = 45.0;
+    double max_fit_angle = 45.0;
 };
 
 /// Fits a polynomial of degree 4 to each vertex and its three rings of neighbors, and returns its

@@ -74,7 +74,7 @@ enum class FrameRounding {
 };
 
 /// Returns "float32", "octahedral8", ...: the names in docs/tangents.md.
-std::string_view word_of(FrameEncoding encoding);
+std::string_view name_of(FrameEncoding encoding);
 
 /// Returns the number of words of a frame.
 std::size_t words_per_frame(FrameEncoding encoding);

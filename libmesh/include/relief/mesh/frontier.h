@@ -10,7 +10,7 @@
 namespace relief {
 
 /// The error and time of a method, in any unit; smaller is better. NaN means unknown.
-struct Price {
+struct MethodCost {
     double error = 0.0;
     double time = 0.0;
 };
@@ -20,6 +20,6 @@ struct Price {
 /// \return for each method, true if no other is better in one value and at least as good in the
 ///         other. Equal methods have equal results. A method with NaN is never Pareto-optimal and
 ///         does not affect the others
-std::vector<bool> efficient(std::span<const Price> prices);
+std::vector<bool> pareto_optimal(std::span<const MethodCost> prices);
 
 }  // namespace relief

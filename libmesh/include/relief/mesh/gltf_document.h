@@ -154,7 +154,7 @@ struct GltfAnimation {
 /// An item of the document with its transform to the world (of the default scene, or the first
 /// one).
 template <typename T>
-struct GltfPlaced {
+struct GltfInstance {
     T what;
     glm::mat4 world_from_object{1.0F};
     std::string name;  ///< Name of the node.
@@ -166,9 +166,9 @@ struct GltfPlaced {
 /// EXT_mesh_gpu_instancing are separate items; orthographic cameras are left out.
 struct GltfView {
     std::vector<GltfNode> nodes;  ///< All nodes of the document, in its order.
-    std::vector<GltfPlaced<GltfPrimitiveId>> primitives;  ///< Triangles only.
-    std::vector<GltfPlaced<GltfLight>> lights;
-    std::vector<GltfPlaced<GltfCamera>> cameras;
+    std::vector<GltfInstance<GltfPrimitiveId>> primitives;  ///< Triangles only.
+    std::vector<GltfInstance<GltfLight>> lights;
+    std::vector<GltfInstance<GltfCamera>> cameras;
     std::vector<GltfMaterial> materials;
     std::vector<GltfImage> images;
 };
@@ -184,7 +184,7 @@ struct GltfTangentTexcoords {
     std::optional<int> missing;
     /// True if KHR_texture_transform rotates or mirrors the texture. Tangents still belong to the
     /// stored coordinates: a renderer rotates them together with the texture.
-    bool is_turned = false;
+    bool is_rotated = false;
 
     friend bool operator==(const GltfTangentTexcoords&, const GltfTangentTexcoords&) = default;
 };
@@ -326,7 +326,7 @@ class GltfDocument {
 
     /// Returns the contents that other formats cannot hold: "2 animations", "1 skin", "3 morph
     /// targets", ...
-    [[nodiscard]] std::vector<std::string> beyond_a_mesh() const;
+    [[nodiscard]] std::vector<std::string> unsupported_contents() const;
 
   private:
     struct Contents;

@@ -50,7 +50,7 @@ struct GradientKernel {
     int radius = 1;  ///< Maximum distance of a height that contributes.
 };
 
-inline constexpr int largest_kernel_radius = 64;
+inline constexpr int max_kernel_radius = 64;
 
 /// Returns the weights of a kernel.
 ///

@@ -19,9 +19,9 @@ struct Tiling {
     double seam_y = 0.0;
 
     /// Maximum value for a map that tiles.
-    static constexpr double largest_seam = 1.25;
-    [[nodiscard]] bool tiles_x() const { return seam_x <= largest_seam; }
-    [[nodiscard]] bool tiles_y() const { return seam_y <= largest_seam; }
+    static constexpr double max_seam = 1.25;
+    [[nodiscard]] bool tiles_x() const { return seam_x <= max_seam; }
+    [[nodiscard]] bool tiles_y() const { return seam_y <= max_seam; }
     /// Wrap::repeat for axes along which the map tiles, else Wrap::clamp.
     [[nodiscard]] Wraps wraps() const {
         return {tiles_x() ? Wrap::repeat : Wrap::clamp, tiles_y() ? Wrap::repeat : Wrap::clamp};

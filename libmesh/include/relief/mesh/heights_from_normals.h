@@ -25,7 +25,7 @@ struct IntegrationOptions {
     /// Maximum length of a slope. Steeper normals, and normals that face sideways or back, are
     /// clamped to it. The default is 86 degrees; there, one 8-bit code of z already changes the
     /// slope by one sixteenth.
-    double steepest = 16.0;
+    double max_slope = 16.0;
     /// Subtracts the mean slope first. If flat texels have an error of one 8-bit code, the mean
     /// slope is 0.8%, which adds up to large heights in maps with clamped borders.
     bool level = false;

@@ -47,7 +47,7 @@ enum class Grain {
 };
 
 /// The result for the other interpretation of the grain.
-struct OtherReading {
+struct AlternativeChoice {
     double rms_degrees = 0.0;  ///< Expected RMS error of the selected kernel.
     KernelPrediction best;     ///< The best kernel in that case.
 };
@@ -73,7 +73,7 @@ struct KernelChoice {
     /// Standard deviation of all grain, noise or detail, in the unit of heights.
     double grain = 0.0;
     /// For maps with grain: the result for the other interpretation.
-    std::optional<OtherReading> otherwise;
+    std::optional<AlternativeChoice> otherwise;
     double spikes = 0.0;  ///< Share of isolated outliers, which are treated as noise.
     double walls = 0.0;   ///< Share of texels beside a step edge.
 
@@ -90,7 +90,7 @@ struct KernelChoice {
 };
 
 /// Formats the expected error in degrees: "1.3", or "1.3 to 9.9" if it is a range.
-std::string expected_words(const KernelChoice& choice);
+std::string expected_error_text(const KernelChoice& choice);
 
 /// Returns the best radius for Kernel::gaussian, even if another kernel was selected.
 int best_gaussian_radius(const KernelChoice& choice);
@@ -98,11 +98,11 @@ int best_gaussian_radius(const KernelChoice& choice);
 /// Returns the parts of a map that choose_kernel() examines: at most 9 regularly spaced squares of
 /// 128 texels, or smaller ones for a small map. They are ordered from top to bottom, so that a file
 /// can be read in one pass.
-std::vector<ImagePart> parts_to_look_at(int width, int height);
+std::vector<ImagePart> parts_to_analyze(int width, int height);
 
 /// Selects the kernel with the smallest expected RMS error of the normals.
 ///
-/// \param parts  of one map, as from parts_to_look_at() or others; one channel, all with the same
+/// \param parts  of one map, as from parts_to_analyze() or others; one channel, all with the same
 ///         number of bits
 /// \param options  strength and texel as in the conversion; the other options are ignored
 /// \param destaircased  selects for the map after destaircase() (destaircase.h)

@@ -35,7 +35,7 @@ enum class MapBasis {
 };
 
 /// The interpolation of tangent frames from vertices to fragments.
-enum class MapFrame {
+enum class FrameInterpolation {
     /// Interpolated without normalization, with the bitangent computed from them, as in MikkTSpace
     /// and relief.
     interpolated,
@@ -45,18 +45,18 @@ enum class MapFrame {
 };
 
 /// The orientation of the image.
-enum class MapTurn { upright, upside_down, mirrored, half_turn };
+enum class ImageOrientation { upright, upside_down, mirrored, half_turn };
 
 /// An interpretation of a map.
 struct MapConvention {
     StoredCurve curve = StoredCurve::none;
     FlatCode flat = FlatCode::middle;
-    MapTurn turn = MapTurn::upright;
+    ImageOrientation turn = ImageOrientation::upright;
     /// The source of x, y and z among the components of the stored vectors, with y up.
     AxisMapping axes = same_axes;
     MapAxes space = MapAxes::tangent;
     MapBasis basis = MapBasis::used;
-    MapFrame frame = MapFrame::interpolated;
+    FrameInterpolation frame = FrameInterpolation::interpolated;
     bool ignores_mirroring = false;  ///< The handedness w counts as +1 everywhere.
 
     bool operator==(const MapConvention&) const = default;
@@ -67,9 +67,9 @@ struct KnownTexel {
     int x = 0;
     int y = 0;
     std::uint32_t triangle = 0;
-    glm::dvec3 weights{0.0};  ///< Barycentric weights of the triangle's corners.
-    glm::dvec3 truth{0.0};    ///< The exact normal in the space of the meshes, unit.
-    double expected = 0.0;    ///< The expected error of a correct map in degrees.
+    glm::dvec3 weights{0.0};    ///< Barycentric weights of the triangle's corners.
+    glm::dvec3 reference{0.0};  ///< The exact normal in the space of the meshes, unit.
+    double expected = 0.0;      ///< The expected error of a correct map in degrees.
 };
 
 /// A part of a convention that can differ from the given one.
@@ -84,7 +84,7 @@ struct ConventionFit {
     MapConvention convention;  ///< The convention with the smallest error.
     /// RMS error with the given convention; this and the next two without the largest 2% of the
     /// errors.
-    double told_degrees = 0.0;
+    double given_degrees = 0.0;
     double found_degrees = 0.0;     ///< RMS error with `convention`.
     double expected_degrees = 0.0;  ///< Expected RMS error of a correct map.
     std::size_t tried = 0;          ///< Number of conventions that were tried.

@@ -25,7 +25,7 @@ enum class MapContent {
     tangent_normals,  ///< Directions near +z.
     object_normals,   ///< Directions of unit length that face all sides.
     xy_normals,  ///< x and y of tangent-space normals; the third channel is absent or constant.
-    grey,        ///< One channel, or several equal channels: heights, roughness, a mask.
+    gray,        ///< One channel, or several equal channels: heights, roughness, a mask.
     other,       ///< Colors, several masks in one image, or other data.
 };
 
@@ -75,7 +75,7 @@ enum class MapCondition {
     texel_not_finite,
     texel_without_direction,  ///< Its vector has a length of at most 1 / 16.
     texel_facing_back,        ///< z is negative by more than a rounding error of codes.
-    texel_grey,               ///< Black, white or gray, and not of unit length: a background.
+    texel_gray,               ///< Black, white or gray, and not of unit length: a background.
     // Lengths.
     not_unit,  ///< rms_deviation is above 0.05.
     /// rms_deviation is above 0.02: filtered, compressed or averaged without normalization.
@@ -116,7 +116,7 @@ std::span<const MapConditionInfo> map_conditions();
 const MapConditionInfo& condition_info(MapCondition condition);
 
 /// A condition that occurs in a map.
-struct FoundMapCondition {
+struct MapConditionCount {
     MapCondition condition;
     std::size_t count = 1;           ///< Number of texels, or 1 for conditions of the whole map.
     std::vector<std::size_t> first;  ///< The smallest texel indices, ascending, at most 8.
@@ -135,10 +135,10 @@ struct NormalMapCheck {
     std::vector<int> bits;  ///< Significant bits of each channel; 0: more than 16.
     /// The correlation between the slopes of alpha and those of the normals.
     std::optional<double> alpha_correlation;
-    std::vector<FoundMapCondition> found;  ///< In the order of the enumeration.
+    std::vector<MapConditionCount> found;  ///< In the order of the enumeration.
 
     [[nodiscard]] bool has(MapCondition condition) const;
-    [[nodiscard]] bool has_trouble() const;
+    [[nodiscard]] bool has_problem() const;
 };
 
 /// Checks a map for all conditions. The map is not changed.

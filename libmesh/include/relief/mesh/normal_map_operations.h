@@ -37,7 +37,7 @@ inline constexpr AxisMapping same_axes = {{{0, false}, {1, false}, {2, false}}};
 void map_axes(Image& map, const AxisMapping& mapping, FlatCode flat, Report& report);
 
 /// The same for decoded normals, without rounding: three float channels.
-void turn_normals(Image& normals, const AxisMapping& mapping);
+void map_normal_axes(Image& normals, const AxisMapping& mapping);
 
 /// The channels of an image that hold x and y.
 struct XyChannels {
@@ -56,7 +56,7 @@ Image decode_xy_map(const Image& map, const XyChannels& channels, Green green, F
                     Report& report, FlatTexels texels = FlatTexels::as_coded);
 
 /// The lengths of the vectors of a map.
-struct LengthSpread {
+struct LengthRange {
     double least = 0.0;
     double mean = 0.0;
     double greatest = 0.0;
@@ -69,7 +69,7 @@ struct LengthSpread {
 ///         the map's codes causes (sqrt(3) codes; 0.001 for float, because of half floats)
 /// \return statistics of finite lengths
 /// \throws InvalidInput if the image is empty or has fewer than three channels
-LengthSpread count_lengths(const Image& map, FlatCode flat, Report& report);
+LengthRange measure_lengths(const Image& map, FlatCode flat, Report& report);
 
 /// Multiplies the slopes of unit normals, in place, as if the heights had been multiplied.
 ///

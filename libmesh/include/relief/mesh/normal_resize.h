@@ -31,7 +31,7 @@ enum class ResizeDomain {
 
 /// The maximum slope for averaging slopes, 86.4 degrees. Steeper normals would dominate their
 /// neighborhood; where they contribute, vectors are averaged instead.
-inline constexpr float steepest_averaged_slope = 16.0F;
+inline constexpr float max_averaged_slope = 16.0F;
 
 struct ResizeOptions {
     ResizeFilter filter = ResizeFilter::best;

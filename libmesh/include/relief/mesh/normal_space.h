@@ -14,7 +14,7 @@
 namespace relief {
 
 /// The part of texture space that the map shows.
-struct MapPlacement {
+struct MapRegion {
     glm::ivec2 tile{0, 0};  ///< As in CoverageOptions.
     bool repeat = false;
 };
@@ -43,7 +43,7 @@ struct ConvertedNormals {
 /// Computed in double precision; the same for any number of threads. This is the basis that
 /// [Mikkelsen 2008] specifies, so maps that were baked for it reproduce the baked surface.
 ConvertedNormals object_from_tangent(const Image& normals, const Mesh& mesh,
-                                     const MapPlacement& placement, Report& report);
+                                     const MapRegion& placement, Report& report);
 
 /// Converts an object-space map to tangent space: the components in the basis (t, b, n) above,
 /// normalized.
@@ -51,6 +51,6 @@ ConvertedNormals object_from_tangent(const Image& normals, const Mesh& mesh,
 /// \param report  counts as above, and texels whose normal lies behind the surface (unchanged),
 ///         which do not occur if the map belongs to the mesh
 ConvertedNormals tangent_from_object(const Image& normals, const Mesh& mesh,
-                                     const MapPlacement& placement, Report& report);
+                                     const MapRegion& placement, Report& report);
 
 }  // namespace relief

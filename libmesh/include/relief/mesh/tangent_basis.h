@@ -32,14 +32,14 @@ enum class TangentBasis {
 std::span<const TangentBasis> tangent_bases();
 
 /// Returns the name as in the tools: "mikktspace", "area-weighted", "lengyel", "triangle".
-std::string_view word_of(TangentBasis basis);
+std::string_view name_of(TangentBasis basis);
 
 /// The agreement of stored tangents with one method, over all corners that can be compared.
 ///
 /// The directions within the plane of the normal are compared; diagnose() reports tangents outside
 /// of this plane. Stored frames may be rotated by multiples of 90 degrees, if a program uses
 /// another axis as the tangent or flipped texture coordinates.
-struct BasisAgreement {
+struct TangentAgreement {
     TangentBasis basis = TangentBasis::mikktspace;
     /// Number of corners within the tolerance of the method's tangent, its bitangent (rotated by 90
     /// degrees), and the opposites of both.
@@ -59,14 +59,14 @@ struct BasisAgreement {
     [[nodiscard]] double share() const;
 };
 
-struct SniffedTangents {
+struct IdentifiedTangents {
     /// The identified method; absent if no known method agrees.
     std::optional<TangentBasis> basis;
     /// Other methods with the same result on this mesh, such as all methods on a plane.
-    std::vector<TangentBasis> same_here;
+    std::vector<TangentBasis> equivalent_methods;
     /// The agreement with each method, in the order of the enumeration; empty if nothing can be
     /// compared, because there are no tangents, normals or texture coordinates.
-    std::vector<BasisAgreement> agreements;
+    std::vector<TangentAgreement> agreements;
     std::size_t corners = 0;  ///< Number of compared corners.
     /// Number of corners of triangles that are too degenerate for a reliable direction.
     std::size_t left_out = 0;
@@ -77,11 +77,11 @@ struct SniffedTangents {
 
     /// The agreement with `basis`, or with the method of the smallest mean if no method was
     /// identified; null if there is none.
-    [[nodiscard]] const BasisAgreement* best() const;
+    [[nodiscard]] const TangentAgreement* best() const;
     /// Returns true if the means of all other methods are at least 1.5 times as large. If no method
     /// was identified, the tangents then probably come from this method and different input
     /// (unrounded positions, other normals) or were stored with low precision.
-    [[nodiscard]] bool is_best_by_far() const;
+    [[nodiscard]] bool is_clearly_best() const;
 };
 
 /// Compares the tangents of a mesh with every known method.
@@ -96,9 +96,9 @@ struct SniffedTangents {
 /// Corners are omitted if their triangle is so small, in space or in the image, that rounding of
 /// its corners changes the gradient: its height is less than 1000 times the spacing of floats at
 /// its position, or less than 1e-6 of its longest side.
-SniffedTangents sniff_tangents(const Mesh& mesh);
+IdentifiedTangents identify_tangents(const Mesh& mesh);
 
 /// Describes a rotation by multiples of 90 degrees and a sign: "", "w negated", ...
-std::string_view variant_in_words(int quarter_turns, bool is_negated);
+std::string_view variant_text(int quarter_turns, bool is_negated);
 
 }  // namespace relief

@@ -103,7 +103,7 @@ Coverage cover_texels(
     Report& report);
 
 /// The same in several calls, for bands of rows in any order.
-class TexelCover {
+class TexelRasterizer {
   public:
     /// First rows are multiples of this, and last rows too, except for the last row of the map.
     static constexpr int band_rows = 64;
@@ -111,11 +111,11 @@ class TexelCover {
 
     /// \param texcoords, triangles, options, report  as above; spans must outlive this object. The
     ///         report receives findings about triangles
-    TexelCover(std::span<const glm::vec2> texcoords, std::span<const glm::uvec3> triangles,
-               const CoverageOptions& options, Report& report);
-    ~TexelCover();
-    TexelCover(const TexelCover&) = delete;
-    TexelCover& operator=(const TexelCover&) = delete;
+    TexelRasterizer(std::span<const glm::vec2> texcoords, std::span<const glm::uvec3> triangles,
+                    const CoverageOptions& options, Report& report);
+    ~TexelRasterizer();
+    TexelRasterizer(const TexelRasterizer&) = delete;
+    TexelRasterizer& operator=(const TexelRasterizer&) = delete;
 
     /// Finds the triangles of the texels of some rows, and counts these texels.
     /// \param report  receives findings about texels

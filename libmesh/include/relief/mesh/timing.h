@@ -21,7 +21,7 @@ struct Repeats {
 };
 
 /// The distribution of measurements: median, 10th and 90th percentile.
-struct Spread {
+struct TimeStatistics {
     double median = 0;
     double p10 = 0;
     double p90 = 0;
@@ -32,7 +32,7 @@ struct Spread {
 ///
 /// \param values  finite, in any order and unit
 /// \return percentiles, interpolated linearly; all zeros without values
-Spread spread_of(std::vector<double> values);
+TimeStatistics time_statistics(std::vector<double> values);
 
 /// Measures elapsed wall-clock time.
 class Stopwatch {

@@ -42,8 +42,8 @@ bool rotates_or_mirrors(const Json& transform) {
     const auto rotation = static_cast<double>(float_in(transform, "rotation", 0.0F));
     const glm::vec2 scale = vector_in(transform, "scale", glm::vec2(1.0F));
     constexpr double rounding = 1e-6;  // Relative error of an angle in float.
-    const bool is_turned = std::abs(std::sin(rotation)) > rounding || !(std::cos(rotation) > 0.0);
-    return is_turned || scale.x < 0.0F || scale.y < 0.0F;
+    const bool is_rotated = std::abs(std::sin(rotation)) > rounding || !(std::cos(rotation) > 0.0);
+    return is_rotated || scale.x < 0.0F || scale.y < 0.0F;
 }
 
 }  // namespace
@@ -78,7 +78,7 @@ GltfTangentTexcoords GltfDocument::tangent_texcoords(GltfPrimitiveId id) const {
     if (const Json* transform = find(*texture.info, "extensions", "KHR_texture_transform")) {
         result.set =
             static_cast<int>(size_in(*transform, "texCoord", static_cast<std::size_t>(result.set)));
-        result.is_turned = rotates_or_mirrors(*transform);
+        result.is_rotated = rotates_or_mirrors(*transform);
     }
     if (!std::binary_search(sets.begin(), sets.end(), result.set)) {
         result.missing = result.set;
@@ -156,7 +156,7 @@ std::vector<GltfCompression> GltfDocument::compression() const {
     return result;
 }
 
-std::vector<std::string> GltfDocument::beyond_a_mesh() const {
+std::vector<std::string> GltfDocument::unsupported_contents() const {
     const Json& root = contents_->data.root;
     const PrimitiveCounts counts = count_primitives(root);
     std::vector<std::string> lines;

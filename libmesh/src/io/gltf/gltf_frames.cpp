@@ -465,18 +465,18 @@ void MorphReplacement::store(const TargetFrames& frames) {
     const Mesh& mesh = framed_.mesh;
     std::vector<glm::vec3> normals(mesh.positions.size(), glm::vec3(0.0F));
     std::vector<glm::vec3> tangents = normals;
-    std::vector<bool> is_turned(mesh.positions.size(), false);
+    std::vector<bool> is_rotated(mesh.positions.size(), false);
     for (std::size_t corner = 0; corner < 3 * mesh.triangles.size(); ++corner) {
         const std::uint32_t v = mesh.triangles[corner / 3][static_cast<int>(corner % 3)];
         if (frames.wants_normals) normals[v] = frames.corner_normals[corner] - mesh.normals[v];
         if (!frames.wants_tangents) continue;
         const glm::vec4& tangent = frames.corner_tangents[corner];
         tangents[v] = glm::vec3(tangent) - glm::vec3(mesh.tangents[v]);
-        is_turned[v] = tangent.w != mesh.tangents[v].w;
+        is_rotated[v] = tangent.w != mesh.tangents[v].w;
     }
     if (frames.wants_normals) store_displacements(frames.target, "NORMAL", normals);
     if (frames.wants_tangents) store_displacements(frames.target, "TANGENT", tangents);
-    if (std::find(is_turned.begin(), is_turned.end(), true) == is_turned.end()) return;
+    if (std::find(is_rotated.begin(), is_rotated.end(), true) == is_rotated.end()) return;
     report_.add("tangents of other handedness in a morph target", "morph target", frames.target,
                 "keep that of the shape at rest, which a target cannot change");
 }

@@ -311,7 +311,7 @@ class FileSource final : public BandSource {
         throw FileError(file_.path(),
                         fmt::format("rows {} to {} hold heights that are not finite, which are "
                                     "filled only in maps that fit into {} MiB",
-                                    first, last - 1, file_.choice().most_memory >> 20));
+                                    first, last - 1, file_.choice().max_memory >> 20));
     }
 
   private:
@@ -347,11 +347,11 @@ void check(const BumpFileFormat& format) {
         throw InvalidInput("slope moments have neither z nor alpha");
 }
 
-/// Like settled_options(), for a map that may be too large for memory.
+/// Like resolve_options(), for a map that may be too large for memory.
 BumpOptions settled(const HeightMapFile& source, BumpOptions options) {
     if (options.kernel && options.wrap) return options;
     std::vector<ImagePart> parts;
-    if (!options.kernel) parts = parts_to_look_at(source.info().width, source.info().height);
+    if (!options.kernel) parts = parts_to_analyze(source.info().width, source.info().height);
     const HeightMapFile::Survey survey = source.survey(parts);
     if (!options.wrap) options.wrap = survey.tiling.wraps();
     if (!options.kernel) {

@@ -53,7 +53,7 @@ HeightMap HeightBandReader::read(int rows) {
             fmt::format("the texel ({}, {}) is transparent, which is understood only in "
                         "maps that fit into {} MiB",
                         texel % info.width, first + texel / info.width,
-                        file_.choice().most_memory >> 20));
+                        file_.choice().max_memory >> 20));
     }
     return map;
 }
@@ -231,10 +231,10 @@ HeightMapFile::Survey survey_of(const HeightMap& map, int file_bits,
 
 }  // namespace
 
-HeightMapFile::HeightMapFile(const std::filesystem::path& file, const HeightMapChoice& choice)
+HeightMapFile::HeightMapFile(const std::filesystem::path& file, const HeightMapOptions& choice)
     : path_(file), choice_(choice) {
     info_ = read_image_info(file);
-    is_streamed_ = bytes_in_memory(info_) > choice.most_memory;
+    is_streamed_ = bytes_in_memory(info_) > choice.max_memory;
     if (is_streamed_) return;
     map_ = height_map(read_image(file, ImageUse::data), choice.channel);
     if (choice.ignore_alpha) map_.transparent.clear();

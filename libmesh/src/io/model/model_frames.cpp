@@ -43,7 +43,7 @@ void add_material_notes(const GltfDocument& document, GltfPrimitiveId id, Framed
         part.notes.push_back(fmt::format("{} uses texture coordinate set {}, the tangents use {}",
                                          usual.texture, of_texture, part.texcoords.set));
     }
-    if (usual.is_turned) {
+    if (usual.is_rotated) {
         part.notes.push_back(
             fmt::format("KHR_texture_transform rotates or mirrors {}: the tangents are those of "
                         "the stored coordinates, and renderers rotate them with the texture",

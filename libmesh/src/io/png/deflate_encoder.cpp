@@ -217,7 +217,7 @@ int match_cost(std::size_t length, std::size_t distance) {
 }
 
 /// Estimated from the first eight bytes, which must exist.
-int cost_of(const std::uint8_t* bytes, std::size_t length, const LiteralCosts& costs) {
+int nominal_cost(const std::uint8_t* bytes, std::size_t length, const LiteralCosts& costs) {
     int sum = 0;
     for (std::size_t i = 0; i < 8; ++i)
         sum += costs[bytes[i]];
@@ -297,7 +297,7 @@ MatchFinder::Match MatchFinder::search(std::size_t at) {
             const std::size_t distance = at - from;
             if (length > longest) {
                 longest = length;
-                const int saved = cost_of(here, length, costs_) - match_cost(length, distance);
+                const int saved = nominal_cost(here, length, costs_) - match_cost(length, distance);
                 if (saved > best.saved) best = {length, distance, saved};
             }
             if (length >= limits_.nice_length || length == max_length) break;

@@ -120,7 +120,7 @@ struct Overlays {
 };
 
 /// The default length of vertex frames, as a share of the scene's size.
-inline constexpr float usual_frame_length = 0.01F;
+inline constexpr float default_frame_length = 0.01F;
 /// Pixels across a marker's disc.
 inline constexpr int marker_pixels = 9;
 

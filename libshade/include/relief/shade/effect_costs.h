@@ -46,7 +46,8 @@ struct EffectCost {
 };
 
 struct EffectCosts {
-    Spread frame;  ///< Milliseconds of a frame with all effects of the plan, including read-back.
+    TimeStatistics
+        frame;  ///< Milliseconds of a frame with all effects of the plan, including read-back.
     std::vector<EffectCost> effects;  ///< The effects of effects_in(plan), in its order.
 };
 
@@ -55,12 +56,12 @@ struct EffectCosts {
 EffectCosts measure_effects(const MeasuredFrame& frame, const FramePlan& plan);
 
 /// The same in small steps, between which the caller may draw in the same context.
-class EffectPricing {
+class EffectCostMeasurement {
   public:
-    EffectPricing(const MeasuredFrame& frame, FramePlan plan);
-    ~EffectPricing();
-    EffectPricing(const EffectPricing&) = delete;
-    EffectPricing& operator=(const EffectPricing&) = delete;
+    EffectCostMeasurement(const MeasuredFrame& frame, FramePlan plan);
+    ~EffectCostMeasurement();
+    EffectCostMeasurement(const EffectCostMeasurement&) = delete;
+    EffectCostMeasurement& operator=(const EffectCostMeasurement&) = delete;
 
     /// Prepares the measurement of the next effect, or draws one frame with and one without it.
     /// \return true if there is more to do
@@ -79,8 +80,8 @@ class EffectPricing {
 };
 
 /// Sorts effects in the order in which to drop them: by increasing perceived difference per saved
-/// time. Effects that save less than `least_saving` are omitted; ties keep the given order.
-std::vector<std::string> drop_order(std::span<const EffectCost> costs, double least_saving);
+/// time. Effects that save less than `min_saving` are omitted; ties keep the given order.
+std::vector<std::string> drop_order(std::span<const EffectCost> costs, double min_saving);
 
 /// The dropped effects and the resulting frame time.
 struct BudgetChoice {

@@ -34,7 +34,7 @@ struct ForcedEffect {
     bool on = true;
 };
 
-struct EffectWishes {
+struct EffectRequest {
     EffectBase base = EffectBase::planned;
     std::vector<ForcedEffect> forced;
 };
@@ -48,7 +48,7 @@ struct EffectWishes {
 ///         forced both ways, two effects exclude each other, or no draw can have an effect: the
 ///         message names effect, material and reason
 FramePlan force_effects(const Scene& scene, const FrameSettings& settings, FramePlan plan,
-                        const EffectWishes& wishes);
+                        const EffectRequest& requests);
 
 /// Returns the effects that are on in any draw of a plan, and "skybox": those that can be forced
 /// off.

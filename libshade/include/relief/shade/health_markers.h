@@ -18,7 +18,7 @@ namespace relief {
 struct MarkedCondition {
     MeshCondition condition;
     std::size_t count = 0;  ///< Affected elements; those of a mesh once for each instance.
-    /// Number of elements with a marker; the others are not finite, or exceed most_markers.
+    /// Number of elements with a marker; the others are not finite, or exceed max_markers.
     std::size_t marked = 0;
     glm::vec3 color_srgb{1.0F};
 };
@@ -29,7 +29,7 @@ struct HealthMarkers {
 };
 
 /// The maximum number of markers for one condition in one mesh.
-inline constexpr std::size_t most_markers = 10000;
+inline constexpr std::size_t max_markers = 10000;
 
 /// Returns the sRGB color of a condition; every condition has a different one.
 glm::vec3 marker_color(MeshCondition condition);
@@ -41,6 +41,6 @@ glm::vec3 marker_color(MeshCondition condition);
 /// \param severity  only conditions of this severity: problems (for which `relief-mesh check`
 ///         reports an unsound mesh) or notes; if absent, both. Problems alone are faster
 HealthMarkers health_markers(const Scene& scene,
-                             std::optional<Severity> severity = Severity::trouble);
+                             std::optional<Severity> severity = Severity::problem);
 
 }  // namespace relief

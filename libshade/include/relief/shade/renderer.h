@@ -38,7 +38,7 @@ struct Frame {
 };
 
 /// A frame that stays on the GPU.
-struct DrawnFrame {
+struct RenderedFrame {
     /// The OpenGL name of the picture, a 2D texture of one level, row 0 at the bottom, coded as in
     /// the settings; valid until the renderer draws again or is destroyed.
     unsigned texture = 0;
@@ -90,7 +90,7 @@ class Renderer {
     Frame draw(const Camera& camera);
 
     /// Draws without reading the picture back.
-    DrawnFrame draw_only(const Camera& camera);
+    RenderedFrame draw_only(const Camera& camera);
 
     /// The render target of the picture (libshade/src/gl/resources.h).
     [[nodiscard]] const gl::RenderTarget& target() const;

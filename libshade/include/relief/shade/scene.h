@@ -134,7 +134,7 @@ void validate(const Scene& scene);
 
 /// Checks only what animations move: instances and lights. Meshes are skipped, so the cost is
 /// negligible beside a frame.
-void validate_places(const Scene& scene);
+void validate_transforms(const Scene& scene);
 
 /// Checks a camera alone.
 void validate(const Camera& camera);

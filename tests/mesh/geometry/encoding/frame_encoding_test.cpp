@@ -90,22 +90,23 @@ void judge(const Frames& frames, RoundTrip& result) {
     }
 }
 
-RoundTrip round_trip(const TrueFrames& truth, FrameEncoding encoding, FrameRounding rounding) {
+RoundTrip round_trip(const TrueFrames& ground_truth, FrameEncoding encoding,
+                     FrameRounding rounding) {
     Report report;
-    const std::vector<std::uint32_t> words =
-        encode_frames(truth.float_normals, truth.float_tangents, encoding, rounding, report);
-    EXPECT_EQ(words.size(), truth.normals.size() * words_per_frame(encoding));
+    const std::vector<std::uint32_t> words = encode_frames(
+        ground_truth.float_normals, ground_truth.float_tangents, encoding, rounding, report);
+    EXPECT_EQ(words.size(), ground_truth.normals.size() * words_per_frame(encoding));
     const Frames frames = decode_frames(words, encoding, report);
     EXPECT_TRUE(report.empty()) << to_string(report.findings().front());
     RoundTrip result;
     judge(frames, result);
     std::vector<glm::vec3> tangents;
-    for (std::size_t i = 0; i < truth.normals.size(); ++i) {
+    for (std::size_t i = 0; i < ground_truth.normals.size(); ++i) {
         tangents.emplace_back(frames.tangents[i]);
-        result.wrong_hands += frames.tangents[i].w == truth.float_tangents[i].w ? 0U : 1U;
+        result.wrong_hands += frames.tangents[i].w == ground_truth.float_tangents[i].w ? 0U : 1U;
     }
-    result.normal = direction_error(frames.normals, truth.normals);
-    result.tangent = direction_error(tangents, truth.tangents);
+    result.normal = direction_error(frames.normals, ground_truth.normals);
+    result.tangent = direction_error(tangents, ground_truth.tangents);
     return result;
 }
 
@@ -140,9 +141,9 @@ constexpr std::array expected_errors = {
 };
 
 TEST(FrameEncoding, ErrsByWhatIsStatedAndNeverLosesTheHand) {
-    const TrueFrames truth = random_frames(100000);
+    const TrueFrames ground_truth = random_frames(100000);
     for (const Expected& expected : expected_errors) {
-        const RoundTrip found = round_trip(truth, expected.encoding, expected.rounding);
+        const RoundTrip found = round_trip(ground_truth, expected.encoding, expected.rounding);
         const std::string what = "encoding " + std::to_string(static_cast<int>(expected.encoding)) +
                                  ", rounding " +
                                  std::to_string(static_cast<int>(expected.rounding));
@@ -158,9 +159,9 @@ TEST(FrameEncoding, ErrsByWhatIsStatedAndNeverLosesTheHand) {
 }
 
 TEST(FrameEncoding, SpecialFramesErrNoMoreThanOthersAndKeepTheirHand) {
-    const TrueFrames truth = special_frames();
+    const TrueFrames ground_truth = special_frames();
     for (const Expected& expected : expected_errors) {
-        const RoundTrip found = round_trip(truth, expected.encoding, expected.rounding);
+        const RoundTrip found = round_trip(ground_truth, expected.encoding, expected.rounding);
         const std::string what = "encoding " + std::to_string(static_cast<int>(expected.encoding)) +
                                  ", rounding " +
                                  std::to_string(static_cast<int>(expected.rounding));
@@ -242,26 +243,26 @@ TEST(FrameEncoding, ComponentsLieWhereTheLayoutSays) {
 }
 
 TEST(FrameEncoding, BestIsNeverWorseThanNearestForTheNormal) {
-    const TrueFrames truth = random_frames(2000);
+    const TrueFrames ground_truth = random_frames(2000);
     for (const FrameEncoding encoding : all_frame_encodings) {
         Report report;
         std::array<Frames, 2> frames;
         for (const FrameRounding rounding : all_roundings) {
             frames[static_cast<std::size_t>(rounding)] =
-                decode_frames(encode_frames(truth.float_normals, truth.float_tangents, encoding,
-                                            rounding, report),
+                decode_frames(encode_frames(ground_truth.float_normals, ground_truth.float_tangents,
+                                            encoding, rounding, report),
                               encoding, report);
         }
-        for (std::size_t i = 0; i < truth.normals.size(); ++i) {
+        for (std::size_t i = 0; i < ground_truth.normals.size(); ++i) {
             const auto error = [&](const Frames& some) {
                 // Of a quaternion the angle of the whole turn is least, not that of each axis.
                 const double normal =
-                    degrees_between(glm::dvec3(some.normals[i]), truth.normals[i]);
+                    degrees_between(glm::dvec3(some.normals[i]), ground_truth.normals[i]);
                 const double tangent =
-                    degrees_between(glm::dvec3(some.tangents[i]), truth.tangents[i]);
+                    degrees_between(glm::dvec3(some.tangents[i]), ground_truth.tangents[i]);
                 const double bitangent = degrees_between(
                     glm::cross(glm::dvec3(some.normals[i]), glm::dvec3(some.tangents[i])),
-                    glm::cross(truth.normals[i], truth.tangents[i]));
+                    glm::cross(ground_truth.normals[i], ground_truth.tangents[i]));
                 const bool turn = encoding == quaternion8 || encoding == quaternion16;
                 return turn ? std::hypot(normal, tangent, bitangent) : normal;
             };
@@ -452,13 +453,13 @@ TEST(FrameEncoding, WhatIsNoFrameBecomesOneAndIsCounted) {
 }
 
 TEST(FrameEncoding, IsTheSameForAnyNumberOfThreads) {
-    const TrueFrames truth = random_frames(20000);
+    const TrueFrames ground_truth = random_frames(20000);
     for (const FrameEncoding encoding : all_frame_encodings) {
         const auto with_threads = [&](unsigned threads) {
             set_thread_limit(threads);
             Report report;
-            auto words =
-                encode_frames(truth.float_normals, truth.float_tangents, encoding, best, report);
+            auto words = encode_frames(ground_truth.float_normals, ground_truth.float_tangents,
+                                       encoding, best, report);
             Frames frames = decode_frames(words, encoding, report);
             set_thread_limit(0);
             return std::pair(std::move(words), std::move(frames));
@@ -472,9 +473,9 @@ TEST(FrameEncoding, IsTheSameForAnyNumberOfThreads) {
 }
 
 TEST(FrameEncoding, ErrorsAreThoseOfTheFramesAtHand) {
-    const TrueFrames truth = random_frames(20000);
-    const FrameEncodingError error =
-        frame_encoding_error(truth.float_normals, truth.float_tangents, angle10, best);
+    const TrueFrames ground_truth = random_frames(20000);
+    const FrameEncodingError error = frame_encoding_error(
+        ground_truth.float_normals, ground_truth.float_tangents, angle10, best);
     EXPECT_NEAR(error.normal.mean, 0.0782, 0.001);
     EXPECT_NEAR(error.tangent.mean, 0.0737, 0.001);
     EXPECT_EQ(error.normal.count, 20000U);
@@ -488,10 +489,10 @@ TEST(FrameEncoding, ErrorsAreThoseOfTheFramesAtHand) {
 }
 
 TEST(FrameEncoding, TheSmallestWithinABoundIsChosen) {
-    const TrueFrames truth = random_frames(20000);
+    const TrueFrames ground_truth = random_frames(20000);
     const auto chosen = [&](double degrees, FrameRounding rounding) {
-        return smallest_encoding_within(degrees, truth.float_normals, truth.float_tangents,
-                                        rounding);
+        return smallest_encoding_within(degrees, ground_truth.float_normals,
+                                        ground_truth.float_tangents, rounding);
     };
     // Four bytes: angle10 is off by 0.18 at most; eight: angle16 by 0.0024, the least of all.
     EXPECT_EQ(chosen(180.0, best).encoding, angle10);
@@ -514,7 +515,7 @@ TEST(FrameEncoding, TheSmallestWithinABoundIsChosen) {
 
 TEST(FrameEncoding, GivesTheSameBitsWhateverCompiledIt) {
     // FNV-1a over codes and decoded frames; GCC 12 and Clang 14, at any level of optimisation.
-    const TrueFrames truth = random_frames(50000);
+    const TrueFrames ground_truth = random_frames(50000);
     std::uint64_t hash = 0xcbf29ce484222325U;
     const auto mix = [&](const auto& values) {
         const auto* bytes = reinterpret_cast<const unsigned char*>(values.data());
@@ -524,8 +525,9 @@ TEST(FrameEncoding, GivesTheSameBitsWhateverCompiledIt) {
     for (const FrameEncoding encoding : all_frame_encodings) {
         for (const FrameRounding rounding : all_roundings) {
             Report report;
-            const auto words = encode_frames(truth.float_normals, truth.float_tangents, encoding,
-                                             rounding, report);
+            const auto words =
+                encode_frames(ground_truth.float_normals, ground_truth.float_tangents, encoding,
+                              rounding, report);
             const Frames frames = decode_frames(words, encoding, report);
             mix(words);
             mix(frames.normals);

@@ -33,13 +33,13 @@ using testing::Pair;
 std::map<MeshCondition, std::size_t> counts_of(const Mesh& mesh,
                                                const DiagnoseOptions& options = {}) {
     std::map<MeshCondition, std::size_t> counts;
-    for (const FoundCondition& found : diagnose(mesh, options).found)
+    for (const MeshConditionCount& found : diagnose(mesh, options).found)
         counts[found.condition] = found.count;
     return counts;
 }
 
 std::vector<std::size_t> first_of(const Mesh& mesh, MeshCondition condition) {
-    for (const FoundCondition& found : diagnose(mesh).found) {
+    for (const MeshConditionCount& found : diagnose(mesh).found) {
         if (found.condition == condition) return found.first;
     }
     return {};
@@ -73,14 +73,15 @@ TEST(Diagnose, DegenerateTrianglesByKind) {
                                  {0, 1, 4},    // narrower than 1e-4 of its length
                                  {0, 1, 5},    // wider
                                  {0, 1, 6}});  // nowhere
-    EXPECT_THAT(
-        counts_of(mesh, {.edges = false, .near_duplicates = false}),
-        ElementsAre(
-            Pair(MeshCondition::triangle_not_finite, 1), Pair(MeshCondition::triangle_collapsed, 2),
-            Pair(MeshCondition::triangle_collinear, 1), Pair(MeshCondition::triangle_needle, 1),
-            Pair(MeshCondition::vertex_not_finite, 1), Pair(MeshCondition::vertex_voiceless, 1)));
+    EXPECT_THAT(counts_of(mesh, {.edges = false, .near_duplicates = false}),
+                ElementsAre(Pair(MeshCondition::triangle_not_finite, 1),
+                            Pair(MeshCondition::triangle_collapsed, 2),
+                            Pair(MeshCondition::triangle_collinear, 1),
+                            Pair(MeshCondition::triangle_needle, 1),
+                            Pair(MeshCondition::vertex_not_finite, 1),
+                            Pair(MeshCondition::vertex_degenerate_fan, 1)));
     EXPECT_THAT(first_of(mesh, MeshCondition::triangle_collapsed), ElementsAre(1, 2));
-    EXPECT_THAT(first_of(mesh, MeshCondition::vertex_voiceless), ElementsAre(3));
+    EXPECT_THAT(first_of(mesh, MeshCondition::vertex_degenerate_fan), ElementsAre(3));
 }
 
 TEST(Diagnose, RepeatedTrianglesCountBeyondTheFirstWhicheverCornerTheyBeginWith) {
@@ -93,7 +94,7 @@ TEST(Diagnose, RepeatedTrianglesCountBeyondTheFirstWhicheverCornerTheyBeginWith)
 TEST(Diagnose, ASheetWithABackIsNeitherRepeatedNorNonManifold) {
     const Mesh mesh = mesh_from({o, x_axis, x_axis + y_axis, y_axis},
                                 {{0, 1, 2}, {0, 2, 3}, {2, 1, 0}, {3, 2, 0}});
-    EXPECT_THAT(counts_of(mesh), ElementsAre(Pair(MeshCondition::triangle_backed, 4)));
+    EXPECT_THAT(counts_of(mesh), ElementsAre(Pair(MeshCondition::triangle_two_sided, 4)));
 }
 
 TEST(Diagnose, EdgesByTheTrianglesOnThem) {
@@ -206,11 +207,11 @@ TEST(Diagnose, NormalsAgainstTheirTriangles) {
     Mesh mesh = square_with_normals({z_axis, z_axis, -z_axis, x_axis});
     EXPECT_THAT(counts_of(mesh), ElementsAre(Pair(MeshCondition::edge_boundary, 4),
                                              Pair(MeshCondition::normal_opposed, 1),
-                                             Pair(MeshCondition::normal_divided, 1)));
+                                             Pair(MeshCondition::normal_inconsistent, 1)));
     EXPECT_THAT(first_of(mesh, MeshCondition::normal_opposed), ElementsAre(2));
-    EXPECT_THAT(first_of(mesh, MeshCondition::normal_divided), ElementsAre(3)) << "sidewise";
+    EXPECT_THAT(first_of(mesh, MeshCondition::normal_inconsistent), ElementsAre(3)) << "sidewise";
     mesh.triangles[1] = {0, 3, 2};  // Turned over: 0 and 2 see one front and one back.
-    EXPECT_THAT(first_of(mesh, MeshCondition::normal_divided), ElementsAre(0, 2, 3));
+    EXPECT_THAT(first_of(mesh, MeshCondition::normal_inconsistent), ElementsAre(0, 2, 3));
 }
 
 TEST(Diagnose, TangentsThatSpanNoFrame) {
@@ -223,9 +224,9 @@ TEST(Diagnose, TangentsThatSpanNoFrame) {
     EXPECT_THAT(counts_of(mesh, {.edges = false}),
                 ElementsAre(Pair(MeshCondition::tangent_not_finite, 1),
                             Pair(MeshCondition::tangent_not_unit, 1),
-                            Pair(MeshCondition::tangent_unhanded, 1),
+                            Pair(MeshCondition::tangent_invalid_sign, 1),
                             Pair(MeshCondition::tangent_along_normal, 1),
-                            Pair(MeshCondition::tangent_leaning, 1)));
+                            Pair(MeshCondition::tangent_not_perpendicular, 1)));
 }
 
 TEST(Diagnose, TextureCoordinates) {
@@ -342,7 +343,7 @@ TEST(Diagnose, CrowdedShapesAreCountedToo) {
     const Mesh point = mesh_from(std::vector<glm::vec3>(count, x_axis),
                                  std::vector<glm::uvec3>(count, glm::uvec3(0, 1, 2)));
     EXPECT_THAT(counts_of(point), ElementsAre(Pair(MeshCondition::triangle_collapsed, count),
-                                              Pair(MeshCondition::vertex_voiceless, count)));
+                                              Pair(MeshCondition::vertex_degenerate_fan, count)));
     const Mesh same =
         mesh_from({o, x_axis, y_axis}, std::vector<glm::uvec3>(count, glm::uvec3(0, 1, 2)));
     EXPECT_EQ(counts_of(same).at(MeshCondition::triangle_repeated), count - 1);
@@ -364,15 +365,15 @@ TEST(DiagnoseWords, AreOneEach) {
 TEST(DiagnoseWords, FindingsCarryThemAndTheirSeverity) {
     const Diagnosis diagnosis = diagnose(mesh_from({o, x_axis, y_axis, -y_axis, z_axis},
                                                    {{0, 1, 2}, {1, 0, 3}, {0, 1, 4}, {0, 1, 1}}));
-    EXPECT_TRUE(diagnosis.has_trouble());
+    EXPECT_TRUE(diagnosis.has_problem());
     EXPECT_EQ(to_report(diagnosis).findings().size(), 3U);
-    const Report remarks = to_report(diagnosis, Severity::remark);
+    const Report remarks = to_report(diagnosis, Severity::note);
     ASSERT_EQ(remarks.findings().size(), 1U);
     EXPECT_EQ(to_string(remarks.findings()[0]),
               "6 x boundary edge (edge of triangle 0, 1, 2, ...): has one triangle: the surface is "
               "open there");
-    EXPECT_EQ(to_report(diagnosis, Severity::trouble).count("non-manifold edge"), 1U);
-    EXPECT_FALSE(diagnose(mesh_from({o, x_axis, y_axis}, {{0, 1, 2}})).has_trouble());
+    EXPECT_EQ(to_report(diagnosis, Severity::problem).count("non-manifold edge"), 1U);
+    EXPECT_FALSE(diagnose(mesh_from({o, x_axis, y_axis}, {{0, 1, 2}})).has_problem());
 }
 
 }  // namespace

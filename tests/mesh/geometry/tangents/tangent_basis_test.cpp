@@ -87,21 +87,21 @@ class TangentBasisTest : public testing::TestWithParam<TangentBasis> {};
 
 TEST_P(TangentBasisTest, IsToldFromTheOthers) {
     const Mesh mesh = made_by(GetParam());
-    const SniffedTangents sniffed = sniff_tangents(mesh);
-    ASSERT_EQ(sniffed.basis, GetParam());
-    EXPECT_THAT(sniffed.same_here, IsEmpty());
-    EXPECT_EQ(sniffed.corners, 3 * mesh.triangles.size());
-    EXPECT_EQ(sniffed.left_out + sniffed.undefined, 0U);
-    EXPECT_EQ(sniffed.stored_bits, 0);
-    EXPECT_EQ(sniffed.agreements.size(), tangent_bases().size());
-    EXPECT_EQ(sniffed.best()->basis, GetParam());
-    EXPECT_EQ(sniffed.best()->agreeing(), sniffed.corners);
-    EXPECT_LT(sniffed.best()->angles.max, 1e-4);
-    EXPECT_EQ(sniffed.best()->negated, 0U);
-    for (const BasisAgreement& other : sniffed.agreements) {
+    const IdentifiedTangents identified = identify_tangents(mesh);
+    ASSERT_EQ(identified.basis, GetParam());
+    EXPECT_THAT(identified.equivalent_methods, IsEmpty());
+    EXPECT_EQ(identified.corners, 3 * mesh.triangles.size());
+    EXPECT_EQ(identified.left_out + identified.undefined, 0U);
+    EXPECT_EQ(identified.stored_bits, 0);
+    EXPECT_EQ(identified.agreements.size(), tangent_bases().size());
+    EXPECT_EQ(identified.best()->basis, GetParam());
+    EXPECT_EQ(identified.best()->agreeing(), identified.corners);
+    EXPECT_LT(identified.best()->angles.max, 1e-4);
+    EXPECT_EQ(identified.best()->negated, 0U);
+    for (const TangentAgreement& other : identified.agreements) {
         if (other.basis == GetParam()) continue;
-        EXPECT_LT(other.share(), 0.6) << word_of(other.basis);
-        EXPECT_GT(other.angles.mean, 0.2) << word_of(other.basis);
+        EXPECT_LT(other.share(), 0.6) << name_of(other.basis);
+        EXPECT_GT(other.angles.mean, 0.2) << name_of(other.basis);
     }
 }
 
@@ -111,9 +111,9 @@ TEST_P(TangentBasisTest, IsToldThroughNoise) {
     std::normal_distribution<double> noise(0.0, 0.03);  // Degrees.
     for (std::size_t v = 0; v < mesh.tangents.size(); ++v)
         mesh.tangents[v] = turned(mesh, v, noise(random));
-    const SniffedTangents sniffed = sniff_tangents(mesh);
-    EXPECT_EQ(sniffed.basis, GetParam());
-    EXPECT_NEAR(sniffed.best()->angles.rms, 0.03, 0.003);
+    const IdentifiedTangents identified = identify_tangents(mesh);
+    EXPECT_EQ(identified.basis, GetParam());
+    EXPECT_NEAR(identified.best()->angles.rms, 0.03, 0.003);
 }
 
 TEST_P(TangentBasisTest, IsStillTheNearestWhereNoiseIsLarge) {
@@ -122,10 +122,10 @@ TEST_P(TangentBasisTest, IsStillTheNearestWhereNoiseIsLarge) {
     std::normal_distribution<double> noise(0.0, 0.3);
     for (std::size_t v = 0; v < mesh.tangents.size(); ++v)
         mesh.tangents[v] = turned(mesh, v, noise(random));
-    const SniffedTangents sniffed = sniff_tangents(mesh);
-    EXPECT_FALSE(sniffed.basis);
-    EXPECT_EQ(sniffed.best()->basis, GetParam());
-    EXPECT_TRUE(sniffed.is_best_by_far());
+    const IdentifiedTangents identified = identify_tangents(mesh);
+    EXPECT_FALSE(identified.basis);
+    EXPECT_EQ(identified.best()->basis, GetParam());
+    EXPECT_TRUE(identified.is_clearly_best());
 }
 
 TEST_P(TangentBasisTest, IsToldThroughStorageInFewBits) {
@@ -134,11 +134,11 @@ TEST_P(TangentBasisTest, IsToldThroughStorageInFewBits) {
         const float steps = bits == 8 ? 127.0F : 32767.0F;
         for (glm::vec4& tangent : mesh.tangents)
             tangent = glm::round(tangent * steps) / steps;
-        const SniffedTangents sniffed = sniff_tangents(mesh);
-        EXPECT_EQ(sniffed.basis, GetParam()) << bits;
-        EXPECT_EQ(sniffed.stored_bits, bits);
-        EXPECT_EQ(sniffed.tolerance, bits == 8 ? 0.5 : 0.1);
-        EXPECT_LT(sniffed.best()->angles.max, sniffed.tolerance) << "which has its reason";
+        const IdentifiedTangents identified = identify_tangents(mesh);
+        EXPECT_EQ(identified.basis, GetParam()) << bits;
+        EXPECT_EQ(identified.stored_bits, bits);
+        EXPECT_EQ(identified.tolerance, bits == 8 ? 0.5 : 0.1);
+        EXPECT_LT(identified.best()->angles.max, identified.tolerance) << "which has its reason";
     }
 }
 
@@ -146,7 +146,7 @@ TEST_P(TangentBasisTest, IsToldWhereTheSignIsNegated) {
     Mesh mesh = made_by(GetParam());
     for (glm::vec4& tangent : mesh.tangents)
         tangent.w = -tangent.w;
-    const SniffedTangents all = sniff_tangents(mesh);
+    const IdentifiedTangents all = identify_tangents(mesh);
     EXPECT_EQ(all.basis, GetParam());
     EXPECT_EQ(all.best()->quarter_turns, 0);
     EXPECT_EQ(all.best()->negated, all.corners);
@@ -154,7 +154,7 @@ TEST_P(TangentBasisTest, IsToldWhereTheSignIsNegated) {
     mesh = made_by(GetParam());
     for (std::size_t v = 0; v < mesh.tangents.size() / 4; ++v)
         mesh.tangents[v].w = -mesh.tangents[v].w;
-    const SniffedTangents some = sniff_tangents(mesh);
+    const IdentifiedTangents some = identify_tangents(mesh);
     EXPECT_EQ(some.basis, GetParam());
     EXPECT_GT(some.best()->negated, some.corners / 8);
     EXPECT_LT(some.best()->negated, some.corners / 2);
@@ -163,7 +163,7 @@ TEST_P(TangentBasisTest, IsToldWhereTheSignIsNegated) {
 INSTANTIATE_TEST_SUITE_P(Each, TangentBasisTest,
                          testing::ValuesIn(tangent_bases().begin(), tangent_bases().end()),
                          [](const auto& name) {
-                             std::string word(word_of(name.param));
+                             std::string word(name_of(name.param));
                              std::replace(word.begin(), word.end(), '-', '_');
                              return word;
                          });
@@ -189,12 +189,11 @@ TEST(TangentBasis, OtherAxesAreQuarterTurns) {
             mesh.tangents[v] = turned(mesh, v, expected.degrees * static_cast<double>(w));
             mesh.tangents[v].w = expected.negates ? -w : w;
         }
-        const SniffedTangents sniffed = sniff_tangents(mesh);
-        ASSERT_EQ(sniffed.basis, TangentBasis::mikktspace);
-        EXPECT_EQ(sniffed.best()->quarter_turns, expected.quarter_turns);
-        EXPECT_EQ(sniffed.best()->negated, expected.negates ? sniffed.corners : 0U);
-        EXPECT_EQ(variant_in_words(sniffed.best()->quarter_turns, expected.negates),
-                  expected.words);
+        const IdentifiedTangents identified = identify_tangents(mesh);
+        ASSERT_EQ(identified.basis, TangentBasis::mikktspace);
+        EXPECT_EQ(identified.best()->quarter_turns, expected.quarter_turns);
+        EXPECT_EQ(identified.best()->negated, expected.negates ? identified.corners : 0U);
+        EXPECT_EQ(variant_text(identified.best()->quarter_turns, expected.negates), expected.words);
     }
 }
 
@@ -208,10 +207,10 @@ TEST(TangentBasis, FlippedTextureCoordinatesAreSuchVariants) {
         flipped = with_tangents(std::move(flipped), TangentMode::mikktspace);
         ASSERT_EQ(flipped.texcoords.size(), texcoords.size()) << "no vertex was split";
         flipped.texcoords = texcoords;
-        const SniffedTangents sniffed = sniff_tangents(flipped);
-        ASSERT_EQ(sniffed.basis, TangentBasis::mikktspace);
-        EXPECT_EQ(sniffed.best()->quarter_turns, axis == 0 ? 2 : 0);
-        EXPECT_EQ(sniffed.best()->negated, sniffed.corners);
+        const IdentifiedTangents identified = identify_tangents(flipped);
+        ASSERT_EQ(identified.basis, TangentBasis::mikktspace);
+        EXPECT_EQ(identified.best()->quarter_turns, axis == 0 ? 2 : 0);
+        EXPECT_EQ(identified.best()->negated, identified.corners);
     }
 }
 
@@ -221,11 +220,11 @@ TEST(TangentBasis, RandomTangentsAreOfNone) {
     std::uniform_real_distribution<double> any(0.0, 360.0);
     for (std::size_t v = 0; v < mesh.tangents.size(); ++v)
         mesh.tangents[v] = turned(mesh, v, any(random));
-    const SniffedTangents sniffed = sniff_tangents(mesh);
-    EXPECT_FALSE(sniffed.basis);
-    ASSERT_NE(sniffed.best(), nullptr);
-    EXPECT_LT(sniffed.best()->share(), 0.01);
-    EXPECT_FALSE(sniffed.is_best_by_far());
+    const IdentifiedTangents identified = identify_tangents(mesh);
+    EXPECT_FALSE(identified.basis);
+    ASSERT_NE(identified.best(), nullptr);
+    EXPECT_LT(identified.best()->share(), 0.01);
+    EXPECT_FALSE(identified.is_clearly_best());
 }
 
 TEST(TangentBasis, OtherTextureCoordinatesAreOfNone) {
@@ -235,23 +234,24 @@ TEST(TangentBasis, OtherTextureCoordinatesAreOfNone) {
         mesh.texcoords[v].x += 0.7F * mesh.texcoords[v].y;
         mesh.texcoords[v].y += 0.3F * mesh.texcoords[v].x;
     }
-    EXPECT_FALSE(sniff_tangents(mesh).basis);
+    EXPECT_FALSE(identify_tangents(mesh).basis);
 }
 
 TEST(TangentBasis, OnAPlaneAllAreTheSame) {
-    const SniffedTangents sniffed =
-        sniff_tangents(with_tangents(make_quad(4), TangentMode::lengyel));
-    EXPECT_EQ(sniffed.basis, TangentBasis::mikktspace) << "the usual one";
-    EXPECT_THAT(sniffed.same_here, ElementsAre(TangentBasis::area_weighted, TangentBasis::lengyel,
-                                               TangentBasis::triangle));
-    EXPECT_EQ(sniffed.stored_bits, 0) << "whole numbers are no sign of few bits";
+    const IdentifiedTangents identified =
+        identify_tangents(with_tangents(make_quad(4), TangentMode::lengyel));
+    EXPECT_EQ(identified.basis, TangentBasis::mikktspace) << "the usual one";
+    EXPECT_THAT(
+        identified.equivalent_methods,
+        ElementsAre(TangentBasis::area_weighted, TangentBasis::lengyel, TangentBasis::triangle));
+    EXPECT_EQ(identified.stored_bits, 0) << "whole numbers are no sign of few bits";
 }
 
 TEST(TangentBasis, LeaningTangentsAreJudgedInThePlaneOfTheNormal) {
     Mesh mesh = made_by(TangentBasis::mikktspace);
     for (std::size_t v = 0; v < mesh.tangents.size(); ++v)
         mesh.tangents[v] += glm::vec4(0.2F * mesh.normals[v], 0.0F);
-    EXPECT_EQ(sniff_tangents(mesh).basis, TangentBasis::mikktspace);
+    EXPECT_EQ(identify_tangents(mesh).basis, TangentBasis::mikktspace);
 }
 
 /// Each triangle's own direction of u then has no part in the plane of the normal: no angle of 0.
@@ -259,7 +259,7 @@ TEST(TangentBasis, MethodsWithoutAnyDirectionAreNotTheNearest) {
     Mesh quad = make_quad();
     quad.normals.assign(4, {1.0F, 0.0F, 0.0F});
     quad.tangents.assign(4, {0.0F, 0.8F, 0.6F, 1.0F});
-    const SniffedTangents found = sniff_tangents(quad);
+    const IdentifiedTangents found = identify_tangents(quad);
     EXPECT_FALSE(found.basis);
     ASSERT_NE(found.best(), nullptr);
     EXPECT_NE(found.best()->basis, TangentBasis::triangle);
@@ -268,7 +268,7 @@ TEST(TangentBasis, MethodsWithoutAnyDirectionAreNotTheNearest) {
 
 TEST(TangentBasis, UncertainCornersAreLeftOut) {
     Mesh mesh = made_by(TangentBasis::mikktspace);
-    const SniffedTangents before = sniff_tangents(mesh);
+    const IdentifiedTangents before = identify_tangents(mesh);
     mesh.tangents[mesh.triangles[5].x] = glm::vec4(0.0F, 0.0F, 0.0F, 1.0F);
     mesh.tangents[mesh.triangles[9].x] =
         glm::vec4(std::numeric_limits<float>::quiet_NaN(), 0.0F, 0.0F, 1.0F);
@@ -285,12 +285,12 @@ TEST(TangentBasis, UncertainCornersAreLeftOut) {
     for (std::uint32_t i = 0; i < 3; ++i)
         mesh.triangles.emplace_back(first + 3 * i, first + 3 * i + 1, first + 3 * i + 2);
     mesh.material_ranges.clear();
-    const SniffedTangents sniffed = sniff_tangents(mesh);
-    EXPECT_EQ(sniffed.basis, TangentBasis::mikktspace);
-    EXPECT_EQ(sniffed.left_out, 9U);
-    EXPECT_GT(sniffed.undefined, 2U) << "all corners of two vertices";
-    EXPECT_LE(sniffed.undefined, 16U);
-    EXPECT_EQ(sniffed.corners + sniffed.undefined, before.corners);
+    const IdentifiedTangents identified = identify_tangents(mesh);
+    EXPECT_EQ(identified.basis, TangentBasis::mikktspace);
+    EXPECT_EQ(identified.left_out, 9U);
+    EXPECT_GT(identified.undefined, 2U) << "all corners of two vertices";
+    EXPECT_LE(identified.undefined, 16U);
+    EXPECT_EQ(identified.corners + identified.undefined, before.corners);
 }
 
 TEST(TangentBasis, WithoutWhatItTakesNothingIsSaid) {
@@ -300,14 +300,14 @@ TEST(TangentBasis, WithoutWhatItTakesNothingIsSaid) {
         if (missing == 0) mesh.tangents.clear();
         if (missing == 1) mesh.normals.clear();
         if (missing == 2) mesh.texcoords.clear();
-        const SniffedTangents sniffed = sniff_tangents(mesh);
-        EXPECT_FALSE(sniffed.basis);
-        EXPECT_EQ(sniffed.best(), nullptr);
+        const IdentifiedTangents identified = identify_tangents(mesh);
+        EXPECT_FALSE(identified.basis);
+        EXPECT_EQ(identified.best(), nullptr);
     }
-    EXPECT_EQ(sniff_tangents({}).best(), nullptr);
+    EXPECT_EQ(identify_tangents({}).best(), nullptr);
     Mesh broken = whole;
     broken.triangles.front().x = 1000000;
-    EXPECT_THROW(sniff_tangents(broken), InvalidInput);
+    EXPECT_THROW(identify_tangents(broken), InvalidInput);
 }
 
 TEST(TangentBasis, OfRealModels) {
@@ -332,7 +332,7 @@ TEST(TangentBasis, OfRealModels) {
         SCOPED_TRACE(model.file);
         Report report;
         const GltfDocument document = GltfDocument::read(models / model.file, report);
-        EXPECT_EQ(sniff_tangents(document.mesh({0, 0}, model.set)).basis, model.basis);
+        EXPECT_EQ(identify_tangents(document.mesh({0, 0}, model.set)).basis, model.basis);
     }
 }
 

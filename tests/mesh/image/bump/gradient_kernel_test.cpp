@@ -91,9 +91,9 @@ ForwardErrors measured_forward_errors() {
                 };
                 const glm::dvec2 found(height(start + 1.0, 0.0) - height(start, 0.0),
                                        height(0.0, start + 1.0) - height(0.0, start));
-                const glm::dvec2 truth = std::cos(phase) * w;
-                return std::abs(std::atan2(found.x * truth.y - found.y * truth.x,
-                                           found.x * truth.x + found.y * truth.y)) *
+                const glm::dvec2 ground_truth = std::cos(phase) * w;
+                return std::abs(std::atan2(found.x * ground_truth.y - found.y * ground_truth.x,
+                                           found.x * ground_truth.x + found.y * ground_truth.y)) *
                        180.0 / pi;
             };
             largest.half_texel_on = std::max(largest.half_texel_on, error_from(-0.5));

@@ -73,7 +73,7 @@ INSTANTIATE_TEST_SUITE_P(
 
 TEST(RealPictures, AreNotTakenForNormalMaps) {
     RELIEF_NEEDS_SHARED(folder, "data/textures");
-    int looked_at = 0;
+    int analyzed = 0;
     for (const char* root : {"data/textures", "data/models", "data/env/cube"}) {
         for (const auto& entry :
              std::filesystem::recursive_directory_iterator(test::shared_directory() / root)) {
@@ -87,10 +87,10 @@ TEST(RealPictures, AreNotTakenForNormalMaps) {
                 continue;  // A normal map: BoomBox_normal, Normal Map, rock023_nrm_rgh, ...
             const NormalMapCheck check = check_normal_map(read_image(entry.path(), ImageUse::data));
             EXPECT_TRUE(check.has(MapCondition::not_normals)) << name;
-            ++looked_at;
+            ++analyzed;
         }
     }
-    EXPECT_GE(looked_at, 40);
+    EXPECT_GE(analyzed, 40);
 }
 
 }  // namespace

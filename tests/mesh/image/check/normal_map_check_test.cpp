@@ -44,7 +44,7 @@ Image map_of(const Image& heights, const NormalMapFormat& format = {.bits = 8}) 
 
 std::vector<MapCondition> conditions_of(const NormalMapCheck& check) {
     std::vector<MapCondition> conditions;
-    for (const FoundMapCondition& found : check.found)
+    for (const MapConditionCount& found : check.found)
         conditions.push_back(found.condition);
     return conditions;
 }
@@ -68,7 +68,7 @@ TEST(NormalMapCheck, FindsNothingWrongWithASoundMap) {
     EXPECT_LT(check.lengths.rms_deviation, 0.005);
     EXPECT_EQ(check.lengths.within[0], 1.0);
     EXPECT_THAT(conditions_of(check), testing::IsEmpty());
-    EXPECT_FALSE(check.has_trouble());
+    EXPECT_FALSE(check.has_problem());
 }
 
 TEST(NormalMapCheck, TellsGreenThroughNoiseBitsAndStrength) {
@@ -174,7 +174,7 @@ TEST(NormalMapCheck, TellsObjectSpaceXyGreyAndColours) {
     EXPECT_TRUE(check_normal_map(xy).has(z_missing));
     EXPECT_EQ(check_normal_map(xy).green.green, Green::up);
 
-    EXPECT_EQ(check_normal_map(test::rough(32, 32)).content, MapContent::grey);
+    EXPECT_EQ(check_normal_map(test::rough(32, 32)).content, MapContent::gray);
     Image colors = make_image(64, 64, 3, 8, ColorSpace::data);
     Random random(1);
     for (std::uint8_t& sample : colors.as<std::uint8_t>())
@@ -196,7 +196,7 @@ TEST(NormalMapCheck, CountsTexelsThatAreNoNormals) {
     set(5, 0, 0, 0);
     const NormalMapCheck check = check_normal_map(map);
     ASSERT_THAT(conditions_of(check),
-                testing::ElementsAre(texel_without_direction, texel_facing_back, texel_grey));
+                testing::ElementsAre(texel_without_direction, texel_facing_back, texel_gray));
     EXPECT_EQ(check.found[0].first, (std::vector<std::size_t>{7}));
     EXPECT_EQ(check.found[1].count, 2U);
     EXPECT_EQ(check.found[1].first, (std::vector<std::size_t>{9, 4000}));

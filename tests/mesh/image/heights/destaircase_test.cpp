@@ -45,7 +45,7 @@ DirectionError error_by(const BumpField& field, Kernel kernel, int radius) {
 }
 
 /// The least error that some kernel leaves.
-double least_error(const BumpField& field) {
+double min_error(const BumpField& field) {
     double least = error_by(field, Kernel::central3, 2).rms;
     for (const Kernel kernel : {Kernel::scharr3, Kernel::sobel3, Kernel::prewitt3, Kernel::central5,
                                 Kernel::central7, Kernel::sobel5, Kernel::scharr5})
@@ -255,9 +255,9 @@ TEST(Destaircase, TheBestKernelGainsOnSmoothMapsAndLosesLittleOnDetailedOnes) {
     for (const FieldRecipe& recipe : tuning_fields()) {
         if (recipe.coding != FieldCoding::bits8 || recipe.noise > 0.0) continue;
         BumpField field = make_bump_field(recipe, 192, 192);
-        const double before = least_error(field);
+        const double before = min_error(field);
         field.heights = destaircase(field.heights, {*field.options.wrap}).heights;
-        const double gain = before / least_error(field);
+        const double gain = before / min_error(field);
         const bool is_smooth = recipe.shape == FieldShape::waves && recipe.shortest >= 16.0;
         EXPECT_GT(gain, is_smooth ? 1.2 : 0.85) << recipe.name;
     }

@@ -29,9 +29,9 @@ Image rgba16(std::vector<std::uint16_t> samples) {
 }
 
 TEST(HeightField, GreyIsItselfRgbItsMeanAndAlphaIsLeftOut) {
-    Image grey = make_image(2, 1, 2, 8, ColorSpace::data);
-    grey.samples = std::vector<std::uint8_t>{51, 7, 255, 0};
-    EXPECT_THAT(samples_of<float>(height_field(grey)), ElementsAre(0.2F, 1.0F));
+    Image gray = make_image(2, 1, 2, 8, ColorSpace::data);
+    gray.samples = std::vector<std::uint8_t>{51, 7, 255, 0};
+    EXPECT_THAT(samples_of<float>(height_field(gray)), ElementsAre(0.2F, 1.0F));
     Image rgb = make_image(1, 1, 4, 16, ColorSpace::data);
     rgb.samples = std::vector<std::uint16_t>{65535, 0, 13107, 9};
     EXPECT_THAT(samples_of<float>(height_field(rgb)), ElementsAre(0.4F));
@@ -41,14 +41,14 @@ TEST(HeightField, GreyIsItselfRgbItsMeanAndAlphaIsLeftOut) {
 }
 
 TEST(HeightField, AGreyPictureStoredAsRgbGivesTheHeightsOfTheGreyOne) {
-    Image grey = make_image(256, 1, 1, 8, ColorSpace::data);
+    Image gray = make_image(256, 1, 1, 8, ColorSpace::data);
     Image rgb = make_image(256, 1, 3, 8, ColorSpace::srgb);
     for (std::size_t code = 0; code < 256; ++code) {
-        grey.as<std::uint8_t>()[code] = static_cast<std::uint8_t>(code);
+        gray.as<std::uint8_t>()[code] = static_cast<std::uint8_t>(code);
         for (std::size_t channel = 0; channel < 3; ++channel)
             rgb.as<std::uint8_t>()[code * 3 + channel] = static_cast<std::uint8_t>(code);
     }
-    EXPECT_EQ(height_field(rgb).samples, height_field(grey).samples);
+    EXPECT_EQ(height_field(rgb).samples, height_field(gray).samples);
 }
 
 TEST(HeightField, AnEmptyImageIsRefused) {
@@ -77,13 +77,13 @@ TEST(HeightField, LuminanceIsOfDecodedColours) {
 }
 
 TEST(HeightField, GreyHasOneHeightWhateverIsAskedButNoColours) {
-    Image grey = make_image(1, 1, 2, 8, ColorSpace::data);
-    grey.samples = std::vector<std::uint8_t>{51, 102};
+    Image gray = make_image(1, 1, 2, 8, ColorSpace::data);
+    gray.samples = std::vector<std::uint8_t>{51, 102};
     for (const HeightChannel channel :
          {HeightChannel::mean, HeightChannel::luminance, HeightChannel::red})
-        EXPECT_THAT(samples_of<float>(height_field(grey, channel)), ElementsAre(0.2F));
-    EXPECT_THAT(samples_of<float>(height_field(grey, HeightChannel::alpha)), ElementsAre(0.4F));
-    EXPECT_EQ(message_of<InvalidInput>([&] { height_field(grey, HeightChannel::blue); }),
+        EXPECT_THAT(samples_of<float>(height_field(gray, channel)), ElementsAre(0.2F));
+    EXPECT_THAT(samples_of<float>(height_field(gray, HeightChannel::alpha)), ElementsAre(0.4F));
+    EXPECT_EQ(message_of<InvalidInput>([&] { height_field(gray, HeightChannel::blue); }),
               "a grey image has no blue channel to take heights from");
     const Image rgb = make_image(1, 1, 3, 8, ColorSpace::data);
     EXPECT_EQ(message_of<InvalidInput>([&] { height_field(rgb, HeightChannel::alpha); }),
@@ -91,9 +91,9 @@ TEST(HeightField, GreyHasOneHeightWhateverIsAskedButNoColours) {
 }
 
 TEST(HeightMap, KeepsTheSamplesOfAGreyImage) {
-    Image grey = make_image(2, 1, 1, 16, ColorSpace::data);
-    grey.samples = std::vector<std::uint16_t>{1, 65535};
-    const HeightMap map = height_map(std::move(grey));
+    Image gray = make_image(2, 1, 1, 16, ColorSpace::data);
+    gray.samples = std::vector<std::uint16_t>{1, 65535};
+    const HeightMap map = height_map(std::move(gray));
     EXPECT_THAT(samples_of<std::uint16_t>(map.heights), ElementsAre(1, 65535));
     EXPECT_TRUE(map.alpha.empty());
     EXPECT_TRUE(map.transparent.empty());

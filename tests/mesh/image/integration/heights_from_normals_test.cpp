@@ -33,9 +33,9 @@ Image normals_of_heights(const Image& heights, Kernel kernel, Wraps wrap,
 }
 
 /// Root mean square difference, the means taken out.
-double height_error(const Image& heights, const Image& truth) {
+double height_error(const Image& heights, const Image& ground_truth) {
     const std::span<const float> a = heights.as<float>();
-    const std::span<const float> b = truth.as<float>();
+    const std::span<const float> b = ground_truth.as<float>();
     double sum = 0.0, squares = 0.0;
     for (std::size_t i = 0; i < a.size(); ++i) {
         const double difference = static_cast<double>(a[i]) - static_cast<double>(b[i]);
@@ -214,7 +214,7 @@ TEST(HeightsFromNormals, RefuseWhatIsNoMap) {
     EXPECT_EQ(message(make_image(2, 2, 3, 8, ColorSpace::data)),
               "normals have 3 float channels, not 3 of 8 bits");
     IntegrationOptions options;
-    options.steepest = 0.0;
+    options.max_slope = 0.0;
     EXPECT_EQ(message(make_image(2, 2, 3, 32, ColorSpace::data), options),
               "a steepest slope of 0 is not within 0.001 to 1e6");
 }

@@ -215,7 +215,7 @@ TEST(CountLengths, RoundingAndDitheringAreWithinWhatCodesCanHold) {
                 Report report;
                 const Image map =
                     encode_normal_map(sphere(), {bits, Green::up, flat, dither}, report);
-                count_lengths(map, flat, report);
+                measure_lengths(map, flat, report);
                 EXPECT_TRUE(report.empty()) << bits;
             }
         }
@@ -227,7 +227,7 @@ TEST(CountLengths, CountsWhatNoCodeExplains) {
     const Image map =
         image_of<std::uint8_t>(3, {128, 128, 228, 128, 167, 249, 128, 128, 128, 255, 128, 255});
     Report report;
-    const LengthSpread spread = count_lengths(map, FlatCode::middle, report);
+    const LengthRange spread = measure_lengths(map, FlatCode::middle, report);
     ASSERT_EQ(report.findings().size(), 1U);
     EXPECT_EQ(report.findings()[0].kind, "normal not of unit length");
     EXPECT_THAT(report.findings()[0].first, ElementsAre(0, 2, 3));
@@ -237,7 +237,7 @@ TEST(CountLengths, CountsWhatNoCodeExplains) {
                 (100.0 / 127 + std::hypot(121.0, 39.0) / 127 + 0.0 + std::sqrt(2.0)) / 4, 1e-12);
     Image floats = image_of<float>(3, {NAN, 0.5F, 1.0F, 0.5F, 0.5F, 1.0F});
     Report of_floats;
-    EXPECT_EQ(count_lengths(floats, FlatCode::middle, of_floats).mean, 1.0);
+    EXPECT_EQ(measure_lengths(floats, FlatCode::middle, of_floats).mean, 1.0);
     EXPECT_EQ(of_floats.count("normal not of unit length"), 1U);
 }
 

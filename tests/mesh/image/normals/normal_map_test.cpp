@@ -202,9 +202,9 @@ TEST(NormalMap, WrongImagesAndDepthsAreRefused) {
     EXPECT_THROW(encode_normal_map(make_image(1, 1, 3, 8, ColorSpace::data), {}, report),
                  InvalidInput);
     EXPECT_THROW(encode_normal_map(map_of({0, 0, 1}), {12}, report), InvalidInput);
-    const Image grey = make_image(1, 1, 2, 8, ColorSpace::data);
-    EXPECT_THROW(decode_normal_map(grey, Green::up, FlatCode::half, report), InvalidInput);
-    EXPECT_THROW(detect_flat_code(grey), InvalidInput);
+    const Image gray = make_image(1, 1, 2, 8, ColorSpace::data);
+    EXPECT_THROW(decode_normal_map(gray, Green::up, FlatCode::half, report), InvalidInput);
+    EXPECT_THROW(detect_flat_code(gray), InvalidInput);
     EXPECT_THROW(detect_flat_code(Image{}), InvalidInput);
 }
 
@@ -233,10 +233,11 @@ TEST(NormalMap, TheDefaultIsWhatGltfAndEnginesDecode) {
             const auto decoded = [&](std::size_t i) {
                 return 2.0 * static_cast<double>(map.as<float>()[first + i]) - 1.0;
             };
-            const glm::dvec3 truth(normals.as<float>()[first], normals.as<float>()[first + 1],
-                                   normals.as<float>()[first + 2]);
-            largest = std::max(largest,
-                               test::degrees_between({decoded(0), decoded(1), decoded(2)}, truth));
+            const glm::dvec3 ground_truth(normals.as<float>()[first],
+                                          normals.as<float>()[first + 1],
+                                          normals.as<float>()[first + 2]);
+            largest = std::max(
+                largest, test::degrees_between({decoded(0), decoded(1), decoded(2)}, ground_truth));
         }
         // Half a code in three components, and none of another zero.
         EXPECT_LT(largest, bits == 8 ? 0.395 : 0.0016);

@@ -473,11 +473,11 @@ TEST_F(GltfDocumentTest, ImagesInFilesAreCopiedAlongOrPutInside) {
 
 TEST_F(GltfDocumentTest, WhatOtherFormatsCannotHoldIsListed) {
     RELIEF_NEEDS_SHARED(gltf, "data/models/gltf");
-    EXPECT_THAT(read(gltf / "Fox/glTF-Binary/Fox.glb").beyond_a_mesh(),
+    EXPECT_THAT(read(gltf / "Fox/glTF-Binary/Fox.glb").unsupported_contents(),
                 ElementsAre("3 animations", "1 skin", "2 further vertex attributes"));
-    EXPECT_THAT(read(gltf / "SimpleMorph/glTF-Embedded/SimpleMorph.gltf").beyond_a_mesh(),
+    EXPECT_THAT(read(gltf / "SimpleMorph/glTF-Embedded/SimpleMorph.gltf").unsupported_contents(),
                 ElementsAre("1 animation", "2 morph targets"));
-    EXPECT_THAT(read(gltf / "Cameras/glTF-Embedded/Cameras.gltf").beyond_a_mesh(),
+    EXPECT_THAT(read(gltf / "Cameras/glTF-Embedded/Cameras.gltf").unsupported_contents(),
                 ElementsAre("2 cameras"));
 }
 
@@ -616,14 +616,14 @@ TEST_F(GltfTangentTexcoordsTest, TheTransformHasTheLastWord) {
 }
 
 TEST_F(GltfTangentTexcoordsTest, TurningAndMirroringAreSaid) {
-    EXPECT_FALSE(of(two_, transformed({{"rotation", 0.0}})).is_turned);
-    EXPECT_FALSE(of(two_, transformed({{"rotation", 6.2831853}})).is_turned) << "a full turn";
-    EXPECT_FALSE(of(two_, transformed({{"scale", {0.25, 8}}})).is_turned);
-    EXPECT_TRUE(of(two_, transformed({{"rotation", 1.5707963}})).is_turned);
-    EXPECT_TRUE(of(two_, transformed({{"rotation", 3.1415927}})).is_turned) << "half a turn";
-    EXPECT_TRUE(of(two_, transformed({{"rotation", -0.01}})).is_turned);
-    EXPECT_TRUE(of(two_, transformed({{"scale", {-1, 1}}})).is_turned);
-    EXPECT_TRUE(of(two_, transformed({{"scale", {1, -2}}})).is_turned);
+    EXPECT_FALSE(of(two_, transformed({{"rotation", 0.0}})).is_rotated);
+    EXPECT_FALSE(of(two_, transformed({{"rotation", 6.2831853}})).is_rotated) << "a full turn";
+    EXPECT_FALSE(of(two_, transformed({{"scale", {0.25, 8}}})).is_rotated);
+    EXPECT_TRUE(of(two_, transformed({{"rotation", 1.5707963}})).is_rotated);
+    EXPECT_TRUE(of(two_, transformed({{"rotation", 3.1415927}})).is_rotated) << "half a turn";
+    EXPECT_TRUE(of(two_, transformed({{"rotation", -0.01}})).is_rotated);
+    EXPECT_TRUE(of(two_, transformed({{"scale", {-1, 1}}})).is_rotated);
+    EXPECT_TRUE(of(two_, transformed({{"scale", {1, -2}}})).is_rotated);
 }
 
 TEST_F(GltfTangentTexcoordsTest, OtherTexturesInTangentSpaceStandIn) {

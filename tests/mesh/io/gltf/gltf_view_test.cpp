@@ -220,9 +220,10 @@ TEST_F(GltfViewTest, FlattenedNormalsStayPerpendicularUnderUnevenScale) {
         for (std::size_t i = 0; i < flat.mesh.positions.size(); ++i) {
             const glm::dvec3 local =
                 glm::transpose(rotation) * glm::dvec3(flat.mesh.positions[i]) / scale;
-            const glm::dvec3 truth = rotation * (local / scale);
+            const glm::dvec3 ground_truth = rotation * (local / scale);
             // Rounding of float positions and normals, stretched by the ratio of the scales.
-            ASSERT_LT(test::degrees_between(flat.mesh.normals[i], truth), 1e-4) << x << " " << i;
+            ASSERT_LT(test::degrees_between(flat.mesh.normals[i], ground_truth), 1e-4)
+                << x << " " << i;
         }
         // Front faces look outwards, mirrored or not.
         const glm::uvec3 t = flat.mesh.triangles[100];

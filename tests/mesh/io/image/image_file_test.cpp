@@ -235,7 +235,7 @@ TEST(ImageFile, WhatAFormatCannotHoldIsRefusedAndTheOldFileStays) {
     const Image alpha = pattern<std::uint8_t>(4, 4, 4, ColorSpace::srgb);
     const Image words = pattern<std::uint16_t>(4, 4, 3, ColorSpace::data);
     const Image floats = pattern<float>(4, 4, 3, ColorSpace::linear);
-    const Image grey = pattern<float>(4, 4, 1, ColorSpace::linear);
+    const Image gray = pattern<float>(4, 4, 1, ColorSpace::linear);
     Image linear_bytes = bytes;
     linear_bytes.color_space = ColorSpace::linear;
     Image coded_floats = floats;
@@ -245,7 +245,7 @@ TEST(ImageFile, WhatAFormatCannotHoldIsRefusedAndTheOldFileStays) {
     const std::pair<const char*, const Image*> wrong[] = {
         {"a.png", &floats},       {"a.jpg", &floats},       {"a.jpg", &words},
         {"a.jpg", &alpha},        {"a.exr", &bytes},        {"a.hdr", &words},
-        {"a.hdr", &grey},         {"a.png", &linear_bytes}, {"a.tif", &linear_bytes},
+        {"a.hdr", &gray},         {"a.png", &linear_bytes}, {"a.tif", &linear_bytes},
         {"a.exr", &coded_floats}, {"a.tif", &coded_floats}, {"a.png", &short_of_one}};
     for (const auto& [name, image] : wrong) {
         std::ofstream(folder / name) << "old";

@@ -39,14 +39,14 @@ void copy_as_rgb(const std::filesystem::path& from, const std::filesystem::path&
     ImageRowReader reader(from);
     const ImageInfo info = reader.info();
     ImageRowWriter writer(to, {info.width, info.height, 3, 16, ColorSpace::data});
-    std::vector<std::uint16_t> grey(static_cast<std::size_t>(info.width)), expected = grey;
-    std::vector<std::uint16_t> color(grey.size() * 3);
+    std::vector<std::uint16_t> gray(static_cast<std::size_t>(info.width)), expected = gray;
+    std::vector<std::uint16_t> color(gray.size() * 3);
     for (int y = 0; y < info.height; ++y) {
-        reader.read(std::as_writable_bytes(std::span(grey)));
+        reader.read(std::as_writable_bytes(std::span(gray)));
         fill_row(expected, y);
-        ASSERT_EQ(grey, expected);
+        ASSERT_EQ(gray, expected);
         for (std::size_t i = 0; i < color.size(); ++i)
-            color[i] = grey[i / 3];
+            color[i] = gray[i / 3];
         writer.write(std::as_bytes(std::span(color)));
     }
     writer.finish();

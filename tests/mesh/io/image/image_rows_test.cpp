@@ -121,7 +121,7 @@ TEST(ImageRows, WholeImagesAndRowsGiveTheSameFile) {
 }
 
 /// 5 MB of slopes that go up and down, with some noise: several pieces, some with repetitions.
-Bytes smooth_words(const ImageShape& shape) {
+Bytes smooth_text(const ImageShape& shape) {
     Bytes bytes;
     std::uint32_t state = 3;
     for (int y = 0; y < shape.height; ++y) {
@@ -139,7 +139,7 @@ Bytes smooth_words(const ImageShape& shape) {
 TEST(ImageRows, TheNumberOfThreadsChangesNoByteAndLibpngReadsThemAll) {
     const TemporaryDirectory folder;
     const ImageShape shape{900, 1000, 3, 16, ColorSpace::data};
-    const Bytes samples = smooth_words(shape);
+    const Bytes samples = smooth_text(shape);
     for (const WriteEffort effort : {WriteEffort::fast, WriteEffort::normal, WriteEffort::small}) {
         std::string first;
         for (const unsigned threads : {1U, 2U, 7U}) {
@@ -159,7 +159,7 @@ TEST(ImageRows, TheNumberOfThreadsChangesNoByteAndLibpngReadsThemAll) {
 TEST(ImageRows, MoreEffortMakesSmallerPngAndTiffFilesOfTheSameSamples) {
     const TemporaryDirectory folder;
     const ImageShape shape{900, 1000, 3, 16, ColorSpace::data};
-    const Bytes samples = smooth_words(shape);
+    const Bytes samples = smooth_text(shape);
     for (const char* name : {"a.png", "a.tif"}) {
         const auto size = [&](WriteEffort effort) {
             write_in_pieces(folder / name, shape, samples, {.effort = effort});

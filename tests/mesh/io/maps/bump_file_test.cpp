@@ -52,7 +52,7 @@ std::string bytes_of(const std::filesystem::path& file) {
 }
 
 /// A choice by which even the smallest map is read by rows, a few at a time.
-HeightMapChoice by_rows(std::size_t texels_per_band, HeightChannel channel = HeightChannel::mean) {
+HeightMapOptions by_rows(std::size_t texels_per_band, HeightChannel channel = HeightChannel::mean) {
     return {channel, false, 0, texels_per_band};
 }
 
@@ -66,7 +66,7 @@ class BumpFile : public testing::Test {
     /// What a file becomes, read back.
     Image converted(const std::filesystem::path& file, const BumpOptions& options,
                     const BumpFileFormat& format, Report& report,
-                    const HeightMapChoice& choice = {}) const {
+                    const HeightMapOptions& choice = {}) const {
         write_bump_file(HeightMapFile(file, choice), options, folder_ / "out.exr", format, report);
         return read_image(folder_ / "out.exr", ImageUse::data);
     }
@@ -108,7 +108,7 @@ TEST_P(StreamedBumpFile, HasTheBytesOfAMapInMemoryWhateverTheBandsAndThreads) {
     BumpFileFormat format;
     format.normals.bits = map.output_bits;
     format.alpha = MapAlpha::height;
-    const HeightMapChoice ignore_alpha{HeightChannel::mean, true};
+    const HeightMapOptions ignore_alpha{HeightChannel::mean, true};
     Report report;
     const HeightMapFile whole(file, ignore_alpha);
     ASSERT_FALSE(whole.is_streamed());
@@ -117,7 +117,7 @@ TEST_P(StreamedBumpFile, HasTheBytesOfAMapInMemoryWhateverTheBandsAndThreads) {
     for (const std::size_t texels_per_band : {1U, 100U, 1000U, 1000000U}) {
         for (const unsigned threads : {1U, 3U}) {
             set_thread_limit(threads);
-            HeightMapChoice choice = by_rows(texels_per_band);
+            HeightMapOptions choice = by_rows(texels_per_band);
             choice.ignore_alpha = true;
             const HeightMapFile streamed(file, choice);
             ASSERT_TRUE(streamed.is_streamed());
@@ -327,7 +327,7 @@ TEST_F(BumpFile, HolesAreFilledAsInImages) {
     BumpFileFormat format;
     format.normals.bits = 32;
     Report report;
-    HeightMapChoice choice;
+    HeightMapOptions choice;
     choice.texels_per_band = 1;
     const Image map = converted(file, {}, format, report, choice);
     Report expected_report;

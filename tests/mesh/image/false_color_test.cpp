@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "relief/mesh/error.h"
-#include "relief/mesh/heat_picture.h"
+#include "relief/mesh/false_color.h"
 
 namespace relief {
 namespace {
@@ -17,7 +17,7 @@ using Pixel = std::array<int, 3>;
 Pixel shown(float value, double brightest) {
     Image values = make_image(1, 1, 1, 32, ColorSpace::data);
     values.as<float>()[0] = value;
-    const Image picture = heat_picture(values, brightest);
+    const Image picture = false_color_image(values, brightest);
     const auto codes = picture.as<std::uint8_t>();
     return {codes[0], codes[1], codes[2]};
 }
@@ -48,11 +48,11 @@ TEST(HeatPicture, EndsAtItsEnds) {
 }
 
 TEST(HeatPicture, TakesOneFloatChannelAndAPositiveEnd) {
-    EXPECT_THROW(heat_picture(make_image(2, 2, 3, 32, ColorSpace::data), 1), InvalidInput);
-    EXPECT_THROW(heat_picture(make_image(2, 2, 1, 8, ColorSpace::data), 1), InvalidInput);
-    EXPECT_THROW(heat_picture(Image{}, 1), InvalidInput);
-    EXPECT_THROW(heat_picture(make_image(2, 2, 1, 32, ColorSpace::data), 0), InvalidInput);
-    EXPECT_THROW(heat_picture(make_image(2, 2, 1, 32, ColorSpace::data), std::nan("")),
+    EXPECT_THROW(false_color_image(make_image(2, 2, 3, 32, ColorSpace::data), 1), InvalidInput);
+    EXPECT_THROW(false_color_image(make_image(2, 2, 1, 8, ColorSpace::data), 1), InvalidInput);
+    EXPECT_THROW(false_color_image(Image{}, 1), InvalidInput);
+    EXPECT_THROW(false_color_image(make_image(2, 2, 1, 32, ColorSpace::data), 0), InvalidInput);
+    EXPECT_THROW(false_color_image(make_image(2, 2, 1, 32, ColorSpace::data), std::nan("")),
                  InvalidInput);
 }
 

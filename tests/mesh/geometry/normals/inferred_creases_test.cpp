@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Hard edges by hand, and the angle that tells them.
-#include "relief/mesh/stored_creases.h"
+#include "relief/mesh/inferred_creases.h"
 
 #include <gtest/gtest.h>
 
@@ -13,22 +13,22 @@
 namespace relief {
 namespace {
 
-TEST(StoredCreases, OfACubeAreItsEdgesAtHalfARightAngle) {
-    const StoredCreases found = stored_creases(test::cube());
+TEST(InferredCreases, OfACubeAreItsEdgesAtHalfARightAngle) {
+    const InferredCreases found = inferred_creases(test::cube());
     EXPECT_EQ(found.edges, 18U);
     EXPECT_EQ(found.hard, 12U);
     EXPECT_NEAR(glm::degrees(found.crease_angle), 45.0, 1e-6);
-    EXPECT_EQ(found.misjudged, 0U);
+    EXPECT_EQ(found.misclassified, 0U);
 }
 
-TEST(StoredCreases, OfASmoothMeshAreNone) {
-    const StoredCreases found = stored_creases(test::sphere(12, 8));
+TEST(InferredCreases, OfASmoothMeshAreNone) {
+    const InferredCreases found = inferred_creases(test::sphere(12, 8));
     EXPECT_GT(found.edges, 100U);
     EXPECT_EQ(found.hard, 0U);
     EXPECT_EQ(found.crease_angle, std::numbers::pi);
 }
 
-TEST(StoredCreases, OfFacetsTellNoAngleFromNone) {
+TEST(InferredCreases, OfFacetsTellNoAngleFromNone) {
     Mesh facets = test::soup(test::sphere(12, 8));
     Report report;
     const std::vector<glm::vec3> normals =
@@ -37,7 +37,7 @@ TEST(StoredCreases, OfFacetsTellNoAngleFromNone) {
         for (int corner = 0; corner < 3; ++corner)
             facets.normals[facets.triangles[t][corner]] = normals[t];
     }
-    const StoredCreases found = stored_creases(facets);
+    const InferredCreases found = inferred_creases(facets);
     EXPECT_GT(found.hard, found.edges / 2);
     EXPECT_LT(glm::degrees(found.crease_angle), 12.0);
 }
@@ -80,24 +80,24 @@ Mesh strip(const std::vector<std::pair<double, bool>>& bends) {
     return mesh;
 }
 
-TEST(StoredCreases, PartAtTheAngleWithTheFewestMisjudged) {
+TEST(InferredCreases, PartAtTheAngleWithTheFewestMisjudged) {
     // The quads' diagonals are five edges of no angle.
-    const StoredCreases clear =
-        stored_creases(strip({{10.0, false}, {20.0, false}, {50.0, true}, {70.0, true}}));
+    const InferredCreases clear =
+        inferred_creases(strip({{10.0, false}, {20.0, false}, {50.0, true}, {70.0, true}}));
     EXPECT_EQ(clear.edges, 4U + 5U);
     EXPECT_EQ(clear.hard, 2U);
     EXPECT_NEAR(glm::degrees(clear.crease_angle), 35.0, 1e-3);
-    EXPECT_EQ(clear.misjudged, 0U);
-    const StoredCreases mixed =
-        stored_creases(strip({{15.0, true}, {30.0, false}, {50.0, true}, {70.0, true}}));
+    EXPECT_EQ(clear.misclassified, 0U);
+    const InferredCreases mixed =
+        inferred_creases(strip({{15.0, true}, {30.0, false}, {50.0, true}, {70.0, true}}));
     EXPECT_NEAR(glm::degrees(mixed.crease_angle), 40.0, 1e-3);
-    EXPECT_EQ(mixed.misjudged, 1U);
+    EXPECT_EQ(mixed.misclassified, 1U);
 }
 
-TEST(StoredCreases, NeedNormals) {
+TEST(InferredCreases, NeedNormals) {
     Mesh mesh = test::cube();
     mesh.normals.clear();
-    EXPECT_THROW(stored_creases(mesh), InvalidInput);
+    EXPECT_THROW(inferred_creases(mesh), InvalidInput);
 }
 
 }  // namespace

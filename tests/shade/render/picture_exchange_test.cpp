@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Pictures handed over are those that were drawn, and one that is shown is left alone.
-#include "relief/shade/handover.h"
+#include "relief/shade/picture_exchange.h"
 
 #include <gtest/gtest.h>
 
@@ -13,7 +13,7 @@ namespace {
 class Handing : public test::DrawTest {
   protected:
     /// A picture of one colour, of this size.
-    void put(Handover& handover, const glm::vec3& color, int width, int height) {
+    void put(PictureExchange& handover, const glm::vec3& color, int width, int height) {
         Material material = test::black_material();
         material.unlit = true;
         material.diffuse = color;
@@ -38,24 +38,24 @@ class Handing : public test::DrawTest {
 };
 
 TEST_F(Handing, NothingIsShownBeforeAnythingIsDrawn) {
-    Handover handover(context());
+    PictureExchange handover(context());
     EXPECT_EQ(handover.get().texture, 0U);
 }
 
 TEST_F(Handing, TheNewestIsShownInItsSize) {
-    Handover handover(context());
+    PictureExchange handover(context());
     put(handover, {1, 0, 0}, 20, 10);
     put(handover, {0, 1, 0}, 30, 10);
-    const Handover::Shown shown = handover.get();
+    const PictureExchange::Shown shown = handover.get();
     EXPECT_EQ(shown.width, 30);
     EXPECT_EQ(shown.height, 10);
     EXPECT_EQ(color_of(shown.texture, 30, 10), glm::ivec3(0, 255, 0));
 }
 
 TEST_F(Handing, WhatIsShownStaysAsItIsHoweverManyComeAfter) {
-    Handover handover(context());
+    PictureExchange handover(context());
     put(handover, {1, 0, 0}, 8, 8);
-    const Handover::Shown shown = handover.get();
+    const PictureExchange::Shown shown = handover.get();
     for (int i = 0; i < 5; ++i) {
         put(handover, {0, 0, 1}, 8, 8);
         EXPECT_EQ(color_of(shown.texture, 8, 8), glm::ivec3(255, 0, 0)) << i;
@@ -65,7 +65,7 @@ TEST_F(Handing, WhatIsShownStaysAsItIsHoweverManyComeAfter) {
 }
 
 TEST_F(Handing, TwoPicturesComeTogetherAndTheSecondGoesWithoutOne) {
-    Handover handover(context());
+    PictureExchange handover(context());
     Report report;
     const FrameSettings settings{8, 4, 1};
     const auto renderer_of = [&](const glm::vec3& color) {
@@ -80,7 +80,7 @@ TEST_F(Handing, TwoPicturesComeTogetherAndTheSecondGoesWithoutOne) {
     const std::unique_ptr<Renderer> red = renderer_of({1, 0, 0});
     const std::unique_ptr<Renderer> blue = renderer_of({0, 0, 1});
     handover.put(*red, blue.get());
-    const Handover::Shown both = handover.get();
+    const PictureExchange::Shown both = handover.get();
     EXPECT_EQ(color_of(both.texture, 8, 4), glm::ivec3(255, 0, 0));
     ASSERT_NE(both.beside, 0U);
     EXPECT_EQ(color_of(both.beside, 8, 4), glm::ivec3(0, 0, 255));
@@ -89,13 +89,13 @@ TEST_F(Handing, TwoPicturesComeTogetherAndTheSecondGoesWithoutOne) {
 }
 
 TEST_F(Handing, APictureFromElsewhereStandsUpright) {
-    Handover handover(context());
+    PictureExchange handover(context());
     Image picture = make_image(3, 2, 3, 8, ColorSpace::srgb);
     auto& codes = std::get<std::vector<std::uint8_t>>(picture.samples);
     for (std::size_t i = 0; i < codes.size(); ++i)
         codes[i] = static_cast<std::uint8_t>(10 * i);
     handover.put(picture);
-    const Handover::Shown shown = handover.get();
+    const PictureExchange::Shown shown = handover.get();
     std::vector<std::uint8_t> texels(4 * 3 * 2);
     context().api()->BindTexture(GL_TEXTURE_2D, shown.texture);
     context().api()->GetTexImage(GL_TEXTURE_2D, 0, GL_RGBA, GL_UNSIGNED_BYTE, texels.data());

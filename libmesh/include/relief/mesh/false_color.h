@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// Renders values as a false-color image.
-/// Tests: tests/mesh/image/heat_picture_test.cpp.
+/// Tests: tests/mesh/image/false_color_test.cpp.
 #pragma once
 
 #include "relief/mesh/image.h"
@@ -15,6 +15,6 @@ namespace relief {
 /// \param brightest  the value of the brightest color, above 0. Larger values have the same color,
 ///         values of at most 0 are black, and NaN is pure green
 /// \throws InvalidInput if the image is empty or has another format, or brightest is not positive
-Image heat_picture(const Image& values, double brightest);
+Image false_color_image(const Image& values, double brightest);
 
 }  // namespace relief

@@ -14,12 +14,12 @@ namespace relief {
 /// The contexts of both threads share textures (a window library creates them). The drawing thread
 /// owns this object and calls put(); the other thread calls get(), which never waits for a frame
 /// and never returns an incomplete one.
-class Handover {
+class PictureExchange {
   public:
-    explicit Handover(const Context& context);
-    ~Handover();
-    Handover(const Handover&) = delete;
-    Handover& operator=(const Handover&) = delete;
+    explicit PictureExchange(const Context& context);
+    ~PictureExchange();
+    PictureExchange(const PictureExchange&) = delete;
+    PictureExchange& operator=(const PictureExchange&) = delete;
 
     /// Copies the last picture of the renderer, which must have 8 bits, and waits for the copy.
     /// \param beside  a second picture that is passed on together with the first

@@ -9,6 +9,6 @@
 namespace relief {
 
 /// Formats a time: "840 ns", "4.13 µs", "12.3 ms", "1.50 s".
-std::string seconds_in_words(double seconds);
+std::string format_seconds(double seconds);
 
 }  // namespace relief

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Textures and normal maps of high meshes, looked up by hand and through whole bakes.
-#include "relief/mesh/high_detail.h"
+#include "relief/mesh/high_materials.h"
 
 #include <gtest/gtest.h>
 
@@ -21,12 +21,12 @@ using test::bake;
 using test::BakedImage;
 using test::sized;
 
-Image grey(int width, int height, std::vector<float> samples) {
+Image gray(int width, int height, std::vector<float> samples) {
     return {width, height, 1, ColorSpace::linear, std::move(samples)};
 }
 
 TEST(SurfaceTexture, LiesBetweenTexelCentresAndGoesOnBeyondItsBorder) {
-    const Image image = grey(4, 1, {0.0F, 0.25F, 0.5F, 1.0F});
+    const Image image = gray(4, 1, {0.0F, 0.25F, 0.5F, 1.0F});
     SurfaceTexture texture;
     texture.image = &image;
     const auto red = [&](double u) { return color_at(texture, {u, 0.5}).x; };
@@ -70,11 +70,11 @@ TEST(SurfaceTexture, DecodesBeforeItFilters) {
     EXPECT_DOUBLE_EQ(color_at(texture, {0.5, 0.5}).z, 0.2);
 }
 
-TEST(HighDetail, ColorIsFactorTimesTextureTimesVertex) {
+TEST(HighMaterials, ColorIsFactorTimesTextureTimesVertex) {
     Mesh high = make_quad();
     high.colors.assign(4, {0.5F, 0.25F, 1.0F, 1.0F});
-    const Image image = grey(2, 1, {0.25F, 0.75F});
-    HighDetail detail{&high, {}, {}};
+    const Image image = gray(2, 1, {0.25F, 0.75F});
+    HighMaterials detail{&high, {}, {}};
     detail.materials.resize(2);
     detail.materials[0].color = {1.0F, 0.5F, 0.25F};
     detail.materials[0].color_texture = SurfaceTexture{.image = &image};
@@ -100,10 +100,10 @@ TEST(HighDetail, ColorIsFactorTimesTextureTimesVertex) {
               "3 texture coordinates for 4 vertices");
 }
 
-TEST(HighDetail, MaterialsAreByTriangle) {
+TEST(HighMaterials, MaterialsAreByTriangle) {
     std::vector<Mesh> meshes = {make_quad()};
     meshes[0].material_ranges = {{0, 1, 1U}, {1, 1, std::nullopt}};
-    HighDetail detail{meshes.data(), std::vector<HighMaterial>(2), {}};
+    HighMaterials detail{meshes.data(), std::vector<HighMaterial>(2), {}};
     detail.materials[1].color = {0.5F, 0.0F, 0.0F};
     BakeOptions options = sized(64, 64);
     options.layers.colors = true;
@@ -136,7 +136,7 @@ Image slopes(int width, int height) {
     return normals;
 }
 
-TEST(HighDetail, NormalMapsComeThroughOntoTheSameMesh) {
+TEST(HighMaterials, NormalMapsComeThroughOntoTheSameMesh) {
     Report report;
     for (const FlatCode flat : {FlatCode::middle, FlatCode::half}) {
         for (const Green green : {Green::up, Green::down}) {
@@ -144,10 +144,10 @@ TEST(HighDetail, NormalMapsComeThroughOntoTheSameMesh) {
             format.flat = flat;
             format.green = green;
             const Image map = encode_normal_map(slopes(64, 48), format, report);
-            const Image truth = decode_normal_map(map, green, flat, report);
+            const Image ground_truth = decode_normal_map(map, green, flat, report);
             for (const Mesh& mesh : {make_quad(), make_torus()}) {
                 const std::vector<Mesh> high = {mesh};
-                HighDetail detail{high.data(), std::vector<HighMaterial>(1), {}};
+                HighMaterials detail{high.data(), std::vector<HighMaterial>(1), {}};
                 detail.materials[0].normal_map =
                     SurfaceNormalMap{{.image = &map}, 1.0F, green, flat};
                 BakeOptions options = sized(64, 48);
@@ -155,7 +155,7 @@ TEST(HighDetail, NormalMapsComeThroughOntoTheSameMesh) {
                 const BakedImage image = bake(high, mesh, options);
                 double worst = 0.0;
                 for (std::size_t i = 0; i < image.states.size(); ++i) {
-                    const std::span<const float> n = truth.as<float>();
+                    const std::span<const float> n = ground_truth.as<float>();
                     worst = std::max(
                         worst,
                         degrees_between(image.normal(i), {n[3 * i], n[3 * i + 1], n[3 * i + 2]}));
@@ -167,11 +167,11 @@ TEST(HighDetail, NormalMapsComeThroughOntoTheSameMesh) {
     }
 }
 
-TEST(HighDetail, NormalMapsAreScaledTurnedAndLeftOutWhereTheyCannotBe) {
+TEST(HighMaterials, NormalMapsAreScaledTurnedAndLeftOutWhereTheyCannotBe) {
     // Slopes of 3/4 to the right.
     const Image map{1, 1, 3, ColorSpace::data, std::vector<float>{0.8F, 0.5F, 0.9F}};
     std::vector<Mesh> high = {make_quad()};
-    HighDetail detail{high.data(), std::vector<HighMaterial>(1), {}};
+    HighMaterials detail{high.data(), std::vector<HighMaterial>(1), {}};
     detail.materials[0].normal_map = SurfaceNormalMap{.texture = {.image = &map}};
     SurfaceNormalMap& normal_map = *detail.materials[0].normal_map;
     BakeOptions options = sized(2, 2);
@@ -195,16 +195,16 @@ TEST(HighDetail, NormalMapsAreScaledTurnedAndLeftOutWhereTheyCannotBe) {
     const BakedImage bare = bake(high, make_quad(), options);
     EXPECT_LT(degrees_between(bare.normal(0), {0, 0, 1}), 1e-5);
     EXPECT_EQ(bare.report.count("normal map without texture coordinates"), 1U);
-    const Image narrow = grey(1, 1, {0.5F});
+    const Image narrow = gray(1, 1, {0.5F});
     normal_map.texture.image = &narrow;
     EXPECT_EQ(test::message_of<InvalidInput>([&] { bake(high, make_quad(), options); }),
               "a normal map of 1 channels, not 3");
 }
 
-TEST(HighDetail, NormalMapsHaveNoSayInOcclusion) {
+TEST(HighMaterials, NormalMapsHaveNoSayInOcclusion) {
     const Image map{1, 1, 3, ColorSpace::data, std::vector<float>{0.8F, 0.5F, 0.9F}};
     const std::vector<Mesh> high = {make_torus()};
-    HighDetail detail{high.data(), std::vector<HighMaterial>(1), {}};
+    HighMaterials detail{high.data(), std::vector<HighMaterial>(1), {}};
     detail.materials[0].normal_map = SurfaceNormalMap{.texture = {.image = &map}};
     BakeOptions options = sized(32, 32);
     options.layers.occlusion = OcclusionOptions{};

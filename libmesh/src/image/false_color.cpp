@@ -9,7 +9,7 @@
 #include <glm/glm.hpp>
 
 #include "relief/mesh/error.h"
-#include "relief/mesh/heat_picture.h"
+#include "relief/mesh/false_color.h"
 
 namespace relief {
 
@@ -29,7 +29,7 @@ glm::dvec3 color_of(double share) {
 
 }  // namespace
 
-Image heat_picture(const Image& values, double brightest) {
+Image false_color_image(const Image& values, double brightest) {
     if (values.empty() || values.channels != 1 || values.bits() != 32)
         throw InvalidInput("only an image of one float channel can be shown as heat");
     if (!(brightest > 0.0))

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// Describes the materials of the high meshes of a bake: colors, color textures and normal maps.
-/// Tests: tests/mesh/bake/high_detail_test.cpp.
+/// Tests: tests/mesh/bake/high_materials_test.cpp.
 #pragma once
 
 #include <array>
@@ -46,7 +46,7 @@ struct HighMaterial {
 };
 
 /// The materials of a high mesh.
-struct HighDetail {
+struct HighMaterials {
     const Mesh* mesh = nullptr;           ///< A high mesh of the bake, identified by its address.
     std::vector<HighMaterial> materials;  ///< Indexed by the mesh's material ranges.
     /// The texture coordinates of color textures, by vertex. If empty, those of the mesh. Normal

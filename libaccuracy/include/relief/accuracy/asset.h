@@ -29,7 +29,7 @@ namespace relief {
 class Baker;
 
 /// The options for all kinds of input.
-struct OwnOptions {
+struct AssetOptions {
     RunOptions run;
     /// Programs that draw at the same time must disable one_thread, because it applies to the whole
     /// process.
@@ -40,7 +40,7 @@ struct OwnOptions {
     /// Further arguments of commands on height maps, such as " --channel alpha".
     std::string height_arguments;
     std::string command;  ///< The command that repeats the report: "relief-accuracy own vase.obj".
-    Wish wish;
+    MethodRequest request;
     /// For normal maps from heights: their bits, and whether the steps of quantized heights are
     /// also smoothed (in 16 bits).
     std::vector<int> map_bits = {8, 16, 32};
@@ -48,7 +48,7 @@ struct OwnOptions {
 };
 
 /// An experiment and its recommendation.
-struct OwnExperiment {
+struct AssetExperiment {
     Experiment experiment;
     /// For each measurement, the command or call that performs it; empty if no tool does: such
     /// methods are measured, but not recommended.
@@ -61,19 +61,19 @@ struct OwnExperiment {
 };
 
 /// The reference for averaged normals.
-enum class NormalTruth {
+enum class NormalReference {
     surface,  ///< A smooth surface that is fitted to the vertices: fitted_normals.h.
     file,     ///< The stored normals of the mesh.
 };
 
-struct OwnMeshOptions {
-    NormalTruth truth = NormalTruth::surface;
+struct AssetMeshOptions {
+    NormalReference ground_truth = NormalReference::surface;
     /// The crease angle in radians: sharper edges are hard. If absent, the smoothing groups of the
-    /// mesh apply, else the crease angle that is inferred from its normals (stored_creases.h), else
-    /// no edge is hard.
+    /// mesh apply, else the crease angle that is inferred from its normals (inferred_creases.h),
+    /// else no edge is hard.
     std::optional<double> crease_angle;
     /// Of larger meshes, eight ranges of triangles are measured.
-    std::size_t most_triangles = std::size_t{1} << 20;
+    std::size_t max_triangles = std::size_t{1} << 20;
 };
 
 /// Measures all weightings of normals, in double precision as in relief-mesh. With texture
@@ -81,22 +81,23 @@ struct OwnMeshOptions {
 /// MikkTSpace; and the compact encodings of both.
 /// \throws InvalidInput if the mesh is not valid or has no triangle, or if its stored normals are
 ///         the reference and it has none
-std::vector<OwnExperiment> measure_own_mesh(const Mesh& mesh, const OwnMeshOptions& mesh_options,
-                                            const OwnOptions& options);
+std::vector<AssetExperiment> measure_asset_mesh(const Mesh& mesh,
+                                                const AssetMeshOptions& mesh_options,
+                                                const AssetOptions& options);
 
 /// Measures kernels, precisions and bit depths against the most accurate normals that are known for
 /// this map (measure_bump()).
 /// \param size  of the whole map
 /// \param bump  strength, texel and wrap
-OwnExperiment measure_own_heights(const BumpSample& sample, glm::ivec2 size,
-                                  const BumpOptions& bump, const OwnOptions& options);
+AssetExperiment measure_asset_heights(const BumpSample& sample, glm::ivec2 size,
+                                      const BumpOptions& bump, const AssetOptions& options);
 /// The same for a map in memory: one channel, as for normals_from_height().
-OwnExperiment measure_own_heights(const Image& height, const BumpOptions& bump,
-                                  const OwnOptions& options,
-                                  std::int64_t most_texels = texels_to_measure);
+AssetExperiment measure_asset_heights(const Image& height, const BumpOptions& bump,
+                                      const AssetOptions& options,
+                                      std::int64_t max_texels = texels_to_measure);
 
 /// The storage format of a normal map.
-struct NormalMapOnFile {
+struct NormalMapStorage {
     int bits = 8;  ///< Bits per channel.
     int channels = 3;
     /// The extension of a file format that can store the same codes.
@@ -106,14 +107,14 @@ struct NormalMapOnFile {
 /// Measures storage formats for a normal map against the normals in its file; keeping the file is
 /// one of them.
 /// \param normals  three float channels, as from decode_normal_map()
-OwnExperiment measure_own_normals(const Image& normals, const NormalMapOnFile& file,
-                                  const OwnOptions& options,
-                                  std::int64_t most_texels = texels_to_measure);
+AssetExperiment measure_asset_normals(const Image& normals, const NormalMapStorage& file,
+                                      const AssetOptions& options,
+                                      std::int64_t max_texels = texels_to_measure);
 
 /// Measures sample counts and formats of a map that is baked from one mesh for another, against the
 /// mean of many samples.
 /// \param baker  of the meshes; all its options apply to the maps
 /// \param size  texels along each side of the map
-OwnExperiment measure_own_bake(const Baker& baker, int size, const OwnOptions& options);
+AssetExperiment measure_asset_bake(const Baker& baker, int size, const AssetOptions& options);
 
 }  // namespace relief

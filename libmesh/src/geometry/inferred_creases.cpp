@@ -2,7 +2,7 @@
 // Sorts edges by the angle between their triangles and finds the crease angle that separates hard
 // from smooth edges with the fewest errors. Edges with one triangle or with more than two are
 // ignored.
-#include "relief/mesh/stored_creases.h"
+#include "relief/mesh/inferred_creases.h"
 
 #include <algorithm>
 #include <glm/trigonometric.hpp>
@@ -75,7 +75,7 @@ class EdgeJudge {
 };
 
 /// Finds the crease angle that misclassifies the fewest edges.
-void part(std::vector<JudgedEdge>& edges, StoredCreases& found) {
+void part(std::vector<JudgedEdge>& edges, InferredCreases& found) {
     std::sort(edges.begin(), edges.end(), [](const JudgedEdge& a, const JudgedEdge& b) {
         return a.angle != b.angle ? a.angle < b.angle : a.is_hard < b.is_hard;
     });
@@ -95,7 +95,7 @@ void part(std::vector<JudgedEdge>& edges, StoredCreases& found) {
         least = wrong;
         smooth = i + 1;
     }
-    found.misjudged = least;
+    found.misclassified = least;
     if (smooth == edges.size()) return;
     const double before = smooth > 0 ? edges[smooth - 1].angle : 0.0;
     found.crease_angle = glm::radians(0.5 * (before + edges[smooth].angle));
@@ -103,14 +103,14 @@ void part(std::vector<JudgedEdge>& edges, StoredCreases& found) {
 
 }  // namespace
 
-StoredCreases stored_creases(const Mesh& mesh) {
+InferredCreases inferred_creases(const Mesh& mesh) {
     validate(mesh);
     if (mesh.normals.empty()) throw InvalidInput("the mesh has no normals to tell hard edges by");
     const std::vector<glm::uvec3> welded =
         welded_triangles(mesh.triangles, weld_positions(mesh.positions));
     const std::vector<EdgeSide> sides = sides_of(welded);
     const EdgeJudge judge(mesh, welded);
-    StoredCreases found;
+    InferredCreases found;
     std::vector<JudgedEdge> edges;
     for (std::size_t begin = 0; begin < sides.size();) {
         std::size_t end = begin + 1;
