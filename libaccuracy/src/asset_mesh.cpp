@@ -214,14 +214,14 @@ AssetExperiment measure_normals(const Mesh& mesh, const std::string& whole,
                                 const AssetMeshOptions& mesh_options, const AssetOptions& options) {
     AssetExperiment asset = asset_experiment(Subject::normals, "normals", "Normals", options);
     const CreaseRule creases = crease_rule(mesh, mesh_options.crease_angle);
-    const bool is_file = mesh_options.reference == NormalReference::file;
+    const bool is_file = mesh_options.ground_truth == NormalReference::file;
     const CornerGroundTruth ground_truth =
         is_file ? by_file(mesh, creases) : by_surface(mesh, creases);
     Experiment& experiment = asset.experiment;
     experiment.question = is_file ? "Which weighting comes nearest to the normals of this file?"
                                   : "Which weighting is closest to the normals of the surface that "
                                     "this mesh stands for, and what does it cost?";
-    experiment.reference = ground_truth.words;
+    experiment.ground_truth = ground_truth.words;
     experiment.input = fmt::format("{} triangles{}", mesh.triangles.size(), whole);
     experiment.item = "triangle";
     experiment.items = static_cast<double>(mesh.triangles.size());
@@ -351,7 +351,7 @@ AssetExperiment from_gradients(const Mesh& mesh, const std::vector<Basis>& bases
     AssetExperiment asset = asset_experiment(Subject::tangents, "tangents", "Tangents", options);
     Experiment& experiment = asset.experiment;
     experiment.question = "How far do averaged tangents turn from where the image runs?";
-    experiment.reference =
+    experiment.ground_truth =
         "Where u grows on each triangle, by its own texture coordinates, in the plane of the "
         "interpolated normal. It tells what averaging does to the frame, not which basis a normal "
         "map was baked in: that one must be taken, whatever it errs here.";
@@ -389,7 +389,7 @@ AssetExperiment from_mikktspace(const Mesh& mesh, const std::vector<Basis>& base
         asset_experiment(Subject::tangents, "tangent-basis", "Tangent basis", options);
     Experiment& experiment = asset.experiment;
     experiment.question = "What does a normal map baked for MikkTSpace show in another basis?";
-    experiment.reference =
+    experiment.ground_truth =
         "The normals that texels tilted by 30 degrees stand for in MikkTSpace's frames, which is "
         "what most bakers write. A map baked in another basis is right in that one instead.";
     describe(experiment, mesh, points, whole);
@@ -449,7 +449,7 @@ AssetExperiment stored_frames(const Mesh& mesh, const CornerTangents& tangents,
     const SampleFrames frames = frames_of(mesh, tangents);
     Experiment& experiment = asset.experiment;
     experiment.question = "How many bytes do this mesh's tangent frames need?";
-    experiment.reference =
+    experiment.ground_truth =
         "The mesh's normals and MikkTSpace's tangents in double, right- and left-handed by turns.";
     experiment.input = fmt::format("{} frames", frames.normals.size());
     experiment.item = "frame";

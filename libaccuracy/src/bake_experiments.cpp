@@ -289,7 +289,7 @@ Experiment measured(const BumpyBake& bake, std::span<const BakeSampling> ways,
                     std::span<const std::size_t> formats) {
     Experiment experiment{
         .subject = Subject::bake,
-        .reference = fmt::format(
+        .ground_truth = fmt::format(
             "the mean of {} rays a texel, not rounded to codes; a test holds bakes to the formula "
             "of the surface, without the baker's rays",
             bake.trials().reference_samples()),

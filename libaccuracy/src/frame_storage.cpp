@@ -158,7 +158,7 @@ std::string price_of_best(const Experiment& experiment) {
 Experiment on_even_frames(std::size_t count) {
     Experiment experiment;
     experiment.subject = Subject::storage;
-    experiment.reference =
+    experiment.ground_truth =
         "The frames in double, before they were stored: perpendicular and unit by construction.";
     experiment.input = fmt::format("{} frames spread evenly over the sphere", count);
     experiment.error_unit = "degrees";

@@ -390,7 +390,7 @@ Experiment normal_reading_experiment(const RunOptions& options) {
     const std::vector<NormalCode> codes = normal_codes();
     Experiment experiment = of_texels("storage/normals", directions.size());
     experiment.question = "How near does a stored normal come back, by layout and bits?";
-    experiment.reference = "The directions in double: unit by construction, evenly spread.";
+    experiment.ground_truth = "The directions in double: unit by construction, evenly spread.";
     experiment.input = fmt::format(
         "{} directions spread evenly over the half sphere above a surface", directions.size());
     std::vector<MeasuredMethod> measured;
@@ -415,7 +415,7 @@ Experiment normal_writing_experiment(const RunOptions& options) {
     Experiment experiment = of_texels("storage/smooth-surface", surface.size());
     experiment.question =
         "What does writing a smooth surface take, and does dither keep the mean of a patch?";
-    experiment.reference =
+    experiment.ground_truth =
         "The surface's normals in closed form, single and summed over patches; a test "
         "differentiates its heights numerically.";
     experiment.input = fmt::format("{} x {} texels of waves of 128 texels and more", side, side);

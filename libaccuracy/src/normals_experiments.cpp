@@ -185,7 +185,7 @@ Experiment on_mesh(const std::string& id, const AnalyticMesh& ground_truth,
     Experiment experiment;
     experiment.id = id;
     experiment.subject = Subject::normals;
-    experiment.reference =
+    experiment.ground_truth =
         "The surface's own normals in closed form, at its inner vertices before they were rounded "
         "to float; tests differentiate the surface numerically as well.";
     experiment.input = fmt::format("{}: {} triangles", input, ground_truth.mesh.triangles.size());
@@ -241,7 +241,7 @@ Experiment on_fans(const RunOptions& options) {
     experiment.subject = Subject::normals;
     experiment.question =
         "How close is each weighting around a single vertex, by the number of its neighbours?";
-    experiment.reference =
+    experiment.ground_truth =
         "The normal of a random cubic at the origin, (0, 0, 1) by construction [Max 1999]; a test "
         "fits the cubic to its fan and differentiates it numerically.";
     experiment.input =

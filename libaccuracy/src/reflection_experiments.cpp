@@ -147,7 +147,7 @@ Experiment reflection_experiment(const GlDevice& device, const RunOptions& optio
     Experiment experiment{
         .id = "shading/cube-map-size",
         .question = "How large must a cube map be for a mirror?",
-        .reference =
+        .ground_truth =
             fmt::format("the formula of the surroundings in the directions that a ball in "
                         "closed form mirrors, mean of {} rays a pixel; a test draws the same "
                         "with the reference shader",
@@ -250,7 +250,7 @@ Experiment glossy_experiment(const GlDevice& device, const RunOptions& options) 
     Experiment experiment{
         .id = "shading/glossy-levels",
         .question = "How well do a few blurred levels stand for a rough mirror?",
-        .reference =
+        .ground_truth =
             "the reference shader in double, mean of 1024 facets of GGX for each pixel; tests "
             "hold it to constant surroundings, and to linear ones, whose blur has a closed "
             "form",

@@ -72,7 +72,7 @@ Experiment interpolation_experiment(const GlDevice& device, const RunOptions& op
         .question =
             "How many triangles does it take until it no longer shows where light is "
             "computed?",
-        .reference = fmt::format(
+        .ground_truth = fmt::format(
             "the reference shader in double on a torus of {} triangles with the true normals, one "
             "ray through the centre of each pixel; a test holds that shader to the closed form of "
             "a lit sphere",
@@ -188,7 +188,7 @@ Experiment highlight_experiment(const GlDevice& device, const RunOptions& option
     Experiment experiment{
         .id = "shading/highlights",
         .question = "How near do Phong's and Blinn's highlights come to those of a rough metal?",
-        .reference =
+        .ground_truth =
             "a metal of GGX facets, by the reference shader in double, one ray through the "
             "centre of each pixel; tests hold its GGX to the closed form in another notation, and "
             "its facets to how many there are within 45 degrees",
@@ -325,7 +325,7 @@ Experiment specular_aliasing_experiment(const GlDevice& device, const RunOptions
     Experiment experiment{
         .id = "shading/specular-antialiasing",
         .question = "What keeps highlights right where many texels of a normal map share a pixel?",
-        .reference = fmt::format("the reference shader in double with the normal map at full size, "
+        .ground_truth = fmt::format("the reference shader in double with the normal map at full size, "
                                  "mean of {} rays a pixel in linear light",
                                  rays * rays),
         .input = fmt::format("shiny plane, shininess 120, {1} texels along a pixel, {0} x {0} "
@@ -395,7 +395,7 @@ Experiment edge_experiment(const GlDevice& device, const RunOptions& options) {
     Experiment experiment{
         .id = "shading/edges",
         .question = "What do smooth edges cost?",
-        .reference =
+        .ground_truth =
             fmt::format("the reference shader in double, mean of {} rays a pixel in linear "
                         "light; a test holds its coverage to the closed form of a disc",
                         rays * rays),

@@ -221,7 +221,7 @@ Chart index_chart(std::span<const float> cosines) {
 
 Experiment described(const Boundary& boundary, std::size_t angles) {
     return {.question = "What does Schlick's fit give away, and what does Fresnel's formula cost?",
-            .reference =
+            .ground_truth =
                 "Fresnel's formulas for unpolarised light in double; tests hold them to "
                 "normal incidence, Brewster's angle and grazing incidence in closed form",
             .input = fmt::format("{}: {} angles from 0 to 90 degrees", boundary.name, angles),
@@ -405,7 +405,7 @@ Experiment unit_normal_experiment(const RunOptions& options) {
     Experiment experiment{
         .id = "shading/unit-normal",
         .question = "Does the interpolated normal have to be made unit?",
-        .reference =
+        .ground_truth =
             "the same light in double, from the normal made unit; tests hold it to a formula in "
             "angles, and the length in the triangle's middle to its closed form",
         .input = fmt::format("{} places on a triangle whose corners' normals are {} degrees apart; "

@@ -219,7 +219,7 @@ Experiment normals_by_scale(const RunOptions& options) {
     Experiment experiment{
         .id = "stability/normals-scale",
         .question = "In which units may a mesh be, before its normals are wrong?",
-        .reference = torus_ground_truth,
+        .ground_truth = torus_ground_truth,
         .input = fmt::format("torus of {} triangles at 31 scales from 1e-30 to 1e30; errors of all "
                              "together, times at scale 1",
                              ground_truth.mesh.triangles.size())};
@@ -240,7 +240,7 @@ Experiment normals_by_offset(const RunOptions& options) {
     Experiment experiment{
         .id = "stability/normals-offset",
         .question = "How far from the origin may a mesh be, before its normals are wrong?",
-        .reference = torus_ground_truth,
+        .ground_truth = torus_ground_truth,
         .input = fmt::format("torus of {} triangles at 9 distances from 1 to 1e8; errors of all "
                              "together, times without one",
                              ground_truth.mesh.triangles.size())};
@@ -265,7 +265,7 @@ Experiment normals_of_needles(const RunOptions& options) {
     Experiment experiment{
         .id = "stability/normals-needles",
         .question = "How narrow may a triangle be, before its normal is wrong?",
-        .reference =
+        .ground_truth =
             "the cross product of the float corners in double, of two of which lie so near "
             "the origin that nothing cancels; a test has the same from integers",
         .input = fmt::format("{} single triangles at 13 widths from 1 to 1e-12 of their length; "
@@ -292,7 +292,7 @@ Experiment normals_beside_hard_triangles(const RunOptions& options) {
         .question =
             "How many triangles of the hard-case catalogue may a mesh have, before the "
             "normals around them are wrong?",
-        .reference =
+        .ground_truth =
             fmt::format("{}; what is added has no area, no place or two sides, and so is no "
                         "part of the surface",
                         torus_ground_truth),
@@ -351,7 +351,7 @@ std::vector<float> tangent_degrees(const TangentMethod& method, const TexturedMe
 void measure_tangents(const std::vector<SweptTangents>& methods, const Sweeps& sweeps,
                       const TexturedMesh& ground_truth, const RunOptions& options,
                       Experiment& experiment) {
-    experiment.reference =
+    experiment.ground_truth =
         "the directions along which the image lies on the torus, in closed form, which neither "
         "scale nor place change; tests differentiate the surface numerically as well";
     std::vector<Swept<MeasuredMethod>> swept;
@@ -527,7 +527,7 @@ Experiment bump_by_steepness(const RunOptions& options) {
     Experiment experiment{
         .id = "stability/bump-steepness",
         .question = "How steep or flat may a height map be, before its normals are wrong?",
-        .reference =
+        .ground_truth =
             "the wave's slopes in closed form, times the same factor; tests differentiate it "
             "numerically as well",
         .input = fmt::format("{0} x {0} texels of a wave {1} texels long, at 31 slopes from 1e-30 "
@@ -548,7 +548,7 @@ Experiment bump_by_offset(const RunOptions& options) {
     Experiment experiment{
         .id = "stability/bump-offset",
         .question = "How far above zero may heights lie, before their normals are wrong?",
-        .reference =
+        .ground_truth =
             "the wave's slopes in closed form, which its zero does not change; tests "
             "differentiate it numerically as well",
         .input =

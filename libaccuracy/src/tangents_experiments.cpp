@@ -113,7 +113,7 @@ Experiment rendered_frames_experiment(const GlDevice& device, const RunOptions& 
         .id = "tangents/drawn",
         .subject = Subject::tangents,
         .question = "What do frames that shaders derive cost, where stored ones cost memory?",
-        .reference = fmt::format(
+        .ground_truth = fmt::format(
             "the reference shader in double on a torus of {} triangles with MikkTSpace's tangents, "
             "one ray through the centre of each pixel; tests hold that shader to closed forms",
             torus_triangles(smooth_torus_slices)),
@@ -279,7 +279,7 @@ Experiment on_mesh(const std::string& id, const std::string& input,
     Experiment experiment;
     experiment.id = id;
     experiment.subject = Subject::tangents;
-    experiment.reference = ground_truth_text;
+    experiment.ground_truth = ground_truth_text;
     experiment.input = fmt::format("{}: {} triangles", input, ground_truth.mesh.triangles.size());
     experiment.error_unit = "degrees";
     experiment.item = "triangle";
@@ -326,7 +326,7 @@ Experiment mismatches(const RunOptions& options) {
     experiment.id = "tangents/mismatch";
     experiment.subject = Subject::tangents;
     experiment.question = "What does a map show that is baked in one basis and read in another?";
-    experiment.reference =
+    experiment.ground_truth =
         "The normal that was baked: in a basis of its own it comes back exactly.";
     experiment.input =
         fmt::format("normals tilted by 30 degrees on a jittered torus of {} triangles",

@@ -88,7 +88,7 @@ Mesh read_asset_mesh(const std::filesystem::path& file) {
 std::vector<AssetExperiment> measure_mesh(const AssetInput& input, const AssetRequest& request,
                                           const AssetOptions& options, std::string& description) {
     AssetMeshOptions how;
-    how.reference = request.reference.value_or(NormalReference::surface);
+    how.ground_truth = request.reference.value_or(NormalReference::surface);
     if (request.crease_degrees) how.crease_angle = glm::radians(*request.crease_degrees);
     if (options.run.is_quick) how.max_triangles = quick_triangles;
     description = "a mesh";

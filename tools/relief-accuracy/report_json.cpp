@@ -133,7 +133,7 @@ Json json_of(const Experiment& one, bool has_files) {
                  {"subject", name_of(one.subject)},
                  {"title", one.title},
                  {"question", one.question},
-                 {"truth", one.reference},
+                 {"truth", one.ground_truth},
                  {"input", one.input},
                  {"error_unit", one.error_unit},
                  {"item", one.item},
@@ -257,7 +257,7 @@ Experiment experiment_at(const JsonCursor& place) {
     one.subject = subject_from(place.at("subject").text());
     one.title = place.at("title").text();
     one.question = place.at("question").text();
-    one.reference = place.at("truth").text();
+    one.ground_truth = place.at("truth").text();
     one.input = place.at("input").text();
     one.error_unit = place.at("error_unit").text();
     one.item = place.at("item").text();

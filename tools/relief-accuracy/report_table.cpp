@@ -155,7 +155,7 @@ std::string table_of(const Experiment& experiment) {
     std::string text =
         fmt::format("{}: {}\n  {}\n", experiment.id, experiment.title, experiment.question);
     text += fmt::format("  input         {}\n  ground truth  {}\n  error         {}\n",
-                        experiment.input, experiment.reference, experiment.error_unit);
+                        experiment.input, experiment.ground_truth, experiment.error_unit);
     if (experiment.reference_error) {
         text += fmt::format(
             "  expected: the root of the sum of squares of the reference error, {:.3g}, and the "

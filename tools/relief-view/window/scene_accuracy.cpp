@@ -240,7 +240,7 @@ void draw_topic(const PanelInput& input, const AccuracyTopic& topic, PanelReques
         ImGui::BeginTooltip();
         ImGui::PushTextWrapPos(30.0F * ImGui::GetFontSize());
         ImGui::TextUnformatted((experiment.question + "\n" + experiment.input +
-                                "\n\nGround truth: " + experiment.reference + "\n\n" +
+                                "\n\nGround truth: " + experiment.ground_truth + "\n\n" +
                                 topic.own.recommendation.words)
                                    .c_str());
         ImGui::PopTextWrapPos();
