@@ -51,10 +51,13 @@ ErrorFigures formula_error(const FormulaMethod& method, std::span<const double> 
 void measure_formulas(std::span<const FormulaMethod> methods, std::span<const double> ground_truth,
                       const RunOptions& options, Experiment& experiment);
 
-/// Ways to compute the reflectance of a smooth boundary: the value at normal incidence for all
-/// angles; Schlick's approximation [Schlick 1994] with products, and with a power of two [Karis,
-/// SIGGRAPH 2013]; the same with a third parameter that makes it exact at 82 degrees [Kutz et al.
-/// 2021]; a table; and Fresnel's formulas in float.
+/// Returns ways to compute the reflectance of a smooth boundary:
+/// - the value at normal incidence for all angles;
+/// - Schlick's approximation with products [Schlick 1994];
+/// - the same with a power of two [Karis, SIGGRAPH 2013];
+/// - the same with a third parameter, exact at 82 degrees [Kutz et al. 2021];
+/// - a table of 65 values;
+/// - Fresnel's formulas in float.
 ///
 /// \param index    refractive index of the inside relative to the outside; n + ik for metals
 /// \param cosines  of the angles of incidence, within [0,1]; must outlive the methods

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Experiments on formulas of shading, without images: approximations of Fresnel's reflectance, and
-// the light of interpolated normals that are not normalized.
+// the light of interpolated normals with and without normalization [Phong 1975].
 #include "shading_experiments.h"
 
 #include <fmt/format.h>

@@ -9,8 +9,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "accuracy/random.h"
 #include "parallel.h"
+#include "random.h"
 #include "relief/mesh/error.h"
 
 namespace relief {

@@ -13,7 +13,7 @@
 #include <numbers>
 #include <utility>
 
-#include "accuracy/random.h"
+#include "random.h"
 #include "relief/mesh/error.h"
 
 namespace relief {

@@ -10,7 +10,7 @@
 #include <limits>
 #include <numbers>
 
-#include "accuracy/random.h"
+#include "random.h"
 #include "relief/mesh/error.h"
 
 namespace relief {

@@ -9,7 +9,7 @@
 #include <cmath>
 #include <limits>
 
-#include "accuracy/random.h"
+#include "random.h"
 
 namespace relief {
 namespace {

@@ -12,7 +12,7 @@
 #include <numbers>
 #include <random>
 
-#include "accuracy/power_spectrum.h"
+#include "bump/power_spectrum.h"
 #include "relief/mesh/bump_fields.h"
 #include "relief/mesh/height_map.h"
 #include "relief/mesh/image_file.h"

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // The Fourier transform against its definition, the spectra of noise and of waves.
-#include "accuracy/power_spectrum.h"
+#include "bump/power_spectrum.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
-#include "accuracy/random.h"
+#include "random.h"
 
 namespace relief {
 namespace {

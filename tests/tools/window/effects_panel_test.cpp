@@ -69,10 +69,10 @@ TEST_F(EffectTimesTest, CoverAllEffectsOfTheFrame) {
     EXPECT_GT(state.costs.frame.median, 0.0);
     EXPECT_TRUE(effect_times_.milliseconds("diffuse"));
     EXPECT_FALSE(effect_times_.milliseconds("emission"));
-    const nlohmann::ordered_json json = json_of(state);
-    EXPECT_EQ(json["done"], 3);
-    EXPECT_EQ(json["size"], nlohmann::json({48, 32}));
-    EXPECT_TRUE(json["effects"].contains("directional lights"));
+    const nlohmann::ordered_json described = json_of(state);
+    EXPECT_EQ(described["done"], 3);
+    EXPECT_EQ(described["size"], nlohmann::json({48, 32}));
+    EXPECT_TRUE(described["effects"].contains("directional lights"));
 }
 
 TEST_F(EffectTimesTest, AreValidForOnePlanAndSize) {

@@ -324,12 +324,12 @@ TEST_F(State, EditsOfTheDefaultMaterialSurviveReadingAgain) {
 TEST_F(State, IsWrittenAsJson) {
     show("square.obj");
     state().camera().azimuth = glm::radians(40.0F);
-    const nlohmann::ordered_json json = state().json(RenderedPicture{});
-    EXPECT_NEAR(json["camera"]["azimuth"].get<double>(), 40.0, 1e-5);
-    EXPECT_EQ(json["view"], nlohmann::json({400, 300}));
-    EXPECT_EQ(json["triangles"], 2);
-    EXPECT_EQ(json["drawn"]["frames"], 0);
-    EXPECT_EQ(json["error"], "");
+    const nlohmann::ordered_json described = state().json(RenderedPicture{});
+    EXPECT_NEAR(described["camera"]["azimuth"].get<double>(), 40.0, 1e-5);
+    EXPECT_EQ(described["view"], nlohmann::json({400, 300}));
+    EXPECT_EQ(described["triangles"], 2);
+    EXPECT_EQ(described["drawn"]["frames"], 0);
+    EXPECT_EQ(described["error"], "");
 }
 
 }  // namespace

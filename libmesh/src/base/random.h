@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Numbers drawn at random for ground truths, the same on every machine.
+/// A pseudorandom number generator with the same results on every machine.
 /// Tests: tests/mesh/accuracy/analytic_surfaces_test.cpp.
 #pragma once
 
@@ -8,11 +8,12 @@
 
 namespace relief {
 
-/// [Steele et al. 2014]: each call gives the next number.
+/// SplitMix64 [Steele et al. 2014].
 class Random {
   public:
     explicit Random(std::uint32_t seed) : state_(seed) {}
 
+    /// Returns a uniformly distributed number in [low, high).
     double between(double low, double high) {
         state_ += 0x9e3779b97f4a7c15ULL;
         std::uint64_t bits = state_;
@@ -22,8 +23,8 @@ class Random {
         return low + (high - low) * (static_cast<double>(bits >> 11) * 0x1p-53);
     }
 
-    /// Of mean 0 and deviation 1, nearly Gaussian, within +-6: a sum of 12, without logarithms,
-    /// which are not the same to the last bit everywhere.
+    /// Returns a nearly Gaussian number with mean 0 and standard deviation 1, in [-6, 6]. It is a
+    /// sum of 12 uniform numbers, because the last bits of logarithms depend on the machine.
     double normal() {
         double sum = -6.0;
         for (int i = 0; i < 12; ++i)

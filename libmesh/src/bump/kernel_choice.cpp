@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: Apache-2.0
+// Selects a kernel with the kernel error model (kernel_error_model.h) and explains the choice in
+// words. Heights are in the unit of the map, and angles are in degrees. Bad images and options
+// throw. Tests: tests/mesh/accuracy/kernel_choice_test.cpp.
+#include "relief/mesh/kernel_choice.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+
+#include "bump/kernel_error_model.h"
+#include "relief/mesh/error.h"
+
+namespace relief {
+namespace {
+
+constexpr int radii[] = {1, 2, 3, 4, 5, 6, 7, 8, 10, 12, 14, 16, 20, 24, 28, 32, 40, 48, 56, 64};
+/// The kernels are ordered from fast to slow. Forward differences are never the best, because their
+/// results are shifted by half a texel.
+constexpr Kernel fixed_kernels[] = {Kernel::central3, Kernel::scharr3,  Kernel::sobel3,
+                                    Kernel::prewitt3, Kernel::central5, Kernel::central7,
+                                    Kernel::sobel5,   Kernel::scharr5};
+/// Kernels within this factor of the smallest error are equivalent, and the fastest is selected.
+/// The factor is small because the uncertainty of the reference affects all predictions alike.
+constexpr double tie_factor = 1.003;
+
+/// Smaller maps contain too little information for an estimate.
+constexpr std::size_t min_texels = 64;
+
+std::vector<KernelPrediction> all_predictions(const KernelErrorModel& model) {
+    std::vector<KernelPrediction> all;
+    for (const Kernel kernel : fixed_kernels)
+        all.push_back(model.predict(kernel, 2));
+    double min_error = std::numeric_limits<double>::infinity();
+    for (const int radius : radii) {
+        all.push_back(model.predict(Kernel::gaussian, radius));
+        min_error = std::min(min_error, all.back().rms_degrees);
+        // Larger radii only increase the error, and none improves on 0. High outliers spread over
+        // more texels before the error decreases again.
+        const int min_radius = model.outlier_share() > 0.0 ? 16 : 3;
+        if (min_error == 0.0 && radius >= 3) break;
+        if (radius >= min_radius && all.back().rms_degrees > 1.3 * min_error) break;
+    }
+    return all;
+}
+
+bool has_less_error(const KernelPrediction& a, const KernelPrediction& b) {
+    return a.rms_degrees < b.rms_degrees;
+}
+
+/// \param all  from fast to slow
+KernelPrediction select_best(const std::vector<KernelPrediction>& all) {
+    const double min_error = std::min_element(all.begin(), all.end(), has_less_error)->rms_degrees;
+    return *std::find_if(all.begin(), all.end(), [min_error](const KernelPrediction& prediction) {
+        return prediction.rms_degrees <= tie_factor * min_error;
+    });
+}
+
+/// Describes the precision of the heights, for example "8 bits used".
+std::string coding_text(const HeightCoding& coding) {
+    const int bits = coding.depth.bits;
+    if (coding.has_exact_levels) return "a few levels, taken for the true heights";
+    if (bits > 0) return fmt::format("{} bit{} used", bits, bits == 1 ? "" : "s");
+    return coding.mantissa_bits < 20 ? fmt::format("floats of {} bits", coding.mantissa_bits)
+                                     : "float heights";
+}
+
+/// Explains the choice of the kernel.
+std::string reason_text(const KernelErrorModel& model, const BumpOptions& options,
+                        const KernelPrediction& best) {
+    const GradientKernel kernel = gradient_kernel(best.kernel, best.gaussian_radius);
+    const std::string coding = coding_text(model.coding());
+    // The unit of these heights is a texel, so that their differences are slopes.
+    const double texels = std::abs(options.strength) / std::sqrt(options.texel.x * options.texel.y);
+    const double step = texels * model.coding().step();
+    const double noise = texels * model.noise();
+    if (best.rms_degrees == 0.0) return coding + ": level ground, on which every kernel is exact";
+    if (model.grain() > 0.0 && model.noise() == 0.0) {
+        return fmt::format("{}: grain of {:.2g} texels{} is taken for detail", coding,
+                           texels * model.grain(),
+                           model.is_only_grain() ? ", and hardly anything else," : "");
+    }
+    const bool is_noisy = noise > 0.3 * step && noise > 0.0;
+    const bool has_outliers = !is_noisy && model.outlier_share() > 0.0;
+    const std::string problem = has_outliers
+                                    ? fmt::format("{:.2g}% of texels that stick out on their own",
+                                                  100.0 * model.outlier_share())
+                                : is_noisy   ? fmt::format("noise of {:.2g} texels", noise)
+                                : step > 0.0 ? fmt::format("steps of {:.2g} texels", step)
+                                             : "rounding";
+    if (kernel.smoothing.size() > 1) {
+        return fmt::format("{}: {} outweigh{} fine detail, so heights are smoothed over {} texels",
+                           coding, problem, is_noisy || (step == 0.0 && !has_outliers) ? "s" : "",
+                           2 * kernel.smoothing.size() - 1);
+    }
+    if (model.edge_share() > 0.005 && kernel.radius == 1) {
+        return fmt::format(
+            "{}: {:.1f}% of the texels are beside sharp walls, so only the next texels are read",
+            coding, 100.0 * model.edge_share());
+    }
+    return fmt::format(
+        "{}: detail outweighs {}, so heights are not smoothed, and slopes are of "
+        "order {}",
+        coding, problem, kernel.order);
+}
+
+void check_parts(std::span<const Image> parts) {
+    if (parts.empty())
+        throw InvalidInput("a kernel is chosen by parts of a map, of which none were given");
+    for (const Image& part : parts) {
+        if (part.empty()) throw InvalidInput("an empty part of a height map");
+        if (part.channels != 1) {
+            throw InvalidInput(
+                fmt::format("a height field has one channel, not {}", part.channels));
+        }
+        if (part.bits() != parts[0].bits()) {
+            throw InvalidInput(fmt::format("parts of {} and of {} bits are not of one map",
+                                           parts[0].bits(), part.bits()));
+        }
+    }
+}
+
+}  // namespace
+
+std::string expected_error_text(const KernelChoice& choice) {
+    return choice.is_range()
+               ? fmt::format("{:.2g} to {:.2g}", choice.rms_degrees, choice.upper_rms_degrees)
+               : fmt::format("{:.2g}", choice.rms_degrees);
+}
+
+int best_gaussian_radius(const KernelChoice& choice) {
+    // The predictions are sorted by error.
+    for (const KernelPrediction& prediction : choice.predictions) {
+        if (prediction.kernel == Kernel::gaussian) return prediction.gaussian_radius;
+    }
+    return choice.gaussian_radius;
+}
+
+std::vector<ImagePart> parts_to_analyze(int width, int height) {
+    constexpr int max_side = 128;
+    constexpr int max_per_axis = 3;
+    if (width <= 0 || height <= 0)
+        throw InvalidInput(fmt::format("a map of {} x {} texels has no parts", width, height));
+    if (std::min(width, height) < 8) {
+        constexpr int max_length = max_side * max_side;
+        return {{0, 0, std::min(width, max_length), std::min(height, max_length)}};
+    }
+    const int smallest = std::min({width, height, max_side});
+    const int side = static_cast<int>(std::bit_floor(static_cast<unsigned>(smallest)));
+    // Parts that overlap by more than half share their noise, which would then resemble detail.
+    const auto count_along = [&](int length) {
+        return 2 * length < 3 * side ? 1 : (length - 1) / side + 1;
+    };
+    // A long and narrow map has the same number of parts.
+    int rows = std::min(count_along(height), max_per_axis);
+    const int columns = std::min(count_along(width), max_per_axis * max_per_axis / rows);
+    rows = std::min(count_along(height), max_per_axis * max_per_axis / columns);
+    const auto offset_along = [side](int i, int count, int length) {
+        const std::int64_t max_offset = length - side;
+        if (std::int64_t{count} * side >= length)
+            return static_cast<int>(i * max_offset / std::max(1, count - 1));
+        return static_cast<int>((2 * std::int64_t{i} + 1) * max_offset / (2 * count));
+    };
+    std::vector<ImagePart> parts;
+    for (int row = 0; row < rows; ++row) {
+        for (int column = 0; column < columns; ++column)
+            parts.push_back({offset_along(column, columns, width), offset_along(row, rows, height),
+                             side, side});
+    }
+    return parts;
+}
+
+KernelChoice choose_kernel(std::span<const Image> parts, const BumpOptions& options,
+                           bool destaircased, Grain grain) {
+    check_parts(parts);
+    const KernelErrorModel model(parts, options, destaircased, grain);
+    KernelChoice choice;
+    choice.depth = model.coding().depth;
+    choice.noise = model.noise();
+    choice.walls = model.edge_share();
+    choice.grain = model.grain();
+    choice.spikes = model.outlier_share();
+    choice.predictions = all_predictions(model);
+    const KernelPrediction best = select_best(choice.predictions);
+    std::stable_sort(choice.predictions.begin(), choice.predictions.end(), has_less_error);
+    choice.kernel = best.kernel;
+    choice.gaussian_radius = best.gaussian_radius;
+    choice.rms_degrees = best.rms_degrees;
+    choice.max_degrees = best.max_degrees;
+    choice.reason = reason_text(model, options, best);
+    const KernelPrediction upper = model.predict_upper(best);
+    choice.upper_rms_degrees = std::max(best.rms_degrees, upper.rms_degrees);
+    choice.upper_max_degrees = std::max(best.max_degrees, upper.max_degrees);
+    if (choice.grain > 0.0) {
+        const KernelErrorModel other_model(parts, options, destaircased,
+                                           choice.noise > 0.0 ? Grain::detail : Grain::noise);
+        const KernelPrediction same_kernel = other_model.predict(best.kernel, best.gaussian_radius);
+        choice.otherwise = {same_kernel.rms_degrees, select_best(all_predictions(other_model))};
+        if (model.is_only_grain() && grain == Grain::automatic) {
+            choice.upper_rms_degrees = std::max(choice.upper_rms_degrees, same_kernel.rms_degrees);
+            choice.upper_max_degrees = std::max(choice.upper_max_degrees, same_kernel.max_degrees);
+        }
+    }
+    std::size_t texels = 0;
+    for (const Image& part : parts)
+        texels += part.sample_count();
+    if (texels < min_texels && choice.rms_degrees > 0.0) {
+        choice.rms_degrees = choice.max_degrees = std::numeric_limits<double>::quiet_NaN();
+        choice.upper_rms_degrees = choice.upper_max_degrees = choice.rms_degrees;
+        choice.reason = fmt::format("{} texel{} say too little to expect an error", texels,
+                                    texels == 1 ? "" : "s");
+    }
+    return choice;
+}
+
+KernelChoice choose_kernel(const Image& height, const BumpOptions& options, bool destaircased,
+                           Grain grain) {
+    if (height.empty()) throw InvalidInput("an empty height field has no kernel");
+    std::vector<Image> parts;
+    for (const ImagePart& part : parts_to_analyze(height.width, height.height))
+        parts.push_back(part_of(height, part));
+    return choose_kernel(parts, options, destaircased, grain);
+}
+
+}  // namespace relief
