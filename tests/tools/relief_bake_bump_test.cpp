@@ -386,7 +386,7 @@ TEST(BakeRefusal, ExplainsAndLeavesNoFiles) {
           "out/n.jpg: JPEG compression distorts normals (use .png, .tif or .exr)"},
          {"relief-bake bump flat.png out/n.hdr", 2, "out/n.hdr: "},
          {"relief-bake bump flat.png out/n", 2,
-          "out/n: no format to write a normal map in (use .png, .tif or .exr)"},
+          "out/n: the format cannot store a normal map (use .png, .tif or .exr)"},
          {"relief-bake bump flat.png out/n.png --bits 32", 2, "--bits 32: .png holds 16 or 8 bits"},
          {"relief-bake bump flat.png out/n.exr --bits 16", 2,
           "--bits 16: .exr holds 32 bits (--half stores half floats)"},

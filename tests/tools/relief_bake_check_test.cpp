@@ -277,7 +277,7 @@ TEST_F(Verify, AFreshMapHasOnlyRoundingErrors) {
         "--report out/report.json --strict");
     EXPECT_EQ(result.exit_code, 0) << result.error;
     EXPECT_THAT(result.out, HasSubstr("from the mean over each texel (16 samples)"));
-    EXPECT_THAT(result.out, HasSubstr("verdict   as this bake makes it\n"));
+    EXPECT_THAT(result.out, HasSubstr("verdict   matches this bake\n"));
     const json report = json::parse(workplace.read("out/report.json"));
     const json& check = report["maps"][0]["check"];
     EXPECT_EQ(check["centre"]["texels"], 64 * 64);
@@ -299,8 +299,8 @@ TEST_F(Verify, TheFileRecordsItsBake) {
     bake("--samples 4 --rays face --offset 0.5 --max-distance 0.25 --dither blue-noise --bits 8");
     const json surface = check("out/map.png");
     EXPECT_EQ(surface["baked"],
-              "--dither blue-noise --max-distance 0.25 --offset 0.5 --rays face --samples 4 "
-              "--space tangent");
+              "--dither blue-noise --max-distance 0.25 --offset 0.5 --rays face "
+              "--samples 4 --space tangent");
     EXPECT_EQ(surface["file_says"], surface["baked"]);
     EXPECT_EQ(surface["offset"], 0.5);
     EXPECT_EQ(surface["reference_samples"], 64);
@@ -321,7 +321,7 @@ TEST_F(Verify, AnErrorAboveTheLimitIsAProblem) {
     surface = check("out/map.png", "--max-error 0.01 --max-error-kind p99 --strict", &exit_code);
     EXPECT_EQ(exit_code, 3);
     EXPECT_THAT(surface["trouble"][0].get<std::string>(),
-                HasSubstr("more than the 0.01 degrees (99 of 100 texels) allowed"));
+                HasSubstr("more than the limit of 0.01 degrees (99 of 100 texels)"));
 }
 
 TEST_F(Verify, InvertedGreenIsReportedAndItsRemedyWorks) {

@@ -584,7 +584,7 @@ TEST(ConvertSpace, ReportsWhetherTangentsAreThoseOfTheFile) {
                     .run("relief-bake convert " + bricks_map +
                          " out/object.png --input-green up --to-object out/own.glb")
                     .out,
-                HasSubstr(", with its own tangents; "));
+                HasSubstr(", with the file's tangents; "));
 }
 
 TEST(ConvertSpace, RefusesImpossibleConversions) {

@@ -99,8 +99,8 @@ TEST(HeightsCommand, RefusesToGuessGreenAndUnsuitableFormats) {
     write_image(workplace / "flat.png", flat);
     for (const auto& [line, code, message] :
          {test::Refused{"relief-bake heights flat.png out/old.png", 1,
-                        "flat.png: the direction of its green channel is unknown, nor do its "
-                        "slopes tell (give --input-green)"},
+                        "flat.png: the direction of the green channel is unknown, and the slopes "
+                        "do not show it (give --input-green)"},
           test::Refused{"relief-bake heights flat.png out/old.png --bits 32", 2,
                         "--bits 32: .png holds 16 or 8 bits"},
           test::Refused{"relief-bake heights flat.png out/old.jpg", 2,

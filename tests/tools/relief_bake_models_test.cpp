@@ -107,7 +107,8 @@ TEST_F(BakeFit, AHighModelFarAwayIsAnErrorThatNamesBothBoxes) {
 
 TEST_F(BakeFit, AHighModelBesideTheLowOneMissesTooMuch) {
     write_spheres({.x = 3});
-    const std::string error = "% of --max-missed; the box of high.obj is (2, -1, -1) to (4, 1, 1)";
+    const std::string error =
+        "% of --max-missed; the bounding box of high.obj is (2, -1, -1) to (4, 1, 1)";
     expect_nothing_written("", error);
     expect_nothing_written("--compare", error);
     expect_nothing_written("--max-error 5", error);
@@ -242,7 +243,7 @@ TEST_F(BakeFit, StrictFailsMissedTexelsUnlessALimitIsGiven) {
     EXPECT_EQ(bake(rays + "--strict --max-missed 50").exit_code, 0);
     expect_nothing_written(
         rays + "--strict --max-missed 49.9",
-        "512 of 1024 texels (50 %) are hit nothing, more than the 49.9 % of --max-missed");
+        "512 of 1024 texels (50 %) hit nothing, more than the 49.9 % of --max-missed");
 }
 
 TEST_F(BakeFit, StrictPassesMirroredIslandsAndFailsOverlaps) {
@@ -309,9 +310,8 @@ TEST_F(BakeFit, ACheckOfAMapReportsTheSame) {
     EXPECT_THAT(workplace.run(line).out, Not(HasSubstr("hit nothing, more than")));
     const ProgramResult missed = workplace.run(line + "--max-missed 40 --strict");
     EXPECT_EQ(missed.exit_code, 3);
-    EXPECT_THAT(
-        missed.out,
-        HasSubstr("50 % of the texels are hit nothing, more than 40; the box of high.obj is "));
+    EXPECT_THAT(missed.out, HasSubstr("the rays of 50 % of the texels hit nothing, more than 40 %; "
+                                      "the bounding box of high.obj is "));
     workplace.write("high.obj", halves(70, 70));
     const ProgramResult apart = workplace.run(line);
     EXPECT_EQ(apart.exit_code, 1);

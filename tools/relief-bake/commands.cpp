@@ -161,10 +161,10 @@ void add_map_output_options(CLI::App& app, MapOutputOptions& options, bool follo
                    default_text("16, and 32 for .exr."))
         .group(group);
     add_choice(app, "--zero-code", options.flat, zero_code_choices(),
-               "The code that represents zero, for 8 bits; 16 bits correspond. 127.5: the decoding "
-               "of glTF and engines, in which no code is exactly zero. 128: flat texels are "
-               "exactly flat for readers that use this convention, but engines decode all normals "
-               "with an error of 0.32 degrees (8 bits) or 0.0012 degrees (16 bits)." +
+               "The code of 255 that represents zero; in 16 bits, the corresponding code of 65535. "
+               "127.5: glTF and engines decode maps this way; no code is exactly zero. 128: flat "
+               "texels are exactly flat for readers that use this convention, but engines decode "
+               "all normals with an error of 0.32 degrees (8 bits) or 0.0012 degrees (16 bits)." +
                    default_text("127.5."))
         .group(group);
     add_choice(app, "--dither", options.dither, dither_choices(),

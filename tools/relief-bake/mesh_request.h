@@ -119,7 +119,7 @@ struct MeshBakeRequest {
     }
 };
 
-/// The word of <material> in the names of maps.
+/// The placeholder of material names in output files.
 inline constexpr std::string_view material_word = "<material>";
 
 void add_ray_options(CLI::App& app, MeshBakeRequest& request);
