@@ -296,10 +296,12 @@ TEST_F(Verify, AFreshMapHasOnlyRoundingErrors) {
 }
 
 TEST_F(Verify, TheFileRecordsItsBake) {
-    bake("--samples 4 --rays face --offset 0.5 --max-distance 0.25 --dither blue-noise --bits 8");
+    bake(
+        "--samples 4 --rays face --offset 0.5 --max-distance 0.25 --dither blue-noise --bits 8 "
+        "--match all");
     const json surface = check("out/map.png");
     EXPECT_EQ(surface["baked"],
-              "--dither blue-noise --max-distance 0.25 --offset 0.5 --rays face "
+              "--dither blue-noise --match all --max-distance 0.25 --offset 0.5 --rays face "
               "--samples 4 --space tangent");
     EXPECT_EQ(surface["file_says"], surface["baked"]);
     EXPECT_EQ(surface["offset"], 0.5);

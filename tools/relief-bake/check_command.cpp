@@ -323,15 +323,25 @@ void add_surface_options(CLI::App& app, SurfaceCheckRequest& request) {
 /// \throws UsageError if options have no effect, models are missing, or there are several maps
 void check(const CLI::App& app, const SurfaceCheckRequest& request,
            const std::vector<std::filesystem::path>& maps) {
-    constexpr std::array surface_options = {"--low",          "--cage",
-                                            "--rays",         "--hardness",
-                                            "--offset",       "--space",
-                                            "--back-faces",   "--max-distance",
-                                            "--samples",      "--outside",
-                                            "--sample-angle", "--udim",
-                                            "--max-error",    "--max-error-kind",
-                                            "--error-map",    "--high-normal-map",
-                                            "--max-missed",   "--allow-size-mismatch"};
+    constexpr std::array surface_options = {"--low",
+                                            "--cage",
+                                            "--match",
+                                            "--rays",
+                                            "--hardness",
+                                            "--offset",
+                                            "--space",
+                                            "--back-faces",
+                                            "--max-distance",
+                                            "--samples",
+                                            "--outside",
+                                            "--sample-angle",
+                                            "--udim",
+                                            "--max-error",
+                                            "--max-error-kind",
+                                            "--error-map",
+                                            "--high-normal-map",
+                                            "--max-missed",
+                                            "--allow-size-mismatch"};
     if (!request.is_wanted()) {
         for (const char* name : surface_options) {
             if (is_given(app, name))

@@ -16,8 +16,8 @@ namespace relief::tools {
 namespace {
 
 constexpr std::array recorded_options = {
-    "--back-faces", "--cage", "--dither",  "--hardness",     "--offset", "--max-distance",
-    "--outside",    "--rays", "--samples", "--sample-angle", "--space"};
+    "--back-faces", "--cage",    "--dither", "--hardness", "--match",        "--max-distance",
+    "--offset",     "--outside", "--rays",   "--samples",  "--sample-angle", "--space"};
 
 const char* to_text(RayDirections directions) {
     return directions == RayDirections::averaged  ? "averaged"
