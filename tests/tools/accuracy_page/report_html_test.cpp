@@ -151,7 +151,7 @@ TEST_F(ReportHtml, BothPartsOfAnErrorAndFindingsStandInTheSummary) {
     EXPECT_THAT(summary, HasSubstr("(texel 5, 17): read as &lt;0&gt;"));
     EXPECT_THAT(page_, HasSubstr(">expected</th>"));
     EXPECT_THAT(page_, HasSubstr("<td>0.500</td>"));
-    EXPECT_THAT(page_, HasSubstr("Expected is the error of the reference itself and that of"));
+    EXPECT_THAT(page_, HasSubstr("Expected is the root of the sum of squares of the"));
 }
 
 TEST_F(ReportHtml, ColumnsThatSayNothingAreLeftOut) {
